@@ -1,0 +1,1 @@
+//! The plain reference of S-DOP culling: one formula a function, no code shared with the culler.

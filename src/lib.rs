@@ -1,0 +1,7 @@
+//! Sphere-encapsulated or-DOP (S-DOP) collision culling that never misses a pair.
+//!
+//! Data flows one way: mesh → volume → scene → effects → update → broad_phase → overlap → pairs → cost.
+
+pub mod mesh;
+pub mod scene;
+pub mod volume;

@@ -1,0 +1,3 @@
+//! `sdop`: parse the arguments, call the command.
+
+fn main() {}

@@ -1,0 +1,18 @@
+//! The state of all rigid bodies, one column a quantity; index i is body i in every column.
+
+/// Rigid bodies as columns. All columns have one length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bodies {
+    /// Index into the scene's shapes.
+    pub shape: Vec<u32>,
+    /// Whether the body may move; pairs of two bodies that may not are never tested.
+    pub dynamic: Vec<bool>,
+    /// Orientation quaternion (x, y, z, w) of any non-zero norm.
+    pub rotation: Vec<[f32; 4]>,
+    /// Translation of the body origin, world frame.
+    pub translation: Vec<[f32; 3]>,
+    /// Linear velocity, world frame, length units a second.
+    pub velocity: Vec<[f32; 3]>,
+    /// Angular velocity ω, world frame, radians a second.
+    pub spin: Vec<[f32; 3]>,
+}

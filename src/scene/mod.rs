@@ -1,0 +1,3 @@
+//! Scenes: bodies as columns, their shapes, what is simulated and how it is culled.
+
+pub mod bodies;
