@@ -1,0 +1,131 @@
+//! Named choices: one list of names serves scene files, command-line flags, tables and JSON.
+
+use std::fmt;
+
+use miette::Diagnostic;
+use thiserror::Error;
+
+/// A name that no choice carries.
+#[derive(Clone, Debug, PartialEq, Eq, Error, Diagnostic)]
+#[error("unknown {what} `{given}`")]
+pub struct UnknownChoice {
+    /// What was to be chosen, for example "strategy".
+    pub what: &'static str,
+    /// The name as given.
+    pub given: String,
+    /// How to mend it.
+    #[help]
+    pub hint: String,
+}
+
+impl UnknownChoice {
+    /// The error for `given`, with the nearest of `known` or all of them as the hint.
+    #[must_use]
+    pub fn new(what: &'static str, given: &str, known: &[&str]) -> Self {
+        Self {
+            what,
+            given: given.to_owned(),
+            hint: suggest(given, known.iter().copied()),
+        }
+    }
+}
+
+/// "did you mean …" when one of the known names is close to the given one, the list of all otherwise.
+pub(crate) fn suggest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.collect();
+    let lower = given.to_lowercase().replace('_', "-");
+    // Two typing errors in a short word already make another word: allow one edit per three letters.
+    let allowed = given.chars().count() / 3;
+    let nearest = known
+        .iter()
+        .map(|name| {
+            (
+                strsim::damerau_levenshtein(&lower, &name.replace('_', "-")),
+                *name,
+            )
+        })
+        .min_by_key(|(distance, _)| *distance);
+    match nearest {
+        Some((distance, name)) if distance <= allowed => format!("did you mean `{name}`?"),
+        _ => format!("one of: {}", known.join(", ")),
+    }
+}
+
+/// Declares an enum of named choices with `ALL`, `NAMES`, `name`, `Display`, `FromStr` and serde as its name.
+macro_rules! choices {
+    ($(#[$meta:meta])* $name:ident, $what:literal, { $($(#[$doc:meta])* $variant:ident = $text:literal,)+ }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum $name { $($(#[$doc])* $variant),+ }
+
+        impl $name {
+            /// Every choice.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+            /// The name of every choice, as scene files and flags spell it.
+            pub const NAMES: &'static [&'static str] = &[$($text),+];
+
+            /// The name that scene files and flags spell.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $text),+ }
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $name {
+            type Err = $crate::scene::choice::UnknownChoice;
+
+            fn from_str(text: &str) -> Result<Self, Self::Err> {
+                match text {
+                    $($text => Ok(Self::$variant),)+
+                    _ => Err($crate::scene::choice::UnknownChoice::new($what, text, Self::NAMES)),
+                }
+            }
+        }
+
+        impl serde::Serialize for $name {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str(self.name())
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                deserializer.deserialize_str($crate::scene::choice::NameVisitor {
+                    what: $what,
+                    names: Self::NAMES,
+                    values: Self::ALL,
+                })
+            }
+        }
+    };
+}
+pub(crate) use choices;
+
+/// Reads one of `names` as the value in the same place.
+pub(crate) struct NameVisitor<T: 'static> {
+    pub(crate) what: &'static str,
+    pub(crate) names: &'static [&'static str],
+    pub(crate) values: &'static [T],
+}
+
+impl<T: Copy> serde::de::Visitor<'_> for NameVisitor<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a {} ({})", self.what, self.names.join(", "))
+    }
+
+    fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<T, E> {
+        self.names
+            .iter()
+            .zip(self.values)
+            .find_map(|(name, value)| (*name == text).then_some(*value))
+            .ok_or_else(|| E::unknown_variant(text, self.names))
+    }
+}

@@ -1,0 +1,116 @@
+//! The culling settings by name: flags, scene files and JSON spell them alike, and what can't be carried out is refused.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use sdop::scene::settings::*;
+use sdop::volume::DirectionSet;
+
+#[test]
+fn every_name_reads_back_as_its_choice() {
+    macro_rules! round_trip {
+        ($($choice:ident),+) => {$(
+            for (choice, name) in $choice::ALL.iter().zip($choice::NAMES) {
+                assert_eq!(choice.to_string(), *name);
+                assert_eq!(name.parse::<$choice>().unwrap(), *choice);
+                assert_eq!(serde_json::from_str::<$choice>(&format!("{name:?}")).unwrap(), *choice);
+                assert_eq!(serde_json::to_string(choice).unwrap(), format!("{name:?}"));
+            }
+        )+};
+    }
+    round_trip!(Strategy, Finder, Overlap, Updates, Axes, Order);
+    for k in [6, 14, 18, 26] {
+        assert_eq!(k_of(parse_k(&k.to_string()).unwrap()), k);
+    }
+}
+
+#[test]
+fn an_unknown_name_suggests_the_nearest() {
+    let error = "s-dop-sequentail".parse::<Strategy>().unwrap_err();
+    assert_eq!(error.to_string(), "unknown strategy `s-dop-sequentail`");
+    assert_eq!(error.hint, "did you mean `s-dop-sequential`?");
+    assert_eq!(
+        "two_sided".parse::<Overlap>().unwrap_err().hint,
+        "did you mean `two-sided`?"
+    );
+    assert_eq!(
+        "octree".parse::<Finder>().unwrap_err().hint,
+        "one of: all-pairs, grid, sweep, auto"
+    );
+    assert_eq!(parse_k("16").unwrap_err().hint, "one of: 6, 14, 18, 26");
+}
+
+#[test]
+fn defaults_are_the_papers_sequential_culling() {
+    let settings: CullSettings = serde_json::from_str("{}").unwrap();
+    assert_eq!(settings, CullSettings::default());
+    assert_eq!(settings.strategy, Strategy::SDopSequential);
+    assert_eq!(settings.k, DirectionSet::K18);
+    settings.check(0).unwrap();
+}
+
+#[test]
+fn interest_reads_as_a_list_or_a_cone() {
+    assert_eq!(
+        "0, 5,7".parse::<Interest>().unwrap(),
+        Interest::Bodies(vec![0, 5, 7])
+    );
+    let cone = "{ body = 3, direction = [0, 0, 1], half_angle = 30 }"
+        .parse::<Interest>()
+        .unwrap();
+    let Interest::Cone(cone) = cone else {
+        panic!("a cone")
+    };
+    assert_eq!(
+        (cone.body, cone.direction, cone.half_angle, cone.range),
+        (Some(3), [0.0, 0.0, 1.0], 30.0, None)
+    );
+    let error = "0,x".parse::<Interest>().unwrap_err();
+    assert!(error.to_string().starts_with("interest: "), "{error}");
+}
+
+#[test]
+fn settings_that_cannot_be_carried_out_are_refused() {
+    let problem = |change: fn(&mut CullSettings)| {
+        let mut settings = CullSettings::default();
+        change(&mut settings);
+        settings.check(10).unwrap_err().to_string()
+    };
+    assert_eq!(
+        problem(|s| s.strategy = Strategy::SDopObjectOfInterest),
+        "strategy s-dop-object-of-interest needs `interest`"
+    );
+    assert_eq!(
+        problem(|s| s.strategy = Strategy::SDopTimeCritical),
+        "strategy s-dop-time-critical needs `budget`"
+    );
+    assert_eq!(
+        problem(|s| s.interest = Some(Interest::Bodies(vec![3, 10]))),
+        "interest: body 10 of a scene of 10"
+    );
+    let cone = |text: &str| {
+        let settings = CullSettings {
+            interest: Some(text.parse().unwrap()),
+            ..CullSettings::default()
+        };
+        settings.check(10).unwrap_err().to_string()
+    };
+    assert_eq!(
+        cone("{ direction = [0, 0, 1], half_angle = 30 }"),
+        "interest: a cone has one apex"
+    );
+    assert_eq!(
+        cone("{ body = 1, direction = [0, 0, 0], half_angle = 30 }"),
+        "interest: direction [0.0, 0.0, 0.0]"
+    );
+    assert_eq!(
+        cone("{ apex = [nan, 0, 0], direction = [0, 0, 1], half_angle = 30 }"),
+        "interest: apex [NaN, 0.0, 0.0]"
+    );
+    assert_eq!(
+        cone("{ body = 1, direction = [0, 0, 1], half_angle = nan }"),
+        "interest: half_angle NaN"
+    );
+    assert_eq!(
+        cone("{ body = 1, direction = [0, 0, 1], half_angle = 30, range = 0 }"),
+        "interest: range 0"
+    );
+}
