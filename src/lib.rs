@@ -3,5 +3,6 @@
 //! Data flows one way: mesh → volume → scene → effects → update → broad_phase → overlap → pairs → cost.
 
 pub mod mesh;
+pub mod rounding;
 pub mod scene;
 pub mod volume;

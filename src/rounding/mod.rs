@@ -1,0 +1,105 @@
+//! Outward rounding, and every error bound that the culler relies on, as a named constant.
+//!
+//! Deciding arithmetic is f32 without FMA in one written order, so a computed quantity differs from its exact value by
+//! a known multiple of the unit roundoff u = 2⁻²⁴. Each volume is inflated *once*, when it is built or updated, by more
+//! than that, and the tests then compare without any margin: `cull ⇔ d² > s·s` and `cull ⇔ τ > h_A + h_B` never
+//! separate two bodies that meet in exact real arithmetic. A margin in the volume costs nothing in the pair loop, and
+//! one written bound a volume can be proved; an epsilon in each comparison can't.
+//!
+//! Model of a machine operation, of which every bound here is a consequence: the result is x(1+ε)+φ with |ε| ≤ u and
+//! |φ| ≤ [`FLUSH`], with denormals on, with results flushed to zero, or with operands read as zero alike.
+//!
+//! Each constant tells its derivation, the Gappa script in `paper/proofs/` that checks it (the control beside it is one
+//! notch tighter and must fail), and the largest error that hill climbing has found (`tests/worst_case.rs`).
+
+pub mod pose;
+pub mod slab;
+pub mod sphere;
+
+/// 2ᵉ for a normal exponent.
+pub(crate) const fn exp2(e: i32) -> f64 {
+    assert!(-1022 <= e && e <= 1023);
+    f64::from_bits(((1023 + e) as u64) << 52)
+}
+
+/// u = 2⁻²⁴, the unit roundoff of f32: |fl(x) − x| ≤ u|x| in the normal range.
+pub const U: f64 = exp2(-24);
+
+/// 2⁻¹²⁶, the smallest normal f32: what flush-to-zero or denormals-are-zero may change at most in one operand or result.
+/// Gradual underflow changes at most 2⁻¹⁵⁰.
+pub const FLUSH: f64 = exp2(-126);
+
+/// 2⁶⁰, the contract's limit on |t|∞ and on sizes. Squares of sums stay below 2¹²⁷, so no deciding product overflows.
+pub const LIMIT: f32 = exp2(60) as f32;
+
+/// 1 + 2⁻²⁰, by which pair finders widen radii: cell sizes and sweep ends are themselves rounded (each by u of a
+/// coordinate difference, a few u in all), and must not lose a pair that the volume test would report. 16u here.
+pub const FINDER_FACTOR: f64 = 1.0 + exp2(-20);
+
+/// The smallest f32 that surely exceeds the exact value behind `x`, the outcome of f64 arithmetic.
+///
+/// Always one step above the nearest f32, exact or not: the f64 operation may itself have rounded down. The step is at
+/// least 2⁻²⁵|x| and at least 2⁻¹⁵⁰, so it also covers an f64 error of up to 2⁻²⁶|x|. Infinity stays; NaN stays NaN.
+pub const fn up(x: f64) -> f32 {
+    (x as f32).next_up()
+}
+
+/// The mirror of [`up`]: an f32 surely below the exact value behind `x`.
+pub const fn down(x: f64) -> f32 {
+    (x as f32).next_down()
+}
+
+/// The radius by which a pair finder sorts, bins or sizes its cells, for a radius that the volume test uses.
+pub const fn widen(radius: f32) -> f32 {
+    up(radius as f64 * FINDER_FACTOR)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outward_means_strictly_past_the_nearest() {
+        for x in [
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            1.0 + exp2(-40),
+            1.0 - exp2(-40),
+            exp2(-149),
+            -exp2(-160),
+            3.5e38,
+            -3.5e38,
+        ] {
+            assert!(f64::from(up(x)) > x && f64::from(down(x)) < x, "{x:e}");
+        }
+        assert_eq!(up(1.0), 1.0 + f32::EPSILON);
+        assert_eq!(down(1.0), 1.0 - f32::EPSILON / 2.0);
+    }
+
+    #[test]
+    fn infinities_stay_outward_and_nan_stays() {
+        assert_eq!(up(f64::INFINITY), f32::INFINITY);
+        assert_eq!(down(f64::NEG_INFINITY), f32::NEG_INFINITY);
+        assert_eq!(down(f64::INFINITY), f32::MAX);
+        assert_eq!(up(f64::MAX), f32::INFINITY);
+        assert!(up(f64::NAN).is_nan() && down(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn contract_limit_leaves_room_for_every_square() {
+        // d² of centres at opposite corners, and (R + R)² of the largest radii after every inflation.
+        let (d, s) = (
+            2.0 * LIMIT,
+            2.0 * widen(sphere::inflate_radius(2.0 * LIMIT)),
+        );
+        assert!((3.0 * d * d).is_finite() && (s * s).is_finite());
+    }
+
+    #[test]
+    fn widening_exceeds_the_factor_and_moves_zero() {
+        assert!(widen(0.0) > 0.0);
+        assert!(f64::from(widen(1.0)) >= FINDER_FACTOR);
+    }
+}

@@ -1,0 +1,85 @@
+//! The f64 pose: x ↦ R(q)x + t with R(q) the rotation matrix of q over |q|² (design: exact poses are rational maps).
+//!
+//! Products of two f32 are exact in f64, so the numerator of an entry rounds thrice at most, |q|² thrice and the division
+//! once: |δr_ij| ≤ (2 + 4|r_ij|)·2⁻⁵³, and 22·2⁻⁵³·max(|x|∞, |t|∞) bounds a transformed coordinate. f64 here costs one
+//! matrix a body and frame; in f32 the same bound would be larger than all margins together.
+
+use super::{down, exp2, up};
+
+/// Rows of a rotation matrix.
+pub type Rotation = [[f64; 3]; 3];
+
+/// 22·2⁻⁵³: error of one coordinate of [`transform`], as a multiple of max(|x|∞, |t|∞).
+pub const COORDINATE_ERROR: f64 = 22.0 * exp2(-53);
+
+/// 2⁻⁴⁶ = 128·2⁻⁵³, the margin of a re-fitted world extent as a multiple of max(ρ, |t|∞): for a direction with
+/// coefficients in {−1, 0, 1} the three coordinates bring 3·22, the two sums at most 4 + 6, the addition of the margin 6.
+pub const REFIT_MARGIN: f64 = exp2(-46);
+
+/// 2⁻¹²⁰: covers subnormal vertices and translations that are read as zero.
+pub const REFIT_FLOOR: f64 = exp2(-120);
+
+/// The rotation matrix of a quaternion (x, y, z, w) of any norm with 0 < |q|² < ∞ in f64.
+pub fn rotation(q: [f32; 4]) -> Rotation {
+    let [x, y, z, w] = q.map(f64::from);
+    let (xx, yy, zz, ww) = (x * x, y * y, z * z, w * w);
+    let square = xx + yy + zz + ww;
+    let twice = |a: f64, b: f64| 2.0 * (a + b) / square;
+    [
+        [
+            ((xx - yy) + (ww - zz)) / square,
+            twice(x * y, -(w * z)),
+            twice(x * z, w * y),
+        ],
+        [
+            twice(x * y, w * z),
+            ((yy - xx) + (ww - zz)) / square,
+            twice(y * z, -(w * x)),
+        ],
+        [
+            twice(x * z, -(w * y)),
+            twice(y * z, w * x),
+            ((zz - xx) + (ww - yy)) / square,
+        ],
+    ]
+}
+
+/// R·x, each coordinate within (22 − 3)·2⁻⁵³·|x|∞.
+pub fn rotate(r: &Rotation, x: [f32; 3]) -> [f64; 3] {
+    let [x, y, z] = x.map(f64::from);
+    r.map(|row| row[0] * x + row[1] * y + row[2] * z)
+}
+
+/// R·x + t in the world frame, each coordinate within [`COORDINATE_ERROR`]·max(|x|∞, |t|∞).
+pub fn transform(r: &Rotation, x: [f32; 3], t: [f32; 3]) -> [f64; 3] {
+    let p = rotate(r, x);
+    [
+        p[0] + f64::from(t[0]),
+        p[1] + f64::from(t[1]),
+        p[2] + f64::from(t[2]),
+    ]
+}
+
+/// World directions of an orthogonal basis: the columns of R·basis/‖basis‖, each entry rounded once to f32.
+///
+/// Against the exactly posed orthonormal basis an entry errs by u of itself and an f64 part below 2⁻⁴⁷.
+pub fn world_axes(r: &Rotation, basis: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
+    let scale = norm(basis[0]);
+    basis.map(|column| rotate(r, column).map(|x| (x / scale) as f32))
+}
+
+/// Euclidean norm of an f32 vector, in f64.
+pub fn norm(v: [f32; 3]) -> f64 {
+    let [x, y, z] = v.map(f64::from);
+    (x * x + y * y + z * z).sqrt()
+}
+
+/// A world-aligned extent [lo, hi] rounded outward, from the extremes of d·p over points computed by [`transform`],
+/// with d's coefficients in {−1, 0, 1}: `hi' = up(hi + 2⁻⁴⁶·max(ρ, |t|∞) + 2⁻¹²⁰)`, lo mirrored; ρ ≥ ‖x‖.
+pub fn refit(lo: f64, hi: f64, reach: f32, t: [f32; 3]) -> (f32, f32) {
+    let size = t
+        .iter()
+        .fold(f64::from(reach), |m, &x| m.max(f64::from(x.abs())));
+    let margin = REFIT_MARGIN * size + REFIT_FLOOR;
+    (down(lo - margin), up(hi + margin))
+}

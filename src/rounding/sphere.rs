@@ -1,0 +1,52 @@
+//! Spheres: world placement and inflation, so that `cull ⇔ d² > s·s`, s = fl(R_A + R_B), never loses a touching pair.
+//!
+//! With d² = ((Δx²+Δy²)+Δz²) in f32, rounding can favour d² over s² by 8u in all (5 in d², 3 in s²); R ≥ r(1+6u) gives
+//! 12u. The floor 2⁻⁷⁰ makes s² exceed every amount that underflow or flushing takes. Overflow is sound by monotonicity.
+
+use super::exp2;
+use super::pose::{Rotation, transform};
+use super::up;
+
+/// 1 + 8u; 1 + 2u misses. Proof: `sphere.g`, control `sphere_control.g`.
+pub const RADIUS_FACTOR: f32 = (1.0 + 8.0 * super::U) as f32;
+
+/// 2⁻⁷⁰; 2⁻⁷⁸ misses with subnormal products. Proof: `sphere_underflow.g`.
+pub const RADIUS_FLOOR: f32 = exp2(-70) as f32;
+
+/// 2⁻⁴⁷ ≥ √3·[`COORDINATE_ERROR`](super::pose::COORDINATE_ERROR): how far the f64 centre may lie from the exact one, as a
+/// multiple of max(|c|∞, |t|∞).
+pub const CENTRE_ERROR: f64 = exp2(-47);
+
+/// 2⁻¹²⁵ > √3·2⁻¹²⁶: a subnormal translation read as zero.
+pub const CENTRE_FLOOR: f64 = exp2(-125);
+
+/// R = fl(fl(r(1+8u)) + 2⁻⁷⁰), the radius that the sphere test adds and squares.
+///
+/// Reported ⇒ d ≤ (r_A + r_B)(1 + 15u) + 2⁻⁶⁸.
+pub const fn inflate_radius(r: f32) -> f32 {
+    r * RADIUS_FACTOR + RADIUS_FLOOR
+}
+
+/// World ball (centre, radius) that contains the posed ball (c, r) exactly; not inflated for the test.
+///
+/// The centre is the f64 image rounded to f32; with c = 0 it is t to the bit and r is unchanged. Otherwise the radius takes
+/// up the rounding, `up(r + 1.0001‖w64 − w‖ + 2⁻⁴⁷·max(|c|∞, |t|∞) + 2⁻¹²⁵)`.
+pub fn world_ball(rotation: &Rotation, t: [f32; 3], c: [f32; 3], r: f32) -> ([f32; 3], f32) {
+    if c == [0.0; 3] {
+        return (t, r);
+    }
+    let exact = transform(rotation, c, t);
+    let centre = exact.map(|x| x as f32);
+    let moved = (0..3)
+        .map(|i| (exact[i] - f64::from(centre[i])).powi(2))
+        .sum::<f64>()
+        .sqrt();
+    let size = c
+        .iter()
+        .chain(&t)
+        .fold(0.0, |m: f64, &x| m.max(f64::from(x.abs())));
+    (
+        centre,
+        up(f64::from(r) + 1.0001 * moved + CENTRE_ERROR * size + CENTRE_FLOOR),
+    )
+}
