@@ -5,4 +5,5 @@
 pub mod mesh;
 pub mod rounding;
 pub mod scene;
+pub mod simd;
 pub mod volume;

@@ -1,0 +1,254 @@
+//! The AVX2 tier: 8 lanes, masks as vectors, compress by a permutation table.
+
+use std::arch::x86_64::*;
+
+use super::lanes::{Lanes, Sealed, float_operators};
+use super::{Kernel, ROW};
+
+/// Proof that the CPU has AVX2.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Avx2(());
+
+#[derive(Clone, Copy)]
+pub struct F8(__m256);
+#[derive(Clone, Copy)]
+pub struct I8(__m256i);
+#[derive(Clone, Copy)]
+pub struct M8(__m256);
+
+float_operators!(F8, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps);
+
+impl std::ops::BitAnd for M8 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        // SAFETY: a mask exists only if its token did, and the token proves AVX.
+        Self(unsafe { _mm256_and_ps(self.0, other.0) })
+    }
+}
+
+impl std::ops::BitOr for M8 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        // SAFETY: a mask exists only if its token did, and the token proves AVX.
+        Self(unsafe { _mm256_or_ps(self.0, other.0) })
+    }
+}
+
+/// For each set of lanes, the permutation that moves them to the front.
+static PACK: [[u32; 8]; 256] = pack_table();
+
+const fn pack_table() -> [[u32; 8]; 256] {
+    let mut table = [[0; 8]; 256];
+    let mut set = 0;
+    while set < 256 {
+        let (mut lane, mut kept) = (0, 0);
+        while lane < 8 {
+            if set >> lane & 1 == 1 {
+                table[set][kept] = lane;
+                kept += 1;
+            }
+            lane += 1;
+        }
+        set += 1;
+    }
+    table
+}
+
+impl Avx2 {
+    pub(super) fn new() -> Option<Self> {
+        (is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("popcnt"))
+        .then_some(Self(()))
+    }
+}
+
+pub(super) fn run<K: Kernel>(token: Avx2, kernel: K) -> K::Output {
+    #[target_feature(enable = "avx2,bmi2,popcnt")]
+    fn inner<K: Kernel>(token: Avx2, kernel: K) -> K::Output {
+        kernel.run(token)
+    }
+    // SAFETY: the token proves the features that `inner` enables.
+    unsafe { inner(token, kernel) }
+}
+
+impl Sealed for Avx2 {}
+
+impl Lanes for Avx2 {
+    const WIDTH: usize = 8;
+    type F = F8;
+    type I = I8;
+    type M = M8;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> F8 {
+        // SAFETY: the token proves AVX.
+        F8(unsafe { _mm256_set1_ps(x) })
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32]) -> F8 {
+        let from = &from[..8];
+        // SAFETY: 8 floats are there, and the token proves AVX.
+        F8(unsafe { _mm256_loadu_ps(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn min(self, a: F8, b: F8) -> F8 {
+        // SAFETY: the token proves AVX.
+        F8(unsafe { _mm256_min_ps(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn max(self, a: F8, b: F8) -> F8 {
+        // SAFETY: the token proves AVX.
+        F8(unsafe { _mm256_max_ps(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn abs(self, a: F8) -> F8 {
+        // SAFETY: the token proves AVX.
+        F8(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), a.0) })
+    }
+    #[inline(always)]
+    fn flip_sign(self, a: F8, sign: F8) -> F8 {
+        // SAFETY: the token proves AVX.
+        F8(unsafe { _mm256_xor_ps(a.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0))) })
+    }
+    #[inline(always)]
+    fn gt(self, a: F8, b: F8) -> M8 {
+        // SAFETY: the token proves AVX.
+        M8(unsafe { _mm256_cmp_ps::<_CMP_GT_OQ>(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn select(self, m: M8, a: F8, b: F8) -> F8 {
+        // SAFETY: the token proves AVX.
+        F8(unsafe { _mm256_blendv_ps(b.0, a.0, m.0) })
+    }
+    #[inline(always)]
+    fn first(self, n: usize) -> M8 {
+        // SAFETY: the token proves AVX2.
+        M8(unsafe {
+            let lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+            _mm256_castsi256_ps(_mm256_cmpgt_epi32(_mm256_set1_epi32(n.min(8) as i32), lane))
+        })
+    }
+    #[inline(always)]
+    fn bits(self, m: M8) -> u32 {
+        // SAFETY: the token proves AVX.
+        (unsafe { _mm256_movemask_ps(m.0) }) as u32
+    }
+    #[inline(always)]
+    fn octant(self, x: F8, y: F8, z: F8) -> I8 {
+        // SAFETY: the token proves AVX2.
+        I8(unsafe {
+            let x = _mm256_srli_epi32::<31>(_mm256_castps_si256(x.0));
+            let y = _mm256_srli_epi32::<31>(_mm256_castps_si256(y.0));
+            let z = _mm256_srli_epi32::<31>(_mm256_castps_si256(z.0));
+            let yz = _mm256_or_si256(_mm256_slli_epi32::<1>(y), _mm256_slli_epi32::<2>(z));
+            _mm256_or_si256(x, yz)
+        })
+    }
+    #[inline(always)]
+    fn lookup(self, table: &[f32; 8], octant: I8) -> F8 {
+        // SAFETY: 8 floats are there, and the token proves AVX2; the permutation reads the low three bits.
+        F8(unsafe { _mm256_permutevar8x32_ps(_mm256_loadu_ps(table.as_ptr()), octant.0) })
+    }
+    #[inline(always)]
+    fn gather(self, table: &[f32], index: I8) -> F8 {
+        let last = table.len() as u32 - 1;
+        // SAFETY: every index is clamped to the last entry; the token proves AVX2.
+        F8(unsafe {
+            let index = _mm256_min_epu32(index.0, _mm256_set1_epi32(last as i32));
+            _mm256_i32gather_ps::<4>(table.as_ptr(), index)
+        })
+    }
+    #[inline(always)]
+    fn splat_u32(self, x: u32) -> I8 {
+        // SAFETY: the token proves AVX.
+        I8(unsafe { _mm256_set1_epi32(x as i32) })
+    }
+    #[inline(always)]
+    fn load_u32(self, from: &[u32]) -> I8 {
+        let from = &from[..8];
+        // SAFETY: 8 integers are there, and the token proves AVX.
+        I8(unsafe { _mm256_loadu_si256(from.as_ptr().cast()) })
+    }
+    #[inline(always)]
+    fn add_u32(self, a: I8, b: I8) -> I8 {
+        // SAFETY: the token proves AVX2.
+        I8(unsafe { _mm256_add_epi32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn min_u32(self, a: I8, b: I8) -> I8 {
+        // SAFETY: the token proves AVX2.
+        I8(unsafe { _mm256_min_epu32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn max_u32(self, a: I8, b: I8) -> I8 {
+        // SAFETY: the token proves AVX2.
+        I8(unsafe { _mm256_max_epu32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn any_bit(self, a: I8, b: I8) -> M8 {
+        // SAFETY: the token proves AVX2.
+        M8(unsafe {
+            let common = _mm256_and_si256(a.0, b.0);
+            let none = _mm256_cmpeq_epi32(common, _mm256_setzero_si256());
+            _mm256_castsi256_ps(_mm256_xor_si256(none, _mm256_set1_epi32(-1)))
+        })
+    }
+    #[inline(always)]
+    fn compress(self, m: M8, values: I8, out: &mut [u32]) {
+        let out = &mut out[..8];
+        let order = &PACK[self.bits(m) as usize];
+        // SAFETY: the table row has 8 entries, room for 8 integers is there, and the token proves AVX2.
+        unsafe {
+            let order = _mm256_loadu_si256(order.as_ptr().cast());
+            let packed = _mm256_permutevar8x32_epi32(values.0, order);
+            _mm256_storeu_si256(out.as_mut_ptr().cast(), packed);
+        }
+    }
+    #[inline(always)]
+    fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F8; ROW] {
+        let pick = &pick[..8];
+        let mut out = [self.splat(0.0); ROW];
+        for half in [0, 8] {
+            let mut picked = [out[0].0; 8];
+            for (lane, row) in picked.iter_mut().enumerate() {
+                *row = self.load(&rows[pick[lane] as usize][half..]).0;
+            }
+            // SAFETY: the token proves AVX.
+            out[half..half + 8].copy_from_slice(&unsafe { transpose(picked) });
+        }
+        out
+    }
+}
+
+/// An 8 × 8 transpose: 4 × 4 blocks within 128-bit halves, then the halves themselves.
+///
+/// # Safety
+/// The CPU has AVX.
+#[inline(always)]
+unsafe fn transpose(r: [__m256; 8]) -> [F8; 8] {
+    let mut quad = [r[0]; 8];
+    for i in 0..2 {
+        let [a, b, c, d] = [r[4 * i], r[4 * i + 1], r[4 * i + 2], r[4 * i + 3]];
+        // SAFETY: the caller vouches for the feature.
+        unsafe {
+            let [ab_lo, ab_hi] = [_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b)];
+            let [cd_lo, cd_hi] = [_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d)];
+            quad[4 * i] = _mm256_shuffle_ps::<0x44>(ab_lo, cd_lo);
+            quad[4 * i + 1] = _mm256_shuffle_ps::<0xee>(ab_lo, cd_lo);
+            quad[4 * i + 2] = _mm256_shuffle_ps::<0x44>(ab_hi, cd_hi);
+            quad[4 * i + 3] = _mm256_shuffle_ps::<0xee>(ab_hi, cd_hi);
+        }
+    }
+    let mut out = [F8(r[0]); 8];
+    for j in 0..4 {
+        // SAFETY: the caller vouches for the feature.
+        unsafe {
+            out[j] = F8(_mm256_permute2f128_ps::<0x20>(quad[j], quad[4 + j]));
+            out[4 + j] = F8(_mm256_permute2f128_ps::<0x31>(quad[j], quad[4 + j]));
+        }
+    }
+    out
+}

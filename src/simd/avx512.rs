@@ -1,0 +1,232 @@
+//! The AVX-512 tier: 16 lanes, compares into mask registers, in-register compress.
+
+use std::arch::x86_64::*;
+
+use super::lanes::{Lanes, Sealed, float_operators};
+use super::{Kernel, ROW};
+
+/// Proof that the CPU has AVX-512 F, BW, DQ and VL.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Avx512(());
+
+#[derive(Clone, Copy)]
+pub struct F16(__m512);
+#[derive(Clone, Copy)]
+pub struct I16(__m512i);
+#[derive(Clone, Copy)]
+pub struct M16(__mmask16);
+
+float_operators!(F16, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps);
+
+impl std::ops::BitAnd for M16 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+}
+
+impl std::ops::BitOr for M16 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl Avx512 {
+    pub(super) fn new() -> Option<Self> {
+        (is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("popcnt"))
+        .then_some(Self(()))
+    }
+}
+
+pub(super) fn run<K: Kernel>(token: Avx512, kernel: K) -> K::Output {
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,bmi2,popcnt")]
+    fn inner<K: Kernel>(token: Avx512, kernel: K) -> K::Output {
+        kernel.run(token)
+    }
+    // SAFETY: the token proves the features that `inner` enables.
+    unsafe { inner(token, kernel) }
+}
+
+impl Sealed for Avx512 {}
+
+impl Lanes for Avx512 {
+    const WIDTH: usize = 16;
+    type F = F16;
+    type I = I16;
+    type M = M16;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> F16 {
+        // SAFETY: the token proves AVX-512 F.
+        F16(unsafe { _mm512_set1_ps(x) })
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32]) -> F16 {
+        let from = &from[..16];
+        // SAFETY: 16 floats are there, and the token proves AVX-512 F.
+        F16(unsafe { _mm512_loadu_ps(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn min(self, a: F16, b: F16) -> F16 {
+        // SAFETY: the token proves AVX-512 F.
+        F16(unsafe { _mm512_min_ps(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn max(self, a: F16, b: F16) -> F16 {
+        // SAFETY: the token proves AVX-512 F.
+        F16(unsafe { _mm512_max_ps(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn abs(self, a: F16) -> F16 {
+        // SAFETY: the token proves AVX-512 F.
+        F16(unsafe { _mm512_abs_ps(a.0) })
+    }
+    #[inline(always)]
+    fn flip_sign(self, a: F16, sign: F16) -> F16 {
+        // SAFETY: the token proves AVX-512 F and DQ.
+        F16(unsafe { _mm512_xor_ps(a.0, _mm512_and_ps(sign.0, _mm512_set1_ps(-0.0))) })
+    }
+    #[inline(always)]
+    fn gt(self, a: F16, b: F16) -> M16 {
+        // SAFETY: the token proves AVX-512 F.
+        M16(unsafe { _mm512_cmp_ps_mask::<_CMP_GT_OQ>(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn select(self, m: M16, a: F16, b: F16) -> F16 {
+        // SAFETY: the token proves AVX-512 F.
+        F16(unsafe { _mm512_mask_blend_ps(m.0, b.0, a.0) })
+    }
+    #[inline(always)]
+    fn first(self, n: usize) -> M16 {
+        M16(if n >= 16 { u16::MAX } else { (1u16 << n) - 1 })
+    }
+    #[inline(always)]
+    fn bits(self, m: M16) -> u32 {
+        u32::from(m.0)
+    }
+    #[inline(always)]
+    fn octant(self, x: F16, y: F16, z: F16) -> I16 {
+        // SAFETY: the token proves AVX-512 F.
+        I16(unsafe {
+            let x = _mm512_srli_epi32::<31>(_mm512_castps_si512(x.0));
+            let y = _mm512_srli_epi32::<31>(_mm512_castps_si512(y.0));
+            let z = _mm512_srli_epi32::<31>(_mm512_castps_si512(z.0));
+            let yz = _mm512_or_si512(_mm512_slli_epi32::<1>(y), _mm512_slli_epi32::<2>(z));
+            _mm512_or_si512(x, yz)
+        })
+    }
+    #[inline(always)]
+    fn lookup(self, table: &[f32; 8], octant: I16) -> F16 {
+        // SAFETY: 8 floats are there, and the token proves AVX-512 F; an octant below 8 picks one of them.
+        F16(unsafe {
+            let half = _mm256_loadu_ps(table.as_ptr());
+            _mm512_permutexvar_ps(octant.0, _mm512_castps256_ps512(half))
+        })
+    }
+    #[inline(always)]
+    fn gather(self, table: &[f32], index: I16) -> F16 {
+        let last = table.len() as u32 - 1;
+        // SAFETY: every index is clamped to the last entry; the token proves AVX-512 F.
+        F16(unsafe {
+            let index = _mm512_min_epu32(index.0, _mm512_set1_epi32(last as i32));
+            _mm512_i32gather_ps::<4>(index, table.as_ptr())
+        })
+    }
+    #[inline(always)]
+    fn splat_u32(self, x: u32) -> I16 {
+        // SAFETY: the token proves AVX-512 F.
+        I16(unsafe { _mm512_set1_epi32(x as i32) })
+    }
+    #[inline(always)]
+    fn load_u32(self, from: &[u32]) -> I16 {
+        let from = &from[..16];
+        // SAFETY: 16 integers are there, and the token proves AVX-512 F.
+        I16(unsafe { _mm512_loadu_epi32(from.as_ptr().cast()) })
+    }
+    #[inline(always)]
+    fn add_u32(self, a: I16, b: I16) -> I16 {
+        // SAFETY: the token proves AVX-512 F.
+        I16(unsafe { _mm512_add_epi32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn min_u32(self, a: I16, b: I16) -> I16 {
+        // SAFETY: the token proves AVX-512 F.
+        I16(unsafe { _mm512_min_epu32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn max_u32(self, a: I16, b: I16) -> I16 {
+        // SAFETY: the token proves AVX-512 F.
+        I16(unsafe { _mm512_max_epu32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn any_bit(self, a: I16, b: I16) -> M16 {
+        // SAFETY: the token proves AVX-512 F.
+        M16(unsafe { _mm512_test_epi32_mask(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn compress(self, m: M16, values: I16, out: &mut [u32]) {
+        let out = &mut out[..16];
+        // SAFETY: room for 16 integers is there, and the token proves AVX-512 F. Compressing in a register and
+        // storing the whole is many times faster than the compressing store on some CPUs.
+        unsafe {
+            let packed = _mm512_maskz_compress_epi32(m.0, values.0);
+            _mm512_storeu_epi32(out.as_mut_ptr().cast(), packed);
+        }
+    }
+    #[inline(always)]
+    fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F16; ROW] {
+        let pick = &pick[..16];
+        let mut picked = [self.splat(0.0).0; 16];
+        for (lane, row) in picked.iter_mut().enumerate() {
+            *row = self.load(&rows[pick[lane] as usize]).0;
+        }
+        // SAFETY: the token proves AVX-512 F.
+        unsafe { transpose(picked) }
+    }
+}
+
+/// A 16 × 16 transpose: 4 × 4 blocks within 128-bit quarters, then the quarters themselves.
+///
+/// # Safety
+/// The CPU has AVX-512 F.
+#[inline(always)]
+unsafe fn transpose(r: [__m512; 16]) -> [F16; 16] {
+    let mut quad = [r[0]; 16];
+    for i in 0..4 {
+        let [a, b, c, d] = [r[4 * i], r[4 * i + 1], r[4 * i + 2], r[4 * i + 3]];
+        // SAFETY: the caller vouches for the feature.
+        unsafe {
+            let [ab_lo, ab_hi] = [_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b)];
+            let [cd_lo, cd_hi] = [_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d)];
+            quad[4 * i] = _mm512_shuffle_ps::<0x44>(ab_lo, cd_lo);
+            quad[4 * i + 1] = _mm512_shuffle_ps::<0xee>(ab_lo, cd_lo);
+            quad[4 * i + 2] = _mm512_shuffle_ps::<0x44>(ab_hi, cd_hi);
+            quad[4 * i + 3] = _mm512_shuffle_ps::<0xee>(ab_hi, cd_hi);
+        }
+    }
+    // Now quad[4i + j], quarter q, holds column 4q + j of rows 4i … 4i + 3.
+    let mut out = [F16(r[0]); 16];
+    for j in 0..4 {
+        let [a, b, c, d] = [quad[j], quad[4 + j], quad[8 + j], quad[12 + j]];
+        // SAFETY: the caller vouches for the feature.
+        unsafe {
+            let ab_even = _mm512_shuffle_f32x4::<0x88>(a, b);
+            let ab_odd = _mm512_shuffle_f32x4::<0xdd>(a, b);
+            let cd_even = _mm512_shuffle_f32x4::<0x88>(c, d);
+            let cd_odd = _mm512_shuffle_f32x4::<0xdd>(c, d);
+            out[j] = F16(_mm512_shuffle_f32x4::<0x88>(ab_even, cd_even));
+            out[4 + j] = F16(_mm512_shuffle_f32x4::<0x88>(ab_odd, cd_odd));
+            out[8 + j] = F16(_mm512_shuffle_f32x4::<0xdd>(ab_even, cd_even));
+            out[12 + j] = F16(_mm512_shuffle_f32x4::<0xdd>(ab_odd, cd_odd));
+        }
+    }
+    out
+}

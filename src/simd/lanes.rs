@@ -1,0 +1,94 @@
+//! The sealed trait of a tier: what a kernel may do with a vector of f32.
+
+use std::ops::{Add, BitAnd, BitOr, Mul, Sub};
+
+use super::ROW;
+
+/// Only this crate's tiers implement [`Lanes`]; a kernel may rely on their bit-identical results.
+pub trait Sealed {}
+
+/// A tier of the CPU. Values of this type are tokens: whoever holds one has checked that the CPU has the tier, and
+/// vectors come from tokens alone, so their operators need no further check.
+///
+/// Semantics are those of IEEE 754 binary32, round to nearest even, with these choices where CPUs differ:
+/// `min(a, b)` is `if a < b { a } else { b }` and `max(a, b)` is `if a > b { a } else { b }` (so a NaN yields `b`).
+pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
+    /// Lanes in a vector: 1, 4, 8 or 16.
+    const WIDTH: usize;
+    /// A vector of f32.
+    type F: Copy + Add<Output = Self::F> + Sub<Output = Self::F> + Mul<Output = Self::F>;
+    /// A vector of u32.
+    type I: Copy;
+    /// A truth value a lane.
+    type M: Copy + BitAnd<Output = Self::M> + BitOr<Output = Self::M>;
+
+    /// `x` in every lane.
+    fn splat(self, x: f32) -> Self::F;
+    /// The first `WIDTH` elements of `from`, which must have that many.
+    fn load(self, from: &[f32]) -> Self::F;
+    /// Smaller lane by lane.
+    fn min(self, a: Self::F, b: Self::F) -> Self::F;
+    /// Larger lane by lane.
+    fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    /// Sign bit cleared.
+    fn abs(self, a: Self::F) -> Self::F;
+    /// `a` with its sign bit flipped where that of `sign` is set.
+    fn flip_sign(self, a: Self::F, sign: Self::F) -> Self::F;
+    /// `a > b`, false for NaN.
+    fn gt(self, a: Self::F, b: Self::F) -> Self::M;
+    /// `if m { a } else { b }`.
+    fn select(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F;
+    /// Lanes below `n` true, the rest false.
+    fn first(self, n: usize) -> Self::M;
+    /// Lane i as bit i.
+    fn bits(self, m: Self::M) -> u32;
+
+    /// Sign bits of x, y, z as bits 0, 1, 2: which octant the vector (x, y, z) points into.
+    fn octant(self, x: Self::F, y: Self::F, z: Self::F) -> Self::I;
+    /// Entry `octant` (0 to 7) of a table, lane by lane.
+    fn lookup(self, table: &[f32; 8], octant: Self::I) -> Self::F;
+    /// Entry `index` of a non-empty table, lane by lane; an index past the end reads the last entry.
+    fn gather(self, table: &[f32], index: Self::I) -> Self::F;
+
+    /// `x` in every lane.
+    fn splat_u32(self, x: u32) -> Self::I;
+    /// The first `WIDTH` elements of `from`, which must have that many.
+    fn load_u32(self, from: &[u32]) -> Self::I;
+    /// Wrapping sum.
+    fn add_u32(self, a: Self::I, b: Self::I) -> Self::I;
+    /// Smaller lane by lane, for values below 2³¹.
+    fn min_u32(self, a: Self::I, b: Self::I) -> Self::I;
+    /// Larger lane by lane, for values below 2³¹.
+    fn max_u32(self, a: Self::I, b: Self::I) -> Self::I;
+    /// Lanes whose bitwise and is not zero.
+    fn any_bit(self, a: Self::I, b: Self::I) -> Self::M;
+    /// Writes the lanes that `m` keeps to the front of `out`, in lane order; `out` has at least `WIDTH` elements and
+    /// those behind the kept ones are left in an unspecified state (that is what makes it free of branches).
+    fn compress(self, m: Self::M, values: Self::I, out: &mut [u32]);
+
+    /// Rows `rows[pick[lane]]` as columns: element c of the result holds number c of every picked row.
+    /// `pick` has at least `WIDTH` elements.
+    fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW];
+}
+
+/// Implements the arithmetic operators of a tier's vector by its intrinsics.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+macro_rules! float_operators {
+    ($vector:ident, $add:ident, $sub:ident, $mul:ident) => {
+        float_operators!(@one $vector, Add, add, $add);
+        float_operators!(@one $vector, Sub, sub, $sub);
+        float_operators!(@one $vector, Mul, mul, $mul);
+    };
+    (@one $vector:ident, $trait:ident, $method:ident, $intrinsic:ident) => {
+        impl std::ops::$trait for $vector {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: a vector exists only if its token did, and the token proves the CPU feature.
+                Self(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+    };
+}
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+pub(super) use float_operators;

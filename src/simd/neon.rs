@@ -1,0 +1,204 @@
+//! The NEON tier of AArch64: 4 lanes. What NEON has no instruction for goes through memory.
+//!
+//! `vminq`/`vmaxq` propagate NaN and order −0 below +0, so `min` and `max` are a comparison and a selection instead.
+
+use std::arch::aarch64::*;
+
+use super::lanes::{Lanes, Sealed, float_operators};
+use super::{Kernel, ROW};
+
+/// Proof that the CPU has NEON.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Neon(());
+
+#[derive(Clone, Copy)]
+pub struct F4(float32x4_t);
+#[derive(Clone, Copy)]
+pub struct I4(uint32x4_t);
+#[derive(Clone, Copy)]
+pub struct M4(uint32x4_t);
+
+float_operators!(F4, vaddq_f32, vsubq_f32, vmulq_f32);
+
+impl std::ops::BitAnd for M4 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        // SAFETY: a mask exists only if its token did, and the token proves NEON.
+        Self(unsafe { vandq_u32(self.0, other.0) })
+    }
+}
+
+impl std::ops::BitOr for M4 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        // SAFETY: a mask exists only if its token did, and the token proves NEON.
+        Self(unsafe { vorrq_u32(self.0, other.0) })
+    }
+}
+
+impl Neon {
+    pub(super) fn new() -> Option<Self> {
+        std::arch::is_aarch64_feature_detected!("neon").then_some(Self(()))
+    }
+
+    #[inline(always)]
+    fn array(self, v: I4) -> [u32; 4] {
+        let mut out = [0u32; 4];
+        // SAFETY: room for 4 integers is there, and the token proves NEON.
+        unsafe { vst1q_u32(out.as_mut_ptr(), v.0) };
+        out
+    }
+}
+
+pub(super) fn run<K: Kernel>(token: Neon, kernel: K) -> K::Output {
+    #[target_feature(enable = "neon")]
+    fn inner<K: Kernel>(token: Neon, kernel: K) -> K::Output {
+        kernel.run(token)
+    }
+    // SAFETY: the token proves the feature that `inner` enables.
+    unsafe { inner(token, kernel) }
+}
+
+impl Sealed for Neon {}
+
+impl Lanes for Neon {
+    const WIDTH: usize = 4;
+    type F = F4;
+    type I = I4;
+    type M = M4;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> F4 {
+        // SAFETY: the token proves NEON.
+        F4(unsafe { vdupq_n_f32(x) })
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32]) -> F4 {
+        let from = &from[..4];
+        // SAFETY: 4 floats are there, and the token proves NEON.
+        F4(unsafe { vld1q_f32(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn min(self, a: F4, b: F4) -> F4 {
+        // SAFETY: the token proves NEON.
+        F4(unsafe { vbslq_f32(vcltq_f32(a.0, b.0), a.0, b.0) })
+    }
+    #[inline(always)]
+    fn max(self, a: F4, b: F4) -> F4 {
+        // SAFETY: the token proves NEON.
+        F4(unsafe { vbslq_f32(vcgtq_f32(a.0, b.0), a.0, b.0) })
+    }
+    #[inline(always)]
+    fn abs(self, a: F4) -> F4 {
+        // SAFETY: the token proves NEON.
+        F4(unsafe { vabsq_f32(a.0) })
+    }
+    #[inline(always)]
+    fn flip_sign(self, a: F4, sign: F4) -> F4 {
+        // SAFETY: the token proves NEON.
+        F4(unsafe {
+            let bit = vandq_u32(vreinterpretq_u32_f32(sign.0), vdupq_n_u32(0x8000_0000));
+            vreinterpretq_f32_u32(veorq_u32(vreinterpretq_u32_f32(a.0), bit))
+        })
+    }
+    #[inline(always)]
+    fn gt(self, a: F4, b: F4) -> M4 {
+        // SAFETY: the token proves NEON.
+        M4(unsafe { vcgtq_f32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn select(self, m: M4, a: F4, b: F4) -> F4 {
+        // SAFETY: the token proves NEON.
+        F4(unsafe { vbslq_f32(m.0, a.0, b.0) })
+    }
+    #[inline(always)]
+    fn first(self, n: usize) -> M4 {
+        let lane = self.load_u32(&[0, 1, 2, 3]);
+        // SAFETY: the token proves NEON.
+        M4(unsafe { vcltq_u32(lane.0, vdupq_n_u32(n.min(4) as u32)) })
+    }
+    #[inline(always)]
+    fn bits(self, m: M4) -> u32 {
+        let weight = self.load_u32(&[1, 2, 4, 8]);
+        // SAFETY: the token proves NEON.
+        unsafe { vaddvq_u32(vandq_u32(m.0, weight.0)) }
+    }
+    #[inline(always)]
+    fn octant(self, x: F4, y: F4, z: F4) -> I4 {
+        // SAFETY: the token proves NEON.
+        I4(unsafe {
+            let x = vshrq_n_u32::<31>(vreinterpretq_u32_f32(x.0));
+            let y = vshrq_n_u32::<31>(vreinterpretq_u32_f32(y.0));
+            let z = vshrq_n_u32::<31>(vreinterpretq_u32_f32(z.0));
+            vorrq_u32(x, vorrq_u32(vshlq_n_u32::<1>(y), vshlq_n_u32::<2>(z)))
+        })
+    }
+    #[inline(always)]
+    fn lookup(self, table: &[f32; 8], octant: I4) -> F4 {
+        self.load(&self.array(octant).map(|entry| table[(entry & 7) as usize]))
+    }
+    #[inline(always)]
+    fn gather(self, table: &[f32], index: I4) -> F4 {
+        self.load(
+            &self
+                .array(index)
+                .map(|entry| table[(entry as usize).min(table.len() - 1)]),
+        )
+    }
+    #[inline(always)]
+    fn splat_u32(self, x: u32) -> I4 {
+        // SAFETY: the token proves NEON.
+        I4(unsafe { vdupq_n_u32(x) })
+    }
+    #[inline(always)]
+    fn load_u32(self, from: &[u32]) -> I4 {
+        let from = &from[..4];
+        // SAFETY: 4 integers are there, and the token proves NEON.
+        I4(unsafe { vld1q_u32(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn add_u32(self, a: I4, b: I4) -> I4 {
+        // SAFETY: the token proves NEON.
+        I4(unsafe { vaddq_u32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn min_u32(self, a: I4, b: I4) -> I4 {
+        // SAFETY: the token proves NEON.
+        I4(unsafe { vminq_u32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn max_u32(self, a: I4, b: I4) -> I4 {
+        // SAFETY: the token proves NEON.
+        I4(unsafe { vmaxq_u32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn any_bit(self, a: I4, b: I4) -> M4 {
+        // SAFETY: the token proves NEON.
+        M4(unsafe { vtstq_u32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn compress(self, m: M4, values: I4, out: &mut [u32]) {
+        let out = &mut out[..4];
+        let (bits, mut kept) = (self.bits(m), 0);
+        for (lane, value) in self.array(values).into_iter().enumerate() {
+            // `kept` ≤ lane, so a value that isn't kept is overwritten or lies behind the kept ones.
+            out[kept] = value;
+            kept += (bits >> lane & 1) as usize;
+        }
+    }
+    #[inline(always)]
+    fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F4; ROW] {
+        let pick = &pick[..4];
+        let mut out = [self.splat(0.0); ROW];
+        for (column, lanes) in out.iter_mut().enumerate() {
+            let mut gathered = [0.0; 4];
+            for (lane, number) in gathered.iter_mut().enumerate() {
+                *number = rows[pick[lane] as usize][column];
+            }
+            *lanes = self.load(&gathered);
+        }
+        out
+    }
+}

@@ -1,0 +1,174 @@
+//! The scalar tier, one lane wide, and its flush-to-zero twin.
+//!
+//! `Scalar<true>` replaces denormal operands and results by zero (of the same sign), as a CPU does with DAZ and FTZ
+//! set. Changing the CPU's own mode from Rust is undefined behaviour, so the mode is emulated here for the tests.
+
+use std::ops::{Add, BitAnd, BitOr, Mul, Sub};
+
+use super::ROW;
+use super::lanes::{Lanes, Sealed};
+
+#[derive(Clone, Copy)]
+pub struct Scalar<const FLUSH: bool>(());
+
+#[derive(Clone, Copy)]
+pub struct F1<const FLUSH: bool>(f32);
+
+#[derive(Clone, Copy)]
+pub struct M1(bool);
+
+impl<const FLUSH: bool> Scalar<FLUSH> {
+    pub(super) fn new() -> Self {
+        Self(())
+    }
+}
+
+impl<const FLUSH: bool> F1<FLUSH> {
+    /// The value as an operation reads or leaves it.
+    #[inline(always)]
+    fn of(x: f32) -> Self {
+        if FLUSH && x.is_subnormal() {
+            Self(0.0f32.copysign(x))
+        } else {
+            Self(x)
+        }
+    }
+}
+
+impl<const FLUSH: bool> Add for F1<FLUSH> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::of(self.0 + other.0)
+    }
+}
+
+impl<const FLUSH: bool> Sub for F1<FLUSH> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::of(self.0 - other.0)
+    }
+}
+
+impl<const FLUSH: bool> Mul for F1<FLUSH> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self::of(self.0 * other.0)
+    }
+}
+
+impl BitAnd for M1 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+}
+
+impl BitOr for M1 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl<const FLUSH: bool> Sealed for Scalar<FLUSH> {}
+
+impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
+    const WIDTH: usize = 1;
+    type F = F1<FLUSH>;
+    type I = u32;
+    type M = M1;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> Self::F {
+        F1::of(x)
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32]) -> Self::F {
+        F1::of(from[0])
+    }
+    #[inline(always)]
+    fn min(self, a: Self::F, b: Self::F) -> Self::F {
+        if a.0 < b.0 { a } else { b }
+    }
+    #[inline(always)]
+    fn max(self, a: Self::F, b: Self::F) -> Self::F {
+        if a.0 > b.0 { a } else { b }
+    }
+    #[inline(always)]
+    fn abs(self, a: Self::F) -> Self::F {
+        F1(a.0.abs())
+    }
+    #[inline(always)]
+    fn flip_sign(self, a: Self::F, sign: Self::F) -> Self::F {
+        F1(f32::from_bits(
+            a.0.to_bits() ^ (sign.0.to_bits() & 0x8000_0000),
+        ))
+    }
+    #[inline(always)]
+    fn gt(self, a: Self::F, b: Self::F) -> Self::M {
+        M1(a.0 > b.0)
+    }
+    #[inline(always)]
+    fn select(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F {
+        if m.0 { a } else { b }
+    }
+    #[inline(always)]
+    fn first(self, n: usize) -> Self::M {
+        M1(n > 0)
+    }
+    #[inline(always)]
+    fn bits(self, m: Self::M) -> u32 {
+        u32::from(m.0)
+    }
+    #[inline(always)]
+    fn octant(self, x: Self::F, y: Self::F, z: Self::F) -> u32 {
+        (x.0.to_bits() >> 31) | (y.0.to_bits() >> 31) << 1 | (z.0.to_bits() >> 31) << 2
+    }
+    #[inline(always)]
+    fn lookup(self, table: &[f32; 8], octant: u32) -> Self::F {
+        F1::of(table[(octant & 7) as usize])
+    }
+    #[inline(always)]
+    fn gather(self, table: &[f32], index: u32) -> Self::F {
+        F1::of(table[(index as usize).min(table.len() - 1)])
+    }
+    #[inline(always)]
+    fn splat_u32(self, x: u32) -> u32 {
+        x
+    }
+    #[inline(always)]
+    fn load_u32(self, from: &[u32]) -> u32 {
+        from[0]
+    }
+    #[inline(always)]
+    fn add_u32(self, a: u32, b: u32) -> u32 {
+        a.wrapping_add(b)
+    }
+    #[inline(always)]
+    fn min_u32(self, a: u32, b: u32) -> u32 {
+        a.min(b)
+    }
+    #[inline(always)]
+    fn max_u32(self, a: u32, b: u32) -> u32 {
+        a.max(b)
+    }
+    #[inline(always)]
+    fn any_bit(self, a: u32, b: u32) -> Self::M {
+        M1(a & b != 0)
+    }
+    #[inline(always)]
+    fn compress(self, m: Self::M, values: u32, out: &mut [u32]) {
+        if m.0 {
+            out[0] = values;
+        }
+    }
+    #[inline(always)]
+    fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW] {
+        rows[pick[0] as usize].map(F1::of)
+    }
+}

@@ -1,0 +1,208 @@
+//! The SSE2 tier: 4 lanes, the floor of every x86-64 CPU. What SSE2 has no instruction for goes through memory.
+
+use std::arch::x86_64::*;
+
+use super::lanes::{Lanes, Sealed, float_operators};
+use super::{Kernel, ROW};
+
+/// Proof that the CPU has SSE2, which is part of x86-64 itself.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Sse2(());
+
+#[derive(Clone, Copy)]
+pub struct F4(__m128);
+#[derive(Clone, Copy)]
+pub struct I4(__m128i);
+#[derive(Clone, Copy)]
+pub struct M4(__m128);
+
+float_operators!(F4, _mm_add_ps, _mm_sub_ps, _mm_mul_ps);
+
+impl std::ops::BitAnd for M4 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        // SAFETY: SSE2 is part of x86-64.
+        Self(unsafe { _mm_and_ps(self.0, other.0) })
+    }
+}
+
+impl std::ops::BitOr for M4 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        // SAFETY: SSE2 is part of x86-64.
+        Self(unsafe { _mm_or_ps(self.0, other.0) })
+    }
+}
+
+impl Sse2 {
+    pub(super) fn new() -> Option<Self> {
+        is_x86_feature_detected!("sse2").then_some(Self(()))
+    }
+
+    #[inline(always)]
+    fn array(self, v: I4) -> [u32; 4] {
+        let mut out = [0u32; 4];
+        // SAFETY: room for 4 integers is there, and the token proves SSE2.
+        unsafe { _mm_storeu_si128(out.as_mut_ptr().cast(), v.0) };
+        out
+    }
+
+    #[inline(always)]
+    fn pick(self, m: __m128i, a: I4, b: I4) -> I4 {
+        // SAFETY: the token proves SSE2.
+        I4(unsafe { _mm_or_si128(_mm_and_si128(m, a.0), _mm_andnot_si128(m, b.0)) })
+    }
+}
+
+pub(super) fn run<K: Kernel>(token: Sse2, kernel: K) -> K::Output {
+    kernel.run(token)
+}
+
+impl Sealed for Sse2 {}
+
+impl Lanes for Sse2 {
+    const WIDTH: usize = 4;
+    type F = F4;
+    type I = I4;
+    type M = M4;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> F4 {
+        // SAFETY: the token proves SSE2.
+        F4(unsafe { _mm_set1_ps(x) })
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32]) -> F4 {
+        let from = &from[..4];
+        // SAFETY: 4 floats are there, and the token proves SSE2.
+        F4(unsafe { _mm_loadu_ps(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn min(self, a: F4, b: F4) -> F4 {
+        // SAFETY: the token proves SSE2.
+        F4(unsafe { _mm_min_ps(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn max(self, a: F4, b: F4) -> F4 {
+        // SAFETY: the token proves SSE2.
+        F4(unsafe { _mm_max_ps(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn abs(self, a: F4) -> F4 {
+        // SAFETY: the token proves SSE2.
+        F4(unsafe { _mm_andnot_ps(_mm_set1_ps(-0.0), a.0) })
+    }
+    #[inline(always)]
+    fn flip_sign(self, a: F4, sign: F4) -> F4 {
+        // SAFETY: the token proves SSE2.
+        F4(unsafe { _mm_xor_ps(a.0, _mm_and_ps(sign.0, _mm_set1_ps(-0.0))) })
+    }
+    #[inline(always)]
+    fn gt(self, a: F4, b: F4) -> M4 {
+        // SAFETY: the token proves SSE2.
+        M4(unsafe { _mm_cmpgt_ps(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn select(self, m: M4, a: F4, b: F4) -> F4 {
+        // SAFETY: the token proves SSE2.
+        F4(unsafe { _mm_or_ps(_mm_and_ps(m.0, a.0), _mm_andnot_ps(m.0, b.0)) })
+    }
+    #[inline(always)]
+    fn first(self, n: usize) -> M4 {
+        // SAFETY: the token proves SSE2.
+        M4(unsafe {
+            let lane = _mm_setr_epi32(0, 1, 2, 3);
+            _mm_castsi128_ps(_mm_cmpgt_epi32(_mm_set1_epi32(n.min(4) as i32), lane))
+        })
+    }
+    #[inline(always)]
+    fn bits(self, m: M4) -> u32 {
+        // SAFETY: the token proves SSE2.
+        (unsafe { _mm_movemask_ps(m.0) }) as u32
+    }
+    #[inline(always)]
+    fn octant(self, x: F4, y: F4, z: F4) -> I4 {
+        // SAFETY: the token proves SSE2.
+        I4(unsafe {
+            let x = _mm_srli_epi32::<31>(_mm_castps_si128(x.0));
+            let y = _mm_srli_epi32::<31>(_mm_castps_si128(y.0));
+            let z = _mm_srli_epi32::<31>(_mm_castps_si128(z.0));
+            let yz = _mm_or_si128(_mm_slli_epi32::<1>(y), _mm_slli_epi32::<2>(z));
+            _mm_or_si128(x, yz)
+        })
+    }
+    #[inline(always)]
+    fn lookup(self, table: &[f32; 8], octant: I4) -> F4 {
+        self.load(&self.array(octant).map(|entry| table[(entry & 7) as usize]))
+    }
+    #[inline(always)]
+    fn gather(self, table: &[f32], index: I4) -> F4 {
+        self.load(
+            &self
+                .array(index)
+                .map(|entry| table[(entry as usize).min(table.len() - 1)]),
+        )
+    }
+    #[inline(always)]
+    fn splat_u32(self, x: u32) -> I4 {
+        // SAFETY: the token proves SSE2.
+        I4(unsafe { _mm_set1_epi32(x as i32) })
+    }
+    #[inline(always)]
+    fn load_u32(self, from: &[u32]) -> I4 {
+        let from = &from[..4];
+        // SAFETY: 4 integers are there, and the token proves SSE2.
+        I4(unsafe { _mm_loadu_si128(from.as_ptr().cast()) })
+    }
+    #[inline(always)]
+    fn add_u32(self, a: I4, b: I4) -> I4 {
+        // SAFETY: the token proves SSE2.
+        I4(unsafe { _mm_add_epi32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn min_u32(self, a: I4, b: I4) -> I4 {
+        // SAFETY: the token proves SSE2. Values are below 2³¹, so the signed comparison is theirs.
+        self.pick(unsafe { _mm_cmpgt_epi32(b.0, a.0) }, a, b)
+    }
+    #[inline(always)]
+    fn max_u32(self, a: I4, b: I4) -> I4 {
+        // SAFETY: the token proves SSE2. Values are below 2³¹, so the signed comparison is theirs.
+        self.pick(unsafe { _mm_cmpgt_epi32(a.0, b.0) }, a, b)
+    }
+    #[inline(always)]
+    fn any_bit(self, a: I4, b: I4) -> M4 {
+        // SAFETY: the token proves SSE2.
+        M4(unsafe {
+            let none = _mm_cmpeq_epi32(_mm_and_si128(a.0, b.0), _mm_setzero_si128());
+            _mm_castsi128_ps(_mm_xor_si128(none, _mm_set1_epi32(-1)))
+        })
+    }
+    #[inline(always)]
+    fn compress(self, m: M4, values: I4, out: &mut [u32]) {
+        let out = &mut out[..4];
+        let (bits, mut kept) = (self.bits(m), 0);
+        for (lane, value) in self.array(values).into_iter().enumerate() {
+            // `kept` ≤ lane, so a value that isn't kept is overwritten or lies behind the kept ones.
+            out[kept] = value;
+            kept += (bits >> lane & 1) as usize;
+        }
+    }
+    #[inline(always)]
+    fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F4; ROW] {
+        let pick = &pick[..4];
+        let mut out = [self.splat(0.0); ROW];
+        for start in [0, 4, 8, 12] {
+            let mut r = [out[0].0; 4];
+            for (lane, row) in r.iter_mut().enumerate() {
+                *row = self.load(&rows[pick[lane] as usize][start..]).0;
+            }
+            let [mut a, mut b, mut c, mut d] = r;
+            // SAFETY: the token proves SSE2.
+            unsafe { _MM_TRANSPOSE4_PS(&mut a, &mut b, &mut c, &mut d) };
+            out[start..start + 4].copy_from_slice(&[F4(a), F4(b), F4(c), F4(d)]);
+        }
+        out
+    }
+}

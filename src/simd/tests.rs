@@ -1,0 +1,166 @@
+//! Every operation of every tier against plain arithmetic on arrays.
+
+use super::*;
+
+const X: [f32; 16] = [
+    0.0, -0.0, 1.5, -2.25, 1e-40, -1e-40, 3e38, -3e38, 7.0, 0.1, -0.3, 1e-20, 5.0, -5.0, 42.0, 1.0,
+];
+const Y: [f32; 16] = [
+    -0.0, 0.0, 1.5, 2.25, 1e-40, 1e-40, -3e38, 3e38, 0.7, -0.1, -0.2, 1e20, -5.0, -6.0, 41.0, 1.0,
+];
+
+/// Lanes as numbers: a vector's lane i is what `select` and `gt` can tell of it, so compare through tables.
+struct Check;
+
+impl Kernel for Check {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) {
+        for start in (0..16).step_by(L::WIDTH) {
+            arithmetic(l, start);
+            integers(l, start);
+        }
+        transposed(l);
+    }
+}
+
+/// Whether vector `v` holds exactly the numbers `expected` (compared as numbers: both orders of `gt` are false).
+fn same<L: Lanes>(l: L, v: L::F, expected: &[f32]) -> bool {
+    let e = l.load(expected);
+    l.bits(l.gt(v, e) | l.gt(e, v)) == 0
+}
+
+fn arithmetic<L: Lanes>(l: L, start: usize) {
+    let (xs, ys) = (&X[start..], &Y[start..]);
+    let (x, y) = (l.load(xs), l.load(ys));
+    let expect = |f: &dyn Fn(f32, f32) -> f32| -> Vec<f32> {
+        xs.iter().zip(ys).map(|(&x, &y)| f(x, y)).collect()
+    };
+    assert!(same(l, x + y, &expect(&|x, y| x + y)));
+    assert!(same(l, x - y, &expect(&|x, y| x - y)));
+    assert!(same(l, x * y, &expect(&|x, y| x * y)));
+    assert!(same(
+        l,
+        l.min(x, y),
+        &expect(&|x, y| if x < y { x } else { y })
+    ));
+    assert!(same(
+        l,
+        l.max(x, y),
+        &expect(&|x, y| if x > y { x } else { y })
+    ));
+    assert!(same(l, l.abs(x), &expect(&|x, _| x.abs())));
+    let flipped = expect(&|x, y| if y.is_sign_negative() { -x } else { x });
+    assert!(same(l, l.flip_sign(x, y), &flipped));
+    let greater = l.gt(x, y);
+    let expected = (0..L::WIDTH)
+        .filter(|&i| xs[i] > ys[i])
+        .fold(0, |bits, i| bits | 1 << i);
+    assert_eq!(l.bits(greater), expected);
+    assert!(same(l, l.select(greater, x, y), &expect(&f32::max)));
+    let nan = l.splat(f32::NAN);
+    assert_eq!(
+        l.bits(l.gt(nan, x) | l.gt(x, nan)),
+        0,
+        "NaN compares as not greater"
+    );
+    assert!(
+        same(l, l.max(nan, x), xs) && same(l, l.min(nan, x), xs),
+        "a NaN yields the second"
+    );
+
+    let octant = l.octant(x, y, l.splat(-1.0));
+    let table = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+    let expected = expect(&|x, y| {
+        4.0 + f32::from(u8::from(x.is_sign_negative()))
+            + 2.0 * f32::from(u8::from(y.is_sign_negative()))
+    });
+    assert!(same(l, l.lookup(&table, octant), &expected));
+    assert!(same(l, l.gather(&table, octant), &expected));
+    assert!(
+        same(l, l.gather(&table, l.splat_u32(1000)), &[7.0; 16]),
+        "clamped"
+    );
+}
+
+fn integers<L: Lanes>(l: L, start: usize) {
+    let a: Vec<u32> = (0..16).map(|i| (i * 7 + start as u32) % 11).collect();
+    let b: Vec<u32> = (0..16).map(|i| (i * 5 + 3) % 13).collect();
+    let as_floats = |values: L::I| {
+        let mut out = [0; MAX_WIDTH];
+        l.compress(l.first(L::WIDTH), values, &mut out);
+        out[..L::WIDTH].to_vec()
+    };
+    let (va, vb) = (l.load_u32(&a), l.load_u32(&b));
+    let expect = |f: &dyn Fn(u32, u32) -> u32| -> Vec<u32> {
+        (0..L::WIDTH).map(|i| f(a[i], b[i])).collect()
+    };
+    assert_eq!(as_floats(l.min_u32(va, vb)), expect(&u32::min));
+    assert_eq!(as_floats(l.max_u32(va, vb)), expect(&u32::max));
+    assert_eq!(as_floats(l.add_u32(va, vb)), expect(&|a, b| a + b));
+    let any: u32 = (0..L::WIDTH)
+        .filter(|&i| a[i] & b[i] != 0)
+        .map(|i| 1 << i)
+        .sum();
+    assert_eq!(l.bits(l.any_bit(va, vb)), any);
+    for n in 0..=L::WIDTH + 1 {
+        assert_eq!(l.bits(l.first(n)).count_ones() as usize, n.min(L::WIDTH));
+    }
+    let kept: Vec<u32> = (0..L::WIDTH)
+        .filter(|&i| a[i] & b[i] != 0)
+        .map(|i| a[i])
+        .collect();
+    let mut out = [99; MAX_WIDTH];
+    l.compress(l.any_bit(va, vb), va, &mut out);
+    assert_eq!(out[..kept.len()], kept[..]);
+}
+
+fn transposed<L: Lanes>(l: L) {
+    let rows: Vec<[f32; ROW]> = (0..40)
+        .map(|row| std::array::from_fn(|column| (row * 100 + column) as f32))
+        .collect();
+    let pick: Vec<u32> = (0..16).map(|lane| (lane * 23 + 5) % 40).collect();
+    for (column, lanes) in l.load_transposed(&rows, &pick).into_iter().enumerate() {
+        let expected: Vec<f32> = pick
+            .iter()
+            .map(|&row| (row * 100 + column as u32) as f32)
+            .collect();
+        assert!(same(l, lanes, &expected), "column {column}");
+    }
+}
+
+#[test]
+fn every_tier_does_plain_arithmetic() {
+    for level in Level::available() {
+        dispatch(level, Check);
+    }
+}
+
+#[test]
+fn the_flushing_tier_drops_denormals() {
+    struct Flush;
+    impl Kernel for Flush {
+        type Output = [u32; 3];
+        fn run<L: Lanes>(self, l: L) -> [u32; 3] {
+            let (tiny, half) = (l.splat(f32::MIN_POSITIVE), l.splat(0.5));
+            let zero = l.splat(0.0);
+            let denormal = l.load(&[1e-40; 16]);
+            [tiny * half, tiny - tiny * l.splat(0.75), denormal].map(|v| l.bits(l.gt(v, zero)) & 1)
+        }
+    }
+    assert_eq!(dispatch(Level::SCALAR, Flush), [1; 3]);
+    assert_eq!(dispatch(Level::SCALAR_FLUSH, Flush), [0, 1, 0]);
+}
+
+#[test]
+fn an_unknown_level_is_told_from_a_missing_one() {
+    let unknown = "avx1024".parse::<Level>();
+    assert_eq!(unknown, Err(LevelError::Unknown("avx1024".into())));
+    for name in Level::NAMES {
+        match name.parse::<Level>() {
+            Ok(level) => assert_eq!(level.name(), name),
+            Err(error) => assert!(matches!(error, LevelError::Unavailable { .. }), "{error}"),
+        }
+    }
+}
