@@ -1,0 +1,135 @@
+//! What can be wrong with a mesh: where (file and line), what, and how to mend it.
+
+use super::MAX_COORDINATE;
+
+/// Why a mesh was refused. Prints as `file:line: problem`; the help text says how to mend it.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[error("{}: {problem}", place(.file, *.line))]
+#[diagnostic(forward(problem))]
+pub struct MeshError {
+    /// The file as the caller named it, or the mesh's name when it came from no file.
+    pub file: String,
+    /// 1-based line of a text file; in a binary file or for a whole-file problem there is none.
+    pub line: Option<usize>,
+    /// What is wrong.
+    #[source]
+    pub problem: Problem,
+}
+
+fn place(file: &str, line: Option<usize>) -> String {
+    line.map_or_else(|| file.to_owned(), |line| format!("{file}:{line}"))
+}
+
+/// One way in which a mesh or a mesh file can be wrong.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum Problem {
+    /// The operating system refused to read or write.
+    #[error("cannot {action} the file: {source}")]
+    #[diagnostic(help("check the path and its permissions"))]
+    Io {
+        /// "read" or "write".
+        action: &'static str,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file name's extension names no known format.
+    #[error("the extension {found:?} names no mesh format that can be {action}")]
+    #[diagnostic(help("the formats that can be {action}: {supported}"))]
+    UnknownFormat {
+        /// The extension as found, without the dot.
+        found: String,
+        /// "read" or "written".
+        action: &'static str,
+        /// The extensions that would do.
+        supported: &'static str,
+    },
+    /// There is nothing in the file, or no vertex in the mesh.
+    #[error("the mesh has no vertices")]
+    #[diagnostic(help("give at least one vertex; the file may be empty or cut off"))]
+    NoVertices,
+    /// Vertices without a triangle.
+    #[error("the mesh has no triangles")]
+    #[diagnostic(help("give at least one triangle; a single point is the triangle 0 0 0"))]
+    NoTriangles,
+    /// More vertices or triangles than a u32 can number.
+    #[error("the mesh has {count} {what}: more than 2^32 - 1")]
+    #[diagnostic(help("split the mesh"))]
+    TooMany {
+        /// "vertices" or "triangles".
+        what: &'static str,
+        /// How many.
+        count: u64,
+    },
+    /// A NaN or infinite coordinate (also a number beyond f32's range).
+    #[error("vertex {vertex} has the coordinate {value}: not a finite f32")]
+    #[diagnostic(help(
+        "every coordinate must be a finite number; look for a division by zero in the exporter"
+    ))]
+    NotFinite {
+        /// 0-based vertex index.
+        vertex: usize,
+        /// The offending coordinate.
+        value: f32,
+    },
+    /// A coordinate beyond the culler's contract.
+    #[error("vertex {vertex} has the coordinate {value:e}: beyond 2^60")]
+    #[diagnostic(help(
+        "scale the mesh down: coordinates up to {MAX_COORDINATE:e} (2^60) are allowed"
+    ))]
+    TooLarge {
+        /// 0-based vertex index.
+        vertex: usize,
+        /// The offending coordinate.
+        value: f32,
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} names vertex {index}, but the vertices are {first} to {last}")]
+    #[diagnostic(help("check the vertex count and whether the file's indices start at 0 or at 1"))]
+    IndexOutOfRange {
+        /// 0-based triangle index.
+        triangle: usize,
+        /// The index as the file has it.
+        index: i64,
+        /// The lowest allowed index in the file's own counting.
+        first: u64,
+        /// The highest allowed index in the file's own counting.
+        last: u64,
+    },
+    /// The text or bytes do not follow the format.
+    #[error("{message}")]
+    #[diagnostic(help("{help}"))]
+    Malformed {
+        /// What was expected and what was found.
+        message: String,
+        /// How to mend it.
+        help: String,
+    },
+    /// Two or more dialects of `.tri` fit the file.
+    #[error("the file can be read as {}", .readings.join(" or as "))]
+    #[diagnostic(help("say which is meant with --tri-format {}", .names.join(" or --tri-format ")))]
+    Ambiguous {
+        /// Each fitting reading in words.
+        readings: Vec<&'static str>,
+        /// The names that select them.
+        names: Vec<&'static str>,
+    },
+}
+
+impl Problem {
+    /// A format violation with its remedy.
+    pub(super) fn malformed(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Malformed {
+            message: message.into(),
+            help: help.into(),
+        }
+    }
+
+    /// Puts the problem into a file, with a line where one is known.
+    pub(super) fn at(self, file: &str, line: impl Into<Option<usize>>) -> MeshError {
+        MeshError {
+            file: file.to_owned(),
+            line: line.into(),
+            problem: self,
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Connected components, and which of them are closed.
+//!
+//! A component is a set of triangles joined by shared vertex indices. It is closed when each of its edges is shared
+//! by exactly two faces: only then has it an inside, which exact intersection asks for (odd ray parity).
+//! Triangles with a repeated index have no area and no inside: they join components but are no faces here,
+//! and a component of nothing else is open. Indices decide, not positions: a mesh whose seams are
+//! written twice (the teapot) is open along them.
+
+use std::collections::HashMap;
+
+use super::TriangleMesh;
+
+/// Counts of one connected component.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Component {
+    /// Vertices that its triangles use.
+    pub vertices: usize,
+    /// Triangles, degenerate ones included.
+    pub triangles: usize,
+    /// Triangles with a repeated index.
+    pub degenerate: usize,
+    /// Edges of its faces.
+    pub edges: usize,
+    /// Edges of exactly one face.
+    pub boundary_edges: usize,
+    /// Edges of three faces or more.
+    pub non_manifold_edges: usize,
+}
+
+impl Component {
+    /// Every edge shared by exactly two faces, and at least one face.
+    pub fn is_closed(&self) -> bool {
+        self.edges > 0 && self.boundary_edges == 0 && self.non_manifold_edges == 0
+    }
+
+    /// Vertices − edges + faces: 2 for a sphere, 0 for a torus.
+    pub fn euler_characteristic(&self) -> i64 {
+        (self.vertices + self.triangles - self.degenerate) as i64 - self.edges as i64
+    }
+}
+
+/// A mesh's components and what they sum up to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Topology {
+    /// The components, in the order of their lowest vertex index.
+    pub components: Vec<Component>,
+    /// For each triangle its component's index.
+    pub component_of: Vec<usize>,
+    /// Vertices that no triangle uses.
+    pub unused_vertices: usize,
+}
+
+impl Topology {
+    /// Finds the components of a mesh.
+    pub fn of(mesh: &TriangleMesh) -> Self {
+        let roots = vertex_roots(mesh);
+        let mut number_of_root = HashMap::new();
+        let mut used = vec![false; mesh.vertices.len()];
+        for &index in mesh.triangles.as_flattened() {
+            used[index as usize] = true;
+        }
+        let mut components: Vec<Component> = Vec::new();
+        for (vertex, _) in used.iter().enumerate().filter(|&(_, used)| *used) {
+            let number = *number_of_root.entry(roots[vertex]).or_insert_with(|| {
+                components.push(Component::default());
+                components.len() - 1
+            });
+            components[number].vertices += 1;
+        }
+        let component_of: Vec<usize> = mesh
+            .triangles
+            .iter()
+            .map(|t| number_of_root[&roots[t[0] as usize]])
+            .collect();
+        for (triangle, &number) in mesh.triangles.iter().zip(&component_of) {
+            components[number].triangles += 1;
+            components[number].degenerate += usize::from(!is_face(triangle));
+        }
+        for ((a, _), faces) in edge_counts(mesh) {
+            let component = &mut components[number_of_root[&roots[a as usize]]];
+            component.edges += 1;
+            component.boundary_edges += usize::from(faces == 1);
+            component.non_manifold_edges += usize::from(faces > 2);
+        }
+        let unused_vertices = used.iter().filter(|used| !**used).count();
+        Self {
+            components,
+            component_of,
+            unused_vertices,
+        }
+    }
+
+    /// The whole mesh's counts, summed over its components (unused vertices belong to none).
+    pub fn total(&self) -> Component {
+        self.components
+            .iter()
+            .fold(Component::default(), |sum, c| Component {
+                vertices: sum.vertices + c.vertices,
+                triangles: sum.triangles + c.triangles,
+                degenerate: sum.degenerate + c.degenerate,
+                edges: sum.edges + c.edges,
+                boundary_edges: sum.boundary_edges + c.boundary_edges,
+                non_manifold_edges: sum.non_manifold_edges + c.non_manifold_edges,
+            })
+    }
+
+    /// How many components are closed.
+    pub fn closed_components(&self) -> usize {
+        self.components.iter().filter(|c| c.is_closed()).count()
+    }
+}
+
+fn is_face([a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
+/// How many faces share each edge, keyed by (lower, higher) vertex index.
+fn edge_counts(mesh: &TriangleMesh) -> HashMap<(u32, u32), u32> {
+    let mut counts = HashMap::with_capacity(mesh.triangles.len() * 3 / 2);
+    for &[a, b, c] in mesh.triangles.iter().filter(|t| is_face(t)) {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            *counts.entry((from.min(to), from.max(to))).or_default() += 1;
+        }
+    }
+    counts
+}
+
+/// Union–find over vertices with path halving: for each vertex the representative of its component.
+fn vertex_roots(mesh: &TriangleMesh) -> Vec<u32> {
+    let mut parent: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+    for &[a, b, c] in &mesh.triangles {
+        for (from, to) in [(a, b), (b, c)] {
+            let (from, to) = (root(&mut parent, from), root(&mut parent, to));
+            parent[from.max(to) as usize] = from.min(to);
+        }
+    }
+    (0..parent.len() as u32)
+        .map(|vertex| root(&mut parent, vertex))
+        .collect()
+}
+
+fn root(parent: &mut [u32], mut vertex: u32) -> u32 {
+    while parent[vertex as usize] != vertex {
+        let grandparent = parent[parent[vertex as usize] as usize];
+        parent[vertex as usize] = grandparent;
+        vertex = grandparent;
+    }
+    vertex
+}

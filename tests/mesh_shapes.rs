@@ -1,0 +1,249 @@
+//! Procedural shapes: closed 2-manifolds of the right genus, facing outward, with the right size, equal on every platform.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::collections::HashMap;
+
+use sdop::mesh::shapes::ShapeError;
+use sdop::mesh::topology::Topology;
+use sdop::mesh::{ProceduralShape, TriangleMesh};
+use sha2::{Digest, Sha256};
+
+fn default_mesh(name: &str) -> TriangleMesh {
+    ProceduralShape::from_name(name, &[])
+        .unwrap()
+        .build()
+        .unwrap()
+}
+
+fn with(name: &str, sizes: &[(&str, f64)]) -> Result<TriangleMesh, ShapeError> {
+    ProceduralShape::from_name(name, sizes)?.build()
+}
+
+/// Six times the signed volume is the sum of det(a, b, c): positive when counter-clockwise faces look outward.
+fn signed_volume(mesh: &TriangleMesh) -> f64 {
+    let corner = |i: u32| mesh.vertices[i as usize].as_dvec3();
+    mesh.triangles
+        .iter()
+        .map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c))))
+        .sum::<f64>()
+        / 6.0
+}
+
+/// Every directed edge once and its reverse once: closed, manifold and consistently oriented.
+fn assert_oriented(mesh: &TriangleMesh) {
+    let mut directed: HashMap<(u32, u32), u32> = HashMap::new();
+    for &[a, b, c] in &mesh.triangles {
+        for edge in [(a, b), (b, c), (c, a)] {
+            *directed.entry(edge).or_default() += 1;
+        }
+    }
+    for (&(from, to), &count) in &directed {
+        assert_eq!(count, 1, "{}: edge {from}->{to} used twice", mesh.name);
+        assert!(
+            directed.contains_key(&(to, from)),
+            "{}: edge {from}->{to} unpaired",
+            mesh.name
+        );
+    }
+}
+
+#[test]
+fn every_shape_is_one_closed_oriented_component_of_its_genus() {
+    for name in ProceduralShape::NAMES {
+        let mesh = default_mesh(name);
+        let topology = Topology::of(&mesh);
+        let euler = if ["torus", "gear", "knot"].contains(&name) {
+            0
+        } else {
+            2
+        };
+        assert_eq!(mesh.name, name);
+        assert_eq!(topology.components.len(), 1, "{name}");
+        assert!(topology.components[0].is_closed(), "{name}");
+        assert_eq!(
+            topology.components[0].euler_characteristic(),
+            euler,
+            "{name}"
+        );
+        assert_eq!(topology.total().degenerate, 0, "{name}");
+        assert_eq!(topology.unused_vertices, 0, "{name}");
+        assert_oriented(&mesh);
+        TriangleMesh::new(name, mesh.vertices, mesh.triangles).unwrap();
+    }
+}
+
+/// Closed forms where the polyhedron has one; the smooth body's volume, met from inside, where it has not.
+#[test]
+fn volumes_match_their_formulas() {
+    let pi = std::f64::consts::PI;
+    let polygon = |n: f64| 0.5 * n * (2.0 * pi / n).sin();
+    let exact = [
+        (with("box", &[("x", 2.0), ("y", 3.0), ("z", 5.0)]), 30.0),
+        (
+            with("plate", &[("x", 4.0), ("y", 2.0), ("thickness", 0.5)]),
+            4.0,
+        ),
+        (
+            with(
+                "needle",
+                &[("length", 3.0), ("radius", 1.0), ("sides", 5.0)],
+            ),
+            polygon(5.0),
+        ),
+        (
+            with(
+                "l-shape",
+                &[("x", 4.0), ("y", 3.0), ("arm", 1.0), ("thickness", 2.0)],
+            ),
+            12.0,
+        ),
+    ];
+    for (mesh, volume) in exact {
+        let mesh = mesh.unwrap();
+        let found = signed_volume(&mesh);
+        assert!(
+            (found / volume - 1.0).abs() < 1e-6,
+            "{}: {found} for {volume}",
+            mesh.name
+        );
+    }
+    let smooth = [
+        (with("icosphere", &[("subdivisions", 4.0)]), 4.0 / 3.0 * pi),
+        (with("torus", &[]), 2.0 * pi * pi * 0.25 * 0.25),
+        // Pappus: area of the tube times the knot's length, 3.0 radii a unit of the curve.
+        (
+            with("knot", &[("segments", 512.0), ("sides", 64.0)]),
+            pi * 0.15 * 0.15 * knot_length(),
+        ),
+    ];
+    for (mesh, volume) in smooth {
+        let mesh = mesh.unwrap();
+        let share = signed_volume(&mesh) / volume;
+        assert!(
+            (0.97..1.0).contains(&share),
+            "{}: {share} of the smooth volume",
+            mesh.name
+        );
+    }
+}
+
+fn knot_length() -> f64 {
+    let speed = |u: f64| {
+        let (x, y, z) = (
+            u.cos() + 4.0 * (2.0 * u).cos(),
+            4.0 * (2.0 * u).sin() - u.sin(),
+            -3.0 * (3.0 * u).cos(),
+        );
+        (x * x + y * y + z * z).sqrt() / 3.0
+    };
+    let n = 4096;
+    let step = std::f64::consts::TAU / f64::from(n);
+    (0..n).map(|i| speed(step * f64::from(i))).sum::<f64>() * step
+}
+
+#[test]
+fn sizes_are_kept() {
+    let gear = default_mesh("gear");
+    let radii = gear.vertices.iter().map(|v| v.truncate().length());
+    assert!((radii.clone().fold(0.0, f32::max) - 1.0).abs() < 1e-6);
+    assert!((radii.fold(9.0, f32::min) - 0.3).abs() < 1e-6);
+    for vertex in default_mesh("icosphere").vertices {
+        assert!((vertex.length() - 1.0).abs() < 1e-6);
+    }
+    assert_eq!(default_mesh("icosphere").triangles.len(), 20 * 64);
+    let edges = with("box", &[("x", 0.5), ("z", 8.0)]).unwrap().vertices[7];
+    assert_eq!(edges.to_array(), [0.25, 0.5, 4.0]);
+}
+
+#[test]
+fn sizes_that_make_no_shape_are_refused_with_what_would_do() {
+    let cases: [(&str, &[(&str, f64)], &str, &str); 9] = [
+        (
+            "cube",
+            &[],
+            r#"there is no shape "cube""#,
+            "the shapes are box, icosphere, needle",
+        ),
+        (
+            "box",
+            &[("w", 1.0)],
+            r#"the shape "box" has no size "w""#,
+            "its sizes are x, y, z",
+        ),
+        (
+            "box",
+            &[("x", 0.0)],
+            r#"the size "x" of the shape "box" cannot be 0"#,
+            "x must be from 2^-60",
+        ),
+        (
+            "box",
+            &[("x", f64::NAN)],
+            "cannot be NaN",
+            "x must be from 2^-60 to 2^58",
+        ),
+        (
+            "needle",
+            &[("sides", 2.5)],
+            "cannot be 2.5",
+            "sides must be a whole number",
+        ),
+        (
+            "needle",
+            &[("sides", -3.0)],
+            "cannot be 0",
+            "sides must be from 3 to 1024",
+        ),
+        (
+            "icosphere",
+            &[("subdivisions", 8.0)],
+            "cannot be 8",
+            "subdivisions must be from 0 to 7",
+        ),
+        (
+            "torus",
+            &[("tube", 1.0)],
+            "cannot be 1",
+            "tube must be less than 1, the ring's radius",
+        ),
+        (
+            "gear",
+            &[("bore", 0.75)],
+            "cannot be 0.75",
+            "bore must be less than 0.7",
+        ),
+    ];
+    for (name, sizes, message, help) in cases {
+        let error = with(name, sizes).unwrap_err();
+        let found_help = miette::Diagnostic::help(&error).unwrap().to_string();
+        assert!(error.to_string().contains(message), "{error}");
+        assert!(found_help.contains(help), "{found_help}");
+    }
+}
+
+/// The bits of all default shapes: they must not depend on the platform's libm, optimisation or hash order.
+#[test]
+fn shapes_are_equal_to_the_bit_everywhere() {
+    let mut hash = Sha256::new();
+    for name in ProceduralShape::NAMES {
+        let mesh = default_mesh(name);
+        for vertex in &mesh.vertices {
+            vertex
+                .to_array()
+                .map(|c| hash.update(c.to_bits().to_le_bytes()));
+        }
+        mesh.triangles
+            .as_flattened()
+            .iter()
+            .for_each(|i| hash.update(i.to_le_bytes()));
+    }
+    let hex: String = hash
+        .finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    assert_eq!(
+        hex,
+        "a8925df26c80ade6f49e90e899554bad3151f811aedf245fb136d122973c82ac"
+    );
+}
