@@ -1,1 +1,63 @@
 //! The plain reference of S-DOP culling: one formula a function, no code shared with the culler.
+//!
+//! The stages carry the culler's names: [`pose`], [`volume`], [`overlap`], [`broad_phase`], [`strategy`], [`cost`].
+//! Loops are plain f64 and read like the paper; [`exact`] decides the same predicates in exact real arithmetic, and
+//! `optimised ⊇ reference predicate ⊇ exact mesh intersection` is what the culler's tests hold against it.
+//!
+//! Conventions: right-handed axes, column vectors `[x, y, z]`, quaternions `(x, y, z, w)` of any non-zero norm, a pose
+//! is x ↦ R(q)x/|q|² + t. Volumes are the exactly posed, uninflated ones; touching counts as overlap.
+
+pub mod broad_phase;
+pub mod cost;
+pub mod exact;
+pub mod linear;
+pub mod number;
+pub mod overlap;
+pub mod pose;
+pub mod strategy;
+pub mod volume;
+
+#[cfg(test)]
+mod tests;
+
+pub use overlap::Overlap;
+pub use pose::{Body, Pose};
+pub use strategy::{Strategy, pairs};
+pub use volume::{Ball, DirectionSet, Shape, Slabs};
+
+/// What the reference refuses to judge: an answer about it would mean nothing.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum InvalidInput {
+    /// A coordinate is NaN or infinite.
+    #[error("{0} has a NaN or infinite number: give finite ones")]
+    NotFinite(&'static str),
+    /// The quaternion (0, 0, 0, 0) names no rotation.
+    #[error("the quaternion is zero: give any other norm")]
+    ZeroQuaternion,
+    /// A radius below zero, or one that is NaN or infinite.
+    #[error("the radius is negative, NaN or infinite")]
+    Radius,
+    /// The number of slabs is not k/2.
+    #[error("{lo} lower and {hi} upper slab ends for {slabs} directions")]
+    SlabCount {
+        /// Directions of the set, k/2.
+        slabs: usize,
+        /// Lower ends given.
+        lo: usize,
+        /// Upper ends given.
+        hi: usize,
+    },
+    /// The basis columns are not orthogonal with one common non-zero norm, in exact arithmetic.
+    #[error("the slab basis is not exactly orthogonal with one common norm")]
+    Basis,
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} names vertex {vertex} of {vertices}")]
+    Index {
+        /// Triangle number.
+        triangle: usize,
+        /// Vertex it names.
+        vertex: u32,
+        /// Vertices there are.
+        vertices: usize,
+    },
+}

@@ -1,0 +1,3 @@
+//! The same predicates decided in exact real arithmetic.
+
+pub mod polytope;

@@ -1,0 +1,69 @@
+//! Poses: x ↦ R(q)x/|q|² + t with any non-zero quaternion (design, section 2).
+
+use crate::InvalidInput;
+use crate::linear::{Matrix, Vector, apply, norm_squared, rotation, sub};
+use crate::volume::Shape;
+
+/// Where a body is: f32 numbers as given, never renormalised.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    q: [f32; 4],
+    t: [f32; 3],
+}
+
+impl Pose {
+    /// A pose of the quaternion q = (x, y, z, w) and the translation t.
+    ///
+    /// # Errors
+    /// When a number is not finite or the quaternion is zero.
+    pub fn new(q: [f32; 4], t: [f32; 3]) -> Result<Self, InvalidInput> {
+        if !q.iter().all(|x| x.is_finite()) {
+            return Err(InvalidInput::NotFinite("the quaternion"));
+        }
+        if !t.iter().all(|x| x.is_finite()) {
+            return Err(InvalidInput::NotFinite("the translation"));
+        }
+        if q == [0.0; 4] {
+            return Err(InvalidInput::ZeroQuaternion);
+        }
+        Ok(Self { q, t })
+    }
+
+    /// The quaternion (x, y, z, w) as given.
+    pub fn quaternion(&self) -> [f64; 4] {
+        self.q.map(f64::from)
+    }
+
+    /// The translation as given.
+    pub fn translation(&self) -> Vector<f64> {
+        self.t.map(f64::from)
+    }
+
+    /// R(q)/|q|².
+    pub fn rotation(&self) -> Matrix<f64> {
+        let q = self.quaternion();
+        let norm = norm_squared(&q);
+        rotation(&q).map(|row| row.map(|entry| entry / norm))
+    }
+
+    /// R(q)x/|q|²: the body-frame x turned into world axes, still seen from the body's origin.
+    pub fn turn(&self, x: &Vector<f64>) -> Vector<f64> {
+        apply(&self.rotation(), x)
+    }
+}
+
+/// Δ = tB − tA. Every test compares B with A as seen from A's origin: world coordinates far out would cancel.
+pub fn separation(a: &Pose, b: &Pose) -> Vector<f64> {
+    sub(&b.translation(), &a.translation())
+}
+
+/// A rigid body: its form, where it is, and whether it may move.
+#[derive(Clone, Copy, Debug)]
+pub struct Body<'a> {
+    /// Mesh and volumes in the body frame.
+    pub shape: &'a Shape,
+    /// Position and orientation.
+    pub pose: Pose,
+    /// Pairs of two bodies that are not are never reported.
+    pub dynamic: bool,
+}

@@ -1,0 +1,8 @@
+//! Suites that need whole shapes; what one formula can show is tested beside it.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot build its input has failed"
+)]
+
+mod shapes;
+mod strategies;
