@@ -1,0 +1,87 @@
+//! The direction sets of the k-DOPs: small integer combinations of an orthogonal basis.
+//!
+//! Directions are never normalised, so (1,1,0) = (1,0,0) + (0,1,0) holds to the bit and the support of any axis can be
+//! bounded from the slabs alone (weak duality). All sets share one order: axes, face diagonals, cube diagonals.
+
+use crate::scene::choice::choices;
+
+const AXES: [[i8; 3]; 3] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+#[rustfmt::skip]
+const FACE_DIAGONALS: [[i8; 3]; 6] = [[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]];
+const CUBE_DIAGONALS: [[i8; 3]; 4] = [[1, 1, 1], [-1, 1, 1], [1, -1, 1], [-1, -1, 1]];
+
+const K14: [[i8; 3]; 7] = concat(&[&AXES, &CUBE_DIAGONALS]);
+const K18: [[i8; 3]; 9] = concat(&[&AXES, &FACE_DIAGONALS]);
+const K26: [[i8; 3]; 13] = concat(&[&AXES, &FACE_DIAGONALS, &CUBE_DIAGONALS]);
+
+const fn concat<const N: usize>(groups: &[&[[i8; 3]]]) -> [[i8; 3]; N] {
+    let mut all = [[0; 3]; N];
+    let (mut next, mut group) = (0, 0);
+    while group < groups.len() {
+        let mut i = 0;
+        while i < groups[group].len() {
+            all[next] = groups[group][i];
+            next += 1;
+            i += 1;
+        }
+        group += 1;
+    }
+    assert!(next == N);
+    all
+}
+
+choices! {
+    /// The slab directions of a k-DOP, as integer combinations of its orthogonal basis.
+    DirectionSet, "k", {
+        /// The three axes.
+        K6 = "6",
+        /// Axes and the four cube diagonals.
+        K14 = "14",
+        /// Axes and the six face diagonals: the Tribox set (Crosnier & Rossignac 1999).
+        K18 = "18",
+        /// Axes, face diagonals and cube diagonals.
+        K26 = "26",
+    }
+}
+
+impl DirectionSet {
+    /// The coefficients of each direction over the basis, in the order of every slab column.
+    #[must_use]
+    pub const fn coefficients(self) -> &'static [[i8; 3]] {
+        match self {
+            Self::K6 => &AXES,
+            Self::K14 => &K14,
+            Self::K18 => &K18,
+            Self::K26 => &K26,
+        }
+    }
+
+    /// The number of slabs, k/2.
+    #[must_use]
+    pub const fn slabs(self) -> usize {
+        self.coefficients().len()
+    }
+
+    /// The number of half-spaces.
+    #[must_use]
+    pub const fn k(self) -> usize {
+        2 * self.slabs()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_set_has_k_over_two_directions_and_none_twice() {
+        for (set, k) in DirectionSet::ALL.iter().zip([6, 14, 18, 26]) {
+            assert_eq!((set.k(), set.to_string()), (k, k.to_string()));
+            let directions = set.coefficients();
+            for (i, d) in directions.iter().enumerate() {
+                let opposite = d.map(|c| -c);
+                assert!(directions[i + 1..].iter().all(|e| e != d && *e != opposite));
+            }
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Principal axes: eigenvectors of the covariance of the convex hull's surface.
+//!
+//! With A_i, m_i the area and centroid of triangle (p, q, r)_i, A = ΣA_i and μ = ΣA_i m_i / A (Gottschalk 2000, §3.5):
+//! C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. Taken over the hull's surface, not the mesh's vertices, neither
+//! interior detail nor sampling density turns the axes.
+
+use faer::{Mat, Side};
+use glam::{DMat3, DQuat, DVec3, Vec3};
+
+use super::{Basis, Hull};
+
+/// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are whatever rounding
+/// makes of them. Far above f32 rounding (2⁻²⁴), so a symmetric mesh is seen as such after any rotation.
+const TIE: f64 = 1.0 / 8192.0;
+
+impl Basis {
+    /// The principal axes, longest first, snapped; the model axes when they are tied or the hull is flat.
+    #[must_use]
+    pub fn principal(hull: &Hull, vertices: &[Vec3]) -> Self {
+        surface_covariance(hull, vertices)
+            .and_then(principal_rotation)
+            .map_or(Self::MODEL, |rotation| {
+                Self::snapped(DQuat::from_mat3(&rotation))
+            })
+    }
+}
+
+/// The covariance of the hull's surface, relative to its size; `None` without facets.
+fn surface_covariance(hull: &Hull, vertices: &[Vec3]) -> Option<DMat3> {
+    let origin = vertices[*hull.facets.first()?.first()? as usize].as_dvec3();
+    let corner = |i: u32| vertices[i as usize].as_dvec3() - origin;
+    let scale = 1.0
+        / hull
+            .vertices
+            .iter()
+            .map(|&i| corner(i).length())
+            .fold(0.0, f64::max);
+    let (mut area, mut mean, mut moment) = (0.0, DVec3::ZERO, DMat3::ZERO);
+    for facet in &hull.facets {
+        let corners = facet.map(|i| corner(i) * scale);
+        let [p, q, r] = corners;
+        let doubled = (q - p).cross(r - p).length();
+        let centroid = (p + q + r) / 3.0;
+        area += doubled;
+        mean += centroid * doubled;
+        moment += outer(centroid) * (9.0 * doubled);
+        for corner in corners {
+            moment += outer(corner) * doubled;
+        }
+    }
+    Some(moment * (1.0 / (12.0 * area)) - outer(mean / area))
+}
+
+fn outer(v: DVec3) -> DMat3 {
+    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
+}
+
+/// Eigenvectors by falling eigenvalue as a right-handed rotation; `None` when two eigenvalues tie.
+fn principal_rotation(covariance: DMat3) -> Option<DMat3> {
+    let matrix = Mat::from_fn(3, 3, |row, column| covariance.col(column)[row]);
+    let eigen = matrix.self_adjoint_eigen(Side::Lower).ok()?;
+    let (values, vectors) = (eigen.S().column_vector(), eigen.U());
+    // faer sorts ascending.
+    let gap = (values[2] - values[1]).min(values[1] - values[0]);
+    // A negated comparison, so that NaN is a tie too.
+    if !(gap > TIE * values[2]) {
+        return None;
+    }
+    let axis = |column: usize| {
+        let v = DVec3::new(
+            vectors[(0, column)],
+            vectors[(1, column)],
+            vectors[(2, column)],
+        );
+        v * sign_of_largest(v)
+    };
+    let (x, y) = (axis(2), axis(1));
+    Some(DMat3::from_cols(x, y, x.cross(y)))
+}
+
+/// The sign of the largest component; of the first one when others equal it but for rounding.
+fn sign_of_largest(v: DVec3) -> f64 {
+    let limit = v.abs().max_element() * (1.0 - 1e-6);
+    let largest = v.to_array().into_iter().find(|c| c.abs() >= limit);
+    largest.map_or(1.0, f64::signum)
+}
