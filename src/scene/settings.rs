@@ -9,6 +9,7 @@ use thiserror::Error;
 
 pub use super::choice::UnknownChoice;
 use super::choice::choices;
+pub use crate::volume::Axes;
 use crate::volume::DirectionSet;
 
 choices! {
@@ -70,16 +71,6 @@ choices! {
         Eager = "eager",
         /// Only those of the potentially colliding set.
         Lazy = "lazy",
-    }
-}
-
-choices! {
-    /// The frame in which an or-DOP's directions are fixed.
-    Axes, "axes", {
-        /// Principal axes of the hull's surface.
-        Principal = "principal",
-        /// The mesh file's own axes.
-        Model = "model",
     }
 }
 
