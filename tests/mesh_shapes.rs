@@ -157,7 +157,8 @@ fn sizes_are_kept() {
 
 #[test]
 fn sizes_that_make_no_shape_are_refused_with_what_would_do() {
-    let cases: [(&str, &[(&str, f64)], &str, &str); 9] = [
+    type Case<'a> = (&'a str, &'a [(&'a str, f64)], &'a str, &'a str);
+    let cases: [Case; 9] = [
         (
             "cube",
             &[],
@@ -228,9 +229,10 @@ fn shapes_are_equal_to_the_bit_everywhere() {
     for name in ProceduralShape::NAMES {
         let mesh = default_mesh(name);
         for vertex in &mesh.vertices {
-            vertex
-                .to_array()
-                .map(|c| hash.update(c.to_bits().to_le_bytes()));
+            let coordinates = vertex.to_array();
+            coordinates
+                .iter()
+                .for_each(|c| hash.update(c.to_bits().to_le_bytes()));
         }
         mesh.triangles
             .as_flattened()

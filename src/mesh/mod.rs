@@ -7,11 +7,20 @@
 //! anything. Vertices that no triangle uses are kept: they only widen the volumes.
 
 mod error;
+mod obj;
+mod read;
 pub mod shapes;
+mod text;
 pub mod topology;
+mod tri;
+mod weld;
+mod write;
 
 pub use error::{MeshError, Problem};
+pub use read::{MeshFormat, ReadOptions, read, read_bytes};
 pub use shapes::ProceduralShape;
+pub use tri::TriFormat;
+pub use write::{obj_text, tri_text, write};
 
 use glam::Vec3;
 

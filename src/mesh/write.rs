@@ -1,0 +1,112 @@
+//! Writing a mesh; the extension names the format.
+//!
+//! Coordinates are the shortest decimals that read back to the same f32, so a mesh survives the way to a file and back
+//! to the bit. `.tri` files are Bourke's dialect, whose vertices also have a unit normal and a colour: the
+//! normal is the sum of the adjacent triangles' cross products (area-weighted), in three decimals
+//! since it is for display only; a vertex without one gets 0 0 1.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::{MeshError, MeshFormat, Problem, TriangleMesh};
+
+/// Writes a mesh in the format that the extension names.
+///
+/// # Errors
+/// An extension that names no format, or a file that cannot be written.
+pub fn write(mesh: &TriangleMesh, path: impl AsRef<Path>) -> Result<(), MeshError> {
+    let path = path.as_ref();
+    let file = path.display().to_string();
+    let bytes = match MeshFormat::from_path(path) {
+        Some(MeshFormat::Tri) => tri_text(mesh).into_bytes(),
+        Some(MeshFormat::Obj) => obj_text(mesh).into_bytes(),
+        None => {
+            let found = path
+                .extension()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            let supported = MeshFormat::EXTENSIONS;
+            let problem = Problem::UnknownFormat {
+                found,
+                action: "written",
+                supported,
+            };
+            return Err(problem.at(&file, None));
+        }
+    };
+    std::fs::write(path, bytes).map_err(|source| {
+        Problem::Io {
+            action: "write",
+            source,
+        }
+        .at(&file, None)
+    })
+}
+
+/// The mesh as a `.tri` file in Bourke's dialect.
+pub fn tri_text(mesh: &TriangleMesh) -> String {
+    let mut text = format!("{} {}\n", mesh.vertices.len(), mesh.triangles.len());
+    for (position, normal) in mesh.vertices.iter().zip(vertex_normals(mesh)) {
+        let [x, y, z] = position.to_array().map(shortest);
+        let [nx, ny, nz] = normal.to_array().map(three_decimals);
+        put(
+            &mut text,
+            format_args!("{x} {y} {z} {nx} {ny} {nz} 1 1 1\n"),
+        );
+    }
+    for [a, b, c] in &mesh.triangles {
+        put(&mut text, format_args!("{a} {b} {c}\n"));
+    }
+    text
+}
+
+/// The mesh as a Wavefront OBJ file.
+pub fn obj_text(mesh: &TriangleMesh) -> String {
+    let mut text = String::new();
+    for position in &mesh.vertices {
+        let [x, y, z] = position.to_array().map(shortest);
+        put(&mut text, format_args!("v {x} {y} {z}\n"));
+    }
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|index| u64::from(index) + 1);
+        put(&mut text, format_args!("f {a} {b} {c}\n"));
+    }
+    text
+}
+
+fn put(text: &mut String, line: std::fmt::Arguments) {
+    // Writing to a String cannot fail.
+    let _ = text.write_fmt(line);
+}
+
+/// The shorter of the plain and the exponent form that reads back to the same f32.
+fn shortest(value: f32) -> String {
+    let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
+    if exponent.len() < plain.len() {
+        exponent
+    } else {
+        plain
+    }
+}
+
+fn three_decimals(value: f64) -> f64 {
+    // Adding 0 turns −0 into 0.
+    libm::round(value * 1000.0) / 1000.0 + 0.0
+}
+
+/// Area-weighted vertex normals; the cross product of a triangle's edges is its unit normal times twice its area.
+fn vertex_normals(mesh: &TriangleMesh) -> Vec<DVec3> {
+    let mut sums = vec![DVec3::ZERO; mesh.vertices.len()];
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize].as_dvec3());
+        for &corner in triangle {
+            sums[corner as usize] += (b - a).cross(c - a);
+        }
+    }
+    sums.into_iter()
+        .map(|sum| sum.try_normalize().unwrap_or(DVec3::Z))
+        .collect()
+}

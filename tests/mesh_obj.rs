@@ -1,0 +1,133 @@
+//! OBJ files: what is read, and where a bad one is bad.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use glam::Vec3;
+use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read, read_bytes};
+
+fn read_text(text: impl AsRef<[u8]>) -> Result<TriangleMesh, MeshError> {
+    read_bytes(
+        "cube.obj",
+        MeshFormat::Obj,
+        text.as_ref(),
+        &ReadOptions::default(),
+    )
+}
+
+#[test]
+fn groups_materials_and_texture_seams_leave_one_mesh() {
+    let text = "# a comment\nmtllib none.mtl\no first\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 0 1 0\nvt 0 0\nvt 1 1\n\
+                vn 0 0 1\nusemtl red\nf 1/1/1 2/2/1 3/1/1\ng second\nv 0 0 2 2\nusemtl blue\nf 1/2 3 -1\n";
+    let mesh = read_text(text).unwrap();
+    assert_eq!(mesh.name, "cube");
+    assert_eq!(mesh.vertices, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+}
+
+#[test]
+fn polygons_become_fans_and_short_faces_degenerate_triangles() {
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nf 1 2 3 4 5\nf 1 2\nf 5\n";
+    let mesh = read_text(text).unwrap();
+    assert_eq!(
+        mesh.triangles,
+        [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 1, 1], [4, 4, 4]]
+    );
+}
+
+#[test]
+fn bad_files_are_refused_with_their_line() {
+    let start = "v 0 0 0\nv 1 0 0\nvt 0 0\nv 0 1 0\n";
+    let cases: [(String, &str); 12] = [
+        (String::new(), "cube.obj: the mesh has no vertices"),
+        (
+            "# nothing\no a\n".into(),
+            "cube.obj: the mesh has no vertices",
+        ),
+        (start.into(), "cube.obj: the mesh has no triangles"),
+        (
+            format!("{start}f 1 2 3\nf 1 2 4\n"),
+            "cube.obj:6: triangle 1 names vertex 4, but the vertices are 1 to 3",
+        ),
+        (
+            format!("{start}f 0 1 2\n"),
+            "cube.obj:5: triangle 0 names vertex 0, but the vertices are 1 to 3",
+        ),
+        (
+            format!("v 9 9 9\nf -2 1 1\n{start}"),
+            "cube.obj:2: triangle 0 names vertex -2, but the vertices are 1 to 4",
+        ),
+        (
+            format!("{start}f 1 2 x\n"),
+            "cube.obj:5: a face should be `f a b c …`, each a/b/c with whole numbers",
+        ),
+        (
+            format!("{start}f\n"),
+            "cube.obj:5: the face names no vertices",
+        ),
+        (
+            format!("{start}v 1 2\n"),
+            "cube.obj:5: a vertex should be `v x y z`",
+        ),
+        (
+            format!("{start}v 1 2 3 0\n"),
+            "cube.obj:5: the vertex has the weight 0",
+        ),
+        (
+            format!("{start}v 1 2 nan\nf 1 2 4\n"),
+            "cube.obj:5: vertex 3 has the coordinate NaN: not a finite f32",
+        ),
+        (
+            format!("{start}v 1 2 -2e18\nf 4 2 1\n"),
+            "cube.obj:5: vertex 3 has the coordinate -2e18: beyond 2^60",
+        ),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(
+            read_text(&text).unwrap_err().to_string(),
+            expected,
+            "{text}"
+        );
+    }
+    let binary = b"v 0 0 0\nf 1 1 1\n\xff\xfe";
+    assert_eq!(
+        read_text(binary).unwrap_err().to_string(),
+        "cube.obj:3: this is not text: byte 0xff at offset 16"
+    );
+}
+
+/// This file makes tobj 4.0 panic when it gets the normals to see.
+#[test]
+fn indices_near_the_end_of_their_type_do_no_harm() {
+    let text = "v 0 0 0\nvn 0 0 1\nf 1//6148914691236517206 1 1\n";
+    assert_eq!(read_text(text).unwrap().triangles, [[0, 0, 0]]);
+    let text = "v 0 0 0\nf 9223372036854775807 -9223372036854775808 1\n";
+    assert_eq!(
+        read_text(text).unwrap_err().to_string(),
+        "cube.obj:2: triangle 0 names vertex 9223372036854775807, but the vertices are 1 to 1"
+    );
+}
+
+#[test]
+fn the_path_names_the_format_and_the_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("Pyramid.OBJ");
+    std::fs::write(&path, "v 0 0 0\nf 1 1 1\n").unwrap();
+    assert_eq!(
+        read(&path, &ReadOptions::default()).unwrap().name,
+        "Pyramid"
+    );
+    let message = |file: &str| {
+        read(file, &ReadOptions::default())
+            .map(|mesh| mesh.name)
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(
+        message("a.fbx"),
+        r#"a.fbx: the extension "fbx" names no mesh format that can be read"#
+    );
+    assert_eq!(
+        message("README"),
+        r#"README: the extension "" names no mesh format that can be read"#
+    );
+    assert!(message("absent.tri").starts_with("absent.tri: cannot read the file: "));
+}
