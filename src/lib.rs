@@ -3,6 +3,8 @@
 //! Data flows one way: mesh → volume → scene → effects → update → broad_phase → overlap → pairs → cost.
 
 pub mod mesh;
+pub mod overlap;
+pub mod pairs;
 pub mod rounding;
 pub mod scene;
 pub mod simd;

@@ -197,9 +197,9 @@ impl Lanes for Avx2 {
         })
     }
     #[inline(always)]
-    fn compress(self, m: M8, values: I8, out: &mut [u32]) {
+    fn compress(self, keep: u32, values: I8, out: &mut [u32]) {
         let out = &mut out[..8];
-        let order = &PACK[self.bits(m) as usize];
+        let order = &PACK[(keep & 0xff) as usize];
         // SAFETY: the table row has 8 entries, room for 8 integers is there, and the token proves AVX2.
         unsafe {
             let order = _mm256_loadu_si256(order.as_ptr().cast());

@@ -172,12 +172,12 @@ impl Lanes for Avx512 {
         M16(unsafe { _mm512_test_epi32_mask(a.0, b.0) })
     }
     #[inline(always)]
-    fn compress(self, m: M16, values: I16, out: &mut [u32]) {
+    fn compress(self, keep: u32, values: I16, out: &mut [u32]) {
         let out = &mut out[..16];
         // SAFETY: room for 16 integers is there, and the token proves AVX-512 F. Compressing in a register and
         // storing the whole is many times faster than the compressing store on some CPUs.
         unsafe {
-            let packed = _mm512_maskz_compress_epi32(m.0, values.0);
+            let packed = _mm512_maskz_compress_epi32(keep as u16, values.0);
             _mm512_storeu_epi32(out.as_mut_ptr().cast(), packed);
         }
     }

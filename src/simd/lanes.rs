@@ -62,9 +62,9 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     fn max_u32(self, a: Self::I, b: Self::I) -> Self::I;
     /// Lanes whose bitwise and is not zero.
     fn any_bit(self, a: Self::I, b: Self::I) -> Self::M;
-    /// Writes the lanes that `m` keeps to the front of `out`, in lane order; `out` has at least `WIDTH` elements and
+    /// Writes the lanes whose bit in `keep` is set to the front of `out`, in lane order; `out` has at least `WIDTH` elements and
     /// those behind the kept ones are left in an unspecified state (that is what makes it free of branches).
-    fn compress(self, m: Self::M, values: Self::I, out: &mut [u32]);
+    fn compress(self, keep: u32, values: Self::I, out: &mut [u32]);
 
     /// Rows `rows[pick[lane]]` as columns: element c of the result holds number c of every picked row.
     /// `pick` has at least `WIDTH` elements.

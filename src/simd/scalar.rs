@@ -162,8 +162,8 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
         M1(a & b != 0)
     }
     #[inline(always)]
-    fn compress(self, m: Self::M, values: u32, out: &mut [u32]) {
-        if m.0 {
+    fn compress(self, keep: u32, values: u32, out: &mut [u32]) {
+        if keep & 1 != 0 {
             out[0] = values;
         }
     }

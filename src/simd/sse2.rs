@@ -180,13 +180,13 @@ impl Lanes for Sse2 {
         })
     }
     #[inline(always)]
-    fn compress(self, m: M4, values: I4, out: &mut [u32]) {
+    fn compress(self, keep: u32, values: I4, out: &mut [u32]) {
         let out = &mut out[..4];
-        let (bits, mut kept) = (self.bits(m), 0);
+        let mut kept = 0;
         for (lane, value) in self.array(values).into_iter().enumerate() {
             // `kept` ≤ lane, so a value that isn't kept is overwritten or lies behind the kept ones.
             out[kept] = value;
-            kept += (bits >> lane & 1) as usize;
+            kept += (keep >> lane & 1) as usize;
         }
     }
     #[inline(always)]

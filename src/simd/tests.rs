@@ -89,7 +89,7 @@ fn integers<L: Lanes>(l: L, start: usize) {
     let b: Vec<u32> = (0..16).map(|i| (i * 5 + 3) % 13).collect();
     let as_floats = |values: L::I| {
         let mut out = [0; MAX_WIDTH];
-        l.compress(l.first(L::WIDTH), values, &mut out);
+        l.compress(u32::MAX, values, &mut out);
         out[..L::WIDTH].to_vec()
     };
     let (va, vb) = (l.load_u32(&a), l.load_u32(&b));
@@ -112,7 +112,7 @@ fn integers<L: Lanes>(l: L, start: usize) {
         .map(|i| a[i])
         .collect();
     let mut out = [99; MAX_WIDTH];
-    l.compress(l.any_bit(va, vb), va, &mut out);
+    l.compress(l.bits(l.any_bit(va, vb)), va, &mut out);
     assert_eq!(out[..kept.len()], kept[..]);
 }
 

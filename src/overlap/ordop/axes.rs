@@ -1,0 +1,201 @@
+//! Separating axes of one pair a lane: both bodies' slab normals, and edge × edge.
+
+use super::edges;
+use super::support::{SlabEnds, support};
+use super::table::{OWN, members_of};
+use crate::scene::settings::Overlap;
+use crate::simd::{Lanes, ROW};
+
+/// Where Q stands in a row: the world direction of basis axis j in numbers 3j to 3j + 2.
+pub const Q: usize = 0;
+/// Where the translation t stands in a row.
+pub const T: usize = 9;
+/// Where the centre offset o stands in a row.
+pub const O: usize = 12;
+
+type Vector<L> = [<L as Lanes>::F; 3];
+
+/// Two bodies' frames in each other's coordinates.
+pub struct Frames<L: Lanes> {
+    /// `turn[i][j]` = axis i of A · axis j of B: row i is A's axis in B's coordinates, column j B's axis in A's.
+    turn: [Vector<L>; 3],
+    /// Δ along A's axes, Δ from the centre of A to that of B.
+    gap_a: Vector<L>,
+    /// −Δ along B's axes.
+    gap_b: Vector<L>,
+}
+
+impl<L: Lanes> Frames<L> {
+    /// Relates two rows. Δ is the difference of the input translations plus that of the offsets: a difference of rounded
+    /// world centres would lose it far from the origin.
+    #[inline(always)]
+    pub fn new(l: L, a: [L::F; ROW], b: [L::F; ROW]) -> Self {
+        let zero = l.splat(0.0);
+        let mut delta = [zero; 3];
+        for i in 0..3 {
+            delta[i] = (b[T + i] - a[T + i]) + (b[O + i] - a[O + i]);
+        }
+        let (mut turn, mut gap_a, mut gap_b) = ([[zero; 3]; 3], [zero; 3], [zero; 3]);
+        for i in 0..3 {
+            gap_a[i] = dot::<L>(axis::<L>(&a, i), delta);
+            gap_b[i] = zero - dot::<L>(axis::<L>(&b, i), delta);
+            for j in 0..3 {
+                turn[i][j] = dot::<L>(axis::<L>(&a, i), axis::<L>(&b, j));
+            }
+        }
+        Self { turn, gap_a, gap_b }
+    }
+
+    /// Lanes that some tried axis separates.
+    #[inline(always)]
+    pub fn separated<const K: usize>(
+        &self,
+        l: L,
+        overlap: Overlap,
+        a: &impl SlabEnds<L>,
+        b: &impl SlabEnds<L>,
+    ) -> L::M {
+        let all = l.bits(l.first(L::WIDTH));
+        let mut separated = by_normals::<L, K>(l, self.turn, self.gap_a, a, b);
+        if overlap != Overlap::OneSided && l.bits(separated) != all {
+            let back = [self.column(0), self.column(1), self.column(2)];
+            separated = separated | by_normals::<L, K>(l, back, self.gap_b, b, a);
+        }
+        if overlap == Overlap::Full && l.bits(separated) != all {
+            separated = separated | self.by_edges::<K>(l, a, b);
+        }
+        separated
+    }
+
+    /// B's axis j in A's coordinates.
+    #[inline(always)]
+    fn column(&self, j: usize) -> Vector<L> {
+        [self.turn[0][j], self.turn[1][j], self.turn[2][j]]
+    }
+
+    /// Axes edge × edge. An axis shorter than ½ (nearly parallel edges) is skipped: the error bounds are relative to its
+    /// length, and the normals serve such pairs.
+    #[inline(always)]
+    fn by_edges<const K: usize>(&self, l: L, a: &impl SlabEnds<L>, b: &impl SlabEnds<L>) -> L::M {
+        let all = l.bits(l.first(L::WIDTH));
+        let (zero, quarter) = (l.splat(0.0), l.splat(0.25));
+        let mut separated = l.first(0);
+        for edge_b in edges::of(K) {
+            let edge_b = [
+                combine(l, *edge_b, self.turn[0]),
+                combine(l, *edge_b, self.turn[1]),
+                combine(l, *edge_b, self.turn[2]),
+            ];
+            for edge_a in edges::of(K) {
+                let axis = cross(l, *edge_a, edge_b);
+                let tau = dot::<L>(axis, self.gap_a);
+                let towards = flip(l, axis, tau);
+                let away = [
+                    zero - dot::<L>(self.column(0), towards),
+                    zero - dot::<L>(self.column(1), towards),
+                    zero - dot::<L>(self.column(2), towards),
+                ];
+                let reach = support::<L, K>(l, a, towards) + support::<L, K>(l, b, away);
+                let long = l.gt(dot::<L>(axis, axis), quarter);
+                separated = separated | (l.gt(l.abs(tau), reach) & long);
+            }
+            if l.bits(separated) == all {
+                break;
+            }
+        }
+        separated
+    }
+}
+
+/// Lanes separated along one body's own slab normals. `turn[i]` is its axis i in the other's coordinates, `gap` the way
+/// to the other's centre along its own axes.
+#[inline(always)]
+fn by_normals<L: Lanes, const K: usize>(
+    l: L,
+    turn: [Vector<L>; 3],
+    gap: Vector<L>,
+    own: &impl SlabEnds<L>,
+    other: &impl SlabEnds<L>,
+) -> L::M {
+    let all = l.bits(l.first(L::WIDTH));
+    let zero = l.splat(0.0);
+    let [x, y, z] = [
+        combinations::<L>(turn[0][0], turn[1][0], turn[2][0]),
+        combinations::<L>(turn[0][1], turn[1][1], turn[2][1]),
+        combinations::<L>(turn[0][2], turn[1][2], turn[2][2]),
+    ];
+    let tau = combinations::<L>(gap[0], gap[1], gap[2]);
+    let mut separated = l.first(0);
+    for &i in members_of(K) {
+        let slab = OWN[i];
+        // The normal turned towards the other body faces this slab end; the other body answers in the opposite direction.
+        let own = own.own(l, slab.group, slab.plus, slab.minus, tau[i]);
+        let away = flip(l, [x[i], y[i], z[i]], zero - tau[i]);
+        let reach = own + support::<L, K>(l, other, away);
+        separated = separated | l.gt(l.abs(tau[i]), reach);
+        // One lane alone leaves at its first separating axis; in a wide vector all lanes seldom agree so early.
+        if L::WIDTH == 1 && l.bits(separated) == all {
+            break;
+        }
+    }
+    separated
+}
+
+/// All 13 integer combinations of a basis, in the order of the coefficients, for one coordinate.
+#[inline(always)]
+fn combinations<L: Lanes>(x: L::F, y: L::F, z: L::F) -> [L::F; 13] {
+    let (sum, difference) = (x + y, x - y);
+    [
+        x,
+        y,
+        z,
+        sum,
+        difference,
+        x + z,
+        x - z,
+        y + z,
+        y - z,
+        sum + z,
+        z - difference,
+        difference + z,
+        z - sum,
+    ]
+}
+
+/// A body's axis j from its row.
+#[inline(always)]
+fn axis<L: Lanes>(row: &[L::F; ROW], j: usize) -> Vector<L> {
+    [row[Q + 3 * j], row[Q + 3 * j + 1], row[Q + 3 * j + 2]]
+}
+
+#[inline(always)]
+fn dot<L: Lanes>(a: Vector<L>, b: Vector<L>) -> L::F {
+    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
+}
+
+/// v with every sign flipped where `sign` is negative.
+#[inline(always)]
+fn flip<L: Lanes>(l: L, v: Vector<L>, sign: L::F) -> Vector<L> {
+    [
+        l.flip_sign(v[0], sign),
+        l.flip_sign(v[1], sign),
+        l.flip_sign(v[2], sign),
+    ]
+}
+
+/// n·v for a small integer vector n, whose products are exact.
+#[inline(always)]
+fn combine<L: Lanes>(l: L, n: [f32; 3], v: Vector<L>) -> L::F {
+    dot::<L>([l.splat(n[0]), l.splat(n[1]), l.splat(n[2])], v)
+}
+
+/// n × v for a small integer vector n.
+#[inline(always)]
+fn cross<L: Lanes>(l: L, n: [f32; 3], v: Vector<L>) -> Vector<L> {
+    let [x, y, z] = [l.splat(n[0]), l.splat(n[1]), l.splat(n[2])];
+    [
+        y * v[2] - z * v[1],
+        z * v[0] - x * v[2],
+        x * v[1] - y * v[0],
+    ]
+}
