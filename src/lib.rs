@@ -2,10 +2,15 @@
 //!
 //! Data flows one way: mesh → volume → scene → effects → update → broad_phase → overlap → pairs → cost.
 
+pub mod broad_phase;
+pub mod cost;
 pub mod mesh;
 pub mod overlap;
 pub mod pairs;
+pub mod pipeline;
 pub mod rounding;
 pub mod scene;
 pub mod simd;
+mod strategy;
+pub mod update;
 pub mod volume;

@@ -1,0 +1,70 @@
+//! Which bodies are of interest in a frame: a list, or those whose sphere centres lie in a view cone.
+
+use crate::rounding::pose::rotation;
+use crate::scene::bodies::Bodies;
+use crate::scene::settings::{Interest, ViewCone};
+
+/// Marks the bodies of interest. `centre` gives a body's sphere centre in the world frame.
+pub(crate) fn mark(
+    interest: &Interest,
+    bodies: &Bodies,
+    centre: impl Fn(usize) -> [f32; 3],
+    marks: &mut [bool],
+) {
+    match interest {
+        Interest::Bodies(list) => {
+            marks.fill(false);
+            for &body in list {
+                marks[body as usize] = true;
+            }
+        }
+        Interest::Cone(cone) => {
+            let cone = PlacedCone::new(cone, bodies);
+            for (body, mark) in marks.iter_mut().enumerate() {
+                *mark = cone.sees(centre(body));
+            }
+        }
+    }
+}
+
+/// A view cone in the world frame.
+struct PlacedCone {
+    apex: [f64; 3],
+    direction: [f64; 3],
+    cosine: f64,
+    range: f64,
+}
+
+impl PlacedCone {
+    fn new(cone: &ViewCone, bodies: &Bodies) -> Self {
+        let given = cone.direction.map(f64::from);
+        let (apex, turned) = match cone.body {
+            Some(body) => {
+                let turn = rotation(bodies.rotation[body as usize]);
+                (
+                    bodies.translation[body as usize],
+                    turn.map(|row| dot(row, given)),
+                )
+            }
+            None => (cone.apex.unwrap_or_default(), given),
+        };
+        let length = dot(turned, turned).sqrt();
+        Self {
+            apex: apex.map(f64::from),
+            direction: turned.map(|x| x / length),
+            cosine: libm::cos(f64::from(cone.half_angle).to_radians()),
+            range: cone.range.map_or(f64::INFINITY, f64::from),
+        }
+    }
+
+    /// The apex itself is in the cone, so a body that looks is always of interest.
+    fn sees(&self, centre: [f32; 3]) -> bool {
+        let way: [f64; 3] = std::array::from_fn(|i| f64::from(centre[i]) - self.apex[i]);
+        let distance = dot(way, way).sqrt();
+        distance <= self.range && dot(way, self.direction) >= self.cosine * distance
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

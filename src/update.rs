@@ -1,0 +1,212 @@
+//! The update stage (the paper's Nu): poses in, world-space volumes out.
+//!
+//! A body's volumes move, they are never re-fitted: a sphere update is a copy of the translation (ball-centred shapes) or one
+//! transformed point, an or-DOP update turns the basis. World-aligned volumes alone are re-fitted, from hull vertices.
+
+use crate::overlap::ordop::{O, Q, T};
+use crate::rounding::pose::{Rotation, refit, rotate, rotation, transform, world_axes};
+use crate::rounding::sphere::{inflate_radius, world_ball};
+use crate::scene::bodies::Bodies;
+use crate::simd::ROW;
+use crate::volume::{DirectionSet, Hull, Shape};
+
+/// What updating a body needs to know of its shape.
+#[derive(Clone, Debug)]
+pub struct ShapeFrame {
+    centre: [f32; 3],
+    radius: f32,
+    reach: f32,
+    basis: [[f32; 3]; 3],
+}
+
+impl ShapeFrame {
+    /// The frame of a shape whose or-DOP stands on `basis`.
+    #[must_use]
+    pub fn new(shape: &Shape, basis: &crate::volume::Basis) -> Self {
+        Self {
+            centre: shape.ball.centre.to_array(),
+            radius: shape.ball.radius,
+            reach: shape.reach,
+            basis: basis.columns.map(|column| column.to_array()),
+        }
+    }
+
+    /// Inflated world sphere (x, y, z, R) of a body in this shape.
+    #[inline]
+    #[must_use]
+    pub fn sphere(&self, q: [f32; 4], t: [f32; 3]) -> [f32; 4] {
+        let (centre, radius) = if self.centre == [0.0; 3] {
+            (t, self.radius)
+        } else {
+            world_ball(&rotation(q), t, self.centre, self.radius)
+        };
+        [centre[0], centre[1], centre[2], inflate_radius(radius)]
+    }
+
+    /// The or-DOP row (Q, t, o) of a body in this shape.
+    #[inline]
+    #[must_use]
+    pub fn row(&self, q: [f32; 4], t: [f32; 3]) -> [f32; ROW] {
+        let turn = rotation(q);
+        let mut row = [0.0; ROW];
+        for (j, axis) in world_axes(&turn, self.basis).into_iter().enumerate() {
+            row[Q + 3 * j..Q + 3 * j + 3].copy_from_slice(&axis);
+        }
+        row[T..T + 3].copy_from_slice(&t);
+        if self.centre != [0.0; 3] {
+            let offset = rotate(&turn, self.centre).map(|x| x as f32);
+            row[O..O + 3].copy_from_slice(&offset);
+        }
+        row
+    }
+}
+
+/// World spheres in body order: x, y, z, inflated radius.
+#[derive(Clone, Debug, Default)]
+pub struct Spheres {
+    /// One (x, y, z, R) a body.
+    pub of: Vec<[f32; 4]>,
+}
+
+/// or-DOP rows in body order, each with the frame in which it was last made.
+#[derive(Clone, Debug, Default)]
+pub struct OrDopRows {
+    /// One row a body.
+    pub rows: Vec<[f32; ROW]>,
+    made: Vec<u32>,
+}
+
+impl Spheres {
+    /// Room for `bodies` bodies.
+    #[must_use]
+    pub fn new(bodies: usize) -> Self {
+        Self {
+            of: vec![[0.0; 4]; bodies],
+        }
+    }
+
+    /// Updates the spheres of the bodies in `moving`.
+    pub fn update(&mut self, frames: &[ShapeFrame], bodies: &Bodies, moving: &[u32]) {
+        for &body in moving {
+            let i = body as usize;
+            let frame = &frames[bodies.shape[i] as usize];
+            self.of[i] = frame.sphere(bodies.rotation[i], bodies.translation[i]);
+        }
+    }
+}
+
+impl OrDopRows {
+    /// Room for `bodies` bodies, none of them made yet.
+    #[must_use]
+    pub fn new(bodies: usize) -> Self {
+        Self {
+            rows: vec![[0.0; ROW]; bodies],
+            made: vec![0; bodies],
+        }
+    }
+
+    /// Updates the rows of the bodies in `moving`; `stamp` counts frames from 1.
+    pub fn update(&mut self, frames: &[ShapeFrame], bodies: &Bodies, moving: &[u32], stamp: u32) {
+        for &body in moving {
+            self.make(frames, bodies, body as usize, stamp);
+        }
+    }
+
+    /// Lazily updates the rows of the bodies in `wanted` that are dynamic and not yet made in this frame, or static and
+    /// never made. Returns how many were made.
+    pub fn update_missing(
+        &mut self,
+        frames: &[ShapeFrame],
+        bodies: &Bodies,
+        wanted: &[u32],
+        stamp: u32,
+    ) -> u64 {
+        let mut made = 0;
+        for &body in wanted {
+            let i = body as usize;
+            let fresh = self.made[i] == stamp || (self.made[i] != 0 && !bodies.dynamic[i]);
+            if !fresh {
+                self.make(frames, bodies, i, stamp);
+                made += 1;
+            }
+        }
+        made
+    }
+
+    fn make(&mut self, frames: &[ShapeFrame], bodies: &Bodies, i: usize, stamp: u32) {
+        let frame = &frames[bodies.shape[i] as usize];
+        self.rows[i] = frame.row(bodies.rotation[i], bodies.translation[i]);
+        self.made[i] = stamp;
+    }
+}
+
+/// World-aligned slabs in body order, re-fitted each frame from the hull's vertices and rounded outward.
+#[derive(Clone, Debug)]
+pub struct Intervals {
+    directions: DirectionSet,
+    /// Hull vertices of each shape, body frame.
+    hulls: Vec<Vec<[f32; 3]>>,
+    /// `ends[body·slabs + slab]` = [lo, hi].
+    pub ends: Vec<[f32; 2]>,
+}
+
+impl Intervals {
+    /// Room for `bodies` bodies in `shapes`.
+    #[must_use]
+    pub fn new(directions: DirectionSet, shapes: &[Shape], bodies: usize) -> Self {
+        let hull = |shape: &Shape| {
+            let used = Hull::of(&shape.vertices).vertices;
+            used.iter()
+                .map(|&v| shape.vertices[v as usize].to_array())
+                .collect()
+        };
+        Self {
+            directions,
+            hulls: shapes.iter().map(hull).collect(),
+            ends: vec![[0.0; 2]; bodies * directions.slabs()],
+        }
+    }
+
+    /// Re-fits the slabs of the bodies in `moving`.
+    pub fn update(&mut self, frames: &[ShapeFrame], bodies: &Bodies, moving: &[u32]) {
+        let coefficients = self.directions.coefficients();
+        for &body in moving {
+            let i = body as usize;
+            let shape = bodies.shape[i] as usize;
+            let (turn, t) = (rotation(bodies.rotation[i]), bodies.translation[i]);
+            let ends = &mut self.ends[i * coefficients.len()..][..coefficients.len()];
+            fit(
+                ends,
+                coefficients,
+                &self.hulls[shape],
+                &turn,
+                t,
+                frames[shape].reach,
+            );
+        }
+    }
+}
+
+/// The slabs of posed points along integer directions of the world axes.
+fn fit(
+    ends: &mut [[f32; 2]],
+    coefficients: &[[i8; 3]],
+    hull: &[[f32; 3]],
+    turn: &Rotation,
+    t: [f32; 3],
+    reach: f32,
+) {
+    let mut extremes = [[f64::INFINITY, f64::NEG_INFINITY]; 13];
+    for &vertex in hull {
+        let p = transform(turn, vertex, t);
+        for (extreme, c) in extremes.iter_mut().zip(coefficients) {
+            let [x, y, z] = [0, 1, 2].map(|axis| f64::from(c[axis]) * p[axis]);
+            let along = (x + y) + z;
+            *extreme = [extreme[0].min(along), extreme[1].max(along)];
+        }
+    }
+    for (end, extreme) in ends.iter_mut().zip(extremes) {
+        let (lo, hi) = refit(extreme[0], extreme[1], reach, t);
+        *end = [lo, hi];
+    }
+}
