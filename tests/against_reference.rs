@@ -1,0 +1,170 @@
+//! The optimised culler against the plain reference: it reports every pair that the reference predicate reports, in every
+//! tier the same list.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use sdop::pairs::PairList;
+use sdop::pipeline::Culler;
+use sdop::scene::settings::{Axes, CullSettings, Interest, Overlap, Strategy, Updates};
+use sdop::simd::Level;
+use sdop::volume::DirectionSet;
+use sdop_reference as reference;
+use support::{Frame, judged_directions, judged_overlap, random_bodies, shapes};
+
+const STRATEGIES: [Strategy; 8] = [
+    Strategy::Sphere,
+    Strategy::OrDop,
+    Strategy::SDopSequential,
+    Strategy::SDopBatch,
+    Strategy::SDopObjectOfInterest,
+    Strategy::Aabb,
+    Strategy::KDop,
+    Strategy::Obb,
+];
+
+fn frame(seed: u64, k: DirectionSet, axes: Axes) -> Frame {
+    let shapes = shapes(k, axes);
+    let bodies = random_bodies(seed, 120, 7.0, shapes.len());
+    Frame::new(shapes, bodies)
+}
+
+fn settings(strategy: Strategy, k: DirectionSet, overlap: Overlap) -> CullSettings {
+    CullSettings {
+        strategy,
+        k,
+        overlap,
+        interest: Some(Interest::Bodies(vec![1, 5, 8])),
+        ..CullSettings::default()
+    }
+}
+
+fn cull(frame: &Frame, settings: &CullSettings, level: Level) -> PairList {
+    let mut culler = Culler::new(&frame.shapes, &frame.bodies, settings, level).unwrap();
+    culler.cull(&frame.bodies).clone()
+}
+
+fn judge(frame: &Frame, settings: &CullSettings) -> Vec<[u32; 2]> {
+    let bodies = frame.judged_bodies();
+    let interest: Vec<bool> = (0..bodies.len()).map(|i| [1, 5, 8].contains(&i)).collect();
+    let strategy = match settings.strategy {
+        Strategy::Sphere => reference::Strategy::Sphere,
+        Strategy::OrDop => reference::Strategy::OrDop,
+        Strategy::SDopSequential => reference::Strategy::Sequential,
+        Strategy::SDopBatch => reference::Strategy::Batch,
+        Strategy::SDopObjectOfInterest => reference::Strategy::ObjectOfInterest(&interest),
+        Strategy::Aabb => reference::Strategy::Aabb,
+        Strategy::KDop => reference::Strategy::KDop(judged_directions(settings.k)),
+        Strategy::Obb => reference::Strategy::Obb,
+        Strategy::None | Strategy::SDopTimeCritical => unreachable!("not judged here"),
+    };
+    let pairs = reference::pairs(&bodies, strategy, judged_overlap(settings.overlap));
+    pairs.into_iter().map(|(i, j)| [i, j]).collect()
+}
+
+#[test]
+fn no_strategy_misses_a_pair_of_the_reference() {
+    let mut report = String::new();
+    for &k in DirectionSet::ALL {
+        for axes in [Axes::Principal, Axes::Model] {
+            let frame = frame(7, k, axes);
+            for overlap in [Overlap::OneSided, Overlap::TwoSided, Overlap::Full] {
+                for strategy in STRATEGIES {
+                    let settings = settings(strategy, k, overlap);
+                    let found = cull(&frame, &settings, Level::detect()).sorted();
+                    let wanted = judge(&frame, &settings);
+                    let missed: Vec<_> = wanted
+                        .iter()
+                        .filter(|pair| found.binary_search(pair).is_err())
+                        .collect();
+                    report += &format!(
+                        "{strategy} k={k} {axes} {overlap}: {} of {}, missed {}\n",
+                        found.len(),
+                        wanted.len(),
+                        missed.len()
+                    );
+                    assert!(
+                        missed.is_empty(),
+                        "{strategy} k={k} {axes} {overlap}: {missed:?}"
+                    );
+                }
+            }
+        }
+    }
+    println!("{report}");
+}
+
+#[test]
+fn every_tier_reports_the_same_list() {
+    for &k in DirectionSet::ALL {
+        let frame = frame(11, k, Axes::Principal);
+        for overlap in [Overlap::OneSided, Overlap::TwoSided, Overlap::Full] {
+            for strategy in STRATEGIES {
+                let settings = settings(strategy, k, overlap);
+                let scalar: Vec<_> = cull(&frame, &settings, Level::SCALAR).iter().collect();
+                for level in Level::available() {
+                    let list: Vec<_> = cull(&frame, &settings, level).iter().collect();
+                    assert_eq!(list, scalar, "{level} {strategy} k={k} {overlap}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn strategies_relate_as_the_paper_says() {
+    for seed in 0..4 {
+        let frame = frame(seed, DirectionSet::K18, Axes::Principal);
+        let run = |strategy| {
+            let settings = settings(strategy, DirectionSet::K18, Overlap::TwoSided);
+            cull(&frame, &settings, Level::detect()).sorted()
+        };
+        let (sphere, ordop) = (run(Strategy::Sphere), run(Strategy::OrDop));
+        let both: Vec<_> = sphere
+            .iter()
+            .filter(|pair| ordop.binary_search(pair).is_ok())
+            .copied()
+            .collect();
+        let sequential = run(Strategy::SDopSequential);
+        assert_eq!(sequential, both, "S-DOP is sphere and or-DOP");
+        assert_eq!(run(Strategy::SDopBatch), sequential);
+        let looked_at = run(Strategy::SDopObjectOfInterest);
+        assert!(
+            sequential
+                .iter()
+                .all(|pair| looked_at.binary_search(pair).is_ok())
+        );
+        assert!(looked_at.len() > sequential.len() && looked_at.len() < sphere.len());
+        assert_eq!(run(Strategy::None), Vec::<[u32; 2]>::new());
+    }
+}
+
+#[test]
+fn lazy_updates_change_the_count_of_updates_and_nothing_else() {
+    let frame = frame(3, DirectionSet::K18, Axes::Principal);
+    for strategy in [
+        Strategy::SDopSequential,
+        Strategy::SDopBatch,
+        Strategy::OrDop,
+    ] {
+        let eager = settings(strategy, DirectionSet::K18, Overlap::TwoSided);
+        let lazy = CullSettings {
+            updates: Updates::Lazy,
+            ..eager.clone()
+        };
+        let mut cullers = [eager, lazy].map(|settings| {
+            Culler::new(&frame.shapes, &frame.bodies, &settings, Level::detect()).unwrap()
+        });
+        for _ in 0..2 {
+            let [eager, lazy] = cullers
+                .each_mut()
+                .map(|culler| culler.cull(&frame.bodies).sorted());
+            assert_eq!(eager, lazy);
+        }
+        let [eager, lazy] = cullers.each_ref().map(|culler| culler.counters().ordop);
+        assert_eq!(eager.updates, 2 * 108);
+        assert!(lazy.updates <= eager.updates);
+        assert_eq!((eager.tests, eager.hits), (lazy.tests, lazy.hits));
+    }
+}
