@@ -223,6 +223,7 @@ impl Culler {
             spheres: &self.sphere_slots,
             intervals: &self.interval_slots,
             refine: Refine {
+                level: self.level,
                 rows: &mut self.rows,
                 frames: &self.frames,
                 bodies,

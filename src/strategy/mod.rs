@@ -13,7 +13,7 @@ use crate::overlap::sphere::SphereSlots;
 use crate::pairs::PairList;
 use crate::scene::bodies::Bodies;
 use crate::scene::settings::{Budget, Order, Overlap, Strategy};
-use crate::simd::{Lanes, Level};
+use crate::simd::Level;
 use crate::update::{OrDopRows, ShapeFrame};
 
 mod batch;
@@ -71,6 +71,7 @@ pub(crate) fn cull(strategy: Strategy, stage: &mut Stage<'_>) {
 
 /// The or-DOP test with what it needs to update poses lazily.
 pub(crate) struct Refine<'a> {
+    pub level: Level,
     pub rows: &'a mut OrDopRows,
     pub frames: &'a [ShapeFrame],
     pub bodies: &'a Bodies,
@@ -82,11 +83,9 @@ pub(crate) struct Refine<'a> {
 }
 
 impl Refine<'_> {
-    /// Tests pairs and appends the survivors to `out`, in list order.
-    #[inline(always)]
-    pub fn test<L: Lanes>(
+    /// Tests pairs and appends the survivors to `out`, in list order. A block a call: the dispatch is paid once for all.
+    pub fn test(
         &mut self,
-        l: L,
         [first, second]: [&[u32]; 2],
         counters: &mut VolumeCounters,
         seconds: &mut Seconds,
@@ -107,7 +106,7 @@ impl Refine<'_> {
             tables: self.tables,
             overlap: self.overlap,
         };
-        let tested = columns.test(l, first, second, out);
+        let tested = columns.test_pairs(self.level, first, second, out);
         counters.tests += tested.tests;
         counters.hits += tested.hits;
         seconds.update += (updated - start).as_secs_f64();

@@ -36,7 +36,7 @@ impl Kernel for Flow<'_, '_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self, l: L) -> VolumeCounters {
         self.finder.find(l, &mut self.test);
-        self.test.drain(l);
+        self.test.drain();
         self.test.counters
     }
 }
@@ -52,18 +52,17 @@ struct Test<'a, 'b> {
 }
 
 impl Test<'_, '_> {
-    #[inline(always)]
-    fn drain<L: Lanes>(&mut self, l: L) {
+    fn drain(&mut self) {
         let pairs = [self.block.first(), self.block.second()];
         self.refine
-            .test(l, pairs, &mut self.counters, self.seconds, self.out);
+            .test(pairs, &mut self.counters, self.seconds, self.out);
         self.block.clear();
     }
 }
 
 impl RunTest for Test<'_, '_> {
     #[inline(always)]
-    fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
+    fn run<L: Lanes>(&mut self, _: L, i: usize, run: Range<usize>) {
         let body_i = self.body[i];
         let (first, second) = self.block.room(run.len());
         for ((first, second), &body_j) in first.iter_mut().zip(second).zip(&self.body[run.clone()])
@@ -72,7 +71,7 @@ impl RunTest for Test<'_, '_> {
         }
         self.block.advance(run.len());
         if self.block.len() >= BLOCK {
-            self.drain(l);
+            self.drain();
         }
     }
 }

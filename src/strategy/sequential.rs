@@ -47,7 +47,7 @@ impl Kernel for Flow<'_, '_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self, l: L) {
         self.finder.find(l, &mut self.test);
-        self.test.drain(l);
+        self.test.drain();
     }
 }
 
@@ -63,8 +63,7 @@ struct Test<'a, 'b> {
 }
 
 impl Test<'_, '_> {
-    #[inline(always)]
-    fn drain<L: Lanes>(&mut self, l: L) {
+    fn drain(&mut self) {
         self.counters.sphere.hits += self.block.len() as u64;
         let refined = match self.interest {
             None => &*self.block,
@@ -84,7 +83,7 @@ impl Test<'_, '_> {
         };
         let pairs = [refined.first(), refined.second()];
         self.refine
-            .test(l, pairs, &mut self.counters.ordop, self.seconds, self.out);
+            .test(pairs, &mut self.counters.ordop, self.seconds, self.out);
         self.block.clear();
     }
 }
@@ -95,7 +94,7 @@ impl RunTest for Test<'_, '_> {
         self.counters.sphere.tests += run.len() as u64;
         self.spheres.test_run(l, i, run, self.block);
         if self.block.len() >= BLOCK {
-            self.drain(l);
+            self.drain();
         }
     }
 }

@@ -7,11 +7,10 @@ use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 use super::Stage;
-use super::batch::{Refinement, list_spheres};
+use super::batch::list_spheres;
 use crate::overlap::sphere::SphereSlots;
 use crate::pairs::PairList;
 use crate::scene::settings::{Budget, Order};
-use crate::simd::dispatch;
 
 /// Tests between two looks at the clock: some microseconds.
 const SLICE: usize = 128;
@@ -40,17 +39,13 @@ pub(super) fn cull(stage: &mut Stage<'_>) {
         } else {
             limit
         };
-        let refinement = Refinement {
-            refine: &mut stage.refine,
-            pairs: [
-                &stage.candidates.first()[done..end],
-                &stage.candidates.second()[done..end],
-            ],
-            counters: &mut stage.counters.ordop,
-            seconds: stage.seconds,
-            out: stage.out,
-        };
-        dispatch(stage.level, refinement);
+        let pairs = [
+            &stage.candidates.first()[done..end],
+            &stage.candidates.second()[done..end],
+        ];
+        stage
+            .refine
+            .test(pairs, &mut stage.counters.ordop, stage.seconds, stage.out);
         done = end;
     }
     stage.counters.untested += (stage.candidates.len() - done) as u64;

@@ -36,11 +36,11 @@ impl<L: Lanes> Frames<L> {
             delta[i] = (b[T + i] - a[T + i]) + (b[O + i] - a[O + i]);
         }
         let (mut turn, mut gap_a, mut gap_b) = ([[zero; 3]; 3], [zero; 3], [zero; 3]);
-        for i in 0..3 {
+        for (i, row) in turn.iter_mut().enumerate() {
             gap_a[i] = dot::<L>(axis::<L>(&a, i), delta);
             gap_b[i] = zero - dot::<L>(axis::<L>(&b, i), delta);
-            for j in 0..3 {
-                turn[i][j] = dot::<L>(axis::<L>(&a, i), axis::<L>(&b, j));
+            for (j, entry) in row.iter_mut().enumerate() {
+                *entry = dot::<L>(axis::<L>(&a, i), axis::<L>(&b, j));
             }
         }
         Self { turn, gap_a, gap_b }

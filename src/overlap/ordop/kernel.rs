@@ -50,15 +50,8 @@ impl OrDopColumns<'_> {
         dispatch(level, Test(self, first, second, out))
     }
 
-    /// As [`Self::test_pairs`], inside a kernel.
     #[inline(always)]
-    pub fn test<L: Lanes>(
-        &self,
-        l: L,
-        first: &[u32],
-        second: &[u32],
-        out: &mut PairList,
-    ) -> Tested {
+    fn test<L: Lanes>(&self, l: L, first: &[u32], second: &[u32], out: &mut PairList) -> Tested {
         match self.tables.directions() {
             DirectionSet::K6 => self.test_k::<L, 6>(l, first, second, out),
             DirectionSet::K14 => self.test_k::<L, 14>(l, first, second, out),
@@ -158,8 +151,8 @@ struct Uniform<'a>(&'a [f32; TABLE]);
 impl<L: Lanes> SlabEnds<L> for Uniform<'_> {
     #[inline(always)]
     fn facing(&self, l: L, group: usize, octant: L::I) -> L::F {
-        let entries = self.0[8 * group..8 * group + 8].as_array();
-        l.lookup(entries.unwrap_or(&[0.0; 8]), octant)
+        let (groups, _) = self.0.as_chunks::<8>();
+        l.lookup(&groups[group], octant)
     }
     #[inline(always)]
     fn own(&self, l: L, group: usize, plus: usize, minus: usize, sign: L::F) -> L::F {

@@ -128,10 +128,8 @@ impl SlabTables {
     /// One shape's entries.
     #[inline(always)]
     pub(crate) fn shape(&self, shape: u32) -> &[f32; TABLE] {
-        let start = shape as usize * TABLE;
-        self.entries[start..start + TABLE]
-            .as_array()
-            .unwrap_or(&[0.0; TABLE])
+        let (tables, _) = self.entries.as_chunks::<TABLE>();
+        &tables[shape as usize]
     }
 }
 
@@ -176,8 +174,7 @@ mod tests {
     fn own_slabs_and_members_agree_with_the_coefficients() {
         for (own, coefficients) in OWN.iter().zip(COEFFICIENTS) {
             let sign = |octant: usize, axis: usize| if octant >> axis & 1 == 1 { -1 } else { 1 };
-            for axis in 0..3 {
-                let c = coefficients[axis];
+            for (axis, c) in coefficients.into_iter().enumerate() {
                 assert_eq!(c, c.abs() * sign(own.plus, axis));
                 assert_eq!(-c, c.abs() * sign(own.minus, axis));
             }
