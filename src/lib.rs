@@ -4,6 +4,7 @@
 
 pub mod broad_phase;
 pub mod cost;
+pub mod effects;
 pub mod mesh;
 pub mod overlap;
 pub mod pairs;

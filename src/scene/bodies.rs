@@ -16,3 +16,17 @@ pub struct Bodies {
     /// Angular velocity ω, world frame, radians a second.
     pub spin: Vec<[f32; 3]>,
 }
+
+impl Bodies {
+    /// The number of bodies.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.shape.len()
+    }
+
+    /// Whether there is no body.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.shape.is_empty()
+    }
+}

@@ -9,8 +9,7 @@ use thiserror::Error;
 
 pub use super::choice::UnknownChoice;
 use super::choice::choices;
-pub use crate::volume::Axes;
-use crate::volume::DirectionSet;
+pub use crate::volume::{Axes, DirectionSet};
 
 choices! {
     /// Which volumes are tested, and in which order.
@@ -321,52 +320,19 @@ impl FromStr for Interest {
     }
 }
 
-/// The direction set of a k-DOP with k half-spaces.
-///
-/// # Errors
-/// Any text but 6, 14, 18 and 26.
-pub fn parse_k(text: &str) -> Result<DirectionSet, UnknownChoice> {
-    let found = K_SETS
-        .into_iter()
-        .find(|set| k_of(*set).to_string() == text);
-    found.ok_or_else(|| UnknownChoice::new("k", text, &["6", "14", "18", "26"]))
-}
-
-/// k of a direction set: the number of its half-spaces.
-#[must_use]
-pub fn k_of(set: DirectionSet) -> u8 {
-    match set {
-        DirectionSet::K6 => 6,
-        DirectionSet::K14 => 14,
-        DirectionSet::K18 => 18,
-        DirectionSet::K26 => 26,
-    }
-}
-
-const K_SETS: [DirectionSet; 4] = [
-    DirectionSet::K6,
-    DirectionSet::K14,
-    DirectionSet::K18,
-    DirectionSet::K26,
-];
-
 fn read_k<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionSet, D::Error> {
     let k = i64::deserialize(deserializer)?;
-    K_SETS
-        .into_iter()
-        .find(|set| i64::from(k_of(*set)) == k)
-        .ok_or_else(|| {
-            serde::de::Error::custom(format_args!(
-                "k = {k} is no or-DOP, expected one of `6`, `14`, `18`, `26`"
-            ))
-        })
+    k.to_string().parse().map_err(|_| {
+        serde::de::Error::custom(format_args!(
+            "no or-DOP has k = `{k}`, expected one of `6`, `14`, `18`, `26`"
+        ))
+    })
 }
 
-// serde's `serialize_with` hands a reference.
 #[allow(
     clippy::trivially_copy_pass_by_ref,
     reason = "the signature is serde's"
 )]
 fn write_k<S: Serializer>(set: &DirectionSet, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_u8(k_of(*set))
+    serializer.serialize_u64(set.k() as u64)
 }

@@ -1,0 +1,442 @@
+//! From a scene file to a scene: each group is checked, its shapes are made, its bodies are placed by the seed.
+
+use toml::Spanned;
+
+use super::bodies::Bodies;
+use super::contract::{ContractError, check_bodies, check_poses};
+use super::error::SceneError;
+use super::file::{GroupSpec, Placement, SceneFile};
+use super::library::{Form, Library};
+use super::number::Positive;
+use super::placement::Placer;
+use super::random::Stream;
+use super::{Scene, density, world_centre};
+use crate::effects::Effects;
+use crate::volume::Origin;
+
+/// The most bodies of a scene: a hundred bytes each, in several copies, fit into memory.
+pub const MOST_BODIES: usize = 1 << 24;
+
+/// The independent streams of draws that a group has, in the order of their numbers.
+#[derive(Clone, Copy)]
+enum Purpose {
+    Radius,
+    Centre,
+    Rotation,
+    Velocity,
+    Spin,
+}
+
+/// A checked group: what it looks like and how many bodies it has.
+struct Group<'a> {
+    spec: &'a GroupSpec,
+    number: u64,
+    seed: u64,
+    form: Form<'a>,
+    origin: Origin,
+    bodies: usize,
+}
+
+impl SceneFile {
+    /// Builds the scene: reads meshes, builds shapes, places bodies.
+    ///
+    /// # Errors
+    /// Everything that a value can't show alone: exclusive keys, missing or broken meshes, a box too small, bodies
+    /// outside of the contract, effects or culling that the scene can't have.
+    pub fn build(&self) -> Result<Scene, SceneError> {
+        let groups = self.groups()?;
+        let mut library = Library::default();
+        let mut bodies = Bodies::default();
+        for group in &groups {
+            self.add_shapes(group, &mut library, &mut bodies)?;
+        }
+        let side = self.side(&groups, &library, &bodies)?;
+        for group in &groups {
+            self.add_poses(group, side, &library, &mut bodies)?;
+            self.add_velocities(group, &mut bodies)?;
+        }
+        let (shapes, construct_seconds) = library.into_shapes();
+        check_bodies(&bodies, &shapes)?;
+        self.spec.cull.check(bodies.len())?;
+        let scene = Scene {
+            name: self.spec.name.clone(),
+            seed: self.spec.seed,
+            frames: self.spec.frames.get(),
+            dt: self.spec.dt.0,
+            side,
+            shapes,
+            bodies,
+            effects: self.spec.effects.clone(),
+            cull: self.spec.cull.clone(),
+            construct_seconds,
+        };
+        match Effects::new(&scene) {
+            Ok(_) => Ok(scene),
+            Err(error) => {
+                let message = error.to_string();
+                Err(self
+                    .source
+                    .error(error.span, message, error.hint.to_owned()))
+            }
+        }
+    }
+
+    /// Checks each group's keys against each other.
+    fn groups(&self) -> Result<Vec<Group<'_>>, SceneError> {
+        let mut groups = Vec::new();
+        let mut total = 0_usize;
+        for (number, spec) in self.spec.bodies.iter().enumerate() {
+            let group = self.group(number as u64, spec)?;
+            total = total.saturating_add(group.bodies);
+            if total > MOST_BODIES {
+                let span = group.spec.count.as_ref().map_or(spec.span(), Spanned::span);
+                let hint = format!("a scene has up to {MOST_BODIES} bodies");
+                return Err(self
+                    .source
+                    .error(span, format!("{total} bodies are too many"), hint));
+            }
+            groups.push(group);
+        }
+        if total == 0 {
+            let end = self.source.text.len();
+            let hint = "add [[bodies]] with a mesh or shape, and count = … or poses = …".to_owned();
+            return Err(self.source.error(end..end, "the scene has no bodies", hint));
+        }
+        Ok(groups)
+    }
+
+    fn group<'a>(
+        &self,
+        number: u64,
+        spanned: &'a Spanned<GroupSpec>,
+    ) -> Result<Group<'a>, SceneError> {
+        let spec = spanned.get_ref();
+        let wrong = |span, message: &str, hint: &str| {
+            Err(self.source.error(span, message, hint.to_owned()))
+        };
+        let form = match (&spec.mesh, &spec.shape) {
+            (Some(mesh), None) => Form::File(mesh),
+            (None, Some(shape)) => Form::Procedural(shape, &spec.sizes),
+            (Some(_), Some(shape)) => {
+                return wrong(
+                    shape.span(),
+                    "`mesh` and `shape` exclude each other",
+                    "keep one of them",
+                );
+            }
+            (None, None) => {
+                return wrong(
+                    spanned.span(),
+                    "bodies without a form",
+                    "add mesh = \"file\" or shape = \"name\"",
+                );
+            }
+        };
+        if let (Form::File(_), Some((size, _))) = (form, spec.sizes.first_key_value()) {
+            return wrong(
+                size.span(),
+                "`sizes` belong to a `shape`",
+                "scale a mesh by its `radius`",
+            );
+        }
+        let bodies = match (&spec.count, &spec.poses) {
+            // A u32 fits into the usize of every machine that holds such a scene.
+            (Some(count), None) => count.get_ref().get() as usize,
+            (None, Some(poses)) => poses.get_ref().len(),
+            (Some(_), Some(poses)) => {
+                return wrong(
+                    poses.span(),
+                    "`count` and `poses` exclude each other",
+                    "keep one of them",
+                );
+            }
+            (None, None) => {
+                return wrong(
+                    spanned.span(),
+                    "how many bodies?",
+                    "add count = … or poses = [[qx, qy, qz, qw, tx, ty, tz]]",
+                );
+            }
+        };
+        self.check_motion(spec, bodies)?;
+        if let (Some(placement), Some(_)) = (&spec.placement, &spec.poses) {
+            return wrong(
+                placement.span(),
+                "`placement` and `poses` exclude each other",
+                "keep one of them",
+            );
+        }
+        let origin = match &spec.origin {
+            Some(origin) => *origin.get_ref(),
+            None if spec.poses.is_some() && spec.radius.is_none() => Origin::File,
+            None => Origin::Ball,
+        };
+        if let Some(radius) = &spec.radius {
+            if origin == Origin::File {
+                return wrong(
+                    radius.span(),
+                    "`radius` scales, origin = \"file\" keeps the size",
+                    "keep one of them",
+                );
+            }
+            if radius.get_ref().min == 0.0 {
+                return wrong(
+                    radius.span(),
+                    "a radius of 0",
+                    "a radius is above 0; leave it out to keep the mesh's size",
+                );
+            }
+        }
+        Ok(Group {
+            spec,
+            number,
+            seed: self.spec.seed,
+            form,
+            origin,
+            bodies,
+        })
+    }
+
+    fn check_motion(&self, spec: &GroupSpec, bodies: usize) -> Result<(), SceneError> {
+        let wrong = |span, message: String, hint: &str| {
+            Err(self.source.error(span, message, hint.to_owned()))
+        };
+        if let Some(velocities) = &spec.velocities {
+            if let Some(speed) = &spec.speed {
+                let message = "`speed` and `velocities` exclude each other".to_owned();
+                return wrong(speed.span(), message, "keep one of them");
+            }
+            let given = velocities.get_ref().len();
+            if spec.poses.is_none() || given != bodies {
+                let message = format!("{given} velocities for {bodies} bodies");
+                return wrong(
+                    velocities.span(),
+                    message,
+                    "give one velocity a pose; seeded bodies take `speed`",
+                );
+            }
+        }
+        let moving = spec
+            .speed
+            .as_ref()
+            .map(Spanned::span)
+            .or(spec.velocities.as_ref().map(Spanned::span));
+        match moving {
+            Some(span) if spec.fixed => wrong(
+                span,
+                "static bodies don't move".to_owned(),
+                "leave out the velocity, or `static = true`",
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    /// Draws the group's radii, makes the shapes and adds one shape and dynamic entry a body.
+    fn add_shapes(
+        &self,
+        group: &Group<'_>,
+        library: &mut Library,
+        bodies: &mut Bodies,
+    ) -> Result<(), SceneError> {
+        let mesh = library.mesh(self, group.form)?;
+        let mut draws = group.stream(Purpose::Radius);
+        for _ in 0..group.bodies {
+            let radius = group
+                .spec
+                .radius
+                .as_ref()
+                .map(|range| draws.radius(*range.get_ref()));
+            let shape = library.shape(mesh, group.origin, radius, &self.spec.cull);
+            let shape = shape.map_err(|(message, hint)| {
+                let span = match group.form {
+                    Form::File(name) | Form::Procedural(name, _) => name.span(),
+                };
+                self.source.error(
+                    group.spec.radius.as_ref().map_or(span, Spanned::span),
+                    message,
+                    hint,
+                )
+            })?;
+            bodies.shape.push(shape);
+            bodies.dynamic.push(!group.spec.fixed);
+        }
+        Ok(())
+    }
+
+    /// The box's side: given, or from the seeded bodies' radii and the wished density.
+    fn side(
+        &self,
+        groups: &[Group<'_>],
+        library: &Library,
+        bodies: &Bodies,
+    ) -> Result<Option<f32>, SceneError> {
+        let Some(bounds) = &self.spec.bounds else {
+            return Ok(None);
+        };
+        let wrong = |span, message: &str, hint: &str| {
+            Err(self.source.error(span, message, hint.to_owned()))
+        };
+        let partners = match (&bounds.get_ref().side, &bounds.get_ref().partners) {
+            (Some(side), None) => return Ok(Some(side.get_ref().0)),
+            (None, Some(partners)) => partners,
+            (Some(_), Some(partners)) => {
+                return wrong(
+                    partners.span(),
+                    "`side` and `partners` exclude each other",
+                    "keep one of them",
+                );
+            }
+            (None, None) => {
+                return wrong(
+                    bounds.span(),
+                    "a box without a size",
+                    "add side = … or partners = …",
+                );
+            }
+        };
+        let mut first = 0;
+        let mut radii = Vec::new();
+        for group in groups {
+            let shapes = &bodies.shape[first..first + group.bodies];
+            first += group.bodies;
+            match &group.spec.placement {
+                _ if group.spec.poses.is_some() => {}
+                Some(placement) if *placement.get_ref() != Placement::Uniform => {
+                    let hint = "give the side instead of partners";
+                    return wrong(
+                        placement.span(),
+                        "`partners` is the density of uniform placement",
+                        hint,
+                    );
+                }
+                _ => radii.extend(shapes.iter().map(|&shape| library.get(shape).ball.radius)),
+            }
+        }
+        let Positive(wished) = *partners.get_ref();
+        let side = density::side(radii.into_iter(), wished);
+        if side > 0.0 {
+            return Ok(Some(side));
+        }
+        wrong(
+            partners.span(),
+            "`partners` needs two seeded bodies that have an extent",
+            "give the side instead",
+        )
+    }
+
+    fn add_poses(
+        &self,
+        group: &Group<'_>,
+        side: Option<f32>,
+        library: &Library,
+        bodies: &mut Bodies,
+    ) -> Result<(), SceneError> {
+        let first = bodies.translation.len();
+        let Some(poses) = &group.spec.poses else {
+            return self.place(group, side, library, bodies);
+        };
+        for pose in poses.get_ref() {
+            let [qx, qy, qz, qw, tx, ty, tz] = *pose.get_ref();
+            bodies.rotation.push([qx, qy, qz, qw]);
+            bodies.translation.push([tx, ty, tz]);
+        }
+        check_poses(bodies, first..first + group.bodies).map_err(|error| {
+            let span = poses.get_ref()[error.body - first].span();
+            self.contract_error(span, &error)
+        })
+    }
+
+    fn place(
+        &self,
+        group: &Group<'_>,
+        side: Option<f32>,
+        library: &Library,
+        bodies: &mut Bodies,
+    ) -> Result<(), SceneError> {
+        let first = bodies.translation.len();
+        let count_span = group.spec.count.as_ref().map_or(0..0, Spanned::span);
+        let Some(side) = side else {
+            let hint = "add [box] with side = … or partners = …".to_owned();
+            return Err(self
+                .source
+                .error(count_span, "seeded bodies need a box", hint));
+        };
+        let shapes = bodies.shape[first..first + group.bodies].to_vec();
+        let radius = |shape: &u32| library.get(*shape).ball.radius;
+        let widest = shapes.iter().map(radius).fold(0.0, f32::max);
+        let half = 0.5 * side;
+        if half < widest {
+            let bounds = self.spec.bounds.as_ref().map_or(count_span, Spanned::span);
+            let message =
+                format!("a box of side {side} is too small for bodies of radius {widest}");
+            let hint = format!(
+                "the side must be at least {}, for room to move well above",
+                2.0 * widest
+            );
+            return Err(self.source.error(bounds, message, hint));
+        }
+        let wished = group.spec.placement.as_ref();
+        let placement = wished.map_or(Placement::Uniform, |placement| *placement.get_ref());
+        let placer = Placer::new(placement, half, widest, group.stream(Purpose::Centre));
+        let mut placer = placer.map_err(|(message, hint)| {
+            self.source
+                .error(wished.map_or(count_span, Spanned::span), message, hint)
+        })?;
+        let mut turns = group.stream(Purpose::Rotation);
+        for shape in &shapes {
+            let ball = library.get(*shape).ball;
+            let rotation = turns.rotation();
+            let centre = placer.centre(ball.radius);
+            // The ball's centre is placed: t is what brings it there, the ball's centre itself for origin = "ball".
+            let offset = world_centre(ball.centre.to_array(), &rotation, &[0.0; 3]);
+            bodies.rotation.push(rotation);
+            bodies
+                .translation
+                .push([0, 1, 2].map(|axis| centre[axis] - offset[axis]));
+        }
+        Ok(())
+    }
+
+    /// Draws or copies velocities, and the angular velocities of dynamic bodies where the scene lists `spin`.
+    fn add_velocities(&self, group: &Group<'_>, bodies: &mut Bodies) -> Result<(), SceneError> {
+        let spec = group.spec;
+        if let Some(velocities) = &spec.velocities {
+            bodies
+                .velocity
+                .extend(velocities.get_ref().iter().map(|v| *v.get_ref()));
+        } else if let Some(speed) = &spec.speed {
+            let mut draws = group.stream(Purpose::Velocity);
+            bodies
+                .velocity
+                .extend((0..group.bodies).map(|_| draws.vector(*speed.get_ref())));
+        } else {
+            bodies
+                .velocity
+                .resize(bodies.velocity.len() + group.bodies, [0.0; 3]);
+        }
+        match &self.spec.effects.spin {
+            Some(spin) if !spec.fixed => {
+                let mut draws = group.stream(Purpose::Spin);
+                bodies
+                    .spin
+                    .extend((0..group.bodies).map(|_| draws.vector(spin.get_ref().rate)));
+            }
+            _ => bodies
+                .spin
+                .resize(bodies.spin.len() + group.bodies, [0.0; 3]),
+        }
+        Ok(())
+    }
+
+    fn contract_error(&self, span: std::ops::Range<usize>, error: &ContractError) -> SceneError {
+        self.source
+            .error(span, error.to_string(), error.hint.to_owned())
+    }
+}
+
+impl Group<'_> {
+    /// The group's stream of draws for one purpose: what one purpose draws leaves the others as they are.
+    fn stream(&self, purpose: Purpose) -> Stream {
+        Stream::new(self.seed, self.number * 8 + purpose as u64)
+    }
+}

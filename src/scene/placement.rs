@@ -1,0 +1,95 @@
+//! Where seeded bodies start: uniform in the box, in clusters, or in a slice across it.
+
+use super::file::Placement;
+use super::number::Positive;
+use super::random::Stream;
+
+/// Draws sphere centres of one group.
+pub(super) struct Placer {
+    placement: Placement,
+    half: f32,
+    clusters: Vec<[f32; 3]>,
+    draws: Stream,
+}
+
+impl Placer {
+    /// A placer in the box with walls at ±`half` for spheres of radius up to `widest`.
+    ///
+    /// # Errors
+    /// A cluster or slice that doesn't fit into the box: what it is and what would fit.
+    pub(super) fn new(
+        placement: Placement,
+        half: f32,
+        widest: f32,
+        mut draws: Stream,
+    ) -> Result<Self, (String, String)> {
+        let mut clusters = Vec::new();
+        match placement {
+            Placement::Uniform => {}
+            Placement::Clusters {
+                number,
+                radius: Positive(radius),
+            } => {
+                // Whole clusters inside of the walls, spheres included.
+                let room = half - widest - radius;
+                if room < 0.0 {
+                    let problem = format!(
+                        "clusters of radius {radius} don't fit into a box of side {}",
+                        2.0 * half
+                    );
+                    return Err((
+                        problem,
+                        format!("the radius can be up to {}", half - widest),
+                    ));
+                }
+                clusters.extend((0..number.get()).map(|_| point(&mut draws, [room; 3])));
+            }
+            Placement::Plane {
+                thickness: Positive(thickness),
+            } => {
+                if thickness > 2.0 * (half - widest) {
+                    let problem = format!(
+                        "a slice of thickness {thickness} doesn't fit into a box of side {}",
+                        2.0 * half
+                    );
+                    return Err((
+                        problem,
+                        format!("the thickness can be up to {}", 2.0 * (half - widest)),
+                    ));
+                }
+            }
+        }
+        Ok(Self {
+            placement,
+            half,
+            clusters,
+            draws,
+        })
+    }
+
+    /// The centre of the next sphere: wholly inside of the box.
+    pub(super) fn centre(&mut self, radius: f32) -> [f32; 3] {
+        let limit = self.half - radius;
+        match self.placement {
+            Placement::Uniform => point(&mut self.draws, [limit; 3]),
+            Placement::Plane {
+                thickness: Positive(thickness),
+            } => point(&mut self.draws, [limit, limit, 0.5 * thickness]),
+            Placement::Clusters {
+                radius: Positive(spread),
+                ..
+            } => {
+                // `new` made one cluster at least, and a u32's number of them.
+                let cluster = self.clusters[self.draws.index(self.clusters.len() as u32) as usize];
+                let offset = self.draws.ball(spread);
+                // Rounding may carry a centre an ulp beyond.
+                [0, 1, 2].map(|axis| (cluster[axis] + offset[axis]).clamp(-limit, limit))
+            }
+        }
+    }
+}
+
+/// A point uniform in the box of half sides `half` about the origin.
+fn point(draws: &mut Stream, half: [f32; 3]) -> [f32; 3] {
+    half.map(|h| draws.between(-h, h))
+}
