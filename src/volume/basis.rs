@@ -71,7 +71,7 @@ impl Basis {
         })
     }
 
-    /// The basis nearest to a rotation: its unit quaternion times 2048, rounded to integers; half a step is 2.4·10⁻⁴ rad.
+    /// The basis nearest to a rotation: its unit quaternion times 2048, rounded to integers; off by less than 10⁻³ rad.
     /// Rotations that differ by rounding errors snap to one basis, but for the few that lie between two.
     #[must_use]
     pub fn snapped(rotation: DQuat) -> Self {

@@ -84,4 +84,22 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn the_sets_share_one_order() {
+        let [k6, k14, k18, k26] = [0, 1, 2, 3].map(|i| DirectionSet::ALL[i].coefficients());
+        assert_eq!((k18, &k26[9..]), (&k26[..9], &k14[3..]));
+        assert_eq!((k6, k6), (&k14[..3], &k18[..3]));
+        // Records and hashes spell the slabs in this order.
+        let faces = [
+            [1, 1, 0],
+            [1, -1, 0],
+            [1, 0, 1],
+            [1, 0, -1],
+            [0, 1, 1],
+            [0, 1, -1],
+        ];
+        assert_eq!(k18[3..], faces);
+        assert_eq!(k14[3..], [[1, 1, 1], [-1, 1, 1], [1, -1, 1], [-1, -1, 1]]);
+    }
 }

@@ -40,6 +40,16 @@ impl Hull {
         }
     }
 
+    /// The hull's vertices as columns x, y, z: all that world-aligned volumes are re-fitted from.
+    #[must_use]
+    pub fn columns(&self, vertices: &[Vec3]) -> [Vec<f32>; 3] {
+        let column = |k: usize| {
+            let coordinates = self.vertices.iter().map(|&i| vertices[i as usize][k]);
+            coordinates.collect()
+        };
+        [0, 1, 2].map(column)
+    }
+
     /// The hull's volume, from the shape's vertices.
     #[must_use]
     pub fn volume(&self, vertices: &[Vec3]) -> f64 {

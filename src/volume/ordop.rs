@@ -48,7 +48,8 @@ fn slab(direction: DVec3, vertices: &[Vec3]) -> (f32, f32) {
         lo = lo.min(below);
         hi = hi.max(above);
     }
-    (floor_f32(lo), ceil_f32(hi))
+    // Plus zero, because min and max may return either of −0 and +0, and the bits are hashed.
+    (floor_f32(lo) + 0.0, ceil_f32(hi) + 0.0)
 }
 
 /// An interval that contains a·b, for a and b with 24-bit entries; a point when a·b is an f64.

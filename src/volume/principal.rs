@@ -62,8 +62,8 @@ fn principal_rotation(covariance: DMat3) -> Option<DMat3> {
     let (values, vectors) = (eigen.S().column_vector(), eigen.U());
     // faer sorts ascending.
     let gap = (values[2] - values[1]).min(values[1] - values[0]);
-    // A negated comparison, so that NaN is a tie too.
-    if !(gap > TIE * values[2]) {
+    let separate = gap > TIE * values[2]; // false for NaN
+    if !separate {
         return None;
     }
     let axis = |column: usize| {

@@ -66,7 +66,11 @@ impl Shape {
     /// # Errors
     /// An empty or non-finite mesh, a radius that can't be reached, or a size beyond 2⁶⁰.
     pub fn build(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
-        let (vertices, ball) = place(mesh, spec)?;
+        let Placed {
+            vertices,
+            ball,
+            reach,
+        } = place(mesh, spec)?;
         let basis = match spec.axes {
             Axes::Principal => Basis::principal(&Hull::of(&vertices), &vertices),
             Axes::Model => Basis::MODEL,
@@ -74,20 +78,18 @@ impl Shape {
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.clone(),
-            reach: ball::farthest_distance(Vec3::ZERO, &vertices),
+            reach,
             ordop: OrDop::build(&vertices, basis, spec.directions),
             ball,
             vertices,
         })
     }
 
-    /// The same shape with the or-DOP's directions exchanged; ball, basis and placement stay.
+    /// Exchanges the or-DOP's directions; ball, basis and placement stay.
     #[must_use]
-    pub fn with_directions(&self, directions: DirectionSet) -> Self {
-        Self {
-            ordop: OrDop::build(&self.vertices, self.ordop.basis, directions),
-            ..self.clone()
-        }
+    pub fn with_directions(mut self, directions: DirectionSet) -> Self {
+        self.ordop = OrDop::build(&self.vertices, self.ordop.basis, directions);
+        self
     }
 
     /// The oriented bounding box: an or-DOP of three slabs along the principal axes, whatever the or-DOP's own axes.
@@ -101,8 +103,14 @@ impl Shape {
     }
 }
 
-/// The vertices in the body frame and their ball.
-fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<(Vec<Vec3>, Ball), VolumeError> {
+/// Vertices in the body frame with what depends on the placement alone.
+struct Placed {
+    vertices: Vec<Vec3>,
+    ball: Ball,
+    reach: f32,
+}
+
+fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Placed, VolumeError> {
     let shape = || mesh.name.clone();
     if mesh.vertices.is_empty() {
         return Err(VolumeError::Empty { shape: shape() });
@@ -127,15 +135,19 @@ fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<(Vec<Vec3>, Ball), Vol
             (vertices, ball)
         }
     };
-    // Negated, so that NaN fails too; with the reach the centre and the ball's radius are within the limit.
     let reach = ball::farthest_distance(Vec3::ZERO, &vertices);
-    if !(reach <= LIMIT) {
+    let within = reach <= LIMIT; // false for NaN; bounds the centre and the ball's radius too
+    if !within {
         return Err(VolumeError::TooLarge {
             shape: shape(),
             reach,
         });
     }
-    Ok((vertices, ball))
+    Ok(Placed {
+        vertices,
+        ball,
+        reach,
+    })
 }
 
 /// fl32(s·(v − c)): the ball's centre moved into the origin and its radius scaled to `radius`.

@@ -1,0 +1,170 @@
+//! Placement, scaling, errors and the fingerprint of shapes.
+
+use glam::{DQuat, Vec3};
+use sdop::{
+    mesh::TriangleMesh,
+    volume::{Axes, DirectionSet, Hull, Origin, Shape, ShapeSpec, volumes_sha256},
+};
+
+use crate::meshes::{box_corners, mesh, rotated};
+
+fn spec(origin: Origin, radius: Option<f32>) -> ShapeSpec {
+    ShapeSpec {
+        origin,
+        radius,
+        axes: Axes::Model,
+        ..ShapeSpec::default()
+    }
+}
+
+fn shifted_box() -> TriangleMesh {
+    let corners = box_corners(Vec3::new(2.0, 4.0, 4.0));
+    mesh(
+        corners
+            .into_iter()
+            .map(|v| v + Vec3::new(10.0, 20.0, 30.0))
+            .collect(),
+    )
+}
+
+#[test]
+fn origin_ball_centres_and_scales() {
+    let mesh = shifted_box();
+    let shape = Shape::build(&mesh, &spec(Origin::Ball, None)).unwrap();
+    assert_eq!(shape.vertices, box_corners(Vec3::new(2.0, 4.0, 4.0)));
+    assert_eq!(
+        (shape.ball.centre, shape.ball.radius),
+        (Vec3::ZERO, 3.0_f32.next_up())
+    );
+    assert_eq!(shape.reach, shape.ball.radius);
+    let scaled = Shape::build(&mesh, &spec(Origin::Ball, Some(0.75))).unwrap();
+    assert_eq!(scaled.vertices, box_corners(Vec3::new(0.5, 1.0, 1.0)));
+    assert_eq!(
+        (scaled.ball.centre, scaled.ball.radius),
+        (Vec3::ZERO, 0.75_f32.next_up())
+    );
+}
+
+#[test]
+fn origin_file_leaves_coordinates_alone() {
+    let mesh = shifted_box();
+    let shape = Shape::build(&mesh, &spec(Origin::File, None)).unwrap();
+    assert_eq!(shape.vertices, mesh.vertices);
+    assert_eq!(shape.ball.centre, Vec3::new(10.0, 20.0, 30.0));
+    assert_eq!(shape.ball.radius, 3.0_f32.next_up());
+    let farthest = Vec3::new(11.0, 22.0, 32.0).as_dvec3().length();
+    assert!(f64::from(shape.reach) >= farthest && f64::from(shape.reach) < farthest * 1.000_001);
+}
+
+#[test]
+fn directions_are_exchanged_as_if_built_anew() {
+    for &directions in DirectionSet::ALL {
+        let built = ShapeSpec {
+            directions,
+            ..ShapeSpec::default()
+        };
+        let built = Shape::build(&shifted_box(), &built).unwrap();
+        let exchanged = Shape::build(&shifted_box(), &ShapeSpec::default()).unwrap();
+        assert_eq!(exchanged.with_directions(directions), built);
+    }
+}
+
+#[test]
+fn the_obb_has_its_own_axes() {
+    let turned = rotated(
+        &box_corners(Vec3::new(3.0, 2.0, 1.0)),
+        DQuat::from_rotation_y(0.4),
+    );
+    let shape = Shape::build(&mesh(turned), &spec(Origin::Ball, None)).unwrap();
+    let obb = shape.obb(&Hull::of(&shape.vertices));
+    assert_eq!(obb.directions, DirectionSet::K6);
+    assert_ne!(obb.basis, shape.ordop.basis);
+    assert!((6.0..6.03).contains(&obb.volume()), "{}", obb.volume());
+}
+
+#[test]
+fn impossible_shapes_are_refused_by_name() {
+    let message = |vertices: Vec<Vec3>, origin, radius| {
+        let error = Shape::build(&mesh(vertices), &spec(origin, radius)).unwrap_err();
+        let help = miette::Diagnostic::help(&error).unwrap().to_string();
+        (error.to_string(), help)
+    };
+    let point = vec![Vec3::ONE];
+    let segment = vec![Vec3::ZERO, Vec3::X];
+    let cases = [
+        (message(vec![], Origin::Ball, None), "no vertices"),
+        (
+            message(vec![Vec3::ZERO, Vec3::NAN], Origin::File, None),
+            "vertex 1 of shape `test` is not finite",
+        ),
+        (
+            message(vec![Vec3::INFINITY], Origin::Ball, None),
+            "vertex 0 of shape `test` is not finite",
+        ),
+        (
+            message(vec![Vec3::X * 1.2e18], Origin::File, None),
+            "beyond the limit of 2⁶⁰",
+        ),
+        (
+            message(vec![Vec3::X * -3e38, Vec3::X * 3e38], Origin::Ball, None),
+            "beyond the limit of 2⁶⁰",
+        ),
+        (
+            message(segment.clone(), Origin::Ball, Some(-1.0)),
+            "radius -1 of shape `test`",
+        ),
+        (
+            message(segment.clone(), Origin::Ball, Some(f32::NAN)),
+            "radius NaN of shape `test`",
+        ),
+        (
+            message(segment.clone(), Origin::Ball, Some(2e18)),
+            "is not in 0 < radius ≤ 2⁶⁰",
+        ),
+        (
+            message(segment, Origin::File, Some(1.0)),
+            "keeps its file's coordinates",
+        ),
+        (
+            message(point, Origin::Ball, Some(1.0)),
+            "`test` is a single point",
+        ),
+    ];
+    for ((text, help), expected) in cases {
+        assert!(text.contains(expected) && text.contains("`test`"), "{text}");
+        assert!(!help.is_empty());
+    }
+    let huge = mesh(vec![Vec3::X * -3e38, Vec3::X * 3e38]);
+    let scaled = Shape::build(&huge, &spec(Origin::Ball, Some(1.0))).unwrap();
+    assert_eq!(
+        scaled.vertices,
+        [-Vec3::X, Vec3::X],
+        "a radius brings any finite mesh within the limit"
+    );
+}
+
+#[test]
+fn the_fingerprint_covers_every_number() {
+    let shape = Shape::build(&shifted_box(), &spec(Origin::Ball, None)).unwrap();
+    let original = volumes_sha256(std::slice::from_ref(&shape));
+    // The SHA-256 of 0 0 0 next_up(3), the identity, lo = −1 −2 −2 −3 −3 −3 −3 −4 −4 and hi = −lo, made apart from this code.
+    let expected = "8485da5c21992757e15eb9b660ab5ff64d2b41711a54973bb413b91f8aeaaec0";
+    assert_eq!(original, expected);
+    let mut seen = vec![
+        original,
+        volumes_sha256(&[]),
+        volumes_sha256(&[shape.clone(), shape.clone()]),
+    ];
+    let mut change = |edit: &dyn Fn(&mut Shape)| {
+        let mut edited = shape.clone();
+        edit(&mut edited);
+        let hash = volumes_sha256(&[edited]);
+        assert!(!seen.contains(&hash));
+        seen.push(hash);
+    };
+    change(&|s| s.ball.centre.y += 1.0);
+    change(&|s| s.ball.radius += 1.0);
+    change(&|s| s.ordop.basis.columns[2].x += 1.0);
+    change(&|s| s.ordop.lo[8] += 1.0);
+    change(&|s| s.ordop.hi[8] += 1.0);
+}
