@@ -4,7 +4,8 @@
 //! decision is the sign of an exact orient3d, and a facet is visible from a point only if that is *strictly* outside.
 //! Then no degenerate facet arises, the visible region is a disk, and the result is a closed surface with all vertices on
 //! its inner side: duplicate, coplanar and cospherical vertices need no tolerance and there is no failure to handle.
-//! (Of the crates, one works in f32 and turned a facet of the bunny inside out, one depends on a random hash order.)
+//! (Of the crates, quickhull works in f32 and turns a facet of the bunny inside out; chull walks randomly hashed sets, so
+//! that its facets change from run to run, and gives up on rotated grids.)
 //! The distances that choose the next vertex are approximate; they steer the speed only.
 
 use glam::{DVec3, Vec3};

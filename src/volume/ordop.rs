@@ -58,7 +58,7 @@ fn dot_bounds(a: DVec3, b: DVec3) -> (f64, f64) {
     let (sum, lost_too) = two_sum(partial, a.z * b.z);
     let tail = lost + lost_too;
     if tail == 0.0 {
-        return (sum, sum); // exact: the tail underflows never, products are multiples of 2⁻²⁹⁸
+        return (sum, sum); // exact: all terms are multiples of 2⁻²⁹⁸, so nothing underflows
     }
     // sum + lost + lost_too is the exact value; two additions of relative error 2⁻⁵³ each are left.
     let value = sum + tail;
