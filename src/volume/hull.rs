@@ -41,14 +41,11 @@ impl Hull {
         }
     }
 
-    /// The hull's vertices as columns x, y, z: all that world-aligned volumes are re-fitted from.
+    /// The positions of the hull's vertices: all that world-aligned volumes are re-fitted from.
     #[must_use]
-    pub fn columns(&self, vertices: &[Vec3]) -> [Vec<f32>; 3] {
-        let column = |k: usize| {
-            let coordinates = self.vertices.iter().map(|&i| vertices[i as usize][k]);
-            coordinates.collect()
-        };
-        [0, 1, 2].map(column)
+    pub fn points(&self, vertices: &[Vec3]) -> Vec<Vec3> {
+        let position = |&i: &u32| vertices[i as usize];
+        self.vertices.iter().map(position).collect()
     }
 
     /// The hull's volume, from the shape's vertices.

@@ -9,4 +9,5 @@ mod hull;
 mod meshes;
 mod principal;
 mod shape;
+mod shipped;
 mod tightness;
