@@ -6,10 +6,13 @@
 //! are culled like any other. A mesh without triangles is refused, since no surface of it could intersect
 //! anything. Vertices that no triangle uses are kept: they only widen the volumes.
 
+pub mod decimate;
 mod error;
 mod obj;
+mod ply;
 mod read;
 pub mod shapes;
+mod stl;
 mod text;
 pub mod topology;
 mod tri;

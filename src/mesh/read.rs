@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{MeshError, Problem, TriFormat, TriangleMesh, obj, tri};
+use super::{MeshError, Problem, TriFormat, TriangleMesh, obj, ply, stl, tri};
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +11,10 @@ pub enum MeshFormat {
     Tri,
     /// Wavefront OBJ.
     Obj,
+    /// STL, text or binary.
+    Stl,
+    /// PLY, text or binary.
+    Ply,
 }
 
 /// What a file cannot say about itself.
@@ -22,7 +26,7 @@ pub struct ReadOptions {
 
 impl MeshFormat {
     /// The extensions, as messages list them.
-    pub(super) const EXTENSIONS: &str = ".tri, .obj";
+    pub(super) const EXTENSIONS: &str = ".tri, .obj, .stl, .ply";
 
     /// The format that the extension names, in either case.
     pub fn from_path(path: &Path) -> Option<Self> {
@@ -30,6 +34,8 @@ impl MeshFormat {
         match extension.as_str() {
             "tri" => Some(Self::Tri),
             "obj" => Some(Self::Obj),
+            "stl" => Some(Self::Stl),
+            "ply" => Some(Self::Ply),
             _ => None,
         }
     }
@@ -79,6 +85,8 @@ pub fn read_bytes(
     let parts = match format {
         MeshFormat::Tri => tri::read(bytes, options.tri_format),
         MeshFormat::Obj => obj::read(bytes),
+        MeshFormat::Stl => stl::read(bytes),
+        MeshFormat::Ply => ply::read(bytes),
     };
     let (vertices, triangles) = parts.map_err(|(line, problem)| problem.at(file, line))?;
     let stem = Path::new(file)

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::{MeshError, MeshFormat, Problem, TriangleMesh};
+use super::{MeshError, MeshFormat, Problem, TriangleMesh, stl};
 
 /// Writes a mesh in the format that the extension names.
 ///
@@ -22,6 +22,8 @@ pub fn write(mesh: &TriangleMesh, path: impl AsRef<Path>) -> Result<(), MeshErro
     let bytes = match MeshFormat::from_path(path) {
         Some(MeshFormat::Tri) => tri_text(mesh).into_bytes(),
         Some(MeshFormat::Obj) => obj_text(mesh).into_bytes(),
+        Some(MeshFormat::Stl) => stl::bytes(mesh),
+        Some(MeshFormat::Ply) => ply_text(mesh).into_bytes(),
         None => {
             let found = path
                 .extension()
@@ -73,6 +75,24 @@ pub fn obj_text(mesh: &TriangleMesh) -> String {
     for triangle in &mesh.triangles {
         let [a, b, c] = triangle.map(|index| u64::from(index) + 1);
         put(&mut text, format_args!("f {a} {b} {c}\n"));
+    }
+    text
+}
+
+/// The mesh as a text PLY file.
+pub fn ply_text(mesh: &TriangleMesh) -> String {
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+        mesh.vertices.len(),
+        mesh.triangles.len()
+    );
+    for position in &mesh.vertices {
+        let [x, y, z] = position.to_array().map(shortest);
+        put(&mut text, format_args!("{x} {y} {z}\n"));
+    }
+    for [a, b, c] in &mesh.triangles {
+        put(&mut text, format_args!("3 {a} {b} {c}\n"));
     }
     text
 }

@@ -1,0 +1,220 @@
+//! A shape's sizes by name: which there are, what they may be, and what is said when they may not.
+
+use super::ProceduralShape;
+
+/// One size of a shape, to be set by name.
+enum Size<'a> {
+    Length(&'a mut f32),
+    Count(&'a mut u32),
+}
+
+/// Why a shape cannot be made from the given name and sizes.
+#[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
+pub enum ShapeError {
+    /// No shape has this name.
+    #[error("there is no shape {name:?}")]
+    #[diagnostic(help("the shapes are {}", ProceduralShape::NAMES.join(", ")))]
+    UnknownShape {
+        /// The name as given.
+        name: String,
+    },
+    /// The shape has no such size.
+    #[error("the shape {shape:?} has no size {size:?}")]
+    #[diagnostic(help("its sizes are {}", known.join(", ")))]
+    UnknownSize {
+        /// The shape's name.
+        shape: &'static str,
+        /// The size as given.
+        size: String,
+        /// The sizes that the shape has.
+        known: Vec<&'static str>,
+    },
+    /// The value is outside what the size allows.
+    #[error("the size {size:?} of the shape {shape:?} cannot be {value}")]
+    #[diagnostic(help("{size} must be {allowed}"))]
+    BadSize {
+        /// The shape's name.
+        shape: &'static str,
+        /// The size's name.
+        size: &'static str,
+        /// The value as given.
+        value: f64,
+        /// What would do.
+        allowed: String,
+    },
+}
+
+impl ProceduralShape {
+    fn sizes(&mut self) -> Vec<(&'static str, Size<'_>)> {
+        use Size::{Count, Length};
+        match self {
+            Self::Box { x, y, z } => vec![("x", Length(x)), ("y", Length(y)), ("z", Length(z))],
+            Self::Icosphere {
+                radius,
+                subdivisions,
+            } => {
+                vec![
+                    ("radius", Length(radius)),
+                    ("subdivisions", Count(subdivisions)),
+                ]
+            }
+            Self::Needle {
+                length,
+                radius,
+                sides,
+            } => {
+                vec![
+                    ("length", Length(length)),
+                    ("radius", Length(radius)),
+                    ("sides", Count(sides)),
+                ]
+            }
+            Self::Plate { x, y, thickness } => {
+                vec![
+                    ("x", Length(x)),
+                    ("y", Length(y)),
+                    ("thickness", Length(thickness)),
+                ]
+            }
+            Self::Torus {
+                radius,
+                tube,
+                segments,
+                sides,
+            }
+            | Self::Knot {
+                radius,
+                tube,
+                segments,
+                sides,
+            } => vec![
+                ("radius", Length(radius)),
+                ("tube", Length(tube)),
+                ("segments", Count(segments)),
+                ("sides", Count(sides)),
+            ],
+            Self::Gear {
+                tip,
+                root,
+                bore,
+                thickness,
+                teeth,
+            } => vec![
+                ("tip", Length(tip)),
+                ("root", Length(root)),
+                ("bore", Length(bore)),
+                ("thickness", Length(thickness)),
+                ("teeth", Count(teeth)),
+            ],
+            Self::LShape {
+                x,
+                y,
+                arm,
+                thickness,
+            } => vec![
+                ("x", Length(x)),
+                ("y", Length(y)),
+                ("arm", Length(arm)),
+                ("thickness", Length(thickness)),
+            ],
+        }
+    }
+
+    pub(super) fn set(&mut self, name: &str, value: f64) -> Result<(), ShapeError> {
+        let shape = self.name();
+        let mut known = Vec::new();
+        for (size, slot) in self.sizes() {
+            if size != name {
+                known.push(size);
+                continue;
+            }
+            match slot {
+                Size::Length(length) => *length = value as f32,
+                Size::Count(count) if value.fract() == 0.0 && value.abs() < 1e9 => {
+                    // A negative count saturates to 0, which `check` judges like any other.
+                    *count = value as u32;
+                }
+                Size::Count(_) => {
+                    let allowed = "a whole number".to_owned();
+                    return Err(ShapeError::BadSize {
+                        shape,
+                        size,
+                        value,
+                        allowed,
+                    });
+                }
+            }
+            return Ok(());
+        }
+        Err(ShapeError::UnknownSize {
+            shape,
+            size: name.to_owned(),
+            known,
+        })
+    }
+
+    pub(super) fn check(mut self) -> Result<(), ShapeError> {
+        let shape = self.name();
+        let bad = |size, value, allowed: String| {
+            Err(ShapeError::BadSize {
+                shape,
+                size,
+                value,
+                allowed,
+            })
+        };
+        for (size, slot) in self.sizes() {
+            match slot {
+                Size::Length(&mut length) => {
+                    if !(MIN_LENGTH..=MAX_LENGTH).contains(&length) {
+                        return bad(size, f64::from(length), "from 2^-60 to 2^58".to_owned());
+                    }
+                }
+                Size::Count(&mut count) => {
+                    let (least, most) = match (shape, size) {
+                        ("icosphere", _) => (0, 7),
+                        ("knot", "segments") => (32, 1024),
+                        _ => (3, 1024),
+                    };
+                    if !(least..=most).contains(&count) {
+                        return bad(size, f64::from(count), format!("from {least} to {most}"));
+                    }
+                }
+            }
+        }
+        for (size, value, limit, meaning) in self.relations() {
+            if value >= limit {
+                return bad(
+                    size,
+                    f64::from(value),
+                    format!("less than {limit}, {meaning}"),
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Sizes that must stay below a limit set by other sizes, or the surface would cut itself.
+    fn relations(&self) -> Vec<(&'static str, f32, f32, &'static str)> {
+        match *self {
+            Self::Torus { radius, tube, .. } => vec![("tube", tube, radius, "the ring's radius")],
+            Self::Gear {
+                tip, root, bore, ..
+            } => vec![
+                ("root", root, tip, "the tips' radius"),
+                ("bore", bore, 0.9 * root, "nine tenths of the root's radius"),
+            ],
+            Self::LShape { x, y, arm, .. } => vec![("arm", arm, x.min(y), "the shorter side")],
+            Self::Knot { radius, tube, .. } => {
+                vec![("tube", tube, 0.2 * radius, "a fifth of the knot's radius")]
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Shortest length of a procedural shape, 2⁻⁶⁰: halves and squares of it stay far from underflow.
+const MIN_LENGTH: f32 = 1.0 / (1_u64 << 60) as f32;
+
+/// Longest length, 2⁵⁸: sums of two lengths stay within a mesh's largest coordinate.
+const MAX_LENGTH: f32 = (1_u64 << 58) as f32;

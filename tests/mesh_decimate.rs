@@ -1,0 +1,137 @@
+//! Decimation: the surface keeps its topology and its place, and the result is the same everywhere.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use glam::Vec3;
+use sdop::mesh::decimate::decimate;
+use sdop::mesh::topology::Topology;
+use sdop::mesh::{ProceduralShape, ReadOptions, TriangleMesh, read, tri_text};
+use sha2::{Digest, Sha256};
+
+fn shape(name: &str, sizes: &[(&str, f64)]) -> TriangleMesh {
+    ProceduralShape::from_name(name, sizes)
+        .unwrap()
+        .build()
+        .unwrap()
+}
+
+fn sha256(text: &str) -> String {
+    Sha256::digest(text)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}
+
+fn signed_volume(mesh: &TriangleMesh) -> f64 {
+    let corner = |i: u32| mesh.vertices[i as usize].as_dvec3();
+    mesh.triangles
+        .iter()
+        .map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c))))
+        .sum::<f64>()
+        / 6.0
+}
+
+#[test]
+fn closed_surfaces_stay_closed_and_keep_their_volume() {
+    let fine_box = subdivided(shape("box", &[]), 3);
+    let cases = [
+        (shape("icosphere", &[("subdivisions", 4.0)]), 400, 0.02),
+        (shape("torus", &[]), 500, 0.03),
+        (shape("knot", &[]), 800, 0.06),
+        (fine_box, 12, 1e-6),
+        (
+            read("data/meshes/spot.tri", &ReadOptions::default()).unwrap(),
+            1000,
+            0.01,
+        ),
+    ];
+    for (mesh, target, tolerance) in cases {
+        let coarse = decimate(&mesh, target);
+        let (before, after) = (Topology::of(&mesh), Topology::of(&coarse));
+        assert_eq!(coarse.triangles.len(), target, "{}", mesh.name);
+        assert_eq!(after.components.len(), 1, "{}", mesh.name);
+        assert!(after.components[0].is_closed(), "{}", mesh.name);
+        assert_eq!(
+            after.components[0].euler_characteristic(),
+            before.components[0].euler_characteristic(),
+            "{}",
+            mesh.name
+        );
+        assert_eq!(after.unused_vertices, 0);
+        let ratio = signed_volume(&coarse) / signed_volume(&mesh);
+        assert!(
+            (ratio - 1.0).abs() < tolerance,
+            "{}: {ratio} of the volume",
+            mesh.name
+        );
+        TriangleMesh::new("valid", coarse.vertices, coarse.triangles).unwrap();
+    }
+}
+
+/// Each triangle in four, flat: planes whose inner vertices cost nothing to remove.
+fn subdivided(mesh: TriangleMesh, times: u32) -> TriangleMesh {
+    let mut mesh = mesh;
+    for _ in 0..times {
+        let mut edges = std::collections::HashMap::new();
+        let mut vertices = mesh.vertices.clone();
+        let mut triangles = Vec::new();
+        for [a, b, c] in mesh.triangles {
+            let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(from, to)| {
+                *edges
+                    .entry((from.min(to), from.max(to)))
+                    .or_insert_with(|| {
+                        vertices.push((vertices[from as usize] + vertices[to as usize]) * 0.5);
+                        vertices.len() as u32 - 1
+                    })
+            });
+            triangles.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+        }
+        mesh = TriangleMesh::new(mesh.name, vertices, triangles).unwrap();
+    }
+    mesh
+}
+
+/// A flat square with a hole's worth of boundary: the corners must survive, far from the origin too.
+#[test]
+fn an_open_boundary_keeps_its_place() {
+    for offset in [Vec3::ZERO, Vec3::new(4096.0, -8192.0, 1024.0)] {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y].map(|v| v + offset);
+        let square =
+            TriangleMesh::new("square", corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+        let coarse = decimate(&subdivided(square, 4), 2);
+        assert_eq!(coarse.triangles.len(), 2);
+        assert_eq!(coarse.vertices, corners);
+    }
+}
+
+#[test]
+fn what_cannot_shrink_is_left_alone() {
+    let tetrahedron = TriangleMesh::new(
+        "tetrahedron",
+        vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z],
+        vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+    )
+    .unwrap();
+    let point = TriangleMesh::new("point", vec![Vec3::ONE], vec![[0, 0, 0]; 3]).unwrap();
+    let triangle =
+        TriangleMesh::new("one", vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]).unwrap();
+    for mesh in [tetrahedron, point, triangle, shape("box", &[])] {
+        assert_eq!(decimate(&mesh, mesh.triangles.len()), mesh);
+        let least = decimate(&mesh, 0);
+        let closed = Topology::of(&mesh).closed_components();
+        assert_eq!(
+            Topology::of(&least).closed_components(),
+            closed,
+            "{}",
+            mesh.name
+        );
+        TriangleMesh::new("valid", least.vertices, least.triangles).unwrap();
+    }
+}
+
+/// The shipped bunny-4k is what the converter makes of the shipped bunny, on this platform too.
+#[test]
+fn the_shipped_bunny_is_reproduced_to_the_bit() {
+    let bunny = read("data/meshes/bunny.tri", &ReadOptions::default()).unwrap();
+    let shipped = std::fs::read_to_string("data/meshes/bunny-4k.tri").unwrap();
+    assert_eq!(sha256(&tri_text(&decimate(&bunny, 4000))), sha256(&shipped));
+}
