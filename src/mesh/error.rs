@@ -34,14 +34,12 @@ pub enum Problem {
     },
     /// The file name's extension names no known format.
     #[error("the extension {found:?} names no mesh format that can be {action}")]
-    #[diagnostic(help("the formats that can be {action}: {supported}"))]
+    #[diagnostic(help("use .tri, .obj, .stl or .ply"))]
     UnknownFormat {
         /// The extension as found, without the dot.
         found: String,
         /// "read" or "written".
         action: &'static str,
-        /// The extensions that would do.
-        supported: &'static str,
     },
     /// There is nothing in the file, or no vertex in the mesh.
     #[error("the mesh has no vertices")]

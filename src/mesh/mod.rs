@@ -23,7 +23,7 @@ pub use error::{MeshError, Problem};
 pub use read::{MeshFormat, ReadOptions, read, read_bytes};
 pub use shapes::ProceduralShape;
 pub use tri::TriFormat;
-pub use write::{obj_text, tri_text, write};
+pub use write::{write, write_bytes};
 
 use glam::Vec3;
 

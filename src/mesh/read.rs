@@ -25,19 +25,27 @@ pub struct ReadOptions {
 }
 
 impl MeshFormat {
-    /// The extensions, as messages list them.
-    pub(super) const EXTENSIONS: &str = ".tri, .obj, .stl, .ply";
-
     /// The format that the extension names, in either case.
     pub fn from_path(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        match extension.as_str() {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "tri" => Some(Self::Tri),
             "obj" => Some(Self::Obj),
             "stl" => Some(Self::Stl),
             "ply" => Some(Self::Ply),
             _ => None,
         }
+    }
+
+    /// The same, or the problem that the extension is; `action` is what was to be done, "read" or "written".
+    pub(super) fn of_path(path: &Path, action: &'static str) -> Result<Self, Problem> {
+        Self::from_path(path).ok_or_else(|| Problem::UnknownFormat {
+            found: path
+                .extension()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
+            action,
+        })
     }
 }
 
@@ -48,20 +56,7 @@ impl MeshFormat {
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TriangleMesh, MeshError> {
     let path = path.as_ref();
     let file = path.display().to_string();
-    let format = MeshFormat::from_path(path).ok_or_else(|| {
-        let found = path
-            .extension()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let supported = MeshFormat::EXTENSIONS;
-        Problem::UnknownFormat {
-            found,
-            action: "read",
-            supported,
-        }
-        .at(&file, None)
-    })?;
+    let format = MeshFormat::of_path(path, "read").map_err(|problem| problem.at(&file, None))?;
     let bytes = std::fs::read(path).map_err(|source| {
         Problem::Io {
             action: "read",

@@ -19,27 +19,8 @@ use super::{MeshError, MeshFormat, Problem, TriangleMesh, stl};
 pub fn write(mesh: &TriangleMesh, path: impl AsRef<Path>) -> Result<(), MeshError> {
     let path = path.as_ref();
     let file = path.display().to_string();
-    let bytes = match MeshFormat::from_path(path) {
-        Some(MeshFormat::Tri) => tri_text(mesh).into_bytes(),
-        Some(MeshFormat::Obj) => obj_text(mesh).into_bytes(),
-        Some(MeshFormat::Stl) => stl::bytes(mesh),
-        Some(MeshFormat::Ply) => ply_text(mesh).into_bytes(),
-        None => {
-            let found = path
-                .extension()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned();
-            let supported = MeshFormat::EXTENSIONS;
-            let problem = Problem::UnknownFormat {
-                found,
-                action: "written",
-                supported,
-            };
-            return Err(problem.at(&file, None));
-        }
-    };
-    std::fs::write(path, bytes).map_err(|source| {
+    let format = MeshFormat::of_path(path, "written").map_err(|problem| problem.at(&file, None))?;
+    std::fs::write(path, write_bytes(mesh, format)).map_err(|source| {
         Problem::Io {
             action: "write",
             source,
@@ -48,8 +29,18 @@ pub fn write(mesh: &TriangleMesh, path: impl AsRef<Path>) -> Result<(), MeshErro
     })
 }
 
+/// The contents of a file that holds the mesh.
+pub fn write_bytes(mesh: &TriangleMesh, format: MeshFormat) -> Vec<u8> {
+    match format {
+        MeshFormat::Tri => tri_text(mesh).into_bytes(),
+        MeshFormat::Obj => obj_text(mesh).into_bytes(),
+        MeshFormat::Stl => stl::bytes(mesh),
+        MeshFormat::Ply => ply_text(mesh).into_bytes(),
+    }
+}
+
 /// The mesh as a `.tri` file in Bourke's dialect.
-pub fn tri_text(mesh: &TriangleMesh) -> String {
+fn tri_text(mesh: &TriangleMesh) -> String {
     let mut text = format!("{} {}\n", mesh.vertices.len(), mesh.triangles.len());
     for (position, normal) in mesh.vertices.iter().zip(vertex_normals(mesh)) {
         let [x, y, z] = position.to_array().map(shortest);
@@ -66,7 +57,7 @@ pub fn tri_text(mesh: &TriangleMesh) -> String {
 }
 
 /// The mesh as a Wavefront OBJ file.
-pub fn obj_text(mesh: &TriangleMesh) -> String {
+fn obj_text(mesh: &TriangleMesh) -> String {
     let mut text = String::new();
     for position in &mesh.vertices {
         let [x, y, z] = position.to_array().map(shortest);
@@ -80,7 +71,7 @@ pub fn obj_text(mesh: &TriangleMesh) -> String {
 }
 
 /// The mesh as a text PLY file.
-pub fn ply_text(mesh: &TriangleMesh) -> String {
+fn ply_text(mesh: &TriangleMesh) -> String {
     let mut text = format!(
         "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
          element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
