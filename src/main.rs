@@ -1,3 +1,21 @@
-//! `sdop`: parse the arguments, call the command.
+//! `sdop`: parse the arguments, call the command, turn what it says into an exit code.
 
-fn main() {}
+mod cli;
+
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+/// 0 when all is well, 1 when a check failed, 2 on bad input (clap exits with 2 by itself).
+fn main() -> ExitCode {
+    match cli::Cli::parse().run() {
+        Ok(cli::Outcome::Passed) => ExitCode::SUCCESS,
+        Ok(cli::Outcome::Failed) => ExitCode::from(1),
+        Err(report) => {
+            // Nobody may be listening on standard error: that is no reason to panic.
+            let _ = writeln!(std::io::stderr(), "{report:?}");
+            ExitCode::from(2)
+        }
+    }
+}

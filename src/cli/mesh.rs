@@ -1,0 +1,199 @@
+//! `sdop mesh`: what a mesh is, how tight each volume is about it, and conversion to another format.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser as _};
+use sdop::mesh::topology::Topology;
+use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};
+use sdop::volume::{
+    Axes, Basis, DirectionSet, Hull, OrDop, Origin, Shape, ShapeSpec, mean_world_aligned_volume,
+};
+use serde::Serialize;
+
+use super::Outcome;
+use super::output::{Format, emit, table};
+
+/// Random rotations over which the volumes that are re-fitted each frame are averaged.
+const TURNS: u32 = 64;
+
+/// Describe a mesh and its bounding volumes, or convert it
+///
+/// Prints counts, whether the mesh is closed, its smallest enclosing ball and the size of every volume over that of the
+/// convex hull. World-aligned volumes (aabb, k-dop) are re-fitted when a body turns: theirs is the mean over 64 rotations.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example: sdop mesh data/meshes/spot.tri\n         sdop mesh model.obj --to model.tri"
+)]
+pub struct Args {
+    /// The mesh; the extension names its format
+    file: PathBuf,
+    /// Write the mesh to this file, in the format that its extension names
+    #[arg(long, value_name = "FILE")]
+    to: Option<PathBuf>,
+    /// The dialect of a .tri file, where several fit
+    #[arg(long, value_name = "DIALECT", value_parser = PossibleValuesParser::new(TriFormat::ALL.map(TriFormat::name))
+        .try_map(|name| TriFormat::from_name(&name).ok_or("no such dialect")))]
+    tri_format: Option<TriFormat>,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// What is printed.
+#[derive(Serialize)]
+struct Report {
+    name: String,
+    file: String,
+    written: Option<String>,
+    vertices: usize,
+    unused_vertices: usize,
+    triangles: usize,
+    degenerate_triangles: usize,
+    components: usize,
+    closed_components: usize,
+    boundary_edges: usize,
+    non_manifold_edges: usize,
+    /// Smallest enclosing ball (x, y, z, r) in the file's coordinates.
+    ball: [f32; 4],
+    hull_vertices: usize,
+    hull_volume: f64,
+    volumes: Vec<Tightness>,
+}
+
+/// The size of one bounding volume.
+#[derive(Serialize)]
+struct Tightness {
+    name: String,
+    volume: f64,
+    /// Absent for a flat mesh, whose hull has no volume.
+    over_hull: Option<f64>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A mesh that can't be read or written.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let options = ReadOptions {
+        tri_format: args.tri_format,
+    };
+    let mesh = read(&args.file, &options)?;
+    if let Some(path) = &args.to {
+        write(&mesh, path)?;
+    }
+    let report = describe(args, &mesh)?;
+    emit(args.format, &report, text)?;
+    Ok(Outcome::Passed)
+}
+
+fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
+    let topology = Topology::of(mesh);
+    let total = topology.total();
+    let spec = ShapeSpec {
+        origin: Origin::File,
+        ..ShapeSpec::default()
+    };
+    let shape = Shape::build(mesh, &spec)?;
+    let hull = Hull::of(&shape.vertices);
+    let [x, y, z] = shape.ball.centre.to_array();
+    Ok(Report {
+        name: mesh.name.clone(),
+        file: args.file.display().to_string(),
+        written: args.to.as_ref().map(|path| path.display().to_string()),
+        vertices: mesh.vertices.len(),
+        unused_vertices: topology.unused_vertices,
+        triangles: mesh.triangles.len(),
+        degenerate_triangles: total.degenerate,
+        components: topology.components.len(),
+        closed_components: topology.closed_components(),
+        boundary_edges: total.boundary_edges,
+        non_manifold_edges: total.non_manifold_edges,
+        ball: [x, y, z, shape.ball.radius],
+        hull_vertices: hull.vertices.len(),
+        hull_volume: hull.volume(&shape.vertices),
+        volumes: tightness(&shape, &hull),
+    })
+}
+
+/// Every volume's size, the sphere first.
+fn tightness(shape: &Shape, hull: &Hull) -> Vec<Tightness> {
+    let hull_volume = hull.volume(&shape.vertices);
+    let row = |name: String, volume: f64| Tightness {
+        name,
+        volume,
+        over_hull: (hull_volume > 0.0).then(|| volume / hull_volume),
+    };
+    let corners: Vec<_> = hull
+        .vertices
+        .iter()
+        .map(|&v| shape.vertices[v as usize])
+        .collect();
+    let mut rows = vec![row("sphere".to_owned(), shape.ball.volume())];
+    for &directions in DirectionSet::ALL {
+        let name = match directions {
+            DirectionSet::K6 => "aabb".to_owned(),
+            _ => format!("k-dop-{directions}"),
+        };
+        rows.push(row(
+            name,
+            mean_world_aligned_volume(&corners, directions, TURNS),
+        ));
+    }
+    rows.push(row("obb".to_owned(), shape.obb(hull).volume()));
+    for &axes in Axes::ALL {
+        let basis = match axes {
+            Axes::Principal => Basis::principal(hull, &shape.vertices),
+            Axes::Model => Basis::MODEL,
+        };
+        for &directions in DirectionSet::ALL {
+            let ordop = OrDop::build(&corners, basis, directions);
+            rows.push(row(format!("or-dop-{directions}-{axes}"), ordop.volume()));
+        }
+    }
+    rows
+}
+
+fn text(report: &Report) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = write_text(&mut text, report);
+    text
+}
+
+fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
+    let (closed, all) = (report.closed_components, report.components);
+    let state = match closed {
+        _ if closed == all => "closed".to_owned(),
+        0 => "open".to_owned(),
+        _ => format!("{closed} closed, {} open", all - closed),
+    };
+    let [x, y, z, r] = report.ball;
+    writeln!(out, "{} ({})", report.name, report.file)?;
+    writeln!(
+        out,
+        "{} vertices ({} unused), {} triangles ({} degenerate)",
+        report.vertices, report.unused_vertices, report.triangles, report.degenerate_triangles
+    )?;
+    writeln!(
+        out,
+        "components: {all}, {state}; boundary edges: {}, non-manifold edges: {}",
+        report.boundary_edges, report.non_manifold_edges
+    )?;
+    writeln!(out, "smallest ball: centre ({x}, {y}, {z}), radius {r}")?;
+    writeln!(
+        out,
+        "convex hull: {} vertices, volume {:.6e}",
+        report.hull_vertices, report.hull_volume
+    )?;
+    let mut rows = table(&["volume", "size", "size / hull"]);
+    for row in &report.volumes {
+        let over_hull = row.over_hull.map_or("–".to_owned(), |x| format!("{x:.3}"));
+        rows.add_row([row.name.clone(), format!("{:.6e}", row.volume), over_hull]);
+    }
+    writeln!(out, "{rows}")?;
+    match &report.written {
+        Some(path) => writeln!(out, "written to {path}"),
+        None => Ok(()),
+    }
+}

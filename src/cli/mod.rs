@@ -1,0 +1,55 @@
+//! The command line: one file a command. A command parses its arguments, calls the library and prints the result.
+//!
+//! A new command is a file with `Args` and `run`, a module line, a variant and a line in [`Cli::run`].
+
+mod mesh;
+mod output;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Parser, Subcommand};
+
+/// Collision culling by sphere-encapsulated or-DOPs (S-DOP): verified, vectorised, measured.
+#[derive(Parser)]
+#[command(
+    version,
+    after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input."
+)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Mesh(mesh::Args),
+}
+
+/// How a command ended when its input was good.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// All is well: exit code 0.
+    Passed,
+    /// A check failed: exit code 1.
+    Failed,
+}
+
+impl Cli {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Bad input: exit code 2.
+    pub fn run(self) -> miette::Result<Outcome> {
+        match self.command {
+            Command::Mesh(args) => mesh::run(&args),
+        }
+    }
+}
+
+/// Reads one of a library enum's names; help and errors list them all.
+fn one_of<T>(names: &[&'static str]) -> impl TypedValueParser<Value = T> + use<T>
+where
+    T: std::str::FromStr + Clone + Send + Sync + 'static,
+    T::Err: std::error::Error + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(names).try_map(|name| name.parse())
+}

@@ -1,0 +1,173 @@
+//! Results on standard output: one value, printed as a table for people or as JSON or CSV for programs.
+
+use std::io::{ErrorKind, Write as _};
+
+use clap::ValueEnum;
+use comfy_table::{CellAlignment, LineStyle, Table, presets};
+use indicatif::{ProgressBar, ProgressStyle};
+use miette::{IntoDiagnostic as _, WrapErr as _};
+use serde::Serialize;
+use serde_json::Value;
+
+/// How a result is printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    #[default]
+    Table,
+    /// One JSON value.
+    Json,
+    /// A header, then one line a record.
+    Csv,
+}
+
+/// Keys that stay one CSV column: their form differs from run to run, and the header must not.
+const WHOLE: [&str; 2] = ["interest", "budget"];
+
+/// Prints `value` in `format`; a list becomes a CSV line an element, any other value a single line.
+///
+/// # Errors
+/// Standard output can't be written; a reader that left early is no error.
+pub fn emit<T: Serialize>(
+    format: Format,
+    value: &T,
+    table: impl FnOnce(&T) -> String,
+) -> miette::Result<()> {
+    let text = match format {
+        Format::Table => table(value),
+        Format::Json => serde_json::to_string_pretty(value).into_diagnostic()?,
+        Format::Csv => csv_text(serde_json::to_value(value).into_diagnostic()?)?,
+    };
+    print(text.trim_end())
+}
+
+/// Prints lines.
+///
+/// # Errors
+/// As [`emit`].
+pub fn print(text: &str) -> miette::Result<()> {
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        // `sdop … | head` has read what it wanted.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        result => result
+            .into_diagnostic()
+            .wrap_err("cannot write to standard output"),
+    }
+}
+
+/// An empty table with a header; all columns but the first are numbers, aligned to the right.
+pub fn table(header: &[&str]) -> Table {
+    let mut table = Table::new();
+    table
+        .load_style(presets::UTF8_HORIZONTAL_ONLY)
+        .set_header(header.iter().copied());
+    table.style_mut().row_separator = LineStyle::none();
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+/// A progress bar on standard error; it shows on a terminal only.
+pub fn progress(steps: u64, what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(steps);
+    let template = "{msg} {wide_bar} {pos}/{len}, {eta} left";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar.with_message(what.to_owned())
+}
+
+/// Objects are flattened with dots, lists of named objects by their names; the header is the union over all records.
+fn csv_text(value: Value) -> miette::Result<String> {
+    let records = match value {
+        Value::Array(records) => records,
+        single => vec![single],
+    };
+    let rows: Vec<Vec<(String, String)>> = records
+        .into_iter()
+        .map(|record| {
+            let mut row = Vec::new();
+            flatten("", record, &mut row);
+            row
+        })
+        .collect();
+    let mut header: Vec<&str> = Vec::new();
+    for (key, _) in rows.iter().flatten() {
+        if !header.contains(&key.as_str()) {
+            header.push(key);
+        }
+    }
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&header).into_diagnostic()?;
+    for row in &rows {
+        let cell = |name: &&str| {
+            let found = row.iter().find(|(key, _)| key == name);
+            found.map_or("", |(_, value)| value.as_str())
+        };
+        writer
+            .write_record(header.iter().map(cell))
+            .into_diagnostic()?;
+    }
+    let bytes = writer.into_inner().into_diagnostic()?;
+    String::from_utf8(bytes).into_diagnostic()
+}
+
+fn flatten(key: &str, value: Value, row: &mut Vec<(String, String)>) {
+    let inner = |name: &str| match key {
+        "" => name.to_owned(),
+        _ => format!("{key}.{name}"),
+    };
+    match value {
+        Value::Null => row.push((key.to_owned(), String::new())),
+        Value::String(text) => row.push((key.to_owned(), text)),
+        Value::Object(fields) if !WHOLE.contains(&key) => {
+            for (name, field) in fields {
+                flatten(&inner(&name), field, row);
+            }
+        }
+        Value::Array(items) if named(&items) => {
+            for item in items {
+                let Value::Object(mut fields) = item else {
+                    continue;
+                };
+                if let Some(Value::String(name)) = fields.shift_remove("name") {
+                    flatten(&inner(&name), Value::Object(fields), row);
+                }
+            }
+        }
+        other => row.push((key.to_owned(), other.to_string())),
+    }
+}
+
+/// Whether every item is an object with a string `name`.
+fn named(items: &[Value]) -> bool {
+    !items.is_empty() && items.iter().all(|item| item["name"].is_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn csv_flattens_objects_and_named_lists_and_keeps_settings_whole() {
+        let value = json!({
+            "scene": "a,b", "budget": {"tests": 5}, "interest": null,
+            "counters": {"tests": 1, "hits": 2},
+            "effects": [{"name": "motion", "steps": 3}, {"name": "spin", "steps": 0}],
+            "list": [1, 2],
+        });
+        let text = csv_text(value).unwrap_or_default();
+        let expected = "scene,budget,interest,counters.tests,counters.hits,effects.motion.steps,effects.spin.steps,list\n\
+                        \"a,b\",\"{\"\"tests\"\":5}\",,1,2,3,0,\"[1,2]\"\n";
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn csv_of_records_has_the_union_of_their_columns() {
+        let text = csv_text(json!([{"a": 1}, {"b": 2, "a": 3}])).unwrap_or_default();
+        assert_eq!(text, "a,b\n1,\n3,2\n");
+    }
+}
