@@ -56,7 +56,7 @@ fn corners(mesh: &TriangleMesh) -> Vec<[u32; 3]> {
 
 fn read_any(format: MeshFormat, bytes: &[u8]) -> Option<TriangleMesh> {
     let options = ReadOptions::default();
-    for tri_format in TriFormat::ALL {
+    for &tri_format in TriFormat::ALL {
         let options = ReadOptions {
             tri_format: Some(tri_format),
         };

@@ -1,4 +1,4 @@
-//! Numbers in text files, each with the line it stands on.
+//! Numbers in text files, each with the line it stands on, and records of them.
 
 use glam::Vec3;
 
@@ -90,4 +90,66 @@ pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<Vec3, Fault> {
     let line = tokens.first().map(|token| token.line);
     check_vertex(vertex, position).map_err(|problem| (line, problem))?;
     Ok(position)
+}
+
+/// A place in the tokens. Taking a record by line asks that it fill exactly one line.
+pub(super) struct Cursor<'t, 'a> {
+    pub(super) tokens: &'t [Token<'a>],
+    pub(super) by_line: bool,
+    /// How many tokens have been taken.
+    pub(super) at: usize,
+    /// Whether a triangle has been read.
+    pub(super) seen_triangle: bool,
+}
+
+impl<'t, 'a> Cursor<'t, 'a> {
+    pub(super) fn new(tokens: &'t [Token<'a>], by_line: bool) -> Self {
+        Self {
+            tokens,
+            by_line,
+            at: 0,
+            seen_triangle: false,
+        }
+    }
+
+    pub(super) fn rest(&self) -> &'t [Token<'a>] {
+        &self.tokens[self.at..]
+    }
+
+    /// Vertices and triangles start on lines of their own, however their records are laid out.
+    pub(super) fn start_section(&self) -> Result<(), Fault> {
+        let (before, after) = (self.at.checked_sub(1), self.rest().first());
+        match (before.map(|at| self.tokens[at].line), after) {
+            (Some(line), Some(token)) if token.line == line => {
+                let message = "a section should start on a line of its own";
+                let help = "break the line between the header, the vertices and the triangles";
+                Err((Some(line), Problem::malformed(message, help)))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) fn record(&mut self, numbers: usize, what: &str) -> Result<&'t [Token<'a>], Fault> {
+        let rest = self.rest();
+        let line = rest.first().or(self.tokens.last()).map(|token| token.line);
+        let found = if self.by_line {
+            rest.iter()
+                .take_while(|token| Some(token.line) == line)
+                .count()
+        } else {
+            rest.len().min(numbers)
+        };
+        if rest.is_empty() || (found < numbers && !self.by_line) {
+            let message = format!("the file ends where {what} should be");
+            let help = "the file is cut off, or the counts in its header are too high";
+            return Err((line, Problem::malformed(message, help)));
+        }
+        if found != numbers {
+            let message = format!("{what} should be {numbers} numbers on a line, found {found}");
+            let help = "correct the line, or the counts in the header";
+            return Err((line, Problem::malformed(message, help)));
+        }
+        self.at += numbers;
+        Ok(&rest[..numbers])
+    }
 }

@@ -10,33 +10,36 @@
 //! | `soup` | none | | 9 coordinates, perhaps a colour 0x… | POV-Ray raw triangles; AC3D as OpenFOAM reads it |
 //!
 //! A dialect *fits* when every number is what it should be, every index is in range and nothing is left over. Fits with
-//! one record a line come first; only when there are none may records run over line ends, which Fortran's
-//! list-directed output and the raw format allow. One fit is the answer, two are refused with both names.
+//! one record a line come first. Only when none comes to a triangle may records run over line ends, which Fortran's
+//! list-directed output and the raw format allow; each section must start a line even then, or a file that was cut off could
+//! pass for one of another dialect. One fit is the answer, two are refused with both names.
 //! When nothing fits, the message comes from the dialect that got furthest into the file.
 
 use glam::Vec3;
 
-use super::text::{self, Fault, Token};
+use super::text::{self, Cursor, Fault, Token};
 use super::weld::Welder;
 use super::{Problem, check_triangle};
+use crate::scene::choice::choices;
 
-/// A `.tri` dialect.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TriFormat {
-    /// Position, normal and colour a vertex; indices from 0.
-    Bourke,
-    /// Positions; faces of three indices from 0.
-    Indexed,
-    /// Positions; faces of three indices from 1, perhaps followed by a component number for each face.
-    Cart3d,
-    /// Positions; faces of a count or label and three indices from 0.
-    Labelled,
-    /// Positions; faces of a count or label and three indices from 1.
-    LabelledFromOne,
-    /// Headers that start with a dash; position and normal a vertex; indices from 0.
-    OpenMeeg,
-    /// No header; nine coordinates a triangle.
-    Soup,
+choices! {
+    /// A `.tri` dialect.
+    TriFormat, ".tri dialect", {
+        /// Position, normal and colour a vertex; indices from 0.
+        Bourke = "bourke",
+        /// Positions; faces of three indices from 0.
+        Indexed = "indexed",
+        /// Positions; faces of three indices from 1, perhaps followed by a component number for each face.
+        Cart3d = "cart3d",
+        /// Positions; faces of a count or label and three indices from 0.
+        Labelled = "labelled",
+        /// Positions; faces of a count or label and three indices from 1.
+        LabelledFromOne = "labelled-1",
+        /// Headers that start with a dash; position and normal a vertex; indices from 0.
+        OpenMeeg = "openmeeg",
+        /// No header; nine coordinates a triangle.
+        Soup = "soup",
+    }
 }
 
 /// How the counted dialects differ.
@@ -52,35 +55,6 @@ struct Layout {
 pub(super) type Parts = (Vec<Vec3>, Vec<[u32; 3]>);
 
 impl TriFormat {
-    /// Every dialect, in the order in which they are tried.
-    pub const ALL: [Self; 7] = [
-        Self::Bourke,
-        Self::Indexed,
-        Self::Cart3d,
-        Self::Labelled,
-        Self::LabelledFromOne,
-        Self::OpenMeeg,
-        Self::Soup,
-    ];
-
-    /// The name that selects the dialect on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Bourke => "bourke",
-            Self::Indexed => "indexed",
-            Self::Cart3d => "cart3d",
-            Self::Labelled => "labelled",
-            Self::LabelledFromOne => "labelled-1",
-            Self::OpenMeeg => "openmeeg",
-            Self::Soup => "soup",
-        }
-    }
-
-    /// The dialect of that name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|format| format.name() == name)
-    }
-
     /// The dialect in words.
     pub fn description(self) -> &'static str {
         match self {
@@ -123,17 +97,18 @@ pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<Parts, Fau
     if tokens.is_empty() {
         return Err((None, Problem::NoVertices));
     }
-    let candidates = format.map_or_else(|| TriFormat::ALL.to_vec(), |format| vec![format]);
     let mut furthest: Option<(usize, Fault)> = None;
+    let mut seen_triangle = false;
     for by_line in [true, false] {
+        if !by_line && seen_triangle && format.is_none() {
+            break;
+        }
         let mut fits = Vec::new();
-        for &candidate in &candidates {
-            let mut cursor = Cursor {
-                tokens: &tokens,
-                by_line,
-                at: 0,
-            };
-            match parse(candidate, &mut cursor) {
+        for candidate in candidates(format, &tokens, by_line) {
+            let mut cursor = Cursor::new(&tokens, by_line);
+            let parsed = parse(candidate, &mut cursor);
+            seen_triangle |= cursor.seen_triangle;
+            match parsed {
                 Ok(parts) => fits.push((candidate, parts)),
                 Err(fault)
                     if by_line && furthest.as_ref().is_none_or(|(at, _)| cursor.at > *at) =>
@@ -143,20 +118,31 @@ pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<Parts, Fau
                 Err(_) => {}
             }
         }
-        match fits.len() {
-            0 => {}
-            1 => {
-                return fits
-                    .pop()
-                    .map(|(_, parts)| parts)
-                    .ok_or((None, Problem::NoVertices));
-            }
-            _ => return Err((None, ambiguous(&fits))),
+        if fits.len() > 1 {
+            return Err((None, ambiguous(&fits)));
+        }
+        if let Some((_, parts)) = fits.pop() {
+            return Ok(parts);
         }
     }
     match furthest {
         Some((at, fault)) if at > HEADER_TOKENS || format.is_some() => Err(fault),
         _ => Err((Some(tokens[0].line), unknown_dialect())),
+    }
+}
+
+/// The dialects to try. Any nine numbers are a triangle of a soup, so that a cut-off file of another dialect would pass
+/// for one when lines do not count: then, a first line like `nv nt` rules it out.
+fn candidates(format: Option<TriFormat>, tokens: &[Token], by_line: bool) -> Vec<TriFormat> {
+    let first_line: Vec<_> = tokens
+        .iter()
+        .take_while(|token| token.line == tokens[0].line)
+        .collect();
+    let counted = first_line.len() == 2 && first_line.iter().all(|token| count(token).is_ok());
+    let possible = |candidate: &TriFormat| by_line || !counted || *candidate != TriFormat::Soup;
+    match format {
+        Some(format) => vec![format],
+        None => TriFormat::ALL.iter().copied().filter(possible).collect(),
     }
 }
 
@@ -196,7 +182,9 @@ fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<Parts, Fault> {
     } else {
         count(&header[0])?
     };
+    cursor.start_section()?;
     let vertices = vertices(cursor, vertex_count, layout.vertex_numbers)?;
+    cursor.start_section()?;
     let triangle_count = if layout.dashed {
         let second = cursor.record(4, "the second header `- nt nt nt`")?;
         dash(&second[0])?;
@@ -206,12 +194,14 @@ fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<Parts, Fault> {
             let help = "write the number of triangles three times";
             return Err((Some(second[1].line), Problem::malformed(message, help)));
         }
+        cursor.start_section()?;
         nt
     } else {
         count(&header[1])?
     };
     let triangles = triangles(cursor, triangle_count, &layout, vertices.len())?;
     if layout.components && !cursor.rest().is_empty() {
+        cursor.start_section()?;
         component_numbers(cursor, triangle_count)?;
     }
     match cursor.rest().first() {
@@ -277,6 +267,7 @@ fn triangles(
         check_triangle(index, [a, b, c], first_index, vertices)
             .map_err(|problem| (Some(record[0].line), problem))?;
         triangles.push([a, b, c].map(|i| (i - i64::from(first_index)) as u32));
+        cursor.seen_triangle = true;
     }
     Ok(triangles)
 }
@@ -300,11 +291,7 @@ fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), Fault>
 
 fn soup(cursor: &mut Cursor) -> Result<Parts, Fault> {
     let coordinates = without_colours(cursor.tokens);
-    let mut inner = Cursor {
-        tokens: &coordinates,
-        by_line: cursor.by_line,
-        at: 0,
-    };
+    let mut inner = Cursor::new(&coordinates, cursor.by_line);
     let mut welder = Welder::default();
     let mut triangles = Vec::new();
     let result = (|| {
@@ -316,6 +303,7 @@ fn soup(cursor: &mut Cursor) -> Result<Parts, Fault> {
                 *corner = welder.index(point);
             }
             triangles.push(corners);
+            cursor.seen_triangle = true;
         }
         Ok(())
     })();
@@ -358,41 +346,4 @@ fn dash(token: &Token) -> Result<(), Fault> {
     );
     let help = "OpenMEEG writes `- nv` before the vertices and `- nt nt nt` before the triangles";
     Err((Some(token.line), Problem::malformed(message, help)))
-}
-
-/// A place in the tokens. Taking a record by line asks that it fill exactly one line.
-struct Cursor<'t, 'a> {
-    tokens: &'t [Token<'a>],
-    by_line: bool,
-    at: usize,
-}
-
-impl<'t, 'a> Cursor<'t, 'a> {
-    fn rest(&self) -> &'t [Token<'a>] {
-        &self.tokens[self.at..]
-    }
-
-    fn record(&mut self, numbers: usize, what: &str) -> Result<&'t [Token<'a>], Fault> {
-        let rest = self.rest();
-        let line = rest.first().or(self.tokens.last()).map(|token| token.line);
-        let found = if self.by_line {
-            rest.iter()
-                .take_while(|token| Some(token.line) == line)
-                .count()
-        } else {
-            rest.len().min(numbers)
-        };
-        if rest.is_empty() || (found < numbers && !self.by_line) {
-            let message = format!("the file ends where {what} should be");
-            let help = "the file is cut off, or the counts in its header are too high";
-            return Err((line, Problem::malformed(message, help)));
-        }
-        if found != numbers {
-            let message = format!("{what} should be {numbers} numbers on a line, found {found}");
-            let help = "correct the line, or the counts in the header";
-            return Err((line, Problem::malformed(message, help)));
-        }
-        self.at += numbers;
-        Ok(&rest[..numbers])
-    }
 }
