@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser as _};
+use sdop::mesh::decimate::decimate;
 use sdop::mesh::topology::Topology;
 use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};
 use sdop::volume::{
@@ -11,8 +11,8 @@ use sdop::volume::{
 };
 use serde::Serialize;
 
-use super::Outcome;
 use super::output::{Format, emit, table};
+use super::{Outcome, one_of};
 
 /// Random rotations over which the volumes that are re-fitted each frame are averaged.
 const TURNS: u32 = 64;
@@ -23,7 +23,7 @@ const TURNS: u32 = 64;
 /// convex hull. World-aligned volumes (aabb, k-dop) are re-fitted when a body turns: theirs is the mean over 64 rotations.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example: sdop mesh data/meshes/spot.tri\n         sdop mesh model.obj --to model.tri"
+    after_help = "Examples: sdop mesh data/meshes/spot.tri\n          sdop mesh model.obj --to model.tri\n          sdop mesh model.obj --triangles 4000 --to coarse.tri"
 )]
 pub struct Args {
     /// The mesh; the extension names its format
@@ -31,9 +31,11 @@ pub struct Args {
     /// Write the mesh to this file, in the format that its extension names
     #[arg(long, value_name = "FILE")]
     to: Option<PathBuf>,
+    /// Collapse edges first, until the mesh has at most so many triangles
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    triangles: Option<u32>,
     /// The dialect of a .tri file, where several fit
-    #[arg(long, value_name = "DIALECT", value_parser = PossibleValuesParser::new(TriFormat::ALL.map(TriFormat::name))
-        .try_map(|name| TriFormat::from_name(&name).ok_or("no such dialect")))]
+    #[arg(long, value_name = "DIALECT", value_parser = one_of::<TriFormat>(TriFormat::NAMES))]
     tri_format: Option<TriFormat>,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
@@ -78,7 +80,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let options = ReadOptions {
         tri_format: args.tri_format,
     };
-    let mesh = read(&args.file, &options)?;
+    let mut mesh = read(&args.file, &options)?;
+    if let Some(most) = args.triangles {
+        mesh = decimate(&mesh, most as usize);
+    }
     if let Some(path) = &args.to {
         write(&mesh, path)?;
     }
