@@ -74,3 +74,8 @@ pub fn vertices() -> impl Strategy<Value = Vec<Vec3>> {
         },
     )
 }
+
+/// [`vertices`] with at least two different ones.
+pub fn extended() -> impl Strategy<Value = Vec<Vec3>> {
+    vertices().prop_filter("one point", |list| list.iter().any(|v| *v != list[0]))
+}
