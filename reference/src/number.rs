@@ -18,12 +18,18 @@ pub trait Number: Clone {
     fn lift(x: f64, unit: i32) -> Self;
     /// A small integer, free of units.
     fn integer(n: i32) -> Self;
+    /// The number x·2^(x_unit − unit), or x·2^x_unit where a common unit does not matter.
+    fn lift_integer(x: &IBig, x_unit: i32, unit: i32) -> Self;
     /// Sum.
     fn plus(&self, other: &Self) -> Self;
     /// Difference.
     fn minus(&self, other: &Self) -> Self;
     /// Product.
     fn times(&self, other: &Self) -> Self;
+    /// The larger of two.
+    fn larger(&self, other: &Self) -> Self;
+    /// The smaller of two.
+    fn smaller(&self, other: &Self) -> Self;
     /// The sign against zero, `None` when this kind of number cannot tell.
     fn sign(&self) -> Option<Ordering>;
 }
@@ -36,6 +42,9 @@ impl Number for f64 {
     fn integer(n: i32) -> Self {
         Self::from(n)
     }
+    fn lift_integer(x: &IBig, x_unit: i32, _unit: i32) -> Self {
+        x.to_f64().value() * power_of_two(x_unit)
+    }
     fn plus(&self, other: &Self) -> Self {
         self + other
     }
@@ -44,6 +53,12 @@ impl Number for f64 {
     }
     fn times(&self, other: &Self) -> Self {
         self * other
+    }
+    fn larger(&self, other: &Self) -> Self {
+        self.max(*other)
+    }
+    fn smaller(&self, other: &Self) -> Self {
+        self.min(*other)
     }
     fn sign(&self) -> Option<Ordering> {
         self.partial_cmp(&0.0)
@@ -56,13 +71,16 @@ impl Number for IBig {
         if mantissa == 0 {
             return Self::ZERO;
         }
-        // A unit above the number's own would drop bits: a bug here, never a property of the data.
-        let shift =
-            usize::try_from(exponent - unit).unwrap_or_else(|_| unreachable!("unit {unit} of {x}"));
-        Self::from(mantissa) << shift
+        Self::lift_integer(&Self::from(mantissa), exponent, unit)
     }
     fn integer(n: i32) -> Self {
         Self::from(n)
+    }
+    fn lift_integer(x: &IBig, x_unit: i32, unit: i32) -> Self {
+        // A unit above the number's own would drop bits: a bug here, never a property of the data.
+        let shift = usize::try_from(x_unit - unit);
+        x << shift
+            .unwrap_or_else(|_| unreachable!("2^{unit} does not divide a multiple of 2^{x_unit}"))
     }
     fn plus(&self, other: &Self) -> Self {
         self + other
@@ -72,6 +90,12 @@ impl Number for IBig {
     }
     fn times(&self, other: &Self) -> Self {
         self * other
+    }
+    fn larger(&self, other: &Self) -> Self {
+        self.max(other).clone()
+    }
+    fn smaller(&self, other: &Self) -> Self {
+        self.min(other).clone()
     }
     fn sign(&self) -> Option<Ordering> {
         Some(match (self.is_zero(), self.sign()) {

@@ -23,6 +23,8 @@ pub const DENOMINATOR: i32 = 12;
 pub struct Polytope {
     /// The basis as rows: ξ = basis·x.
     pub basis: Matrix<f64>,
+    /// Every entry of the basis is a multiple of 2^basis_unit.
+    pub basis_unit: i32,
     /// Coefficients c_i of the slab directions: the face normals in ξ.
     pub normals: Vec<[i32; 3]>,
     /// Lower slab ends, exact.
@@ -61,6 +63,7 @@ impl Polytope {
         check_basis(&basis)?;
         let widen = |ends: &[f32]| ends.iter().copied().map(f64::from).collect::<Vec<_>>();
         let (lo, hi) = (widen(&slabs.lo), widen(&slabs.hi));
+        let basis_unit = unit_of(basis.iter().flatten().copied());
         let unit = unit_of(lo.iter().chain(&hi).copied());
         let planes = Planes::new(&normals, &lo, &hi, unit);
         let (corners, edges) = planes.corners_and_edges();
@@ -71,6 +74,7 @@ impl Polytope {
             .collect();
         Ok(Self {
             basis,
+            basis_unit,
             normals,
             lo,
             hi,
@@ -84,6 +88,20 @@ impl Polytope {
     /// ‖b‖², one for all three columns.
     pub fn basis_norm_squared(&self) -> f64 {
         dot(&self.basis[0], &self.basis[0])
+    }
+
+    /// Slab ends are lengths times the basis: a length that is a multiple of this makes them multiples of `unit`.
+    pub fn length_unit(&self) -> i32 {
+        self.unit - self.basis_unit
+    }
+
+    /// The corners 12ξ where lengths are counted in 2^unit.
+    pub fn lift_corners<N: Number>(&self, unit: i32) -> Vec<Vector<N>> {
+        let lift = |x: &IBig| N::lift_integer(x, self.unit, unit + self.basis_unit);
+        self.corners
+            .iter()
+            .map(|corner| corner.each_ref().map(lift))
+            .collect()
     }
 
     /// Body-frame position of the coordinates ξ: x = Σ_j ξ_j b_j/‖b‖².

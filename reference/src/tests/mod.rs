@@ -4,5 +4,8 @@
     reason = "a test that cannot build its input has failed"
 )]
 
+mod exact_volumes;
+mod hard;
+mod rational;
 mod shapes;
 mod strategies;

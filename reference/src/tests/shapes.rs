@@ -1,5 +1,6 @@
 //! Procedural meshes, their volumes and random poses for the suites.
 
+use dashu_ratio::RBig;
 use proptest::prelude::*;
 
 use crate::linear::{Vector, dot, integers, transpose};
@@ -80,6 +81,39 @@ pub fn slabs(directions: DirectionSet, basis: [[f32; 3]; 3], vertices: &[[f32; 3
             outward(heights(*c).fold(f64::NEG_INFINITY, f64::max), true),
         )
     };
+    let (lo, hi) = directions.coefficients().iter().map(ends).unzip();
+    Slabs {
+        directions,
+        basis,
+        lo,
+        hi,
+    }
+}
+
+/// Slabs whose ends are the vertices' exact heights where an f32 holds them, infinite elsewhere.
+pub fn exact_slabs(directions: DirectionSet, basis: [[f32; 3]; 3], vertices: &[[f32; 3]]) -> Slabs {
+    let rational = |v: [f32; 3]| v.map(|x| super::rational::rational(f64::from(x)));
+    let columns = basis.map(rational);
+    let end = |c: &[i32; 3], highest: bool| {
+        let heights = vertices.iter().map(|v| {
+            let h = [0, 1, 2]
+                .map(|j| super::rational::dot(&columns[j], &rational(*v)) * RBig::from(c[j]));
+            h.into_iter().fold(RBig::ZERO, |sum, x| sum + x)
+        });
+        let exact = if highest {
+            heights.max()
+        } else {
+            heights.min()
+        }
+        .unwrap();
+        let nearest = exact.to_f32().value();
+        if super::rational::rational(f64::from(nearest)) == exact {
+            nearest
+        } else {
+            f32::INFINITY
+        }
+    };
+    let ends = |c: &[i32; 3]| (end(c, false), end(c, true));
     let (lo, hi) = directions.coefficients().iter().map(ends).unzip();
     Slabs {
         directions,
