@@ -8,6 +8,7 @@
 //! is x ↦ R(q)x/|q|² + t. Volumes are the exactly posed, uninflated ones; touching counts as overlap.
 
 pub mod broad_phase;
+pub mod containment;
 pub mod cost;
 pub mod exact;
 pub mod linear;

@@ -1,6 +1,9 @@
 //! Bounding volumes as plain numbers in the body frame (design, section 2): built elsewhere, judged here.
 
+use std::sync::OnceLock;
+
 use crate::InvalidInput;
+use crate::exact::mesh::Mesh;
 use crate::exact::polytope::Polytope;
 use crate::linear::Vector;
 
@@ -94,6 +97,7 @@ pub struct Shape {
     pub vertices: Vec<[f32; 3]>,
     /// Vertex triples.
     pub triangles: Vec<[u32; 3]>,
+    mesh: OnceLock<Mesh>,
 }
 
 impl Shape {
@@ -123,6 +127,7 @@ impl Shape {
             obb,
             vertices,
             triangles,
+            mesh: OnceLock::new(),
         })
     }
 
@@ -135,6 +140,12 @@ impl Shape {
             obb: Polytope::new(slabs)?,
             ..self
         })
+    }
+
+    /// The mesh prepared for exact judgement, at first use.
+    pub fn mesh(&self) -> &Mesh {
+        self.mesh
+            .get_or_init(|| Mesh::checked(&self.vertices, &self.triangles))
     }
 
     /// The vertices in f64.

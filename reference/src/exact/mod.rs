@@ -9,12 +9,22 @@
 //! [`Path`] says which stage it was. A stage that cannot tell stays silent, so overflow, underflow and NaN fall through.
 
 pub mod axes;
+mod flat;
 pub mod interval;
+pub mod judge;
+pub mod meeting;
+pub mod mesh;
 pub mod ordop;
+pub mod orientation;
+pub mod parity;
 pub mod polytope;
 pub mod relative;
 pub mod simplex;
 pub mod sphere;
+pub mod tree;
+pub mod triangle;
+pub mod view;
+pub mod world;
 
 pub use interval::Interval;
 
@@ -69,14 +79,48 @@ impl Tally {
         }
     }
 
+    /// Adds another count.
+    pub fn add(&mut self, other: &Self) {
+        self.filter += other.filter;
+        self.interval += other.interval;
+        self.exact += other.exact;
+    }
+
     /// All decisions.
     pub fn total(&self) -> u64 {
         self.filter + self.interval + self.exact
     }
 }
 
+/// What a decision made of many took.
+#[derive(Clone, Copy, Debug)]
+pub struct Record {
+    /// The parts by stage.
+    pub tally: Tally,
+    /// The deepest stage of any part.
+    pub deepest: Path,
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self {
+            tally: Tally::default(),
+            deepest: Path::Filter,
+        }
+    }
+}
+
+impl Record {
+    /// Counts a part and hands on its answer.
+    fn note<T>(&mut self, decision: Decision<T>) -> T {
+        self.tally.count(decision.path);
+        self.deepest = self.deepest.max(decision.path);
+        decision.value
+    }
+}
+
 /// The first certain answer. Integers know every sign, so the last stage always has one.
-fn cascade<T>(
+pub(crate) fn cascade<T>(
     filter: impl FnOnce() -> Option<T>,
     interval: impl FnOnce() -> Option<T>,
     exact: impl FnOnce() -> Option<T>,

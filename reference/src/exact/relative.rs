@@ -54,10 +54,20 @@ impl<N: Number> Relative<N> {
     pub fn map(&self, y: &Vector<N>) -> Vector<N> {
         add(&apply(&self.matrix, y), &self.offset)
     }
+
+    /// s x for a point of A's own frame.
+    pub fn own(&self, x: &Vector<f64>, unit: i32) -> Vector<N> {
+        scale(&self.scale, &x.map(|x| N::lift(x, unit)))
+    }
+
+    /// M y + w for a point of B's frame.
+    pub fn seen(&self, y: &Vector<f64>, unit: i32) -> Vector<N> {
+        self.map(&y.map(|y| N::lift(y, unit)))
+    }
 }
 
 /// The quaternion, scaled by powers of two: the rotation does not notice, and f64 neither overflows nor underflows.
-fn quaternion<N: Number>(pose: &Pose) -> [N; 4] {
+pub(crate) fn quaternion<N: Number>(pose: &Pose) -> [N; 4] {
     let q = pose.quaternion();
     let largest = q.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     // f32 numbers are normal in f64: the exponent field is the binary exponent.

@@ -6,7 +6,7 @@ use dashu_int::IBig;
 
 use super::relative::{Approximate, Relative, largest};
 use super::{Decision, Interval, cascade};
-use crate::linear::{dot, scale, sub};
+use crate::linear::{Vector, dot, sub};
 use crate::number::{Number, unit_of};
 use crate::pose::{Body, Pose};
 use crate::volume::Ball;
@@ -41,24 +41,35 @@ pub(crate) fn common_unit(a: (&Ball, &Pose), b: (&Ball, &Pose)) -> i32 {
 pub(crate) fn judge<N: Number>(a: (&Ball, &Pose), b: (&Ball, &Pose), unit: i32) -> Option<bool> {
     let relative = Relative::<N>::between(a.1, b.1, unit);
     let lift = |x: f32| N::lift(f64::from(x), unit);
-    let centre_a = scale(&relative.scale, &a.0.centre.map(lift));
-    let d = sub(&relative.map(&b.0.centre.map(lift)), &centre_a);
+    let [centre_a, centre_b] = [a.0.centre, b.0.centre].map(|c| c.map(f64::from));
+    let d = sub(
+        &relative.seen(&centre_b, unit),
+        &relative.own(&centre_a, unit),
+    );
     let reach = relative
         .scale
         .times(&lift(a.0.radius).plus(&lift(b.0.radius)));
     Some(reach.times(&reach).minus(&dot(&d, &d)).sign()? != Ordering::Less)
 }
 
-/// d̂² − r̂² is off by less than 6δ|d|∞ + 3δ² from the coordinates and 4u(d² + r²) from its own operations, where δ
-/// bounds the error of a mapped coordinate and of the subtraction.
 pub(crate) fn filter(a: (&Ball, &Pose), b: (&Ball, &Pose)) -> Option<bool> {
     let relative = Approximate::between(a.1, b.1);
     let (centre_a, centre_b) = (a.0.centre.map(f64::from), b.0.centre.map(f64::from));
     let d = sub(&relative.map(&centre_b), &centre_a);
-    let reach = f64::from(a.0.radius) + f64::from(b.0.radius);
-    let (distance, reach) = (dot(&d, &d), reach * reach);
-    let error = relative.error(largest(&centre_b)) + f64::EPSILON * largest(&d);
-    let bound = 8.0 * error * (largest(&d) + error) + 4.0 * f64::EPSILON * (distance + reach);
+    compare(
+        &d,
+        relative.error(largest(&centre_b)),
+        f64::from(a.0.radius) + f64::from(b.0.radius),
+    )
+}
+
+/// ‖d‖ ≤ reach? in f64. d̂² − r̂² is off by less than 6δ|d|∞ + 3δ² from the coordinates and 4u(d² + r²) from its own
+/// operations, where δ bounds the error of d before the last subtraction and that subtraction's, and the reach is
+/// the rounded sum or difference of two f32.
+pub(crate) fn compare(d: &Vector<f64>, error: f64, reach: f64) -> Option<bool> {
+    let (distance, reach) = (dot(d, d), reach * reach);
+    let error = error + f64::EPSILON * largest(d);
+    let bound = 8.0 * error * (largest(d) + error) + 4.0 * f64::EPSILON * (distance + reach);
     match reach - distance {
         gap if gap > bound => Some(true),
         gap if gap < -bound => Some(false),

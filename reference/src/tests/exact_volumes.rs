@@ -24,7 +24,11 @@ fn touching_radius(draws: &mut Draws, a: (&Ball, &Pose), b: (&Ball, &Pose)) -> f
 
 fn ball(draws: &mut Draws, case: &Case) -> Ball {
     let scale = power_of_two(case.size) as f32;
-    let reach = if draws.bits() % 2 == 0 { 0.0 } else { 4.0 };
+    let reach = if draws.bits().is_multiple_of(2) {
+        0.0
+    } else {
+        4.0
+    };
     let centre = [(); 3].map(|()| draws.signed(reach).trunc() / 4.0 * scale);
     Ball {
         centre,
@@ -225,7 +229,7 @@ fn certificates_that_do_not_hold_are_refused() {
         .unwrap()
     };
     let (small, large) = (cube(1.0), cube(2.0));
-    let at = |x: f32| crate::Pose::new([0.0, 0.0, 0.0, 2.0], [x, 0.0, 0.0]).unwrap();
+    let at = |x: f32| Pose::new([0.0, 0.0, 0.0, 2.0], [x, 0.0, 0.0]).unwrap();
     let (origin, touching, beyond) = (at(0.0), at(3.0), at(3.0f32.next_up()));
     let touch = ordop::meet((&origin, &small), (&touching, &large));
     let miss = ordop::meet((&origin, &small), (&beyond, &large));

@@ -4,8 +4,11 @@
     reason = "a test that cannot build its input has failed"
 )]
 
+mod containment;
+mod exact_meshes;
 mod exact_volumes;
 mod hard;
 mod rational;
+mod scenes;
 mod shapes;
 mod strategies;

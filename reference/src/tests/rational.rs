@@ -4,6 +4,7 @@
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 
+use crate::exact::mesh::Mesh;
 use crate::number::dyadic;
 use crate::{Ball, Pose};
 
@@ -87,5 +88,118 @@ pub fn separates(axis: &Rational3, a: &[Rational3], b: &[Rational3]) -> bool {
     match (range(a), range(b)) {
         (Some((lo_a, hi_a)), Some((lo_b, hi_b))) => hi_a < lo_b || hi_b < lo_a,
         _ => true,
+    }
+}
+
+/// Whether two triangles of any kind share a point: no axis of a set that is complete for points, segments and
+/// triangles separates them. Edges give normals (edge × edge), in-plane normals (normal × edge) and lines (edges,
+/// differences of corners).
+pub fn triangles_meet(a: &[Rational3; 3], b: &[Rational3; 3]) -> bool {
+    let lines: Vec<Rational3> = [a, b]
+        .iter()
+        .flat_map(|t| [(0, 1), (1, 2), (2, 0)].map(|(i, j)| sub(&t[j], &t[i])))
+        .collect();
+    let apart = |axis: &Rational3| separates(axis, a, b);
+    let between: Vec<Rational3> = a
+        .iter()
+        .flat_map(|p| b.iter().map(move |q| sub(q, p)))
+        .collect();
+    if lines.iter().chain(&between).any(&apart) {
+        return false;
+    }
+    let crossed = |u: &[Rational3], v: &[Rational3]| -> Vec<Rational3> {
+        u.iter()
+            .flat_map(|x| v.iter().map(move |y| cross(x, y)))
+            .collect()
+    };
+    let normals = crossed(&lines, &lines);
+    if normals.iter().any(&apart) {
+        return false;
+    }
+    // Perpendicular to a line and as near as may be to a difference: what tells a segment from a point beside it.
+    let beside: Vec<Rational3> = lines
+        .iter()
+        .flat_map(|l| between.iter().map(|d| cross(&cross(l, d), l)))
+        .collect();
+    !crossed(&normals, &lines).iter().chain(&beside).any(apart)
+}
+
+/// Triangles in world coordinates.
+pub fn world_triangles((mesh, pose): (&Mesh, &Pose)) -> Vec<[Rational3; 3]> {
+    let corner = |p: &[f64; 3]| posed(pose, &p.map(rational));
+    mesh.triangles
+        .iter()
+        .map(|t| t.each_ref().map(corner))
+        .collect()
+}
+
+/// Whether two posed meshes intersect: every pair of triangles, then a ray from every vertex.
+pub fn meshes_meet(a: (&Mesh, &Pose), b: (&Mesh, &Pose)) -> bool {
+    let (world_a, world_b) = (world_triangles(a), world_triangles(b));
+    let touching = world_a
+        .iter()
+        .any(|t| world_b.iter().any(|s| triangles_meet(t, s)));
+    touching || some_inside(&world_a, a.0, &world_b) || some_inside(&world_b, b.0, &world_a)
+}
+
+fn some_inside(triangles: &[[Rational3; 3]], mesh: &Mesh, others: &[[Rational3; 3]]) -> bool {
+    let closed = (0..mesh.components.len()).filter(|c| mesh.components[*c].closed);
+    let mut shells = closed.map(|c| {
+        let of_shell = triangles
+            .iter()
+            .zip(&mesh.component_of)
+            .filter(|(_, of)| **of as usize == c);
+        of_shell.map(|(t, _)| t.clone()).collect::<Vec<_>>()
+    });
+    shells.any(|shell| {
+        others
+            .iter()
+            .flatten()
+            .any(|point| odd_crossings(&shell, point))
+    })
+}
+
+/// Ray parity by solving point + s·direction = a + u(b − a) + v(c − a); the next direction when a ray meets a border.
+fn odd_crossings(shell: &[[Rational3; 3]], point: &Rational3) -> bool {
+    let directions = (1..).map(|n: i32| {
+        [
+            RBig::from(n),
+            RBig::from(7 * n * n + 1),
+            RBig::from(3 - 5 * n),
+        ]
+    });
+    let counts = |direction: &Rational3| {
+        let hits = shell
+            .iter()
+            .map(|t| ray_hits(t, point, direction))
+            .collect::<Option<Vec<bool>>>()?;
+        Some(hits.into_iter().filter(|hit| *hit).count() % 2 == 1)
+    };
+    directions.take(50).find_map(|d| counts(&d)).unwrap()
+}
+
+fn ray_hits([a, b, c]: &[Rational3; 3], point: &Rational3, direction: &Rational3) -> Option<bool> {
+    let (e, f, p) = (sub(b, a), sub(c, a), sub(point, a));
+    let normal = cross(&e, &f);
+    let determinant = dot(&normal, direction);
+    if normal.iter().all(|x| *x == RBig::ZERO) {
+        return Some(false);
+    }
+    if determinant == RBig::ZERO {
+        return if dot(&normal, &p) == RBig::ZERO {
+            None
+        } else {
+            Some(false)
+        };
+    }
+    let ahead = -dot(&normal, &p) / &determinant;
+    let u = dot(&cross(&f, direction), &p) / &determinant;
+    let v = dot(&cross(direction, &e), &p) / &determinant;
+    let w = RBig::ONE - &u - &v;
+    let smallest = ahead.min(u).min(v).min(w);
+    if smallest == RBig::ZERO {
+        None
+    } else {
+        Some(smallest > RBig::ZERO)
     }
 }

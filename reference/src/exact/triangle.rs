@@ -1,0 +1,145 @@
+//! Do two triangles share a point? Closed, and as degenerate as they like: a segment, a point.
+//!
+//! Two triangles in different planes meet iff an edge of one pierces the other (Guigue & Devillers 2003 order the same
+//! signs). With all three corners of one on the other's plane the two are coplanar or one is degenerate; that is left
+//! to [`super::flat`], in integers, as no rounded number can tell it.
+
+use std::cmp::Ordering;
+
+use dashu_int::IBig;
+
+use super::flat;
+use super::orientation::{Bounded, Known, Side};
+use super::{Decision, Interval, cascade};
+use crate::linear::Vector;
+
+/// Corners of a triangle.
+pub type Triangle<P> = [P; 3];
+
+/// Whether two triangles meet: `rounded` ones whose second is off by at most `error` in each coordinate (the first is
+/// exact), and the same two in intervals and integers.
+pub fn meet(
+    rounded: [&Triangle<Vector<f64>>; 2],
+    error: f64,
+    interval: impl FnOnce() -> [Triangle<Vector<Interval>>; 2],
+    exact: impl FnOnce() -> [Triangle<Vector<IBig>>; 2],
+) -> Decision<bool> {
+    cascade(
+        || filter(rounded, error),
+        || enclosed(&interval()),
+        || integral(&exact()),
+    )
+}
+
+/// f64: boxes apart, then the signs.
+pub(crate) fn filter([a, b]: [&Triangle<Vector<f64>>; 2], error: f64) -> Option<bool> {
+    let low = |t: &Triangle<Vector<f64>>, i: usize| t[0][i].min(t[1][i]).min(t[2][i]);
+    let high = |t: &Triangle<Vector<f64>>, i: usize| t[0][i].max(t[1][i]).max(t[2][i]);
+    let gap = |i: usize| (low(b, i) - high(a, i)).max(low(a, i) - high(b, i));
+    if (0..3).any(|i| gap(i) > 2.0 * error) {
+        return Some(false);
+    }
+    let sides = Bounded::new(&a[0], a.iter().chain(b), error);
+    contact(&sides, a, b)?.certain()
+}
+
+/// Intervals: the signs alone.
+pub(crate) fn enclosed([a, b]: &[Triangle<Vector<Interval>>; 2]) -> Option<bool> {
+    contact(&Known::stage(), a, b)?.certain()
+}
+
+/// Integers: the signs, and what they leave open.
+pub(crate) fn integral([a, b]: &[Triangle<Vector<IBig>>; 2]) -> Option<bool> {
+    let contact = contact(&Known::stage(), a, b)?;
+    contact.certain().or_else(|| Some(flat::meet(a, b)))
+}
+
+/// How two triangles lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Contact {
+    Apart,
+    Meet,
+    /// Coplanar, or one of them is degenerate.
+    Flat,
+}
+
+impl Contact {
+    fn certain(self) -> Option<bool> {
+        match self {
+            Self::Apart => Some(false),
+            Self::Meet => Some(true),
+            Self::Flat => None,
+        }
+    }
+}
+
+fn contact<S: Side>(sides: &S, a: &Triangle<S::Point>, b: &Triangle<S::Point>) -> Option<Contact> {
+    let of = |plane: &Triangle<S::Point>, t: &Triangle<S::Point>| {
+        let plane = plane.each_ref();
+        t.each_ref().map(|corner| sides.side(plane, corner))
+    };
+    let corners_a = of(b, a);
+    if one_side(&corners_a) {
+        return Some(Contact::Apart);
+    }
+    let corners_b = of(a, b);
+    if one_side(&corners_b) {
+        return Some(Contact::Apart);
+    }
+    let (corners_a, corners_b) = (known(corners_a)?, known(corners_b)?);
+    if [corners_a, corners_b].contains(&[Ordering::Equal; 3]) {
+        return Some(Contact::Flat);
+    }
+    for (t, signs, plane) in [(a, corners_a, b), (b, corners_b, a)] {
+        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+            if signs[i] != signs[j] && pierces(sides, [&t[i], &t[j]], plane)? {
+                return Some(Contact::Meet);
+            }
+        }
+    }
+    Some(Contact::Apart)
+}
+
+fn one_side(signs: &[Option<Ordering>; 3]) -> bool {
+    [Ordering::Greater, Ordering::Less]
+        .iter()
+        .any(|side| signs.iter().all(|sign| *sign == Some(*side)))
+}
+
+fn known(signs: [Option<Ordering>; 3]) -> Option<[Ordering; 3]> {
+    Some([signs[0]?, signs[1]?, signs[2]?])
+}
+
+/// Does the line pq, which crosses the triangle's plane in one point, cross it inside? It does when it passes all
+/// three edges on the same side, touching included.
+pub fn pierces<S: Side>(sides: &S, [p, q]: [&S::Point; 2], t: &Triangle<S::Point>) -> Option<bool> {
+    let signs = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| sides.side([p, q, &t[i]], &t[j]));
+    let any = |side: Ordering| signs.contains(&Some(side));
+    if any(Ordering::Greater) && any(Ordering::Less) {
+        return Some(false);
+    }
+    known(signs).map(|_| true)
+}
+
+/// Does the segment pq cross the triangle's interior? The inner `None` means that it touches the border or runs in
+/// the plane; the outer one that the stage cannot tell.
+pub fn crossing<S: Side>(
+    sides: &S,
+    [p, q]: [&S::Point; 2],
+    t: &Triangle<S::Point>,
+) -> Option<Option<bool>> {
+    let ends = [p, q].map(|end| sides.side(t.each_ref(), end));
+    if ends[0] == ends[1] && matches!(ends[0], Some(Ordering::Greater | Ordering::Less)) {
+        return Some(Some(false));
+    }
+    let passes = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| sides.side([p, q, &t[i]], &t[j]));
+    if passes.contains(&Some(Ordering::Greater)) && passes.contains(&Some(Ordering::Less)) {
+        return Some(Some(false));
+    }
+    let signs = [ends[0]?, ends[1]?, passes[0]?, passes[1]?, passes[2]?];
+    Some(if signs.contains(&Ordering::Equal) {
+        None
+    } else {
+        Some(true)
+    })
+}
