@@ -11,7 +11,7 @@ use dashu_int::IBig;
 
 use super::axes::{Corners, Posed, Rounded, Separation, common_unit};
 use super::relative::{Approximate, Relative, largest};
-use super::simplex::{Optimum, Row, maximise};
+use super::simplex::{Effort, Optimum, Row, maximise};
 use super::{Decision, Interval, Path, axes};
 use crate::linear::{Vector, add, apply, dot, integers, scale};
 use crate::number::{Number, unit_of};
@@ -78,7 +78,7 @@ pub fn meet(a: Posed, b: Posed) -> Decision<Certificate> {
             path: Path::Exact,
         };
     }
-    let guess = maximise(&rounded_rows(a, b), START, GUESSES);
+    let guess = guess(a, b);
     if let Some(guess) = &guess
         && let Some(path) = confirm(a, b, guess)
     {
@@ -95,6 +95,8 @@ pub fn meet(a: Posed, b: Posed) -> Decision<Certificate> {
 
 /// Rows −x, x, y, z of A: multipliers (½, ½, 0, 0) start the dual method.
 pub(crate) const START: [usize; 4] = [0, 1, 3, 5];
+/// Relative violations that rounding explains.
+const DIGITS: f64 = 512.0 * f64::EPSILON;
 /// Pivots after which a guess in f64 is as good as it will be.
 const GUESSES: usize = 48;
 
@@ -137,17 +139,23 @@ fn rows<N: Number>(
     rows
 }
 
-fn rounded_rows(a: Posed, b: Posed) -> Vec<Row<f64>> {
+/// The program in f64, to no more digits than it has.
+fn guess(a: Posed, b: Posed) -> Option<Optimum<f64>> {
     let Approximate { matrix, offset, .. } = Approximate::over(b, a);
-    rows(
-        a,
-        &Relative {
-            matrix,
-            offset,
-            scale: 1.0,
+    let map = Relative {
+        matrix,
+        offset,
+        scale: 1.0,
+    };
+    let rows = rows(a, &map, b, [0, 0]);
+    let size = rows.iter().map(|row| row.end.abs()).fold(0.0, f64::max);
+    maximise(
+        &rows,
+        START,
+        &Effort {
+            tolerance: DIGITS * size,
+            pivots: GUESSES,
         },
-        b,
-        [0, 0],
     )
 }
 
@@ -224,7 +232,16 @@ pub(crate) fn solve(a: Posed, b: Posed, start: [usize; 4]) -> Certificate {
     let unit = common_unit(a, b);
     let map = Relative::<IBig>::between(b.0, a.0, unit).over(b.1, a.1);
     let rows = rows(a, &map, b, [unit + a.1.basis_unit, unit + b.1.basis_unit]);
-    let from = |start| maximise(&rows, start, usize::MAX);
+    let from = |start| {
+        maximise(
+            &rows,
+            start,
+            &Effort {
+                tolerance: IBig::ZERO,
+                pivots: usize::MAX,
+            },
+        )
+    };
     let optimum = from(start).or_else(|| from(START));
     let optimum =
         optimum.unwrap_or_else(|| unreachable!("integers know every sign and START is a start"));

@@ -7,7 +7,6 @@
 
 use std::cmp::Ordering;
 
-use crate::linear::{cross, dot};
 use crate::number::Number;
 
 /// The half-space n·z + ω t ≤ h as [n_x, n_y, n_z, ω].
@@ -35,22 +34,36 @@ pub struct Optimum<N> {
 /// Steepest pivots before Bland's rule.
 const STEEPEST: usize = 24;
 
-/// The optimum from a start basis, at most `pivots` later; `None` if a sign is unknown or the basis is no start.
+/// When to be content.
+pub struct Effort<N> {
+    /// Violations of no more than this are none. Zero for numbers that do not round.
+    pub tolerance: N,
+    /// Pivots at most.
+    pub pivots: usize,
+}
+
+/// The optimum from a start basis; `None` if a sign is unknown or the basis is no start.
 pub fn maximise<N: Number>(
     rows: &[Row<N>],
     start: [usize; 4],
-    pivots: usize,
+    effort: &Effort<N>,
 ) -> Option<Optimum<N>> {
     let mut basis = start;
     for pivot in 0.. {
         let inverse = Inverse::of(rows, basis)?;
         let solution = inverse.solution(rows, basis);
-        let multipliers = inverse.rows[3].clone();
+        let multipliers = inverse.multipliers();
         if pivot == 0 && multipliers.iter().any(|m| m.sign() == Some(Ordering::Less)) {
             return None;
         }
-        match entering(rows, &solution, &inverse.determinant, pivot < STEEPEST)? {
-            Some(row) if pivot < pivots => basis[inverse.leaving(&rows[row], basis)?] = row,
+        match entering(
+            rows,
+            &solution,
+            &inverse.determinant,
+            &effort.tolerance,
+            pivot < STEEPEST,
+        )? {
+            Some(row) if pivot < effort.pivots => basis[inverse.leaving(&rows[row], basis)?] = row,
             _ => {
                 return Some(Optimum {
                     basis,
@@ -69,11 +82,13 @@ fn entering<N: Number>(
     rows: &[Row<N>],
     solution: &[N; 4],
     determinant: &N,
+    tolerance: &N,
     steepest: bool,
 ) -> Option<Option<usize>> {
     let mut worst: Option<(usize, N)> = None;
     for (i, row) in rows.iter().enumerate() {
-        let violation = product(&row.normal, solution).minus(&determinant.times(&row.end));
+        let end = determinant.times(&row.end.plus(tolerance));
+        let violation = product(&row.normal, solution).minus(&end);
         if violation.sign()? != Ordering::Greater {
             continue;
         }
@@ -88,71 +103,70 @@ fn entering<N: Number>(
     Some(worst.map(|(i, _)| i))
 }
 
-/// The adjugate of the basis rows, signed so that the determinant is positive.
+/// The inverse of the basis rows times the determinant, by columns, signed so that the determinant is positive.
 struct Inverse<N> {
-    rows: [[N; 4]; 4],
+    columns: [[N; 4]; 4],
     determinant: N,
 }
 
 impl<N: Number> Inverse<N> {
+    /// A column is perpendicular to the three other rows: their four-dimensional cross product, signs alternating.
     fn of(rows: &[Row<N>], basis: [usize; 4]) -> Option<Self> {
-        let m = basis.map(|i| &rows[i].normal);
-        let cofactor = |i: usize, j: usize| {
-            let others = |skip: usize| [0, 1, 2, 3].into_iter().filter(move |k| *k != skip);
-            let mut kept = others(i).map(|r| {
-                let mut entries = others(j).map(|c| m[r][c].clone());
-                [(); 3].map(|()| entries.next().unwrap_or_else(|| N::integer(0)))
-            });
-            let [a, b, c] = [(); 3].map(|()| {
-                kept.next()
-                    .unwrap_or_else(|| [(); 3].map(|()| N::integer(0)))
-            });
-            let minor = dot(&a, &cross(&b, &c));
-            if (i + j).is_multiple_of(2) {
-                minor
-            } else {
-                N::integer(0).minus(&minor)
-            }
-        };
-        let adjugate = [0, 1, 2, 3].map(|j| [0, 1, 2, 3].map(|i| cofactor(i, j)));
-        let determinant = product(m[0], &[0, 1, 2, 3].map(|j| adjugate[j][0].clone()));
+        let [a, b, c, d] = basis.map(|i| &rows[i].normal);
+        let columns = [
+            perpendicular(b, c, d),
+            perpendicular(a, d, c),
+            perpendicular(a, b, d),
+            perpendicular(b, a, c),
+        ];
+        let determinant = product(a, &columns[0]);
         match determinant.sign()? {
             Ordering::Greater => Some(Self {
-                rows: adjugate,
+                columns,
                 determinant,
             }),
             Ordering::Less => {
-                let negate = |x: &N| N::integer(0).minus(x);
-                let rows = adjugate.each_ref().map(|row| row.each_ref().map(negate));
+                let negate = |x: N| N::integer(0).minus(&x);
                 Some(Self {
-                    rows,
-                    determinant: negate(&determinant),
+                    columns: columns.map(|column| column.map(negate)),
+                    determinant: negate(determinant),
                 })
             }
             Ordering::Equal => None,
         }
     }
 
+    /// z and t where the basis rows hold with equality.
     fn solution(&self, rows: &[Row<N>], basis: [usize; 4]) -> [N; 4] {
         let ends = basis.map(|i| rows[i].end.clone());
-        self.rows.each_ref().map(|row| product(row, &ends))
+        [0, 1, 2, 3].map(|k| {
+            product(
+                &ends,
+                &self.columns.each_ref().map(|column| column[k].clone()),
+            )
+        })
+    }
+
+    /// λ with Σ λ_i row_i = (0, 0, 0, 1).
+    fn multipliers(&self) -> [N; 4] {
+        self.columns.each_ref().map(|column| column[3].clone())
     }
 
     /// Which basis row the entering one replaces so that all multipliers stay ≥ 0: the least λ_j/μ_j with μ_j > 0,
     /// where the entering row is Σ μ_j row_j. Ties go to the lowest row number (Bland).
     fn leaving(&self, entering: &Row<N>, basis: [usize; 4]) -> Option<usize> {
+        let multipliers = self.multipliers();
         let mut least: Option<(usize, N)> = None;
         for j in 0..4 {
-            let column = [0, 1, 2, 3].map(|k| self.rows[k][j].clone());
-            let mu = product(&entering.normal, &column);
+            let mu = product(&entering.normal, &self.columns[j]);
             if mu.sign()? != Ordering::Greater {
                 continue;
             }
             let replace = match &least {
                 None => true,
                 Some((i, best)) => {
-                    let lambda = |n: usize| &self.rows[3][n];
-                    match lambda(j).times(best).minus(&lambda(*i).times(&mu)).sign()? {
+                    let (new, old) = (multipliers[j].times(best), multipliers[*i].times(&mu));
+                    match new.minus(&old).sign()? {
                         Ordering::Less => true,
                         Ordering::Equal => basis[j] < basis[*i],
                         Ordering::Greater => false,
@@ -172,4 +186,25 @@ fn product<N: Number>(a: &[N; 4], b: &[N; 4]) -> N {
         .plus(&a[1].times(&b[1]))
         .plus(&a[2].times(&b[2]))
         .plus(&a[3].times(&b[3]))
+}
+
+/// The vector whose product with x is det(x, a, b, c).
+fn perpendicular<N: Number>(a: &[N; 4], b: &[N; 4], c: &[N; 4]) -> [N; 4] {
+    let minor = |i: usize, j: usize| b[i].times(&c[j]).minus(&b[j].times(&c[i]));
+    let [m01, m02, m03, m12, m13, m23] = [
+        minor(0, 1),
+        minor(0, 2),
+        minor(0, 3),
+        minor(1, 2),
+        minor(1, 3),
+        minor(2, 3),
+    ];
+    let zero = N::integer(0);
+    let sum = |x: N, y: N, z: N| x.minus(&y).plus(&z);
+    [
+        sum(a[1].times(&m23), a[2].times(&m13), a[3].times(&m12)),
+        zero.minus(&sum(a[0].times(&m23), a[2].times(&m03), a[3].times(&m02))),
+        sum(a[0].times(&m13), a[1].times(&m03), a[3].times(&m01)),
+        zero.minus(&sum(a[0].times(&m12), a[1].times(&m02), a[2].times(&m01))),
+    ]
 }
