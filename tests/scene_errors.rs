@@ -60,8 +60,8 @@ fn unknown_keys_and_names_suggest_the_nearest() {
     );
     assert_eq!(
         changed("walls", "wals"),
-        "a.toml:12:1: unknown field `wals`, expected one of `gravity`, `brownian`, `response`, `motion`, `walls`, \
-         `spin` | did you mean `walls`?"
+        "a.toml:12:1: unknown field `wals`, expected one of `gravity`, `brownian`, `response`, `motion`, `spin`, \
+         `walls` | did you mean `walls`?"
     );
     assert_eq!(
         changed("\"specular\"", "\"bouncy\""),

@@ -79,14 +79,15 @@ macro_rules! effects {
     };
 }
 
-// Velocities first, then positions from the new velocities (semi-implicit Euler), then what the box does to them.
+// Velocities first, then poses from the new velocities (semi-implicit Euler), and the walls last, so that
+// every frame's spheres lie inside of them.
 effects! {
     gravity,
     brownian,
     response,
     motion,
-    walls,
     spin,
+    walls,
 }
 
 /// What an effect did in a run, and its price.

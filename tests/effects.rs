@@ -1,0 +1,407 @@
+//! Effects: only what a scene lists runs, static bodies stay as they are, and each effect does what its equation says.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::Path;
+
+use sdop::effects::{Effects, NAMES};
+use sdop::scene::bodies::Bodies;
+use sdop::scene::{Scene, SceneFile};
+
+fn scene(text: &str) -> Scene {
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
+    let text = format!("name = \"e\"\nframes = 10\ndt = 0.125\n{text}");
+    SceneFile::parse(&text, "e.toml", &directory)
+        .and_then(|file| file.build())
+        .unwrap()
+}
+
+/// Forty moving and ten static bodies of two sizes in a box of side 12, with the given `[effects]`.
+fn crowd(effects: &str) -> Scene {
+    scene(&format!(
+        "[box]\nside = 12\n\
+         [[bodies]]\nshape = \"box\"\ncount = 25\nradius = 1\nspeed = [1, 3]\n\
+         [[bodies]]\nshape = \"torus\"\ncount = 10\nradius = 0.7\nstatic = true\n\
+         [[bodies]]\nmesh = \"../meshes/spot.tri\"\norigin = \"file\"\ncount = 15\nspeed = [1, 3]\n\
+         [effects]\n{effects}\n"
+    ))
+}
+
+/// One cube of radius 1 at `pose` with `velocity`, in a box of side 10.
+fn single(pose: &str, velocity: &str, effects: &str) -> Scene {
+    scene(&format!(
+        "[box]\nside = 10\n[[bodies]]\nshape = \"box\"\nradius = 1\nposes = [{pose}]\nvelocities = [{velocity}]\n\
+         [effects]\n{effects}\n"
+    ))
+}
+
+fn after(scene: &Scene, steps: usize) -> Bodies {
+    let mut bodies = scene.bodies.clone();
+    let mut effects = Effects::new(scene).unwrap();
+    for _ in 0..steps {
+        effects.step(&mut bodies).unwrap();
+    }
+    bodies
+}
+
+const ALL: [&str; 6] = [
+    "gravity = { acceleration = [0, 0, -1] }",
+    "brownian = { share = 0.5, speed = 1 }",
+    "response = \"elastic\"",
+    "motion = true",
+    "spin = { rate = 1 }",
+    "walls = \"specular\"",
+];
+
+#[test]
+fn only_listed_effects_run() {
+    for (listed, (line, name)) in ALL.iter().zip(NAMES).enumerate() {
+        assert!(line.starts_with(name));
+        let scene = crowd(line);
+        let mut effects = Effects::new(&scene).unwrap();
+        let mut bodies = scene.bodies.clone();
+        for _ in 0..3 {
+            effects.step(&mut bodies).unwrap();
+        }
+        for (place, report) in effects.reports().iter().enumerate() {
+            assert_eq!(
+                (report.name, report.listed),
+                (NAMES[place], place == listed)
+            );
+            if place == listed {
+                assert_eq!((report.steps, report.visited), (3, 3 * 40));
+            } else {
+                assert_eq!(
+                    (report.steps, report.visited, report.changed, report.seconds),
+                    (0, 0, 0, 0.0)
+                );
+            }
+        }
+        // An effect changes its own columns alone.
+        let start = &scene.bodies;
+        assert!(bodies.translation == start.translation || *name == "motion");
+        assert!(bodies.rotation == start.rotation || *name == "spin");
+        assert!(
+            bodies.velocity == start.velocity || ["gravity", "brownian", "response"].contains(name)
+        );
+        assert!(
+            *name == "walls" || bodies != *start,
+            "{name} does something"
+        );
+    }
+}
+
+#[test]
+fn nothing_listed_is_nothing_done() {
+    let scene = crowd("");
+    let mut effects = Effects::new(&scene).unwrap();
+    let mut bodies = scene.bodies.clone();
+    effects.step(&mut bodies).unwrap();
+    assert_eq!(bodies, scene.bodies);
+    assert!(
+        effects
+            .reports()
+            .iter()
+            .all(|r| !r.listed && r.steps == 0 && r.seconds == 0.0)
+    );
+}
+
+#[test]
+fn static_bodies_stay_to_the_bit() {
+    let scene = crowd(&ALL.join("\n"));
+    let bodies = after(&scene, 50);
+    for body in 0..50 {
+        let same = bodies.rotation[body].map(f32::to_bits)
+            == scene.bodies.rotation[body].map(f32::to_bits)
+            && bodies.translation[body].map(f32::to_bits)
+                == scene.bodies.translation[body].map(f32::to_bits)
+            && bodies.velocity[body] == scene.bodies.velocity[body]
+            && bodies.spin[body] == scene.bodies.spin[body];
+        assert_eq!(same, (25..35).contains(&body), "body {body}");
+    }
+}
+
+#[test]
+fn motion_adds_dt_times_velocity() {
+    let scene = single("[0, 0, 0, 1, 1, 2, 3]", "[0.5, -8, 0.1]", "motion = true");
+    assert_eq!(
+        after(&scene, 1).translation[0],
+        [1.0625, 1.0, 3.0 + 0.125 * 0.1]
+    );
+}
+
+#[test]
+fn walls_mirror_and_turn() {
+    // The ball's radius is 1 rounded up: its centre may get to 5 − r.
+    let limit = |scene: &Scene| 5.0 - scene.shapes[0].ball.radius;
+    let pose = "[0, 0, 0, 1, 3.5, -3.75, 1]";
+    let specular = single(pose, "[8, -4, 2]", "motion = true\nwalls = \"specular\"");
+    let (w, bodies) = (limit(&specular), after(&specular, 1));
+    assert_eq!(
+        bodies.translation[0],
+        [2.0 * w - 4.5, -2.0 * w + 4.25, 1.25]
+    );
+    assert_eq!(bodies.velocity[0], [-8.0, 4.0, 2.0]);
+    let reverse = single(pose, "[8, -1, 2]", "motion = true\nwalls = \"reverse\"");
+    let bodies = after(&reverse, 1);
+    assert_eq!(bodies.translation[0], [2.0 * w - 4.5, -3.875, 1.25]);
+    assert_eq!(bodies.velocity[0], [-8.0, 1.0, -2.0]);
+    // Touching is no bounce; a step longer than the box ends at the far wall.
+    let touching = single(pose, "[0, 0, 0]", "motion = true\nwalls = \"specular\"");
+    assert_eq!(after(&touching, 1).velocity[0], [0.0; 3]);
+    let fast = single(pose, "[1000, 0, 0]", "motion = true\nwalls = \"specular\"");
+    assert_eq!(after(&fast, 1).translation[0], [-w, -3.75, 1.0]);
+}
+
+#[test]
+fn bounding_spheres_stay_inside_and_speeds_stay() {
+    for walls in ["specular", "reverse"] {
+        let scene = crowd(&format!(
+            "motion = true\nwalls = \"{walls}\"\nspin = {{ rate = 2 }}"
+        ));
+        let mut bodies = scene.bodies.clone();
+        let mut effects = Effects::new(&scene).unwrap();
+        for step in 0..400 {
+            effects.step(&mut bodies).unwrap();
+            for body in 0..bodies.len() {
+                let ball = scene.shapes[bodies.shape[body] as usize].ball;
+                let q = glam::Quat::from_array(bodies.rotation[body]);
+                let centre = q * ball.centre + glam::Vec3::from(bodies.translation[body]);
+                let room = 6.0 - ball.radius + 1e-5;
+                assert!(
+                    centre.abs().max_element() <= room,
+                    "{walls}: body {body} at {centre} in step {step}"
+                );
+            }
+        }
+        assert!(effects.reports()[5].changed > 100);
+        for (v, start) in bodies.velocity.iter().zip(&scene.bodies.velocity) {
+            assert_eq!(v.map(f32::abs), start.map(f32::abs));
+        }
+    }
+}
+
+#[test]
+fn spin_turns_by_its_rate_and_keeps_the_norm() {
+    let mut scene = crowd("spin = { rate = [0.5, 2] }");
+    // Any norm is a rotation: these two leave f32's range when squared.
+    scene.bodies.rotation[0] = [0.0, 0.0, 0.0, 1e-23];
+    scene.bodies.rotation[1] = [3e38, 0.0, 0.0, 0.0];
+    let bodies = after(&scene, 1);
+    for body in (0..25).chain(35..50) {
+        let q = |bodies: &Bodies| {
+            glam::DQuat::from_array(bodies.rotation[body].map(f64::from)).normalize()
+        };
+        let rate = glam::DVec3::from(bodies.spin[body].map(f64::from));
+        let turn = q(&bodies) * q(&scene.bodies).inverse();
+        // First order: tan of half the angle is half the angle.
+        let angle = 2.0 * (0.5 * 0.125 * rate.length()).atan();
+        let expected = glam::DQuat::from_axis_angle(rate.normalize(), angle);
+        assert!(turn.dot(expected).abs() > 1.0 - 1e-12, "body {body}");
+        let norm: f64 = bodies.rotation[body]
+            .iter()
+            .map(|x| f64::from(*x).powi(2))
+            .sum();
+        assert!((norm - 1.0).abs() < 2e-7, "body {body}: {norm}");
+    }
+}
+
+#[test]
+fn gravity_accelerates_and_turns() {
+    let constant = single(
+        "[0, 0, 0, 1, 0, 0, 0]",
+        "[1, 0, 0]",
+        "gravity = { acceleration = [0, 0, -8] }",
+    );
+    assert_eq!(after(&constant, 5).velocity[0], [1.0, 0.0, -5.0]);
+    // A period of eight steps about x: −z, then after two steps y, after four z, after six −y.
+    let turning = single(
+        "[0, 0, 0, 1, 0, 0, 0]",
+        "[0, 0, 0]",
+        "gravity = { acceleration = [0, 0, -8], period = 1, axis = [3, 0, 0] }",
+    );
+    let gain = |step: usize| {
+        let (a, b) = (
+            after(&turning, step).velocity[0],
+            after(&turning, step + 1).velocity[0],
+        );
+        [0, 1, 2].map(|axis| b[axis] - a[axis])
+    };
+    for (step, expected) in [
+        (0, [0.0, 0.0, -1.0]),
+        (2, [0.0, 1.0, 0.0]),
+        (4, [0.0, 0.0, 1.0]),
+        (6, [0.0, -1.0, 0.0]),
+    ] {
+        let found = gain(step);
+        assert!(
+            (0..3).all(|axis| (found[axis] - expected[axis]).abs() < 1e-6),
+            "step {step}: {found:?}"
+        );
+    }
+    let round = after(&turning, 8).velocity[0];
+    assert!(
+        round.iter().all(|v| v.abs() < 1e-6),
+        "a full turn adds up to nothing: {round:?}"
+    );
+}
+
+#[test]
+fn brownian_kicks_its_share() {
+    let scene = crowd("brownian = { share = 0.1, speed = [5, 6] }");
+    let mut bodies = scene.bodies.clone();
+    let mut effects = Effects::new(&scene).unwrap();
+    for _ in 0..500 {
+        effects.step(&mut bodies).unwrap();
+    }
+    // Four of forty a step.
+    assert!(
+        (1990..=2010).contains(&effects.reports()[1].changed),
+        "{}",
+        effects.reports()[1].changed
+    );
+    for (body, v) in bodies
+        .velocity
+        .iter()
+        .enumerate()
+        .filter(|(body, _)| !(25..35).contains(body))
+    {
+        let speed = v.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt();
+        assert!(
+            (4.999..6.001).contains(&speed),
+            "body {body} was kicked: {speed}"
+        );
+    }
+    let kicked = |v: &[[f32; 3]]| {
+        v.iter()
+            .zip(&scene.bodies.velocity)
+            .filter(|(a, b)| a != b)
+            .count()
+    };
+    assert!((1..=4).contains(&kicked(&after(&scene, 1).velocity)));
+}
+
+/// The response by its formula alone: all pairs in order, everything in f64.
+fn respond(scene: &Scene, bodies: &mut Bodies) -> usize {
+    let sphere = |bodies: &Bodies, body: usize| {
+        let ball = scene.shapes[bodies.shape[body] as usize].ball;
+        assert_eq!(ball.centre, glam::Vec3::ZERO);
+        (
+            glam::DVec3::from(bodies.translation[body].map(f64::from)),
+            f64::from(ball.radius),
+        )
+    };
+    let mut exchanges = 0;
+    for i in 0..bodies.len() {
+        for j in i + 1..bodies.len() {
+            let ((ci, ri), (cj, rj)) = (sphere(bodies, i), sphere(bodies, j));
+            let n = cj - ci;
+            let v = |body: usize| glam::DVec3::from(bodies.velocity[body].map(f64::from));
+            let approach = (v(i) - v(j)).dot(n);
+            if n.dot(n) > (ri + rj) * (ri + rj)
+                || approach <= 0.0
+                || !(bodies.dynamic[i] || bodies.dynamic[j])
+            {
+                continue;
+            }
+            let mass = |body: usize, r: f64| {
+                if bodies.dynamic[body] {
+                    r.powi(3)
+                } else {
+                    1e300
+                }
+            };
+            let (mi, mj) = (mass(i, ri), mass(j, rj));
+            let impulse = 2.0 * approach / n.dot(n) / (1.0 / mi + 1.0 / mj) * n;
+            let (vi, vj) = (v(i) - impulse / mi, v(j) + impulse / mj);
+            bodies.velocity[i] = vi.to_array().map(|x| x as f32);
+            bodies.velocity[j] = vj.to_array().map(|x| x as f32);
+            exchanges += 1;
+        }
+    }
+    exchanges
+}
+
+#[test]
+fn response_is_the_formula_on_all_pairs() {
+    for (seed, radius, side) in [(1, "1", 9), (2, "[0.2, 3]", 14), (3, "[0.1, 1]", 200)] {
+        let scene = scene(&format!(
+            "seed = {seed}\n[box]\nside = {side}\n\
+             [[bodies]]\nshape = \"box\"\ncount = 80\nradius = {radius}\nspeed = [1, 3]\n\
+             [[bodies]]\nshape = \"box\"\ncount = 10\nradius = {radius}\nstatic = true\n\
+             [effects]\nresponse = \"elastic\"\n"
+        ));
+        let mut expected = scene.bodies.clone();
+        let exchanges = respond(&scene, &mut expected);
+        assert!(exchanges > 50 || side == 200, "{exchanges}");
+        let found = after(&scene, 1);
+        for body in 0..90 {
+            for axis in 0..3 {
+                let (a, b) = (found.velocity[body][axis], expected.velocity[body][axis]);
+                assert!(
+                    (a - b).abs() <= 1e-5 * (1.0 + b.abs()),
+                    "seed {seed}, body {body}: {a} {b}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn response_keeps_momentum_and_energy() {
+    let scene = scene(
+        "[box]\nside = 12\n[[bodies]]\nshape = \"box\"\ncount = 120\nradius = [0.5, 2]\nspeed = [1, 3]\n\
+         [effects]\nresponse = \"elastic\"\nmotion = true\n",
+    );
+    let totals = |bodies: &Bodies| {
+        let (mut momentum, mut energy) = (glam::DVec3::ZERO, 0.0);
+        for body in 0..bodies.len() {
+            let mass = f64::from(scene.shapes[bodies.shape[body] as usize].ball.radius).powi(3);
+            let v = glam::DVec3::from(bodies.velocity[body].map(f64::from));
+            momentum += mass * v;
+            energy += 0.5 * mass * v.dot(v);
+        }
+        (momentum, energy)
+    };
+    let mut bodies = scene.bodies.clone();
+    let mut effects = Effects::new(&scene).unwrap();
+    let (momentum, energy) = totals(&bodies);
+    for _ in 0..100 {
+        effects.step(&mut bodies).unwrap();
+    }
+    let changed = effects.reports()[2].changed;
+    assert!(changed > 500, "{changed}");
+    let (momentum_now, energy_now) = totals(&bodies);
+    // Each exchange rounds six velocities by 2⁻²⁴ of their size; roundings add up like a random walk at most.
+    let scale = changed as f64 * 2.0_f64.powi(-24);
+    assert!(
+        (momentum_now - momentum).length() < scale * 10.0,
+        "{momentum} {momentum_now}"
+    );
+    assert!(
+        (energy_now / energy - 1.0).abs() < scale,
+        "{energy} {energy_now}"
+    );
+}
+
+#[test]
+fn a_body_that_leaves_the_contract_is_named_at_its_step() {
+    let scene = crowd("motion = true");
+    let mut bodies = scene.bodies.clone();
+    let mut effects = Effects::new(&scene).unwrap();
+    bodies.velocity[37] = [0.0, f32::NAN, 0.0];
+    let error = effects.step(&mut bodies).unwrap_err();
+    assert_eq!(error.body, 37);
+    assert!(
+        error.to_string().starts_with("body 37: translation ["),
+        "{error}"
+    );
+    let runaway = single("[0, 0, 0, 1, 0, 0, 0]", "[1e18, 0, 0]", "motion = true");
+    let mut bodies = runaway.bodies.clone();
+    let mut effects = Effects::new(&runaway).unwrap();
+    let failed = (1..=20).find(|_| effects.step(&mut bodies).is_err());
+    assert_eq!(
+        failed,
+        Some(10),
+        "2^60 lies between nine and ten steps of 1.25e17"
+    );
+}

@@ -1,0 +1,96 @@
+//! Golden trajectories: rotations and translations of every frame, hashed, are equal on every CPU and build.
+//!
+//! Run this test's binary under emulated CPUs to see it: `qemu-x86_64 -cpu Nehalem target/debug/deps/trajectories-…`.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::Path;
+
+use sdop::effects::Effects;
+use sdop::scene::{Scene, SceneFile};
+use sha2::{Digest, Sha256};
+
+/// SHA-256 over q and t of all bodies, little endian, for the initial state and each of `steps` steps.
+fn trajectory(scene: &Scene, steps: usize) -> String {
+    let mut bodies = scene.bodies.clone();
+    let mut effects = Effects::new(scene).unwrap();
+    let mut hash = Sha256::new();
+    for step in 0..=steps {
+        if step > 0 {
+            effects.step(&mut bodies).unwrap();
+        }
+        for (q, t) in bodies.rotation.iter().zip(&bodies.translation) {
+            for x in q.iter().chain(t) {
+                hash.update(x.to_le_bytes());
+            }
+        }
+    }
+    hash.finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}
+
+fn shipped(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("data/scenes")
+        .join(name);
+    SceneFile::read(&path)
+        .and_then(|file| file.build())
+        .unwrap()
+}
+
+#[test]
+fn shipped_scenes_move_as_recorded() {
+    let golden = [
+        ("paper-150.toml", 600, ""),
+        ("mixed-radii-10k.toml", 10, ""),
+        ("clusters-10k.toml", 5, ""),
+        ("plane-10k.toml", 5, ""),
+        ("brownian-1k.toml", 100, ""),
+        ("free-fall-1k.toml", 100, ""),
+        ("rotating-gravity-1k.toml", 100, ""),
+    ];
+    let found = golden.map(|(name, steps, _)| (name, steps, trajectory(&shipped(name), steps)));
+    assert_eq!(
+        found
+            .each_ref()
+            .map(|(name, steps, hash)| (*name, *steps, hash.as_str())),
+        golden
+    );
+}
+
+#[test]
+fn every_effect_together_moves_as_recorded() {
+    let text = r#"
+name = "all"
+frames = 300
+[box]
+partners = 0.8
+[[bodies]]
+shape = "torus"
+count = 60
+radius = [0.3, 3]
+speed = [0, 5]
+[[bodies]]
+mesh = "../meshes/spot.tri"
+origin = "file"
+count = 20
+speed = 2
+[[bodies]]
+shape = "gear"
+count = 20
+static = true
+[effects]
+motion = true
+walls = "reverse"
+spin = { rate = [0.1, 20] }
+gravity = { acceleration = [1, -3, 9.81], period = 0.7, axis = [1, 2, 3] }
+brownian = { share = 0.05, speed = [1, 8] }
+response = "elastic"
+"#;
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
+    let scene = SceneFile::parse(text, "all.toml", &directory)
+        .and_then(|file| file.build())
+        .unwrap();
+    assert_eq!(trajectory(&scene, 300), "");
+}
