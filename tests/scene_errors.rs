@@ -137,6 +137,14 @@ fn text_that_is_no_toml_is_pointed_at() {
 }
 
 #[test]
+fn columns_count_characters() {
+    assert!(
+        refusal("name = \"s\"\nframes = 1\nbodies = [{ shape = \"größer\", raduis = 1 }]")
+            .starts_with("a.toml:3:31: unknown field `raduis`")
+    );
+}
+
+#[test]
 fn exclusive_keys_are_refused() {
     assert_eq!(
         changed("side = 20", "side = 20\npartners = 1.5"),

@@ -42,13 +42,41 @@ fn shipped(name: &str) -> Scene {
 #[test]
 fn shipped_scenes_move_as_recorded() {
     let golden = [
-        ("paper-150.toml", 600, ""),
-        ("mixed-radii-10k.toml", 10, ""),
-        ("clusters-10k.toml", 5, ""),
-        ("plane-10k.toml", 5, ""),
-        ("brownian-1k.toml", 100, ""),
-        ("free-fall-1k.toml", 100, ""),
-        ("rotating-gravity-1k.toml", 100, ""),
+        (
+            "paper-150.toml",
+            600,
+            "454db76da8ca17a87b644ccff5e2a2a2477d238aed429695b598aef7fc7b5f88",
+        ),
+        (
+            "mixed-radii-10k.toml",
+            10,
+            "e12f38b2af3e00e526acdbbe7f4fd7e9a3ec7083816d36f4de99805d66185e97",
+        ),
+        (
+            "clusters-10k.toml",
+            5,
+            "65e8c38d54e11446f1deafd14a9cf200ac83d4b61bff9eac01dc67855ccb908b",
+        ),
+        (
+            "plane-10k.toml",
+            5,
+            "6663b650c1021d4a638e3cbc6d8f6398a4487e698c7cd5bf880ce3bcce4fbb38",
+        ),
+        (
+            "brownian-1k.toml",
+            100,
+            "81133f062d66be151a7ce53f18be13099bcd8e983f412548ca4dab57f2340b11",
+        ),
+        (
+            "free-fall-1k.toml",
+            100,
+            "5debf03ba271b7aff873e4cb8e600e3ce4f8410401b0c2415560e1351b656ada",
+        ),
+        (
+            "rotating-gravity-1k.toml",
+            100,
+            "8679169d0e9e881e2c6eae5af3c8dd2343c875992d6c44e286275f6364bd6cb3",
+        ),
     ];
     let found = golden.map(|(name, steps, _)| (name, steps, trajectory(&shipped(name), steps)));
     assert_eq!(
@@ -92,5 +120,8 @@ response = "elastic"
     let scene = SceneFile::parse(text, "all.toml", &directory)
         .and_then(|file| file.build())
         .unwrap();
-    assert_eq!(trajectory(&scene, 300), "");
+    assert_eq!(
+        trajectory(&scene, 300),
+        "f6df11fd47e2d893b796a8c78b764c3a3332007bba5b94ecc08fdabf897e4c34"
+    );
 }
