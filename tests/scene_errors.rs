@@ -4,6 +4,9 @@
 use std::path::Path;
 
 use miette::Diagnostic;
+use proptest::prelude::*;
+use sdop::scene::bodies::Bodies;
+use sdop::scene::contract::check_bodies;
 use sdop::scene::{Scene, SceneError, SceneFile};
 
 fn build(text: &str) -> Result<Scene, SceneError> {
@@ -126,7 +129,10 @@ fn wrong_types_and_impossible_values_are_pointed_at() {
         changed("radius = 1", "sizes = { u = 1 }"),
         "a.toml:8:11: the shape \"box\" has no size \"u\" | its sizes are x, y, z"
     );
-    assert!(changed("name = \"s\"", "").starts_with("a.toml:1:1: missing field `name`"));
+    assert_eq!(
+        changed("name = \"s\"", ""),
+        "a.toml:1:1: missing field `name` | add `name`"
+    );
 }
 
 #[test]
@@ -209,6 +215,13 @@ fn boxes_that_hold_no_bodies_are_refused() {
             "count = 3\nplacement = { clusters = { number = 2, radius = 9.5 } }"
         ),
         "a.toml:8:13: clusters of radius 9.5 don't fit into a box of side 20 | the radius can be up to 9"
+    );
+    assert_eq!(
+        changed(
+            "count = 3",
+            "count = 3\nplacement = { clusters = { number = 4, radius = 1 } }"
+        ),
+        "a.toml:8:13: 4 clusters of 3 bodies | a cluster has one body at least"
     );
     assert_eq!(
         changed("count = 3", "count = 4000000000"),
@@ -297,6 +310,16 @@ fn a_pose_outside_of_the_contract_names_its_body() {
             format!("a.toml:6:2: body 1: {problem} | {hint}")
         );
     }
+    let moving = |v: &str| {
+        refusal(
+            &posed("[0, 0, 0, 1, 0, 0, 0]")
+                .replace("poses", &format!("velocities = [[0, 0, 0], {v}]\nposes")),
+        )
+    };
+    assert_eq!(
+        moving("[nan, 0, 0]"),
+        format!("a.toml:5:26: body 1: velocity [NaN, 0.0, 0.0] | {limit}")
+    );
     // The squares of both leave f32's range, but not f64's.
     build(&posed("[0, 0, 0, 1e-23, 1152921504606846976, 0, 0]")).unwrap();
     build(&posed("[0, 0, 3e38, 0, 0, 0, 0]")).unwrap();
@@ -315,8 +338,8 @@ fn effects_and_culling_that_the_scene_cannot_have_are_refused() {
     );
     assert_eq!(
         with("[effects]\nwalls = \"specular\"\n[box]\nside = 10\n"),
-        "a.toml:8:9: walls: dynamic body 1 starts beyond a wall: centre [5.0, 0.0, 0.0] in a box of side 10 | the box \
-         is centred on the origin and holds whole spheres: enlarge it or move the body"
+        "a.toml:8:9: walls: dynamic body 1 of radius 0.86602545 at [5.0, 0.0, 0.0] starts beyond a wall of a box of side \
+         10 | the box is centred on the origin and holds whole spheres: enlarge it or move the body"
     );
     assert_eq!(
         with("[effects]\ngravity = { acceleration = [0, 0, -9.81], axis = [0, 0, 1] }\n"),
@@ -348,4 +371,81 @@ fn floats_read_as_the_nearest_f32_of_their_text() {
     let scene = build(&posed(&format!("[0, 0, 0, 1, {text}, 16777217, 0]"))).unwrap();
     assert_eq!(scene.bodies.translation[1][0], 1.0_f32.next_up());
     assert_eq!(scene.bodies.translation[1][1], 16_777_216.0);
+}
+
+#[test]
+fn bodies_of_a_caller_are_checked_at_the_border() {
+    let scene = build(SOUND).unwrap();
+    let refusal = |change: fn(&mut Bodies)| {
+        let mut bodies = scene.bodies.clone();
+        change(&mut bodies);
+        check_bodies(&bodies, &scene.shapes)
+            .unwrap_err()
+            .to_string()
+    };
+    check_bodies(&scene.bodies, &scene.shapes).unwrap();
+    assert_eq!(refusal(|b| b.shape[2] = 1), "body 2: shape 1 of 1");
+    assert_eq!(
+        refusal(|b| b.rotation[0] = [0.0; 4]),
+        "body 0: rotation [0.0, 0.0, 0.0, 0.0]"
+    );
+    assert_eq!(
+        refusal(|b| b.translation[1][2] = f32::NAN)
+            .split(", ")
+            .last(),
+        Some("NaN]")
+    );
+    assert_eq!(
+        refusal(|b| b.velocity[2] = [f32::INFINITY; 3]),
+        "body 2: velocity [inf, inf, inf]"
+    );
+    assert_eq!(
+        refusal(|b| b.spin[2] = [0.0, 1.2e18, 0.0]),
+        "body 2: spin [0.0, 1.2e18, 0.0]"
+    );
+    assert_eq!(
+        refusal(|b| b.dynamic.truncate(1)),
+        "body 1: dynamic is missing or too much: 1 entries for 3 bodies"
+    );
+    let mut shapes = scene.shapes.clone();
+    shapes[0].ball.radius = f32::NAN;
+    let error = check_bodies(&scene.bodies, &shapes)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.starts_with("body 0: shape box with reach 1"),
+        "{error}"
+    );
+}
+
+/// The sound scene with a few bytes changed, dropped or doubled, as text.
+fn damaged() -> impl Strategy<Value = String> {
+    let edit = (0..SOUND.len(), "[ -~\n\u{0}-\u{ff}]{0,3}", 0..4_usize);
+    proptest::collection::vec(edit, 1..4).prop_map(|edits| {
+        let mut text: Vec<char> = SOUND.chars().collect();
+        for (at, insert, drop) in edits {
+            let at = at.min(text.len());
+            let end = (at + drop).min(text.len());
+            text.splice(at..end, insert.chars());
+        }
+        text.into_iter().collect()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1500))]
+
+    #[test]
+    fn no_text_panics(text in damaged()) {
+        match SceneFile::parse(&text, "a.toml", Path::new("data/scenes")) {
+            Err(error) => prop_assert!(error.to_string().starts_with("a.toml:"), "{error}"),
+            // A digit more can ask for a million bodies: build small scenes alone.
+            Ok(file) if text.contains("count = 3\n") => {
+                if let Ok(scene) = file.build() {
+                    prop_assert!(check_bodies(&scene.bodies, &scene.shapes).is_ok());
+                }
+            }
+            Ok(_) => {}
+        }
+    }
 }

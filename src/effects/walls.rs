@@ -54,10 +54,12 @@ pub(super) fn new(kind: &Settings, scene: &Scene) -> Made {
         let world = world_centre(centre, &bodies.rotation[body], t);
         // A seeded body sits inside, but its t and its sphere's centre were each rounded once.
         let rounding = |axis: usize| ROUNDING * (t[axis].abs() + world[axis].abs());
-        if !(0..3).all(|axis| world[axis].abs() <= limit + rounding(axis)) {
+        let inside = (0..3).all(|axis| world[axis].abs() <= limit + rounding(axis));
+        if limit < 0.0 || !inside {
+            let radius = scene.shapes[bodies.shape[body] as usize].ball.radius;
             return Err((
                 format!(
-                    "dynamic body {body} starts beyond a wall: centre {world:?} in a box of side {side}"
+                    "dynamic body {body} of radius {radius} at {world:?} starts beyond a wall of a box of side {side}"
                 ),
                 "the box is centred on the origin and holds whole spheres: enlarge it or move the body",
             ));

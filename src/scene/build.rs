@@ -3,39 +3,15 @@
 use toml::Spanned;
 
 use super::bodies::Bodies;
-use super::contract::{ContractError, check_bodies, check_poses};
+use super::contract::{ContractError, check_bodies};
 use super::error::SceneError;
-use super::file::{GroupSpec, Placement, SceneFile};
+use super::file::{Placement, SceneFile};
+use super::group::{Group, Purpose};
 use super::library::{Form, Library};
 use super::number::Positive;
 use super::placement::Placer;
-use super::random::Stream;
 use super::{Scene, density, world_centre};
 use crate::effects::Effects;
-use crate::volume::Origin;
-
-/// The most bodies of a scene: a hundred bytes each, in several copies, fit into memory.
-pub const MOST_BODIES: usize = 1 << 24;
-
-/// The independent streams of draws that a group has, in the order of their numbers.
-#[derive(Clone, Copy)]
-enum Purpose {
-    Radius,
-    Centre,
-    Rotation,
-    Velocity,
-    Spin,
-}
-
-/// A checked group: what it looks like and how many bodies it has.
-struct Group<'a> {
-    spec: &'a GroupSpec,
-    number: u64,
-    seed: u64,
-    form: Form<'a>,
-    origin: Origin,
-    bodies: usize,
-}
 
 impl SceneFile {
     /// Builds the scene: reads meshes, builds shapes, places bodies.
@@ -53,10 +29,10 @@ impl SceneFile {
         let side = self.side(&groups, &library, &bodies)?;
         for group in &groups {
             self.add_poses(group, side, &library, &mut bodies)?;
-            self.add_velocities(group, &mut bodies)?;
+            self.add_velocities(group, &mut bodies);
         }
         let (shapes, construct_seconds) = library.into_shapes();
-        check_bodies(&bodies, &shapes)?;
+        check_bodies(&bodies, &shapes).map_err(|error| self.contract_error(&groups, &error))?;
         self.spec.cull.check(bodies.len())?;
         let scene = Scene {
             name: self.spec.name.clone(),
@@ -78,156 +54,6 @@ impl SceneFile {
                     .source
                     .error(error.span, message, error.hint.to_owned()))
             }
-        }
-    }
-
-    /// Checks each group's keys against each other.
-    fn groups(&self) -> Result<Vec<Group<'_>>, SceneError> {
-        let mut groups = Vec::new();
-        let mut total = 0_usize;
-        for (number, spec) in self.spec.bodies.iter().enumerate() {
-            let group = self.group(number as u64, spec)?;
-            total = total.saturating_add(group.bodies);
-            if total > MOST_BODIES {
-                let span = group.spec.count.as_ref().map_or(spec.span(), Spanned::span);
-                let hint = format!("a scene has up to {MOST_BODIES} bodies");
-                return Err(self
-                    .source
-                    .error(span, format!("{total} bodies are too many"), hint));
-            }
-            groups.push(group);
-        }
-        if total == 0 {
-            let end = self.source.text.len();
-            let hint = "add [[bodies]] with a mesh or shape, and count = … or poses = …".to_owned();
-            return Err(self.source.error(end..end, "the scene has no bodies", hint));
-        }
-        Ok(groups)
-    }
-
-    fn group<'a>(
-        &self,
-        number: u64,
-        spanned: &'a Spanned<GroupSpec>,
-    ) -> Result<Group<'a>, SceneError> {
-        let spec = spanned.get_ref();
-        let wrong = |span, message: &str, hint: &str| {
-            Err(self.source.error(span, message, hint.to_owned()))
-        };
-        let form = match (&spec.mesh, &spec.shape) {
-            (Some(mesh), None) => Form::File(mesh),
-            (None, Some(shape)) => Form::Procedural(shape, &spec.sizes),
-            (Some(_), Some(shape)) => {
-                return wrong(
-                    shape.span(),
-                    "`mesh` and `shape` exclude each other",
-                    "keep one of them",
-                );
-            }
-            (None, None) => {
-                return wrong(
-                    spanned.span(),
-                    "bodies without a form",
-                    "add mesh = \"file\" or shape = \"name\"",
-                );
-            }
-        };
-        if let (Form::File(_), Some((size, _))) = (form, spec.sizes.first_key_value()) {
-            return wrong(
-                size.span(),
-                "`sizes` belong to a `shape`",
-                "scale a mesh by its `radius`",
-            );
-        }
-        let bodies = match (&spec.count, &spec.poses) {
-            // A u32 fits into the usize of every machine that holds such a scene.
-            (Some(count), None) => count.get_ref().get() as usize,
-            (None, Some(poses)) => poses.get_ref().len(),
-            (Some(_), Some(poses)) => {
-                return wrong(
-                    poses.span(),
-                    "`count` and `poses` exclude each other",
-                    "keep one of them",
-                );
-            }
-            (None, None) => {
-                return wrong(
-                    spanned.span(),
-                    "how many bodies?",
-                    "add count = … or poses = [[qx, qy, qz, qw, tx, ty, tz]]",
-                );
-            }
-        };
-        self.check_motion(spec, bodies)?;
-        if let (Some(placement), Some(_)) = (&spec.placement, &spec.poses) {
-            return wrong(
-                placement.span(),
-                "`placement` and `poses` exclude each other",
-                "keep one of them",
-            );
-        }
-        let origin = match &spec.origin {
-            Some(origin) => *origin.get_ref(),
-            None if spec.poses.is_some() && spec.radius.is_none() => Origin::File,
-            None => Origin::Ball,
-        };
-        if let Some(radius) = &spec.radius {
-            if origin == Origin::File {
-                return wrong(
-                    radius.span(),
-                    "`radius` scales, origin = \"file\" keeps the size",
-                    "keep one of them",
-                );
-            }
-            if radius.get_ref().min == 0.0 {
-                return wrong(
-                    radius.span(),
-                    "a radius of 0",
-                    "a radius is above 0; leave it out to keep the mesh's size",
-                );
-            }
-        }
-        Ok(Group {
-            spec,
-            number,
-            seed: self.spec.seed,
-            form,
-            origin,
-            bodies,
-        })
-    }
-
-    fn check_motion(&self, spec: &GroupSpec, bodies: usize) -> Result<(), SceneError> {
-        let wrong = |span, message: String, hint: &str| {
-            Err(self.source.error(span, message, hint.to_owned()))
-        };
-        if let Some(velocities) = &spec.velocities {
-            if let Some(speed) = &spec.speed {
-                let message = "`speed` and `velocities` exclude each other".to_owned();
-                return wrong(speed.span(), message, "keep one of them");
-            }
-            let given = velocities.get_ref().len();
-            if spec.poses.is_none() || given != bodies {
-                let message = format!("{given} velocities for {bodies} bodies");
-                return wrong(
-                    velocities.span(),
-                    message,
-                    "give one velocity a pose; seeded bodies take `speed`",
-                );
-            }
-        }
-        let moving = spec
-            .speed
-            .as_ref()
-            .map(Spanned::span)
-            .or(spec.velocities.as_ref().map(Spanned::span));
-        match moving {
-            Some(span) if spec.fixed => wrong(
-                span,
-                "static bodies don't move".to_owned(),
-                "leave out the velocity, or `static = true`",
-            ),
-            _ => Ok(()),
         }
     }
 
@@ -331,7 +157,6 @@ impl SceneFile {
         library: &Library,
         bodies: &mut Bodies,
     ) -> Result<(), SceneError> {
-        let first = bodies.translation.len();
         let Some(poses) = &group.spec.poses else {
             return self.place(group, side, library, bodies);
         };
@@ -340,10 +165,7 @@ impl SceneFile {
             bodies.rotation.push([qx, qy, qz, qw]);
             bodies.translation.push([tx, ty, tz]);
         }
-        check_poses(bodies, first..first + group.bodies).map_err(|error| {
-            let span = poses.get_ref()[error.body - first].span();
-            self.contract_error(span, &error)
-        })
+        Ok(())
     }
 
     fn place(
@@ -377,7 +199,13 @@ impl SceneFile {
         }
         let wished = group.spec.placement.as_ref();
         let placement = wished.map_or(Placement::Uniform, |placement| *placement.get_ref());
-        let placer = Placer::new(placement, half, widest, group.stream(Purpose::Centre));
+        let placer = Placer::new(
+            placement,
+            group.bodies,
+            half,
+            widest,
+            group.stream(Purpose::Centre),
+        );
         let mut placer = placer.map_err(|(message, hint)| {
             self.source
                 .error(wished.map_or(count_span, Spanned::span), message, hint)
@@ -398,7 +226,7 @@ impl SceneFile {
     }
 
     /// Draws or copies velocities, and the angular velocities of dynamic bodies where the scene lists `spin`.
-    fn add_velocities(&self, group: &Group<'_>, bodies: &mut Bodies) -> Result<(), SceneError> {
+    fn add_velocities(&self, group: &Group<'_>, bodies: &mut Bodies) {
         let spec = group.spec;
         if let Some(velocities) = &spec.velocities {
             bodies
@@ -425,18 +253,35 @@ impl SceneFile {
                 .spin
                 .resize(bodies.spin.len() + group.bodies, [0.0; 3]),
         }
-        Ok(())
     }
 
-    fn contract_error(&self, span: std::ops::Range<usize>, error: &ContractError) -> SceneError {
+    /// Points at what the file says of the body: its velocity, its pose, or its group.
+    fn contract_error(&self, groups: &[Group<'_>], error: &ContractError) -> SceneError {
+        let mut first = 0;
+        let mut span = 0..0;
+        for (group, table) in groups.iter().zip(&self.spec.bodies) {
+            if (first..first + group.bodies).contains(&error.body) {
+                let at = error.body - first;
+                let pose = group
+                    .spec
+                    .poses
+                    .as_ref()
+                    .map(|poses| poses.get_ref()[at].span());
+                let velocity = group
+                    .spec
+                    .velocities
+                    .as_ref()
+                    .map(|list| list.get_ref()[at].span());
+                let narrow = if error.quantity == "velocity" {
+                    velocity
+                } else {
+                    pose
+                };
+                span = narrow.unwrap_or(table.span());
+            }
+            first += group.bodies;
+        }
         self.source
             .error(span, error.to_string(), error.hint.to_owned())
-    }
-}
-
-impl Group<'_> {
-    /// The group's stream of draws for one purpose: what one purpose draws leaves the others as they are.
-    fn stream(&self, purpose: Purpose) -> Stream {
-        Stream::new(self.seed, self.number * 8 + purpose as u64)
     }
 }

@@ -3,6 +3,8 @@
 //! Checked where bodies enter and again after every effects step, so that a NaN is reported with its body's
 //! number at the step that made it, and not as a wrong pair list frames later.
 
+use std::ops::Range;
+
 use miette::Diagnostic;
 use thiserror::Error;
 
@@ -12,115 +14,139 @@ use crate::volume::Shape;
 
 /// A body outside of the contract.
 #[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
-#[error("body {body}: {problem}")]
+#[error("body {body}: {quantity} {value}")]
 pub struct ContractError {
     /// The body's index.
     pub body: usize,
-    /// Which quantity has which impossible value.
-    pub problem: String,
+    /// The quantity at fault: a column of [`Bodies`].
+    pub quantity: &'static str,
+    /// Its impossible value.
+    pub value: String,
     /// How to mend it.
     #[help]
     pub hint: &'static str,
 }
 
-/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, finite velocity and spin, a shape that exists and is no larger than 2⁶⁰.
+/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, velocity and spin likewise within 2⁶⁰, a shape
+/// that exists and is no larger than 2⁶⁰.
 ///
 /// # Errors
-/// The first body that breaks it; columns of unequal length.
+/// A body that breaks it, the first in the first column at fault; columns of unequal length.
 pub fn check_bodies(bodies: &Bodies, shapes: &[Shape]) -> Result<(), ContractError> {
-    let n = bodies.shape.len();
-    let columns = [
-        bodies.dynamic.len(),
-        bodies.rotation.len(),
-        bodies.translation.len(),
-        bodies.velocity.len(),
-        bodies.spin.len(),
-    ];
-    if let Some(length) = columns.into_iter().find(|&length| length != n) {
-        let problem = format!("a column has {length} entries where the shapes have {n}");
-        return Err(ContractError {
-            body: length.min(n),
-            problem,
-            hint: "give every column one entry a body",
-        });
-    }
-    for (body, &shape) in bodies.shape.iter().enumerate() {
-        let Some(shape) = shapes.get(shape as usize) else {
-            let problem = format!("shape {shape} of {}", shapes.len());
-            return Err(ContractError {
-                body,
-                problem,
-                hint: "shapes are counted from 0",
-            });
-        };
-        // The ball's centre and radius are bounded by the reach, but a NaN in them is not.
-        let sizes = [shape.reach, shape.ball.radius, shape.ball.centre.length()];
-        if !sizes.iter().all(|size| (0.0..=LIMIT).contains(size)) {
-            let problem = format!(
-                "shape {} has reach {} and ball {:?}",
-                shape.name, shape.reach, shape.ball
-            );
-            return Err(ContractError {
-                body,
-                problem,
-                hint: "sizes are finite and at most 2^60",
-            });
+    check_columns(bodies)?;
+    let sound: Vec<bool> = shapes.iter().map(has_sound_size).collect();
+    for (body, &number) in bodies.shape.iter().enumerate() {
+        match sound.get(number as usize) {
+            Some(true) => {}
+            Some(false) => {
+                let Shape {
+                    name, reach, ball, ..
+                } = &shapes[number as usize];
+                let value = format!("{name} with reach {reach} and {ball:?}");
+                return refuse(body, "shape", value, "sizes are finite and at most 2^60");
+            }
+            None => {
+                let value = format!("{number} of {}", shapes.len());
+                return refuse(body, "shape", value, "shapes are counted from 0");
+            }
         }
     }
-    check_poses(bodies, 0..n)?;
+    check_poses(bodies, 0..bodies.len())?;
     for (name, column) in [("velocity", &bodies.velocity), ("spin", &bodies.spin)] {
-        if let Some(body) = column.iter().position(|v| !within_limit(v)) {
-            return Err(beyond(body, name, &column[body]));
-        }
+        check_vectors(name, column, 0)?;
     }
     Ok(())
 }
 
 /// Checks the poses of the bodies `range`: what an effects step may have changed.
-pub(crate) fn check_poses(
-    bodies: &Bodies,
-    range: std::ops::Range<usize>,
-) -> Result<(), ContractError> {
+pub(crate) fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), ContractError> {
     let first = range.start;
-    // One flag over the whole column, no early exit: it vectorises, and a frame that fails is the last one anyway.
-    let translations = &bodies.translation[range.clone()];
-    if translations
-        .iter()
-        .fold(true, |fine, t| fine & within_limit(t))
-    {
-        let rotations = &bodies.rotation[range];
-        return match rotations.iter().position(|q| !invertible(q)) {
-            None => Ok(()),
-            Some(at) => Err(ContractError {
-                body: first + at,
-                problem: format!("rotation {:?}", rotations[at]),
-                hint: "a quaternion (x, y, z, w) has a finite norm above zero",
-            }),
-        };
+    check_vectors("translation", &bodies.translation[range.clone()], first)?;
+    let rotations = &bodies.rotation[range];
+    match rotations.iter().position(|q| !is_invertible(q)) {
+        None => Ok(()),
+        Some(at) => {
+            let hint = "a quaternion (x, y, z, w) has a finite norm above zero";
+            refuse(first + at, "rotation", format!("{:?}", rotations[at]), hint)
+        }
     }
-    let at = translations
-        .iter()
-        .position(|t| !within_limit(t))
-        .unwrap_or(0);
-    Err(beyond(first + at, "translation", &translations[at]))
 }
 
-fn within_limit(v: &[f32; 3]) -> bool {
-    // `!(x ≤ limit)` is the refusal, so that a NaN fails.
+fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
+    let columns = [
+        ("dynamic", bodies.dynamic.len()),
+        ("rotation", bodies.rotation.len()),
+        ("translation", bodies.translation.len()),
+        ("velocity", bodies.velocity.len()),
+        ("spin", bodies.spin.len()),
+    ];
+    match columns
+        .into_iter()
+        .find(|&(_, length)| length != bodies.len())
+    {
+        None => Ok(()),
+        Some((name, length)) => {
+            let value = format!(
+                "is missing or too much: {length} entries for {} bodies",
+                bodies.len()
+            );
+            refuse(
+                length.min(bodies.len()),
+                name,
+                value,
+                "give every column one entry a body",
+            )
+        }
+    }
+}
+
+fn check_vectors(
+    name: &'static str,
+    column: &[[f32; 3]],
+    first: usize,
+) -> Result<(), ContractError> {
+    // One flag over the whole column, without an early exit: it vectorises, and a column that fails is the last one.
+    if column
+        .iter()
+        .fold(true, |fine, v| fine & is_within_limit(v))
+    {
+        return Ok(());
+    }
+    let at = column.iter().position(|v| !is_within_limit(v)).unwrap_or(0);
+    let hint = "coordinates are finite and at most 2^60 in size";
+    refuse(first + at, name, format!("{:?}", column[at]), hint)
+}
+
+fn refuse(
+    body: usize,
+    quantity: &'static str,
+    value: String,
+    hint: &'static str,
+) -> Result<(), ContractError> {
+    Err(ContractError {
+        body,
+        quantity,
+        value,
+        hint,
+    })
+}
+
+// All limits are written as `x ≤ limit`, and what isn't so is refused: a NaN fails.
+
+fn has_sound_size(shape: &Shape) -> bool {
+    // The reach bounds the ball's centre and radius; a NaN in them it does not.
+    [shape.reach, shape.ball.radius, shape.ball.centre.length()]
+        .iter()
+        .all(|size| (0.0..=LIMIT).contains(size))
+}
+
+fn is_within_limit(v: &[f32; 3]) -> bool {
     (v[0].abs() <= LIMIT) & (v[1].abs() <= LIMIT) & (v[2].abs() <= LIMIT)
 }
 
-fn invertible(q: &[f32; 4]) -> bool {
+fn is_invertible(q: &[f32; 4]) -> bool {
     // In f64, where the square of no f32 underflows or overflows.
     let [x, y, z, w] = q.map(f64::from);
     let norm2 = x * x + y * y + z * z + w * w;
     norm2 > 0.0 && norm2 < f64::INFINITY
-}
-
-fn beyond(body: usize, name: &str, value: &[f32; 3]) -> ContractError {
-    ContractError {
-        body,
-        problem: format!("{name} {value:?}"),
-        hint: "coordinates are finite and at most 2^60 in size",
-    }
 }

@@ -97,21 +97,17 @@ impl Source {
         }))
     }
 
-    /// An error of the TOML reader or of serde, with the nearest expected name as its hint.
+    /// An error of the TOML reader or of serde, with a hint where the message gives one away.
     pub(super) fn toml_error(&self, error: &toml::de::Error) -> SceneError {
         let end = self.text.len();
         let span = error.span().unwrap_or(end..end);
-        self.error(
-            span,
-            error.message().trim_end(),
-            expected_names(error.message()),
-        )
+        let message = error.message().trim_end();
+        self.error(span, message, hint_of(message))
     }
 }
 
-/// serde lists the names that it expected in backticks after the one that it found: suggest from them.
-fn expected_names(message: &str) -> Option<String> {
-    let (found, expected) = message.split_once(", expected ")?;
+/// serde names what is missing, or lists the names that it expected after the one that it found, all in backticks.
+fn hint_of(message: &str) -> Option<String> {
     let names = |text: &str| -> Vec<String> {
         text.split('`')
             .skip(1)
@@ -119,9 +115,15 @@ fn expected_names(message: &str) -> Option<String> {
             .map(str::to_owned)
             .collect()
     };
-    let (found, expected) = (names(found), names(expected));
-    if expected.is_empty() {
-        return None;
+    if message.starts_with("missing field") {
+        return names(message).first().map(|key| format!("add `{key}`"));
     }
-    Some(suggest(found.last()?, expected.iter().map(String::as_str)))
+    let (found, expected) = message.split_once(", expected ")?;
+    let expected = names(expected);
+    match names(found).last() {
+        Some(found) if !expected.is_empty() => {
+            Some(suggest(found, expected.iter().map(String::as_str)))
+        }
+        _ => None,
+    }
 }

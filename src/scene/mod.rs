@@ -11,6 +11,7 @@ pub mod contract;
 mod density;
 pub mod error;
 pub mod file;
+mod group;
 mod library;
 pub mod number;
 mod placement;

@@ -13,16 +13,19 @@ pub(super) struct Placer {
 }
 
 impl Placer {
-    /// A placer in the box with walls at ±`half` for spheres of radius up to `widest`.
+    /// A placer for `count` spheres of radius up to `widest` in the box with walls at ±`half`.
     ///
     /// # Errors
-    /// A cluster or slice that doesn't fit into the box: what it is and what would fit.
+    /// Clusters or a slice that don't fit: the problem and what would fit.
     pub(super) fn new(
         placement: Placement,
+        count: usize,
         half: f32,
         widest: f32,
         mut draws: Stream,
     ) -> Result<Self, (String, String)> {
+        let side = 2.0 * half;
+        let room = half - widest;
         let mut clusters = Vec::new();
         match placement {
             Placement::Uniform => {}
@@ -30,31 +33,30 @@ impl Placer {
                 number,
                 radius: Positive(radius),
             } => {
-                // Whole clusters inside of the walls, spheres included.
-                let room = half - widest - radius;
-                if room < 0.0 {
-                    let problem = format!(
-                        "clusters of radius {radius} don't fit into a box of side {}",
-                        2.0 * half
-                    );
-                    return Err((
-                        problem,
-                        format!("the radius can be up to {}", half - widest),
-                    ));
+                // A u32 fits into the usize of every machine that holds such a scene.
+                let number = number.get() as usize;
+                if number > count {
+                    let problem = format!("{number} clusters of {count} bodies");
+                    return Err((problem, "a cluster has one body at least".to_owned()));
                 }
-                clusters.extend((0..number.get()).map(|_| point(&mut draws, [room; 3])));
+                if radius > room {
+                    let problem =
+                        format!("clusters of radius {radius} don't fit into a box of side {side}");
+                    return Err((problem, format!("the radius can be up to {room}")));
+                }
+                // Whole clusters inside of the walls, spheres included.
+                clusters.extend((0..number).map(|_| point(&mut draws, [room - radius; 3])));
             }
             Placement::Plane {
                 thickness: Positive(thickness),
             } => {
-                if thickness > 2.0 * (half - widest) {
+                if thickness > 2.0 * room {
                     let problem = format!(
-                        "a slice of thickness {thickness} doesn't fit into a box of side {}",
-                        2.0 * half
+                        "a slice of thickness {thickness} doesn't fit into a box of side {side}"
                     );
                     return Err((
                         problem,
-                        format!("the thickness can be up to {}", 2.0 * (half - widest)),
+                        format!("the thickness can be up to {}", 2.0 * room),
                     ));
                 }
             }
@@ -79,7 +81,7 @@ impl Placer {
                 radius: Positive(spread),
                 ..
             } => {
-                // `new` made one cluster at least, and a u32's number of them.
+                // A u32 counted them, and there is one at least.
                 let cluster = self.clusters[self.draws.index(self.clusters.len() as u32) as usize];
                 let offset = self.draws.ball(spread);
                 // Rounding may carry a centre an ulp beyond.
