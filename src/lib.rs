@@ -12,6 +12,7 @@ pub mod pipeline;
 pub mod rounding;
 pub mod scene;
 pub mod simd;
+pub mod simulate;
 mod strategy;
 pub mod update;
 pub mod volume;

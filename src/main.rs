@@ -9,6 +9,7 @@ use clap::Parser as _;
 
 /// 0 when all is well, 1 when a check failed, 2 on bad input (clap exits with 2 by itself).
 fn main() -> ExitCode {
+    cli::report_errors_whole();
     match cli::Cli::parse().run() {
         Ok(cli::Outcome::Passed) => ExitCode::SUCCESS,
         Ok(cli::Outcome::Failed) => ExitCode::from(1),

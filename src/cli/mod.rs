@@ -4,9 +4,13 @@
 
 mod mesh;
 mod output;
+mod recording;
+mod run;
+mod scene_args;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
+use miette::MietteHandlerOpts;
 
 /// Collision culling by sphere-encapsulated or-DOPs (S-DOP): verified, vectorised, measured.
 #[derive(Parser)]
@@ -21,6 +25,7 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Run(run::Args),
     Mesh(mesh::Args),
 }
 
@@ -30,6 +35,10 @@ pub enum Outcome {
     /// All is well: exit code 0.
     Passed,
     /// A check failed: exit code 1.
+    #[allow(
+        dead_code,
+        reason = "the commands that check build on this contract of exit codes"
+    )]
     Failed,
 }
 
@@ -40,9 +49,18 @@ impl Cli {
     /// Bad input: exit code 2.
     pub fn run(self) -> miette::Result<Outcome> {
         match self.command {
+            Command::Run(args) => run::run(&args),
             Command::Mesh(args) => mesh::run(&args),
         }
     }
+}
+
+/// Has errors printed unwrapped: a path or a command in a hint must survive being copied.
+pub fn report_errors_whole() {
+    let hook = miette::set_hook(Box::new(|_| {
+        Box::new(MietteHandlerOpts::new().wrap_lines(false).build())
+    }));
+    debug_assert!(hook.is_ok(), "set before the first error");
 }
 
 /// Reads one of a library enum's names; help and errors list them all.

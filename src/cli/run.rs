@@ -1,0 +1,279 @@
+//! `sdop run`: simulate and cull one scene, and say what it counted and cost.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use sdop::cost::{Counters, Seconds, VolumeCounters};
+use sdop::effects::EffectReport;
+use sdop::scene::Scene;
+use sdop::scene::settings::{Budget, CullSettings, Interest, Strategy};
+use sdop::simd::Level;
+use sdop::simulate::{self, Summary};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::Outcome;
+use super::output::{Format, emit, progress, table};
+use super::recording::Recorder;
+use super::scene_args::{MachineArgs, SceneArgs};
+
+/// Simulate and cull one scene
+///
+/// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of each stage and hashes.
+/// Counters and hashes depend on scene, seed and flags alone, not on the CPU; with --budget-us they depend on the clock.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
+)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+    /// Write every frame's poses and pairs to this file, as lines of JSON
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// What is printed.
+#[derive(Serialize)]
+struct Report<'a> {
+    scene: &'a str,
+    seed: u64,
+    bodies: usize,
+    frames: u32,
+    strategy: &'static str,
+    pairs: &'static str,
+    k: usize,
+    axes: &'static str,
+    overlap: &'static str,
+    updates: &'static str,
+    interest: Option<&'a Interest>,
+    budget: Option<Budget>,
+    simd: &'static str,
+    threads: usize,
+    counters: Map<String, Value>,
+    seconds: Seconds,
+    effects: Vec<EffectLine>,
+    volumes_sha256: &'a str,
+    pairs_sha256: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct EffectLine {
+    name: &'static str,
+    steps: u64,
+    seconds: f64,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A bad scene, settings that it can't have, a body that leaves the contract, a recording that can't be written.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let scene = args.scene.build()?;
+    let level = args.machine.level();
+    let mut recorder = match &args.record {
+        Some(path) => Some(Recorder::create(path, &scene)?),
+        None => None,
+    };
+    let bar = progress(scene.frames.into(), &scene.name);
+    let summary = simulate::run(&scene, level, |frame| -> miette::Result<()> {
+        if let Some(recorder) = &mut recorder {
+            recorder.frame(frame)?;
+        }
+        bar.inc(1);
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    if let Some(recorder) = recorder {
+        recorder.finish()?;
+    }
+    emit(args.format, &report(&scene, level, &summary), |report| {
+        text(report, &scene, &summary)
+    })?;
+    Ok(Outcome::Passed)
+}
+
+fn report<'a>(scene: &'a Scene, level: Level, summary: &'a Summary) -> Report<'a> {
+    let CullSettings {
+        strategy,
+        pairs,
+        k,
+        axes,
+        overlap,
+        updates,
+        interest,
+        budget,
+        ..
+    } = &scene.cull;
+    Report {
+        scene: &scene.name,
+        seed: scene.seed,
+        bodies: scene.bodies.len(),
+        frames: scene.frames,
+        strategy: strategy.name(),
+        pairs: pairs.name(),
+        k: k.k(),
+        axes: axes.name(),
+        overlap: overlap.name(),
+        updates: updates.name(),
+        interest: interest.as_ref(),
+        budget: *budget,
+        simd: level.name(),
+        threads: 1,
+        counters: counters(*strategy, &summary.counters),
+        seconds: summary.seconds,
+        effects: summary.effects.iter().map(effect_line).collect(),
+        volumes_sha256: &summary.volumes_sha256,
+        pairs_sha256: summary.pairs_sha256.as_deref(),
+    }
+}
+
+fn effect_line(effect: &EffectReport) -> EffectLine {
+    EffectLine {
+        name: effect.name,
+        steps: effect.steps,
+        seconds: effect.seconds,
+    }
+}
+
+/// The homogeneous volume of a strategy that has no or-DOP: its name in counters, and its counters.
+fn homogeneous(strategy: Strategy, counters: &Counters) -> Option<(&'static str, &VolumeCounters)> {
+    match strategy {
+        Strategy::Aabb => Some(("aabb", &counters.aabb)),
+        Strategy::KDop => Some(("kdop", &counters.kdop)),
+        Strategy::Obb => Some(("obb", &counters.obb)),
+        _ => None,
+    }
+}
+
+fn counters(strategy: Strategy, counters: &Counters) -> Map<String, Value> {
+    let Counters { sphere, ordop, .. } = counters;
+    let mut map = Map::new();
+    let mut put = |name: String, value: u64| map.insert(name, value.into());
+    put("sphere_updates".into(), sphere.updates);
+    put("ordop_updates".into(), ordop.updates);
+    put("sphere_tests".into(), sphere.tests);
+    put("sphere_hits".into(), sphere.hits);
+    put("ordop_tests".into(), ordop.tests);
+    put("ordop_hits".into(), ordop.hits);
+    put("untested".into(), counters.untested);
+    put("reported".into(), counters.reported);
+    if let Some((volume, counters)) = homogeneous(strategy, counters) {
+        put(format!("{volume}_updates"), counters.updates);
+        put(format!("{volume}_tests"), counters.tests);
+        put(format!("{volume}_hits"), counters.hits);
+    }
+    map
+}
+
+fn text(report: &Report<'_>, scene: &Scene, summary: &Summary) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = write_text(&mut text, report, scene, summary);
+    text
+}
+
+fn write_text(
+    out: &mut String,
+    report: &Report<'_>,
+    scene: &Scene,
+    summary: &Summary,
+) -> std::fmt::Result {
+    let dynamic = scene.bodies.dynamic.iter().filter(|&&d| d).count();
+    writeln!(
+        out,
+        "{}, seed {}: {} bodies ({dynamic} dynamic), {} frames",
+        report.scene, report.seed, report.bodies, report.frames
+    )?;
+    writeln!(
+        out,
+        "{} over {}, k = {}, {} axes, {}, {} updates; {}, {} thread",
+        report.strategy,
+        report.pairs,
+        report.k,
+        report.axes,
+        report.overlap,
+        report.updates,
+        report.simd,
+        report.threads
+    )?;
+    writeln!(out, "{}", stages(&summary.seconds, report.frames))?;
+    writeln!(out, "{}", volumes(scene.cull.strategy, &summary.counters))?;
+    let Counters {
+        reported, untested, ..
+    } = summary.counters;
+    let frames = f64::from(report.frames);
+    writeln!(
+        out,
+        "reported {reported} pairs ({:.1} a frame), of which untested {untested}",
+        reported as f64 / frames
+    )?;
+    writeln!(out, "{}", effects(&summary.effects))?;
+    writeln!(out, "volumes sha256 {}", report.volumes_sha256)?;
+    let hash = report.pairs_sha256.unwrap_or("– (nothing is culled)");
+    writeln!(out, "pairs sha256   {hash}")
+}
+
+/// Seconds by stage. Construction happens once, so it has no time a frame.
+fn stages(seconds: &Seconds, frames: u32) -> comfy_table::Table {
+    let mut rows = table(&["stage", "seconds", "ns / frame"]);
+    rows.add_row(["construct", &format!("{:.6}", seconds.construct), "once"]);
+    for (stage, value) in [
+        ("effects", seconds.effects),
+        ("update", seconds.update),
+        ("pair finding", seconds.pair_finding),
+        ("or-dop", seconds.ordop),
+        ("culling, total", seconds.total),
+    ] {
+        let each = 1e9 * value / f64::from(frames);
+        rows.add_row([
+            stage,
+            format!("{value:.6}").as_str(),
+            format!("{each:.0}").as_str(),
+        ]);
+    }
+    rows
+}
+
+fn volumes(strategy: Strategy, counters: &Counters) -> comfy_table::Table {
+    let mut rows = table(&["volume", "updates", "tests", "hits", "hits / tests"]);
+    let used = [
+        Some(("sphere", &counters.sphere)),
+        Some(("or-dop", &counters.ordop)),
+        homogeneous(strategy, counters),
+    ];
+    for (name, volume) in used.into_iter().flatten() {
+        let share = match volume.tests {
+            0 => "–".to_owned(),
+            tests => format!("{:.3} %", 100.0 * volume.hits as f64 / tests as f64),
+        };
+        let [updates, tests, hits] =
+            [volume.updates, volume.tests, volume.hits].map(|count| count.to_string());
+        rows.add_row([name.to_owned(), updates, tests, hits, share]);
+    }
+    rows
+}
+
+fn effects(reports: &[EffectReport]) -> comfy_table::Table {
+    let mut rows = table(&["effect", "steps", "seconds", "ns / body"]);
+    for effect in reports {
+        if effect.listed {
+            let each = 1e9 * effect.seconds / effect.visited.max(1) as f64;
+            let seconds = format!("{:.6}", effect.seconds);
+            rows.add_row([
+                effect.name,
+                &effect.steps.to_string(),
+                &seconds,
+                &format!("{each:.2}"),
+            ]);
+        } else {
+            rows.add_row([effect.name, "not simulated", "", ""]);
+        }
+    }
+    rows
+}

@@ -1,0 +1,157 @@
+//! A scene's run: the listed effects move the bodies, the culler culls them, frame after frame.
+//!
+//! F frames are F culls and F − 1 steps: the first frame is the scene as placed. The trajectory doesn't depend on how it is
+//! culled, so that runs which differ in [`CullSettings`](crate::scene::settings::CullSettings) alone see the same poses.
+
+use miette::Diagnostic;
+use thiserror::Error;
+
+use crate::cost::{Counters, Seconds};
+use crate::effects::{EffectError, EffectReport, Effects};
+use crate::pairs::{PairList, PairsHash};
+use crate::pipeline::Culler;
+use crate::scene::Scene;
+use crate::scene::bodies::Bodies;
+use crate::scene::contract::ContractError;
+use crate::scene::settings::{SettingsError, Strategy};
+use crate::simd::Level;
+use crate::volume::volumes_sha256;
+
+/// A scene being run.
+pub struct Simulation<'a> {
+    scene: &'a Scene,
+    bodies: Bodies,
+    effects: Effects,
+    culler: Culler,
+    frame: u32,
+}
+
+/// One culled frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Counted from 0.
+    pub number: u32,
+    /// The poses that were culled.
+    pub bodies: &'a Bodies,
+    /// The reported pairs, in the finder's order.
+    pub pairs: &'a PairList,
+}
+
+/// What a finished run says of itself. Counters and hashes are equal on every CPU, tier and thread count.
+#[derive(Clone, Debug)]
+pub struct Summary {
+    /// Sums over frames.
+    pub counters: Counters,
+    /// Sums over frames, with construction (shapes and culler) and effects.
+    pub seconds: Seconds,
+    /// Every effect, listed or not.
+    pub effects: Vec<EffectReport>,
+    /// The hash of all volumes.
+    pub volumes_sha256: String,
+    /// The hash of all reported pairs; `None` for the control, which reports none.
+    pub pairs_sha256: Option<String>,
+}
+
+/// Why a scene can't be run on.
+#[derive(Debug, Error, Diagnostic)]
+pub enum SimulationError {
+    /// Culling settings that can't be carried out.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Settings(#[from] SettingsError),
+    /// An effect that the scene can't have.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Effect(#[from] EffectError),
+    /// A body left the contract.
+    #[error("frame {frame}: {error}")]
+    Contract {
+        /// The frame that its step led to.
+        frame: u32,
+        /// The body and what is wrong with it.
+        #[diagnostic_source]
+        error: ContractError,
+    },
+}
+
+impl<'a> Simulation<'a> {
+    /// Prepares a run of the scene, culled as its `cull` says in the tier `level`.
+    ///
+    /// # Errors
+    /// Effects or culling that the scene can't have; never for a scene just built.
+    pub fn new(scene: &'a Scene, level: Level) -> Result<Self, SimulationError> {
+        Ok(Self {
+            scene,
+            bodies: scene.bodies.clone(),
+            effects: Effects::new(scene)?,
+            culler: Culler::new(&scene.shapes, &scene.bodies, &scene.cull, level)?,
+            frame: 0,
+        })
+    }
+
+    /// Advances to the next frame (the first needs no step) and culls it; `None` after the last.
+    ///
+    /// # Errors
+    /// A body that left the contract, by its index and the frame.
+    pub fn next_frame(&mut self) -> Result<Option<Frame<'_>>, SimulationError> {
+        let number = self.frame;
+        if number == self.scene.frames {
+            return Ok(None);
+        }
+        if number > 0 {
+            let step = self.effects.step(&mut self.bodies);
+            step.map_err(|error| SimulationError::Contract {
+                frame: number,
+                error,
+            })?;
+        }
+        self.frame += 1;
+        Ok(Some(Frame {
+            number,
+            pairs: self.culler.cull(&self.bodies),
+            bodies: &self.bodies,
+        }))
+    }
+
+    /// Counters summed over the frames so far.
+    #[must_use]
+    pub fn counters(&self) -> &Counters {
+        self.culler.counters()
+    }
+
+    /// Seconds summed over the frames so far, with construction (shapes and culler) and effects.
+    #[must_use]
+    pub fn seconds(&self) -> Seconds {
+        let culling = self.culler.seconds();
+        Seconds {
+            construct: self.scene.construct_seconds + culling.construct,
+            effects: self.effects.reports().iter().map(|e| e.seconds).sum(),
+            ..*culling
+        }
+    }
+}
+
+/// Runs the whole scene. `observe` sees every frame, after its culling and outside of the timing.
+///
+/// # Errors
+/// As [`Simulation::new`] and [`Simulation::next_frame`], or what `observe` returns.
+pub fn run<E: From<SimulationError>>(
+    scene: &Scene,
+    level: Level,
+    mut observe: impl FnMut(&Frame<'_>) -> Result<(), E>,
+) -> Result<Summary, E> {
+    let mut simulation = Simulation::new(scene, level)?;
+    let mut hash = PairsHash::default();
+    while let Some(frame) = simulation.next_frame()? {
+        hash.frame(frame.number, &frame.pairs.sorted());
+        observe(&frame)?;
+    }
+    let culls = scene.cull.strategy != Strategy::None;
+    Ok(Summary {
+        counters: *simulation.counters(),
+        seconds: simulation.seconds(),
+        effects: simulation.effects.reports().to_vec(),
+        volumes_sha256: volumes_sha256(&scene.shapes),
+        pairs_sha256: culls.then(|| hash.finish()),
+    })
+}

@@ -1,0 +1,95 @@
+//! `sdop mesh`: counts, sizes of volumes, conversion, and refusals with file and line.
+
+use serde_json::Value;
+
+use crate::{json, refusal, stdout, text};
+
+#[test]
+fn spot_is_closed_and_every_volume_is_larger_than_its_hull() {
+    let report = json(&["mesh", "data/meshes/spot.tri"]);
+    assert_eq!(report["vertices"], 2930);
+    assert_eq!(report["triangles"], 5856);
+    assert_eq!(report["closed_components"], report["components"]);
+    let volumes = report["volumes"].as_array().unwrap();
+    let names: Vec<&str> = volumes
+        .iter()
+        .map(|v| v["name"].as_str().unwrap())
+        .collect();
+    #[rustfmt::skip]
+    assert_eq!(names, [
+        "sphere", "aabb", "k-dop-14", "k-dop-18", "k-dop-26", "obb",
+        "or-dop-6-principal", "or-dop-14-principal", "or-dop-18-principal", "or-dop-26-principal",
+        "or-dop-6-model", "or-dop-14-model", "or-dop-18-model", "or-dop-26-model",
+    ]);
+    let over_hull = |name: &str| {
+        let found = volumes.iter().find(|v| v["name"] == name);
+        found.unwrap()["over_hull"].as_f64().unwrap()
+    };
+    assert!(
+        names.iter().all(|name| over_hull(name) > 1.0),
+        "{volumes:?}"
+    );
+    for finer in ["14", "18", "26"] {
+        assert!(over_hull(&format!("or-dop-{finer}-model")) < over_hull("or-dop-6-model"));
+    }
+    assert_eq!(over_hull("obb"), over_hull("or-dop-6-principal"));
+    assert!(stdout(&["mesh", "data/meshes/spot.tri"]).contains("components: 1, closed"));
+}
+
+#[test]
+fn a_flat_mesh_has_no_size_over_hull() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("flat.obj");
+    std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let report = json(&["mesh", text(&path)]);
+    assert_eq!(report["hull_volume"], 0.0);
+    assert_eq!(report["volumes"][0]["over_hull"], Value::Null);
+    assert!(stdout(&["mesh", text(&path)]).contains("open"));
+}
+
+#[test]
+fn conversion_keeps_every_vertex_to_the_bit() {
+    let directory = tempfile::tempdir().unwrap();
+    let obj = directory.path().join("spot.obj");
+    let back = directory.path().join("back.tri");
+    let shown = stdout(&["mesh", "data/meshes/spot.tri", "--to", text(&obj)]);
+    assert!(shown.contains("written to"), "{shown}");
+    let report = json(&["mesh", text(&obj), "--to", text(&back)]);
+    assert_eq!(report["written"], text(&back));
+    let [before, after] = ["data/meshes/spot.tri", text(&back)]
+        .map(|path| sdop::mesh::read(path, &sdop::mesh::ReadOptions::default()).unwrap());
+    assert_eq!(before.vertices, after.vertices);
+    assert_eq!(before.triangles, after.triangles);
+}
+
+#[test]
+fn fewer_triangles_are_written_and_described() {
+    let directory = tempfile::tempdir().unwrap();
+    let small = directory.path().join("small.ply");
+    let flags = ["--triangles", "500", "--to", text(&small)];
+    let report = json(&[&["mesh", "data/meshes/spot.tri"], &flags[..]].concat());
+    let triangles = report["triangles"].as_u64().unwrap();
+    assert!((400..=500).contains(&triangles), "{triangles}");
+    assert_eq!(report["closed_components"], 1);
+    assert_eq!(json(&["mesh", text(&small)])["triangles"], triangles);
+}
+
+#[test]
+fn bad_meshes_are_refused_with_file_line_and_help() {
+    let directory = tempfile::tempdir().unwrap();
+    let bad = directory.path().join("bad.obj");
+    std::fs::write(&bad, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n").unwrap();
+    let message = refusal(&["mesh", text(&bad)]);
+    assert!(message.contains("bad.obj:4"), "{message}");
+    assert!(message.contains("names vertex 4"), "{message}");
+    let ambiguous = directory.path().join("two.tri");
+    // Three indices from 0 or from 1: both fit when no index is 0 or 4.
+    let vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n";
+    std::fs::write(&ambiguous, format!("5 2\n{vertices}1 2 3\n2 3 4\n")).unwrap();
+    let message = refusal(&["mesh", text(&ambiguous)]);
+    assert!(message.contains("--tri-format indexed"), "{message}");
+    assert!(message.contains("--tri-format cart3d"), "{message}");
+    let chosen = json(&["mesh", text(&ambiguous), "--tri-format", "cart3d"]);
+    assert_eq!(chosen["unused_vertices"], 1);
+    assert!(refusal(&["mesh", "data/meshes/README.md"]).contains("names no mesh format"));
+}
