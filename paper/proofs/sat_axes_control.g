@@ -1,0 +1,18 @@
+# Control of sat_axes.g, one notch tighter: 2^-49 instead of 2^-48. Gappa must fail.
+
+@rnd = float<53, ne>;
+xx = x * x; yy = y * y; zz = z * z;
+square rnd= (xx + yy) + zz;
+Square = (xx + yy) + zz;
+n = rnd(sqrt(square));
+N = sqrt(Square);
+v = N * (K + e);
+q = rnd(v / n);
+
+{ Square in [0x1p-4, 4] /\ xx + yy <> 0 /\ xx / (xx + yy) in [0, 1] /\ (xx + yy) / Square in [0, 1] /\
+  |K| <= 1 /\ |e| <= 22b-53
+  -> |q - K| <= 1b-49 }
+
+v / n -> (K + e) / (1 + (n - N) / N) { n <> 0, N <> 0, 1 + (n - N) / N <> 0 };
+(K + e) / (1 + (n - N) / N) - K -> (e - K * ((n - N) / N)) / (1 + (n - N) / N) { N <> 0, 1 + (n - N) / N <> 0 };
+q - K -> (q - v / n) + ((K + e) / (1 + (n - N) / N) - K) { n <> 0, N <> 0, 1 + (n - N) / N <> 0 };

@@ -1,0 +1,20 @@
+# Control of sphere_underflow.g, one notch tighter: the floor 2^-75 instead of 2^-70. Gappa must fail.
+
+u = 1b-24;
+floor = 1b-75;
+alpha = (1 + 8 * u) * (1 + e1) * (1 + e2) * (1 + e3);
+beta = (2 * floor * (1 + e2) - g1) * (1 + e3);
+S = P * alpha + beta;
+t = S * S * (1 + e4) - h1;
+kappa = (1 + e5) * (1 + e5) * (1 + e6) * (1 + e7) * (1 + e8);
+d2 = (P + g2) * (P + g2) * kappa + h2;
+
+{ P in [0, 1b62] /\
+  |e1| <= 1b-24 /\ |e2| <= 1b-24 /\ |e3| <= 1b-24 /\ |e4| <= 1b-24 /\
+  |e5| <= 1b-24 /\ |e6| <= 1b-24 /\ |e7| <= 1b-24 /\ |e8| <= 1b-24 /\
+  g1 in [0, 1b-124] /\ g2 in [0, 1b-124] /\ h1 in [0, 1b-150] /\ h2 in [0, 1b-148]
+  -> t - d2 >= 0 }
+
+t - d2 -> P * P * (alpha * alpha * (1 + e4) - kappa)
+        + P * 2 * (alpha * beta * (1 + e4) - g2 * kappa)
+        + (beta * beta * (1 + e4) - g2 * g2 * kappa - h1 - h2);

@@ -1,0 +1,25 @@
+# Support coefficients of k = 14 for |e| = a >= b >= c >= 0 (others by symmetry): fl(b + c) / 2 on (111), fl(b - c) / 2 on
+# (11-1), fl(a - b) on (100). They are nonnegative and combine to e + d with |d|^2 <= 3 u^2 |e|^2. Scaled to a in [1, 2];
+# f..: flushing (LEMMAS.md).
+
+@rnd = float<24, ne>;
+b = a * r; c = b * s;
+base = rnd(b + c + f1);
+bent = rnd(b - c + f2);
+lead = rnd(a - b + f3);
+x = base - (b + c);
+y = bent - (b - c);
+z = lead - (a - b);
+D = ((x + y) * 0.5 + z) * ((x + y) * 0.5 + z) + (x * x + y * y) * 0.5;
+N = a * a * (1 + r * r * (1 + s * s));
+
+{ a in [1, 2] /\ r in [0, 1] /\ s in [0, 1] /\ |f1| <= 1b-100 /\ |f2| <= 1b-100 /\ |f3| <= 1b-100
+  -> D - N * (3 * 1b-48) <= 0 }
+
+x -> (base - (b + c + f1)) + f1;
+y -> (bent - (b - c + f2)) + f2;
+z -> (lead - (a - b + f3)) + f3;
+b + c -> b * (1 + s);
+b - c -> b * (1 - s);
+a - b -> a * (1 - r);
+$ a in 8, r in 8, s in 8;

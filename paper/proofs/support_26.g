@@ -1,0 +1,20 @@
+# Support coefficients of k = 26 for |e| = a >= b >= c >= 0 (others by symmetry): c on (111), fl(b - c) on (110), fl(a - b) on (100).
+# They are nonnegative and combine to e + d with |d|^2 <= 2 u^2 |e|^2. Scaled to a in [1, 2]; f..: flushing (LEMMAS.md).
+
+@rnd = float<24, ne>;
+b = a * r; c = b * s;
+pair = rnd(b - c + f1);
+lead = rnd(a - b + f2);
+x = pair - (b - c);
+y = lead - (a - b);
+D = (x + y) * (x + y) + x * x;
+N = a * a * (1 + r * r * (1 + s * s));
+
+{ a in [1, 2] /\ r in [0, 1] /\ s in [0, 1] /\ |f1| <= 1b-100 /\ |f2| <= 1b-100
+  -> D - N * (2 * 1b-48) <= 0 }
+
+x -> (pair - (b - c + f1)) + f1;
+y -> (lead - (a - b + f2)) + f2;
+b - c -> b * (1 - s);
+a - b -> a * (1 - r);
+$ a in 8, r in 8, s in 8;
