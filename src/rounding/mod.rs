@@ -32,9 +32,12 @@ pub const FLUSH: f64 = exp2(-126);
 /// 2⁶⁰, the contract's limit on |t|∞ and on sizes. Squares of sums stay below 2¹²⁷, so no deciding product overflows.
 pub const LIMIT: f32 = exp2(60) as f32;
 
-/// 1 + 2⁻²⁰, by which pair finders widen radii: cell sizes and sweep ends are themselves rounded (each by u of a
-/// coordinate difference, a few u in all), and must not lose a pair that the volume test would report. 16u here.
+/// 1 + 2⁻²⁰ = 1 + 16u, by which pair finders widen radii so that they lose no pair which the sphere test reports
+/// (|Δ| ≤ (R_A + R_B)(1 + 4u)); the rest is for their own f32 arithmetic on radii. Proof: `finder.g`.
 pub const FINDER_FACTOR: f64 = 1.0 + exp2(-20);
+
+/// 2⁻⁷⁸: the same where squares underflow, R being 2⁻⁷⁰ at least. Proof: `finder.g`.
+pub const FINDER_FLOOR: f64 = exp2(-78);
 
 /// The smallest f32 that surely exceeds the exact value behind `x`, the outcome of f64 arithmetic.
 ///
@@ -51,7 +54,7 @@ pub const fn down(x: f64) -> f32 {
 
 /// The radius by which a pair finder sorts, bins or sizes its cells, for a radius that the volume test uses.
 pub const fn widen(radius: f32) -> f32 {
-    up(radius as f64 * FINDER_FACTOR)
+    up(radius as f64 * FINDER_FACTOR + FINDER_FLOOR)
 }
 
 #[cfg(test)]

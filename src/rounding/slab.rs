@@ -16,10 +16,11 @@ pub const SLAB_MARGIN: f64 = exp2(-17);
 pub const SLAB_FLOOR: f64 = exp2(-110);
 
 /// One slab `lo ≤ d·x ≤ hi` of the body frame as the separating-axis test wants it: about the centre c, in units of the
-/// basis norm, inflated, rounded outward, and containing 0.
+/// basis norm, containing 0, inflated, rounded outward.
 ///
-/// `direction` is exact, `scale` is [`norm`] of the basis, and `reach` bounds ‖x‖, ‖x − c‖ and ‖c‖ for every
-/// vertex x. All finite. The result `lo' ≤ d·(x − c)/scale ≤ hi'` has a margin of (2⁻¹⁷ρ + 2⁻¹¹⁰)·‖d‖/scale on either side.
+/// `direction` is exact, `scale` is [`norm`] of a basis vector, `reach` bounds ‖x‖ for every vertex x; all finite. The
+/// result `lo' ≤ d·(x − c)/scale ≤ hi'` has a margin of (2⁻¹⁷ρ + 2⁻¹¹⁰)·‖d‖/scale on either side, ρ = reach + ‖c‖, which
+/// bounds ‖x − c‖ too, whatever c is. A slab end beyond ρ‖d‖ is cut to it: the proof takes ends to be at most that.
 pub fn inflate_slab(
     lo: f32,
     hi: f32,
@@ -31,8 +32,10 @@ pub fn inflate_slab(
     let offset: f64 = (0..3)
         .map(|i| f64::from(direction[i]) * f64::from(centre[i]))
         .sum();
-    let margin = norm(direction) / scale * (SLAB_MARGIN * f64::from(reach) + SLAB_FLOOR);
-    let lo = ((f64::from(lo) - offset) / scale).min(0.0) - margin;
-    let hi = ((f64::from(hi) - offset) / scale).max(0.0) + margin;
+    let (length, reach) = (norm(direction) / scale, f64::from(reach) + norm(centre));
+    let end = |x: f32| (f64::from(x) - offset) / scale;
+    let (limit, margin) = (length * reach, length * (SLAB_MARGIN * reach + SLAB_FLOOR));
+    let lo = end(lo).min(0.0).max(-limit) - margin;
+    let hi = end(hi).max(0.0).min(limit) + margin;
     (down(lo), up(hi))
 }
