@@ -83,7 +83,7 @@ fn text_stl_is_welded_over_all_its_solids() {
 /// Many exporters start the header of a binary file with the word that marks a text file.
 #[test]
 fn the_length_tells_binary_stl_even_with_a_header_that_says_solid() {
-    for header in ["", "solid plane", "exported \u{7}"] {
+    for header in ["", "solid plane", "solid plane\n", "exported \u{7}"] {
         assert_eq!(
             stl(binary_stl(header.as_bytes(), &[FIRST, SECOND])).unwrap(),
             two_triangles()

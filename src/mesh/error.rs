@@ -11,8 +11,7 @@ pub struct MeshError {
     pub file: String,
     /// 1-based line of a text file; in a binary file or for a whole-file problem there is none.
     pub line: Option<usize>,
-    /// What is wrong.
-    #[source]
+    /// What is wrong. Not the error's `source`, since its text is part of this one's.
     pub problem: Problem,
 }
 
