@@ -1,5 +1,4 @@
 //! Meshes survive every format to the bit, and no reader panics, hangs or asks for more memory than the bytes warrant.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::Vec3;
 use proptest::prelude::*;

@@ -1,5 +1,4 @@
 //! STL and PLY files, text and binary: what is read, and where a bad one is bad.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::Vec3;
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};

@@ -1,6 +1,5 @@
 //! `.tri` dialects: each good file reads to the same mesh, each bad one is refused with its line, a doubtful one with
 //! both names.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::Vec3;
 use miette::Diagnostic;

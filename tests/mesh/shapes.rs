@@ -1,12 +1,12 @@
 //! Procedural shapes: closed 2-manifolds of the right genus, facing outward, with the right size, equal on every platform.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::collections::HashMap;
 
 use sdop::mesh::shapes::ShapeError;
 use sdop::mesh::topology::Topology;
 use sdop::mesh::{ProceduralShape, TriangleMesh};
-use sha2::{Digest, Sha256};
+
+use super::{sha256, signed_volume};
 
 fn default_mesh(name: &str) -> TriangleMesh {
     ProceduralShape::from_name(name, &[])
@@ -17,16 +17,6 @@ fn default_mesh(name: &str) -> TriangleMesh {
 
 fn with(name: &str, sizes: &[(&str, f64)]) -> Result<TriangleMesh, ShapeError> {
     ProceduralShape::from_name(name, sizes)?.build()
-}
-
-/// Six times the signed volume is the sum of det(a, b, c): positive when counter-clockwise faces look outward.
-fn signed_volume(mesh: &TriangleMesh) -> f64 {
-    let corner = |i: u32| mesh.vertices[i as usize].as_dvec3();
-    mesh.triangles
-        .iter()
-        .map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c))))
-        .sum::<f64>()
-        / 6.0
 }
 
 /// Every directed edge once and its reverse once: closed, manifold and consistently oriented.
@@ -225,27 +215,22 @@ fn sizes_that_make_no_shape_are_refused_with_what_would_do() {
 /// The bits of all default shapes: they must not depend on the platform's libm, optimisation or hash order.
 #[test]
 fn shapes_are_equal_to_the_bit_everywhere() {
-    let mut hash = Sha256::new();
+    let mut bytes = Vec::new();
     for name in ProceduralShape::NAMES {
         let mesh = default_mesh(name);
         for vertex in &mesh.vertices {
             let coordinates = vertex.to_array();
-            coordinates
-                .iter()
-                .for_each(|c| hash.update(c.to_bits().to_le_bytes()));
+            bytes.extend(coordinates.iter().flat_map(|c| c.to_bits().to_le_bytes()));
         }
-        mesh.triangles
-            .as_flattened()
-            .iter()
-            .for_each(|i| hash.update(i.to_le_bytes()));
+        bytes.extend(
+            mesh.triangles
+                .as_flattened()
+                .iter()
+                .flat_map(|i| i.to_le_bytes()),
+        );
     }
-    let hex: String = hash
-        .finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
     assert_eq!(
-        hex,
+        sha256(&bytes),
         "a8925df26c80ade6f49e90e899554bad3151f811aedf245fb136d122973c82ac"
     );
 }

@@ -1,33 +1,17 @@
 //! Decimation: the surface keeps its topology and its place, and the result is the same everywhere.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::Vec3;
 use sdop::mesh::decimate::decimate;
 use sdop::mesh::topology::Topology;
 use sdop::mesh::{MeshFormat, ProceduralShape, ReadOptions, TriangleMesh, read, write_bytes};
-use sha2::{Digest, Sha256};
+
+use super::{sha256, signed_volume};
 
 fn shape(name: &str, sizes: &[(&str, f64)]) -> TriangleMesh {
     ProceduralShape::from_name(name, sizes)
         .unwrap()
         .build()
         .unwrap()
-}
-
-fn sha256(text: &[u8]) -> String {
-    Sha256::digest(text)
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
-}
-
-fn signed_volume(mesh: &TriangleMesh) -> f64 {
-    let corner = |i: u32| mesh.vertices[i as usize].as_dvec3();
-    mesh.triangles
-        .iter()
-        .map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c))))
-        .sum::<f64>()
-        / 6.0
 }
 
 #[test]

@@ -1,5 +1,4 @@
 //! Components, closedness and counts: of small meshes made to go wrong, and of the shipped ones.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::Vec3;
 use sdop::mesh::topology::{Component, Topology};
