@@ -5,7 +5,7 @@
 //! | `bourke` | `nv nt` | position, normal, colour | 3 indices from 0 | P. Bourke, "TRI file format", 2001 |
 //! | `indexed` | `nv nt` | position | 3 indices from 0 | SINTEF parametrization, NOTES_DATA_FORMAT |
 //! | `cart3d` | `nv nt` | position | 3 indices from 1, then perhaps nt component numbers | NASA Cart3D triangulations |
-//! | `labelled`, `labelled-1` | `nv nt` | position | count or label, 3 indices from 0 (from 1) | exporters' habit |
+//! | `labelled`, `labelled-1` | `nv nt` | position | count or label, 3 indices from 0 (from 1) | no description found; a leading count or number as in OFF and FreeSurfer |
 //! | `openmeeg` | `- nv` | position, normal | after a line `- nt nt nt`: 3 indices from 0 | OpenMEEG, BrainVISA |
 //! | `soup` | none | | 9 coordinates, perhaps a colour 0x… | POV-Ray raw triangles; AC3D as OpenFOAM reads it |
 //!
