@@ -3,6 +3,11 @@
 //! Nu and Nv are counted here; Cu, Cv and Co are calibrated elsewhere. A test counts when a candidate pair is handed to
 //! it, so counts are equal on every CPU, tier and thread count.
 
+pub mod calibrate;
+mod fit;
+pub mod measure;
+pub mod predict;
+
 use serde::Serialize;
 
 /// Work done on one volume. Sums over frames.
@@ -52,11 +57,32 @@ pub struct Seconds {
     pub total: f64,
 }
 
-/// The costs of one volume, in seconds.
+impl Seconds {
+    /// What was added since `before`.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Self {
+        Self {
+            construct: self.construct - before.construct,
+            effects: self.effects - before.effects,
+            update: self.update - before.update,
+            pair_finding: self.pair_finding - before.pair_finding,
+            ordop: self.ordop - before.ordop,
+            total: self.total - before.total,
+        }
+    }
+}
+
+/// The prices of one volume, in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct VolumeCosts {
+    /// Co: building the volume of every shape, once.
+    pub construct: f64,
     /// Cu: one update.
     pub update: f64,
+    /// Pair finding, a frame: what it costs whatever the number of bodies.
+    pub frame: f64,
+    /// Pair finding, a body and frame: arranging it for the finder and running over its candidates.
+    pub body: f64,
     /// Cv of a pair that survives.
     pub hit: f64,
     /// Cv of a pair that is culled; it may leave at its first separating axis.
@@ -67,10 +93,20 @@ impl VolumeCosts {
     /// Nu·Cu + Nv·Cv with Cv split into hits and misses.
     #[must_use]
     pub fn predict(&self, counters: &VolumeCounters) -> f64 {
-        let misses = counters.tests - counters.hits;
+        self.update(counters) + self.test(counters)
+    }
+
+    /// Nu·Cu.
+    #[must_use]
+    pub fn update(&self, counters: &VolumeCounters) -> f64 {
         counters.updates as f64 * self.update
-            + counters.hits as f64 * self.hit
-            + misses as f64 * self.miss
+    }
+
+    /// Nv·Cv.
+    #[must_use]
+    pub fn test(&self, counters: &VolumeCounters) -> f64 {
+        let misses = counters.tests - counters.hits;
+        counters.hits as f64 * self.hit + misses as f64 * self.miss
     }
 }
 
@@ -99,6 +135,7 @@ mod tests {
             update: 2.0,
             hit: 5.0,
             miss: 3.0,
+            ..VolumeCosts::default()
         };
         let counters = VolumeCounters {
             updates: 10,
