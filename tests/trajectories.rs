@@ -55,7 +55,7 @@ fn shipped_scenes_move_as_recorded() {
         (
             "clusters-10k.toml",
             5,
-            "65e8c38d54e11446f1deafd14a9cf200ac83d4b61bff9eac01dc67855ccb908b",
+            "e9db574301c1f2319f050260c02ccf5ec0bf6325cdbde70789434344c7fdf0ca",
         ),
         (
             "plane-10k.toml",
@@ -65,17 +65,17 @@ fn shipped_scenes_move_as_recorded() {
         (
             "brownian-1k.toml",
             100,
-            "81133f062d66be151a7ce53f18be13099bcd8e983f412548ca4dab57f2340b11",
+            "6a8dfe07759f603ea2cf063ad370b81ad7fa07cb5f788852630835f8b08c1043",
         ),
         (
             "free-fall-1k.toml",
             100,
-            "5debf03ba271b7aff873e4cb8e600e3ce4f8410401b0c2415560e1351b656ada",
+            "2c8853a6ace7dbed4a61debd8546a62f19288109010593d151b661b876e98770",
         ),
         (
             "rotating-gravity-1k.toml",
             100,
-            "8679169d0e9e881e2c6eae5af3c8dd2343c875992d6c44e286275f6364bd6cb3",
+            "0fe4718d762e27401017829b759822bde95a6361b84ddf263f2f184e3ec63018",
         ),
     ];
     let found = golden.map(|(name, steps, _)| (name, steps, trajectory(&shipped(name), steps)));
