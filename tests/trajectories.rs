@@ -70,7 +70,7 @@ fn shipped_scenes_move_as_recorded() {
         (
             "free-fall-1k.toml",
             100,
-            "2c8853a6ace7dbed4a61debd8546a62f19288109010593d151b661b876e98770",
+            "75c408d7abda3c08269833ebac0595a175915bb2079c28088f521d8728f964ff",
         ),
         (
             "rotating-gravity-1k.toml",
