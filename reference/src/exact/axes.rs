@@ -22,8 +22,8 @@ pub type Posed<'a> = (&'a Pose, &'a Polytope);
 pub fn overlap_one_sided(a: Posed, b: Posed) -> Decision<bool> {
     cascade(
         || any_normal(a.1, &Rounded::new(a, b)),
-        || any_normal(a.1, &Corners::<Interval>::new(a, b)),
-        || any_normal(a.1, &Corners::<IBig>::new(a, b)),
+        || one_sided::<Interval>(a, b),
+        || one_sided::<IBig>(a, b),
     )
     .map(|separated| !separated)
 }
@@ -42,10 +42,12 @@ pub fn overlap_two_sided(a: Posed, b: Posed) -> Decision<bool> {
     .map(|separated| !separated)
 }
 
-fn two_sided<N: Number>(a: Posed, b: Posed) -> Option<bool> {
-    either(any_normal(a.1, &Corners::<N>::new(a, b)), || {
-        any_normal(b.1, &Corners::<N>::new(b, a))
-    })
+fn one_sided<N: Number>(a: Posed, b: Posed) -> Option<bool> {
+    any_normal(a.1, &Corners::<N>::new(a, b))
+}
+
+pub(crate) fn two_sided<N: Number>(a: Posed, b: Posed) -> Option<bool> {
+    either(one_sided::<N>(a, b), || one_sided::<N>(b, a))
 }
 
 /// p ∨ q where either may be unknown.

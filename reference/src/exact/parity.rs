@@ -13,6 +13,8 @@ use super::view::View;
 use crate::linear::{Vector, sub};
 use crate::number::{dyadic, power_of_two};
 
+/// Segments tried: nearly always one is enough.
+const SEGMENTS: u64 = 1000;
 /// Bits of an outer point's coordinates: short numbers keep the integers short.
 const RAY_BITS: i32 = 20;
 
@@ -51,10 +53,12 @@ pub fn inside_closed(view: &View, point: &Vector<f64>, record: &mut Record) -> b
     if (0..3).any(|i| offset[i].abs() > root.half[i] + 2.0 * view.error) {
         return false;
     }
-    // Almost every segment of the sequence misses all edges: the loop ends.
-    let mut attempts =
-        (0..).filter_map(|n| odd_component(view, point, &mapped, &view.a.outside(n), record));
-    attempts.next().unwrap_or(false)
+    let mut parities = (0..SEGMENTS)
+        .filter_map(|n| odd_component(view, point, &mapped, &view.a.outside(n), record));
+    // A segment fails when it meets one of finitely many edges or starts on the surface, which the caller excludes.
+    parities
+        .next()
+        .unwrap_or_else(|| unreachable!("{SEGMENTS} segments from {point:?} all touch an edge"))
 }
 
 /// Whether a closed component is crossed an odd number of times; `None` when the segment touches an edge.

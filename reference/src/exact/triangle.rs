@@ -1,7 +1,7 @@
 //! Do two triangles share a point? Closed, and as degenerate as they like: a segment, a point.
 //!
 //! Two triangles in different planes meet iff an edge of one pierces the other (Guigue & Devillers 2003 order the same
-//! signs). With all three corners of one on the other's plane the two are coplanar or one is degenerate; that is left
+//! signs). With all three corners of A on B's plane the two are coplanar or B is degenerate; that is left
 //! to [`super::flat`], in integers, as no rounded number can tell it.
 
 use std::cmp::Ordering;
@@ -59,7 +59,7 @@ pub(crate) fn integral([a, b]: &[Triangle<Vector<IBig>>; 2]) -> Option<bool> {
 enum Contact {
     Apart,
     Meet,
-    /// Coplanar, or one of them is degenerate.
+    /// A lies in B's plane, or B has none.
     Flat,
 }
 
@@ -87,7 +87,8 @@ fn contact<S: Side>(sides: &S, a: &Triangle<S::Point>, b: &Triangle<S::Point>) -
         return Some(Contact::Apart);
     }
     let (corners_a, corners_b) = (known(corners_a)?, known(corners_b)?);
-    if [corners_a, corners_b].contains(&[Ordering::Equal; 3]) {
+    // With B proper, a degenerate A is its edges, which the loop looks at.
+    if corners_a == [Ordering::Equal; 3] {
         return Some(Contact::Flat);
     }
     for (t, signs, plane) in [(a, corners_a, b), (b, corners_b, a)] {

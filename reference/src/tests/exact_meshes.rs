@@ -25,7 +25,7 @@ fn grid_triangle(draws: &mut Draws, scale: f32) -> [[f32; 3]; 3] {
 fn grid_triangles_agree_with_rational_axes() {
     let mut draws = Draws(3);
     let (mut met, mut silent) = (0, 0);
-    for n in 0..6000 {
+    for n in 0..2500 {
         let scale = power_of_two([0, 59, -149][n % 3]) as f32;
         let mut corners = [(); 2].map(|()| grid_triangle(&mut draws, scale));
         if n % 5 == 0 {
@@ -59,7 +59,7 @@ fn grid_triangles_agree_with_rational_axes() {
         met += u32::from(truth);
     }
     assert!(
-        (1500..4500).contains(&met) && (1000..11000).contains(&silent),
+        (600..1900).contains(&met) && (400..4600).contains(&silent),
         "{met} met, {silent} silent"
     );
 }

@@ -12,7 +12,7 @@ use crate::exact::polytope::{DENOMINATOR, Polytope};
 use crate::exact::{Interval, Path, Tally, sphere};
 use crate::linear::integers;
 use crate::number::power_of_two;
-use crate::{Ball, DirectionSet, Pose};
+use crate::{Ball, DirectionSet, Pose, Slabs};
 
 /// A radius with which B comes as close to touching A as f32 can say, one float more or one float less.
 fn touching_radius(draws: &mut Draws, a: (&Ball, &Pose), b: (&Ball, &Pose)) -> f32 {
@@ -182,6 +182,12 @@ fn polytopes_agree_with_rational_axes_and_prove_it() {
         let two_sided = axes::overlap_two_sided(a, b);
         let apart_sided = apart(&world_a.normals) || apart(&world_b.normals);
         assert_eq!(two_sided.value, !apart_sided, "two-sided {case:?}");
+        assert_eq!(axes::two_sided::<IBig>(a, b), Some(apart_sided), "{case:?}");
+        let enclosed = axes::two_sided::<Interval>(a, b);
+        assert!(
+            enclosed.is_none_or(|apart| apart == apart_sided),
+            "{case:?}"
+        );
         let crossed: Vec<Rational3> = world_a
             .edges
             .iter()
@@ -220,7 +226,7 @@ fn certificates_that_do_not_hold_are_refused() {
     let cube = |half: f32| {
         let (lo, hi) = (vec![-half; 3], vec![half; 3]);
         let basis = exact_basis([0, 0, 0, 1]);
-        Polytope::new(&crate::Slabs {
+        Polytope::new(&Slabs {
             directions: DirectionSet::K6,
             basis,
             lo,
@@ -241,4 +247,66 @@ fn certificates_that_do_not_hold_are_refused() {
     assert!(touch.value.verify((&origin, &small), (&touching, &large)));
     assert!(!touch.value.verify((&origin, &small), (&beyond, &large)));
     assert!(!miss.value.verify((&origin, &small), (&touching, &large)));
+}
+
+/// A k-DOP beside itself under one generic rotation, a face apart by some ulps of its smallest slab end, or none.
+#[test]
+fn faces_that_touch_under_a_generic_rotation() {
+    let mut draws = Draws(29);
+    let mut paths = Tally::default();
+    for n in 0..300 {
+        let directions = DirectionSet::ALL[n % 4];
+        let coefficients = directions.coefficients();
+        let basis = exact_basis([1, 2, -3, 5]);
+        let end = |c: &[i32; 3]| 0.75 * c.iter().map(|x| x.abs()).sum::<i32>() as f32;
+        let hi: Vec<f32> = coefficients.iter().map(end).collect();
+        let lo: Vec<f32> = hi.iter().map(|x| -x).collect();
+        let gap = [0.0, 2.0f32.powi(-22), -2.0f32.powi(-22)][n / 4 % 3];
+        let shift = |ends: &[f32]| {
+            ends.iter()
+                .zip(&coefficients)
+                .map(|(x, c)| x + c[0] as f32 * (1.5 + gap))
+                .collect()
+        };
+        let beside = Slabs {
+            directions,
+            basis,
+            lo: shift(&lo),
+            hi: shift(&hi),
+        };
+        let (here, beside) = (
+            Polytope::new(&Slabs {
+                directions,
+                basis,
+                lo,
+                hi,
+            })
+            .unwrap(),
+            Polytope::new(&beside).unwrap(),
+        );
+        let pose = draws.pose(1.0);
+        let (a, b) = ((&pose, &here), (&pose, &beside));
+        let decision = ordop::meet(a, b);
+        assert_eq!(
+            matches!(decision.value, Certificate::Common { .. }),
+            gap <= 0.0,
+            "{pose:?} {gap}"
+        );
+        assert!(decision.value.verify(a, b), "{pose:?} {gap}");
+        for (sided, name) in [
+            (axes::overlap_one_sided(a, b), "one"),
+            (axes::overlap_two_sided(b, a), "two"),
+        ] {
+            assert_eq!(sided.value, gap <= 0.0, "{name} {pose:?} {gap}");
+        }
+        paths.count(decision.path);
+    }
+    assert_eq!(
+        paths,
+        Tally {
+            filter: 200,
+            interval: 0,
+            exact: 100
+        }
+    );
 }

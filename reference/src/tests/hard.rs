@@ -72,11 +72,13 @@ impl Draws {
         let size = [0, 0, 0, 59, -60, -140, 20][self.below(7) as usize];
         let power = |e: i32| crate::number::power_of_two(e.clamp(-149, 59)) as f32;
         let scale = power(size);
-        let origin = match self.below(3) {
+        let origin = match self.below(7) {
+            // As far as may be: bodies of this size are in one place or nowhere near.
+            0 => self.translation(power(59)),
             // Far from the origin, where f32 has few digits left for the body's size.
-            0 => self.translation(power(size + 20)),
+            1 | 2 => self.translation(power(size + 20)),
             // Off by far less than an f32 of the size could say: contact misses or holds by 2⁻²⁰ to 2⁻⁶⁰.
-            1 => {
+            3 | 4 => {
                 let tiny = power(size - 20 - self.below(40) as i32);
                 self.translation(tiny)
             }

@@ -5,6 +5,7 @@
 )]
 
 mod containment;
+mod exact_maps;
 mod exact_meshes;
 mod exact_volumes;
 mod hard;

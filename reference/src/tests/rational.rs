@@ -40,16 +40,32 @@ fn hamilton(a: &[RBig; 4], b: &[RBig; 4]) -> [RBig; 4] {
     ]
 }
 
-/// Where the pose puts a point, in world coordinates.
-pub fn posed(pose: &Pose, x: &Rational3) -> Rational3 {
-    let q = pose.quaternion().map(rational);
-    let [qx, qy, qz, qw] = &q;
-    let conjugate = [-qx, -qy, -qz, qw.clone()];
+/// q x q̄/|q|²
+fn turned(q: &[RBig; 4], x: &Rational3) -> Rational3 {
+    let [qx, qy, qz, qw] = q;
     let norm = qx * qx + qy * qy + qz * qz + qw * qw;
     let [x0, x1, x2] = x.clone();
-    let turned = hamilton(&hamilton(&q, &[x0, x1, x2, RBig::ZERO]), &conjugate);
+    let [x, y, z, _] = hamilton(&hamilton(q, &[x0, x1, x2, RBig::ZERO]), &conjugate(q));
+    [x, y, z].map(|component| component / &norm)
+}
+
+fn conjugate([x, y, z, w]: &[RBig; 4]) -> [RBig; 4] {
+    [-x, -y, -z, w.clone()]
+}
+
+/// Where the pose puts a point, in world coordinates.
+pub fn posed(pose: &Pose, x: &Rational3) -> Rational3 {
     let t = pose.translation().map(rational);
-    [0, 1, 2].map(|i| &turned[i] / &norm + &t[i])
+    let x = turned(&pose.quaternion().map(rational), x);
+    [0, 1, 2].map(|i| &x[i] + &t[i])
+}
+
+/// Which point the pose puts there.
+pub fn unposed(pose: &Pose, p: &Rational3) -> Rational3 {
+    turned(
+        &conjugate(&pose.quaternion().map(rational)),
+        &sub(p, &pose.translation().map(rational)),
+    )
 }
 
 /// a·b
