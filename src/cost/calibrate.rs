@@ -1,7 +1,7 @@
 //! Calibration: Cu, Cv and Co of every volume, from seeded runs that no prediction is compared with.
 //!
 //! The runs resample the scene ([`scenes`]): other numbers of bodies, other boxes, other seeds. Each stage's seconds are
-//! then explained by its counts ([`fit`](super::fit)): an update stage by Nu, a finding stage by frames, bodies, misses and
+//! then explained by its counts ([`fit`]): an update stage by Nu, a finding stage by frames, bodies, misses and
 //! hits. Prices are therefore marginal: a hit costs what one more hit costs among the misses around it, with the vector of
 //! lanes that it keeps busy. Dividing a run's own seconds by its own counts would predict nothing.
 

@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 use super::{Basis, DirectionSet};
 
 /// An oriented k-DOP in the body frame: `lo[i] ≤ d_i·x ≤ hi[i]` for every vertex x in exact arithmetic,
-/// with d_i = Σ_j coefficient[i][j]·columns[j].
+/// with d_i = Σ_j coefficient_ij·column_j.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrDop {
     /// Which slab directions.

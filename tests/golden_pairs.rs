@@ -1,0 +1,109 @@
+//! Golden pair lists: what a run reports and counts is equal to the bit on every CPU, in every SIMD level and build.
+//!
+//! The hashes were recorded once and change only with the volumes, the trajectories or the deciding arithmetic. Run this
+//! test's binary under an emulated CPU to see it: `qemu-x86_64 -cpu Nehalem target/debug/deps/golden_pairs-…`.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::Path;
+
+use sdop::scene::settings::{Budget, Overlap, Strategy, Updates};
+use sdop::scene::{Scene, SceneFile};
+use sdop::simd::Level;
+use sdop::simulate::{self, SimulationError};
+use sdop::volume::DirectionSet;
+
+fn scene(name: &str, frames: u32, k: DirectionSet) -> Scene {
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
+    let mut file = SceneFile::read(&directory.join(name)).unwrap();
+    file.spec.cull.k = k;
+    let mut scene = file.build().unwrap();
+    scene.frames = frames;
+    scene
+}
+
+fn summary(scene: &Scene, level: Level) -> simulate::Summary {
+    simulate::run(scene, level, |_| -> Result<(), SimulationError> { Ok(()) }).unwrap()
+}
+
+#[test]
+fn every_strategy_reports_what_was_recorded() {
+    let mut scene = scene("paper-150.toml", 10, DirectionSet::K18);
+    scene.cull.budget = Some(Budget::Tests(40));
+    for (strategy, reported, golden) in STRATEGIES {
+        scene.cull.strategy = strategy;
+        for level in Level::available() {
+            let summary = summary(&scene, level);
+            let hash = summary.pairs_sha256.as_deref().unwrap();
+            let seen = (summary.counters.reported, &hash[..16]);
+            assert_eq!(seen, (reported, golden), "{strategy} in {level}");
+        }
+    }
+}
+
+#[test]
+fn every_ordop_test_reports_what_was_recorded() {
+    for (k, overlap, reported, golden) in OVERLAPS {
+        let mut scene = scene("crowded-500.toml", 2, k);
+        scene.cull.overlap = overlap;
+        for updates in [Updates::Eager, Updates::Lazy] {
+            scene.cull.updates = updates;
+            for level in Level::available() {
+                let summary = summary(&scene, level);
+                let hash = summary.pairs_sha256.as_deref().unwrap();
+                let seen = (summary.counters.reported, &hash[..16]);
+                assert_eq!(
+                    seen,
+                    (reported, golden),
+                    "{k} {overlap} {updates} in {level}"
+                );
+            }
+        }
+    }
+}
+
+const STRATEGIES: [(Strategy, u64, &str); 9] = [
+    (Strategy::Sphere, 1070, "69a1e008ec8579de"),
+    (Strategy::OrDop, 501, "1b67adbe6c474c43"),
+    (Strategy::SDopSequential, 499, "b1e6dabf5d1679d0"),
+    (Strategy::SDopBatch, 499, "b1e6dabf5d1679d0"),
+    (Strategy::SDopObjectOfInterest, 1061, "903743471b915974"),
+    (Strategy::SDopTimeCritical, 907, "a4d0b61d69dddfc9"),
+    (Strategy::Aabb, 704, "691b0579b30272f6"),
+    (Strategy::KDop, 461, "004531c86eef400a"),
+    (Strategy::Obb, 945, "d69303b5ddbbdf9c"),
+];
+
+const OVERLAPS: [(DirectionSet, Overlap, u64, &str); 6] = [
+    (
+        DirectionSet::K6,
+        Overlap::TwoSided,
+        9343,
+        "d92b73219a646484",
+    ),
+    (
+        DirectionSet::K14,
+        Overlap::TwoSided,
+        6683,
+        "6f75b5c98b07fb7e",
+    ),
+    (
+        DirectionSet::K18,
+        Overlap::OneSided,
+        6406,
+        "49f468aed7c60fd9",
+    ),
+    (
+        DirectionSet::K18,
+        Overlap::TwoSided,
+        5874,
+        "d97f9551bfb7fc31",
+    ),
+    (DirectionSet::K18, Overlap::Full, 5721, "67db780da2b14ab0"),
+    (
+        DirectionSet::K26,
+        Overlap::TwoSided,
+        5402,
+        "4b9db0b9168cb392",
+    ),
+];
