@@ -10,9 +10,9 @@ use dashu_int::IBig;
 
 use super::polytope::{DENOMINATOR, Polytope};
 use super::relative::{Approximate, Relative, largest};
-use super::{Decision, Interval, cascade};
+use super::{Decision, Interval, any, cascade, either};
 use crate::linear::{Vector, add, apply, dot, integers, scale};
-use crate::number::Number;
+use crate::number::{Number, unit_of};
 use crate::pose::Pose;
 
 /// A polytope and where it is.
@@ -30,12 +30,9 @@ pub fn overlap_one_sided(a: Posed, b: Posed) -> Decision<bool> {
 
 /// Whether no face normal of A or of B separates A and B: the two-sided test.
 pub fn overlap_two_sided(a: Posed, b: Posed) -> Decision<bool> {
+    let rounded = |a, b: Posed| any_normal(b.1, &Rounded::new(b, a));
     cascade(
-        || {
-            either(any_normal(a.1, &Rounded::new(a, b)), || {
-                any_normal(b.1, &Rounded::new(b, a))
-            })
-        },
+        || either(rounded(b, a), || rounded(a, b)),
         || two_sided::<Interval>(a, b),
         || two_sided::<IBig>(a, b),
     )
@@ -50,17 +47,6 @@ pub(crate) fn two_sided<N: Number>(a: Posed, b: Posed) -> Option<bool> {
     either(one_sided::<N>(a, b), || one_sided::<N>(b, a))
 }
 
-/// p ∨ q where either may be unknown.
-fn either(p: Option<bool>, q: impl FnOnce() -> Option<bool>) -> Option<bool> {
-    if p == Some(true) {
-        p
-    } else if q()? {
-        Some(true)
-    } else {
-        p
-    }
-}
-
 /// Two point sets along one axis.
 pub trait Separation {
     /// The numbers that an axis is made of.
@@ -70,11 +56,10 @@ pub trait Separation {
 }
 
 fn any_normal<S: Separation>(polytope: &Polytope, sets: &S) -> Option<bool> {
-    let mut found = Some(false);
-    for normal in &polytope.normals {
-        found = either(found, || sets.separates(&integers(*normal)));
-    }
-    found
+    any(polytope
+        .normals
+        .iter()
+        .map(|normal| sets.separates(&integers(*normal))))
 }
 
 /// Both polytopes' corners as 12 s ξ in A's slab coordinates, in intervals or integers.
@@ -89,17 +74,11 @@ impl<N: Number> Corners<N> {
         let unit = common_unit(a, b);
         let relative = Relative::<N>::between(a.0, b.0, unit).over(a.1, b.1);
         let offset = scale(&N::integer(DENOMINATOR), &relative.offset);
+        let (own, others) = (a.1.lift_corners(unit), b.1.lift_corners(unit));
+        let map = |xi| add(&apply(&relative.matrix, xi), &offset);
         Self {
-            a: a.1
-                .lift_corners(unit)
-                .iter()
-                .map(|xi| scale(&relative.scale, xi))
-                .collect(),
-            b: b.1
-                .lift_corners(unit)
-                .iter()
-                .map(|xi| add(&apply(&relative.matrix, xi), &offset))
-                .collect(),
+            a: own.iter().map(|xi| scale(&relative.scale, xi)).collect(),
+            b: others.iter().map(map).collect(),
         }
     }
 }
@@ -162,10 +141,6 @@ impl Separation for Rounded<'_> {
 
 /// The largest unit of length such that both translations and all slab ends are multiples of it.
 pub fn common_unit(a: Posed, b: Posed) -> i32 {
-    let unit = |(pose, polytope): Posed| {
-        polytope
-            .length_unit()
-            .min(crate::number::unit_of(pose.translation()))
-    };
+    let unit = |(pose, polytope): Posed| polytope.length_unit().min(unit_of(pose.translation()));
     unit(a).min(unit(b))
 }

@@ -75,13 +75,16 @@ fn surfaces_meet(view: &View, record: &mut Record) -> bool {
                     return true;
                 }
             }
-            (Content::Boxes(right), content)
-                if larger(node_a, node_b) || matches!(content, Content::Triangles(..)) =>
-            {
-                stack.extend([(right, j), (i + 1, j)]);
+            (Content::Boxes(right), Content::Triangles(..)) => {
+                stack.extend([(right, j), (i + 1, j)])
+            }
+            (Content::Triangles(..), Content::Boxes(right)) => {
+                stack.extend([(i, right), (i, j + 1)])
+            }
+            (Content::Boxes(right), _) if larger(node_a, node_b) => {
+                stack.extend([(right, j), (i + 1, j)])
             }
             (_, Content::Boxes(right)) => stack.extend([(i, right), (i, j + 1)]),
-            (Content::Boxes(right), _) => stack.extend([(right, j), (i + 1, j)]),
         }
     }
     false

@@ -143,3 +143,24 @@ pub(crate) fn cascade<T>(
         path: Path::Exact,
     }
 }
+
+/// p ∨ q where either may be unknown.
+pub(crate) fn either(p: Option<bool>, q: impl FnOnce() -> Option<bool>) -> Option<bool> {
+    match p {
+        Some(true) => p,
+        Some(false) => q(),
+        None => q().filter(|q| *q),
+    }
+}
+
+/// Whether any is true, as far as it is known; the rest is not asked once one is.
+pub(crate) fn any(answers: impl IntoIterator<Item = Option<bool>>) -> Option<bool> {
+    let mut found = Some(false);
+    for answer in answers {
+        found = either(found, || answer);
+        if found == Some(true) {
+            break;
+        }
+    }
+    found
+}

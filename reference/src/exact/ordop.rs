@@ -1,9 +1,10 @@
 //! or-DOP against or-DOP, exactly, with a certificate either way: a common point or a separating axis.
 //!
 //! Both are convex polytopes given by slabs, so "all axes fail to separate" is "they have a common point": the full
-//! test, the oriented boxes' 15 axes included. A linear program in f64 guesses the point or the axis ([`super::simplex`]), and
-//! the cascade only has to verify it: the point against the slabs, the axis against the corners. When neither f64 with
-//! an error bound nor intervals can, the program is solved again in integers from where f64 ended.
+//! test, the oriented boxes' 15 axes included. A linear program in f64 guesses the point or the axis
+//! ([`super::simplex`]), and the cascade only has to verify it: the point against the slabs, the axis against the
+//! corners. When neither f64 with an error bound nor intervals can, the program is solved again in integers from
+//! where f64 ended.
 
 use std::cmp::Ordering;
 
@@ -13,7 +14,7 @@ use super::axes::{Corners, Posed, Rounded, Separation, common_unit};
 use super::relative::{Approximate, Relative, largest};
 use super::simplex::{Effort, Optimum, Row, maximise};
 use super::{Decision, Interval, Path, axes};
-use crate::linear::{Vector, add, apply, dot, integers, scale};
+use crate::linear::{Vector, add, apply, dot, integers, scale, transpose};
 use crate::number::{Number, unit_of};
 use crate::overlap::Overlap;
 use crate::pose::Body;
@@ -129,7 +130,7 @@ fn rows<N: Number>(
             N::lift(*hi, unit_a),
         );
     }
-    let columns = crate::linear::transpose(&map.matrix);
+    let columns = transpose(&map.matrix);
     for ((c, lo), hi) in b.1.normals.iter().zip(&b.1.lo).zip(&b.1.hi) {
         let c = integers(*c);
         let shift = dot(&c, &map.offset);
@@ -149,14 +150,11 @@ fn guess(a: Posed, b: Posed) -> Option<Optimum<f64>> {
     };
     let rows = rows(a, &map, b, [0, 0]);
     let size = rows.iter().map(|row| row.end.abs()).fold(0.0, f64::max);
-    maximise(
-        &rows,
-        START,
-        &Effort {
-            tolerance: DIGITS * size,
-            pivots: GUESSES,
-        },
-    )
+    let effort = Effort {
+        tolerance: DIGITS * size,
+        pivots: GUESSES,
+    };
+    maximise(&rows, START, &effort)
 }
 
 /// Verifies the guess by f64 with an error bound, then by intervals.
@@ -232,17 +230,11 @@ pub(crate) fn solve(a: Posed, b: Posed, start: [usize; 4]) -> Certificate {
     let unit = common_unit(a, b);
     let map = Relative::<IBig>::between(b.0, a.0, unit).over(b.1, a.1);
     let rows = rows(a, &map, b, [unit + a.1.basis_unit, unit + b.1.basis_unit]);
-    let from = |start| {
-        maximise(
-            &rows,
-            start,
-            &Effort {
-                tolerance: IBig::ZERO,
-                pivots: usize::MAX,
-            },
-        )
+    let effort = Effort {
+        tolerance: IBig::ZERO,
+        pivots: usize::MAX,
     };
-    let optimum = from(start).or_else(|| from(START));
+    let optimum = maximise(&rows, start, &effort).or_else(|| maximise(&rows, START, &effort));
     let optimum =
         optimum.unwrap_or_else(|| unreachable!("integers know every sign and START is a start"));
     if optimum.solution[3] < IBig::ZERO {
@@ -274,14 +266,21 @@ fn point_of(guess: &Optimum<f64>) -> Vector<f64> {
 }
 
 fn certificate_of_guess(a: Posed, guess: &Optimum<f64>) -> Certificate {
-    let lift = |v: Vector<f64>| (v.map(|x| IBig::lift(x, unit_of(v))), unit_of(v));
-    if guess.solution[3] < 0.0 {
-        return Certificate::Separated(lift(axis_of(a, guess)).0);
-    }
-    let (numerators, unit) = lift(point_of(guess));
-    Certificate::Common {
-        numerators,
-        denominator: IBig::ONE,
-        unit,
+    let separated = guess.solution[3] < 0.0;
+    let vector = if separated {
+        axis_of(a, guess)
+    } else {
+        point_of(guess)
+    };
+    let unit = unit_of(vector);
+    let numerators = vector.map(|x| IBig::lift(x, unit));
+    if separated {
+        Certificate::Separated(numerators)
+    } else {
+        Certificate::Common {
+            numerators,
+            denominator: IBig::ONE,
+            unit,
+        }
     }
 }

@@ -9,9 +9,10 @@ use std::cmp::Ordering;
 use dashu_int::IBig;
 
 use super::relative::{largest, quaternion};
-use super::{Decision, Interval, cascade};
-use crate::linear::{Vector, apply, dot, integers, norm_squared, rotation, sub};
+use super::{Decision, Interval, any, cascade, either};
+use crate::linear::{Vector, apply, dot, integers, norm_squared, rotation, scale, sub, transpose};
 use crate::number::{Number, unit_of};
+use crate::overlap::world::extents;
 use crate::pose::{Body, Pose, separation};
 use crate::volume::DirectionSet;
 
@@ -30,7 +31,7 @@ pub struct Extents<'a> {
 impl<'a> Extents<'a> {
     /// Fits the posed vertices.
     pub fn new(body: &Body<'a>, directions: DirectionSet) -> Self {
-        let ends = crate::overlap::world::extents(body, directions);
+        let ends = extents(body, directions);
         let reach = body.shape.points().map(|p| largest(&p)).fold(0.0, f64::max);
         let directions = directions.coefficients();
         Self {
@@ -44,7 +45,7 @@ impl<'a> Extents<'a> {
     /// The vertices that may be the highest (`end` = 1) or lowest (0) along a direction.
     fn candidates(&self, n: usize, end: usize) -> Vec<Vector<f64>> {
         let direction = apply(
-            &crate::linear::transpose(&self.body.pose.rotation()),
+            &transpose(&self.body.pose.rotation()),
             &integers(self.directions[n]),
         );
         let near =
@@ -68,15 +69,18 @@ pub fn overlap_extents(a: &Extents, b: &Extents) -> Decision<bool> {
         (lo_b + shift - hi_a).max(lo_a - hi_b - shift)
     };
     let gaps: Vec<f64> = (0..a.directions.len()).map(gap).collect();
-    let open = || (0..gaps.len()).filter(|n| gaps[*n] >= -bound);
+    let closed = |n: usize| gaps[n] < -bound;
+    let open = || (0..gaps.len()).filter(|n| !closed(*n));
+    let filter = || {
+        let apart = gaps.iter().any(|gap| *gap > bound);
+        if apart {
+            Some(true)
+        } else {
+            open().next().is_none().then_some(false)
+        }
+    };
     cascade(
-        || {
-            if gaps.iter().any(|gap| *gap > bound) {
-                Some(true)
-            } else {
-                open().next().is_none().then_some(false)
-            }
-        },
+        filter,
         || any_separates::<Interval>(a, b, open()),
         || any_separates::<IBig>(a, b, open()),
     )
@@ -88,61 +92,42 @@ fn any_separates<N: Number>(
     b: &Extents,
     open: impl Iterator<Item = usize>,
 ) -> Option<bool> {
-    let mut found = Some(false);
-    for n in open {
-        match separates::<N>(a, b, n) {
-            Some(true) => return Some(true),
-            Some(false) => {}
-            None => found = None,
-        }
-    }
-    found
+    any(open.map(|n| separates::<N>(a, b, n)))
 }
 
 /// Whether direction n has A wholly below B or B wholly below A.
 fn separates<N: Number>(a: &Extents, b: &Extents, n: usize) -> Option<bool> {
-    let candidates = [a, b].map(|e| [e.candidates(n, 0), e.candidates(n, 1)]);
+    let candidates = [a, b].map(|extents| [extents.candidates(n, 0), extents.candidates(n, 1)]);
+    let poses = [&a.body.pose, &b.body.pose];
     let lengths = candidates.iter().flatten().flatten().flatten().copied();
-    let (pose_a, pose_b) = (&a.body.pose, &b.body.pose);
-    let unit = unit_of(
-        lengths
-            .chain(pose_a.translation())
-            .chain(pose_b.translation()),
-    );
+    let unit = unit_of(lengths.chain(poses.into_iter().flat_map(Pose::translation)));
     let direction = integers::<N>(a.directions[n]);
-    let norms = [pose_a, pose_b].map(|pose| norm_squared(&quaternion::<N>(pose)));
-    let [ta, tb] = [pose_a, pose_b].map(|pose| pose.translation().map(|x| N::lift(x, unit)));
-    let shift = norms[0]
-        .times(&norms[1])
+    let [qa, qb] = poses.map(quaternion::<N>);
+    let [ta, tb] = poses.map(|pose| pose.translation().map(|x| N::lift(x, unit)));
+    let (norm_a, norm_b) = (norm_squared(&qa), norm_squared(&qb));
+    let shift = norm_a
+        .times(&norm_b)
         .times(&dot(&direction, &sub(&tb, &ta)));
-    let end = |pose: &Pose, points: &[Vector<f64>], other: &N, higher: fn(&N, &N) -> N| {
-        let along = apply(
-            &crate::linear::transpose(&rotation(&quaternion::<N>(pose))),
-            &direction,
-        );
-        let heights = points
-            .iter()
-            .map(|p| other.times(&dot(&along, &p.map(|x| N::lift(x, unit)))));
-        heights.reduce(|x, y| higher(&x, &y))
+    let along = |q, norm| scale(norm, &apply(&transpose(&rotation(q)), &direction));
+    let fit_a = fit(&along(&qa, &norm_b), &candidates[0], unit);
+    let fit_b = fit(&along(&qb, &norm_a), &candidates[1], unit);
+    let (Some([low_a, high_a]), Some([low_b, high_b])) = (fit_a, fit_b) else {
+        // A body without vertices.
+        return Some(true);
     };
-    let [[low_a, high_a], [low_b, high_b]] = &candidates;
-    let gap = |low: Option<N>, shift: &N, high: Option<N>| {
-        Some(low?.plus(shift).minus(&high?).sign()? == Ordering::Greater)
-    };
-    let above = gap(
-        end(pose_b, low_b, &norms[0], N::smaller),
-        &shift,
-        end(pose_a, high_a, &norms[1], N::larger),
-    );
-    let back = N::integer(0).minus(&shift);
-    let below = gap(
-        end(pose_a, low_a, &norms[1], N::smaller),
-        &back,
-        end(pose_b, high_b, &norms[0], N::larger),
-    );
-    match (above, below) {
-        (Some(true), _) | (_, Some(true)) => Some(true),
-        (Some(false), Some(false)) => Some(false),
-        _ => None,
-    }
+    let positive = |gap: N| gap.sign().map(|sign| sign == Ordering::Greater);
+    let beyond = positive(low_b.plus(&shift).minus(&high_a));
+    either(beyond, || positive(low_a.minus(&high_b.plus(&shift))))
+}
+
+/// The lowest of the first points and the highest of the second along a vector.
+fn fit<N: Number>(
+    along: &Vector<N>,
+    [low, high]: &[Vec<Vector<f64>>; 2],
+    unit: i32,
+) -> Option<[N; 2]> {
+    let height = |p: &Vector<f64>| dot(along, &p.map(|x| N::lift(x, unit)));
+    let lowest = low.iter().map(height).reduce(|x, y| x.smaller(&y));
+    let highest = high.iter().map(height).reduce(|x, y| x.larger(&y));
+    Some([lowest?, highest?])
 }

@@ -74,6 +74,46 @@ fn spheres_agree_with_rationals_and_between_stages() {
     );
 }
 
+/// Balls of one generic rotation whose centres are as far apart as their radii reach, give or take next to nothing.
+#[test]
+fn spheres_that_touch_under_a_generic_rotation() {
+    let mut draws = Draws(31);
+    let mut paths = Tally::default();
+    for n in 0..2000_i32 {
+        let off = [
+            0.0,
+            power_of_two(-20 - n / 3 % 60),
+            -power_of_two(-20 - n / 3 % 60),
+        ][n as usize % 3] as f32;
+        let (ball_a, ball_b) = (
+            Ball {
+                centre: [-off, 0.0, 0.0],
+                radius: 1.0,
+            },
+            Ball {
+                centre: [2.0, 3.0, 6.0],
+                radius: 6.0,
+            },
+        );
+        let turned = draws.pose(1.0);
+        let (a, b) = ((&ball_a, &turned), (&ball_b, &turned));
+        for (a, b) in [(a, b), (b, a)] {
+            let decision = sphere::overlap_balls(a, b);
+            assert_eq!(
+                decision.value,
+                off <= 0.0,
+                "{turned:?} {off:e} {:?}",
+                decision.path
+            );
+            paths.count(decision.path);
+        }
+    }
+    assert!(
+        paths.filter > 900 && paths.interval > 50 && paths.exact > 1300,
+        "{paths:?}"
+    );
+}
+
 /// A polytope of random slabs that a handful of grid points bound, as a mesh's would.
 fn polytope(draws: &mut Draws, directions: DirectionSet, size: i32) -> Polytope {
     let scale = power_of_two(size) as f32;
