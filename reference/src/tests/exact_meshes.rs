@@ -2,6 +2,7 @@
 
 use dashu_int::IBig;
 
+use super::hard::{TURN, turned_back};
 use super::rational;
 use super::shapes::{Draws, Mesh as Arrays, cuboid, torus};
 use crate::Pose;
@@ -61,6 +62,37 @@ fn grid_triangles_agree_with_rational_axes() {
     assert!(
         (600..1900).contains(&met) && (400..4600).contains(&silent),
         "{met} met, {silent} silent"
+    );
+}
+
+/// The same grid contacts where f64 cannot represent a single mapped corner.
+#[test]
+fn grid_triangles_keep_their_contacts_when_turned() {
+    let mut draws = Draws(37);
+    let (mut met, mut paths) = (0, Tally::default());
+    for _ in 0..4000 {
+        let corners = [(); 2].map(|()| grid_triangle(&mut draws, 1.0));
+        let lift = |t: &[[f32; 3]; 3]| t.map(|p| p.map(|x| IBig::lift(f64::from(x), 0)));
+        let truth = integral(&[lift(&corners[0]), lift(&corners[1])]) == Some(true);
+        let alone = |corners: [[f32; 3]; 3]| prepared(&(corners.to_vec(), vec![[0, 1, 2]]));
+        let (a, b) = (
+            alone(corners[0].map(|p| p.map(|x| x * TURN))),
+            alone(corners[1].map(turned_back)),
+        );
+        let (pose_a, pose_b) = draws.turned_poses();
+        let forth = meet((&a, &pose_a), (&b, &pose_b));
+        let back = meet((&b, &pose_b), (&a, &pose_a));
+        assert_eq!(
+            (forth.meets, back.meets),
+            (truth, truth),
+            "{corners:?} {pose_a:?}"
+        );
+        met += u32::from(truth);
+        paths.count(forth.path);
+    }
+    assert!(
+        (1000..3000).contains(&met) && paths.exact > 1000 && paths.filter > 1000,
+        "{met} {paths:?}"
     );
 }
 

@@ -3,7 +3,7 @@
 use dashu_int::IBig;
 use dashu_ratio::RBig;
 
-use super::hard::Case;
+use super::hard::{Case, TURN, turned_back};
 use super::rational::{self, Rational3, posed, rational};
 use super::shapes::{Draws, exact_basis, slabs};
 use crate::exact::axes::{self, Corners, Posed, Rounded, Separation};
@@ -74,42 +74,40 @@ fn spheres_agree_with_rationals_and_between_stages() {
     );
 }
 
-/// Balls of one generic rotation whose centres are as far apart as their radii reach, give or take next to nothing.
+/// Balls, turned so that f64 rounds every centre, whose centres are as far apart as the radii reach, give or take
+/// next to nothing.
 #[test]
-fn spheres_that_touch_under_a_generic_rotation() {
+fn turned_spheres_that_touch() {
     let mut draws = Draws(31);
     let mut paths = Tally::default();
     for n in 0..2000_i32 {
-        let off = [
-            0.0,
-            power_of_two(-20 - n / 3 % 60),
-            -power_of_two(-20 - n / 3 % 60),
-        ][n as usize % 3] as f32;
+        let nothing = power_of_two(-20 - n / 3 % 60) as f32;
+        let off = [0.0, nothing, -nothing][n as usize % 3];
         let (ball_a, ball_b) = (
             Ball {
                 centre: [-off, 0.0, 0.0],
-                radius: 1.0,
+                radius: TURN,
             },
             Ball {
-                centre: [2.0, 3.0, 6.0],
-                radius: 6.0,
+                centre: turned_back([2.0, 3.0, 6.0]),
+                radius: 6.0 * TURN,
             },
         );
-        let turned = draws.pose(1.0);
-        let (a, b) = ((&ball_a, &turned), (&ball_b, &turned));
+        let (pose_a, pose_b) = draws.turned_poses();
+        let (a, b) = ((&ball_a, &pose_a), (&ball_b, &pose_b));
         for (a, b) in [(a, b), (b, a)] {
             let decision = sphere::overlap_balls(a, b);
             assert_eq!(
                 decision.value,
                 off <= 0.0,
-                "{turned:?} {off:e} {:?}",
+                "{pose_a:?} {off:e} {:?}",
                 decision.path
             );
             paths.count(decision.path);
         }
     }
     assert!(
-        paths.filter > 900 && paths.interval > 50 && paths.exact > 1300,
+        paths.filter > 500 && paths.interval > 50 && paths.exact > 1000,
         "{paths:?}"
     );
 }
@@ -289,64 +287,60 @@ fn certificates_that_do_not_hold_are_refused() {
     assert!(!miss.value.verify((&origin, &small), (&touching, &large)));
 }
 
-/// A k-DOP beside itself under one generic rotation, a face apart by some ulps of its smallest slab end, or none.
+/// A k-DOP beside itself, turned so that f64 rounds every corner; a face apart by some ulps of a slab end, or none.
 #[test]
-fn faces_that_touch_under_a_generic_rotation() {
+fn turned_faces_that_touch() {
     let mut draws = Draws(29);
     let mut paths = Tally::default();
-    for n in 0..300 {
+    for n in 0..400 {
         let directions = DirectionSet::ALL[n % 4];
         let coefficients = directions.coefficients();
-        let basis = exact_basis([1, 2, -3, 5]);
         let end = |c: &[i32; 3]| 0.75 * c.iter().map(|x| x.abs()).sum::<i32>() as f32;
         let hi: Vec<f32> = coefficients.iter().map(end).collect();
         let lo: Vec<f32> = hi.iter().map(|x| -x).collect();
-        let gap = [0.0, 2.0f32.powi(-22), -2.0f32.powi(-22)][n / 4 % 3];
+        let gap = [0.0, 2.0f32.powi(-17), -2.0f32.powi(-17)][n / 4 % 3];
         let shift = |ends: &[f32]| {
-            ends.iter()
-                .zip(&coefficients)
-                .map(|(x, c)| x + c[0] as f32 * (1.5 + gap))
+            let ends = ends.iter().zip(&coefficients);
+            ends.map(|(x, c)| TURN * (x + c[0] as f32 * (1.5 + gap)))
                 .collect()
         };
+        let axes = exact_basis([0, 0, 0, 1]);
         let beside = Slabs {
             directions,
-            basis,
+            basis: axes.map(turned_back),
             lo: shift(&lo),
             hi: shift(&hi),
         };
-        let (here, beside) = (
-            Polytope::new(&Slabs {
-                directions,
-                basis,
-                lo,
-                hi,
-            })
-            .unwrap(),
-            Polytope::new(&beside).unwrap(),
-        );
-        let pose = draws.pose(1.0);
-        let (a, b) = ((&pose, &here), (&pose, &beside));
-        let decision = ordop::meet(a, b);
-        assert_eq!(
-            matches!(decision.value, Certificate::Common { .. }),
-            gap <= 0.0,
-            "{pose:?} {gap}"
-        );
-        assert!(decision.value.verify(a, b), "{pose:?} {gap}");
-        for (sided, name) in [
-            (axes::overlap_one_sided(a, b), "one"),
-            (axes::overlap_two_sided(b, a), "two"),
-        ] {
-            assert_eq!(sided.value, gap <= 0.0, "{name} {pose:?} {gap}");
+        let here = Polytope::new(&Slabs {
+            directions,
+            basis: axes,
+            lo,
+            hi,
+        })
+        .unwrap();
+        let beside = Polytope::new(&beside).unwrap();
+        let (pose_a, pose_b) = draws.turned_poses();
+        let (a, b) = ((&pose_a, &here), (&pose_b, &beside));
+        for (a, b) in [(a, b), (b, a)] {
+            let decision = ordop::meet(a, b);
+            assert_eq!(
+                matches!(decision.value, Certificate::Common { .. }),
+                gap <= 0.0,
+                "{pose_a:?} {gap}"
+            );
+            assert!(decision.value.verify(a, b), "{pose_a:?} {gap}");
+            assert_eq!(
+                axes::overlap_one_sided(a, b).value,
+                gap <= 0.0,
+                "one-sided {pose_a:?} {gap}"
+            );
+            assert_eq!(
+                axes::overlap_two_sided(a, b).value,
+                gap <= 0.0,
+                "two-sided {pose_a:?} {gap}"
+            );
+            paths.count(decision.path);
         }
-        paths.count(decision.path);
     }
-    assert_eq!(
-        paths,
-        Tally {
-            filter: 200,
-            interval: 0,
-            exact: 100
-        }
-    );
+    assert!(paths.exact > 200 && paths.filter > 400, "{paths:?}");
 }

@@ -3,6 +3,7 @@
 
 use super::shapes::Draws;
 use crate::Pose;
+use crate::linear::{apply, rotation, transpose};
 
 /// Two poses and the power of two that the bodies' sizes should have to be near one another.
 #[derive(Clone, Copy, Debug)]
@@ -103,5 +104,34 @@ impl Draws {
             b: pose(qb, tb),
             size,
         }
+    }
+}
+
+/// Exact contacts that no float sees: B is turned against A by g = (1, 2, 3, 5), whose matrix is integers over 39.
+/// The A-frame point 39v is the B-frame point [`turned_back`] v.
+pub const TURN: f32 = 39.0;
+
+/// R(g)ᵀv without the division: integers for integers.
+pub fn turned_back(v: [f32; 3]) -> [f32; 3] {
+    let rows = transpose(&rotation(&[1.0, 2.0, 3.0, 5.0]));
+    apply(&rows, &v.map(f64::from)).map(|x| x as f32)
+}
+
+impl Draws {
+    /// Poses of A and B with qB = qA g, in small integers times any powers of two, at one place.
+    pub fn turned_poses(&mut self) -> (Pose, Pose) {
+        let [x, y, z] = [(); 3].map(|()| self.below(7) as f32 - 3.0);
+        let w = 1.0 + self.below(4) as f32;
+        // Hamilton product of (x, y, z, w) and (1, 2, 3, 5).
+        let b = [
+            w + 5.0 * x + 3.0 * y - 2.0 * z,
+            2.0 * w - 3.0 * x + 5.0 * y + z,
+            3.0 * w + 2.0 * x - y + 5.0 * z,
+            5.0 * w - x - 2.0 * y - 3.0 * z,
+        ];
+        let norm = [1.0, 2.0_f32.powi(60), 2.0_f32.powi(-60)][self.below(3) as usize];
+        let place = self.vector(100.0);
+        let pose = |q: [f32; 4], norm| Pose::new(q.map(|x| x * norm), place).unwrap();
+        (pose([x, y, z, w], norm), pose(b, 1.0 / norm))
     }
 }
