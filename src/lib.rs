@@ -16,3 +16,8 @@ pub mod simulate;
 mod strategy;
 pub mod update;
 pub mod volume;
+
+/// The README's example compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -18,6 +18,16 @@ pub struct Bodies {
 }
 
 impl Bodies {
+    /// Appends a body at rest.
+    pub fn push(&mut self, shape: u32, dynamic: bool, rotation: [f32; 4], translation: [f32; 3]) {
+        self.shape.push(shape);
+        self.dynamic.push(dynamic);
+        self.rotation.push(rotation);
+        self.translation.push(translation);
+        self.velocity.push([0.0; 3]);
+        self.spin.push([0.0; 3]);
+    }
+
     /// The number of bodies.
     #[must_use]
     pub fn len(&self) -> usize {
