@@ -26,16 +26,16 @@ use super::scene_args::{MachineArgs, SceneArgs};
     after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
 )]
 pub struct Args {
-    #[command(flatten)]
-    scene: SceneArgs,
-    #[command(flatten)]
-    machine: MachineArgs,
     /// Write every frame's poses and pairs to this file, as lines of JSON
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
 }
 
 /// What is printed.

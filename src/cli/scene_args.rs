@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
-use miette::miette;
+use miette::{Diagnostic as _, miette};
 use sdop::scene::settings::{
     Axes, Budget, CullSettings, Finder, Interest, Order, Overlap, Strategy, Updates,
 };
@@ -18,7 +18,7 @@ use super::one_of;
 pub struct SceneArgs {
     /// The scene file (TOML), for example data/scenes/paper-500.toml
     scene: PathBuf,
-    /// Frames to cull: the initial state and one step less
+    /// Frames to cull; the first is the scene as placed
     #[arg(long)]
     frames: Option<NonZeroU32>,
     /// Where all random draws start
@@ -51,7 +51,7 @@ pub struct CullArgs {
     #[arg(long, value_parser = one_of::<Updates>(Updates::NAMES))]
     updates: Option<Updates>,
     /// Bodies of interest, as in 0,5,7, or a view cone, as in '{ body = 0, direction = [0, 0, 1], half_angle = 30 }'
-    #[arg(long)]
+    #[arg(long, value_parser = interest)]
     interest: Option<Interest>,
     /// Time-critical: or-DOP tests a frame
     #[arg(long, value_name = "TESTS", conflicts_with = "budget_us")]
@@ -121,6 +121,16 @@ impl CullArgs {
             .or(self.budget_us.map(Budget::Microseconds))
             .or(cull.budget);
     }
+}
+
+/// Reads an interest; clap shows no help text of its own for an error, so it goes into the message.
+fn interest(text: &str) -> Result<Interest, String> {
+    text.parse::<Interest>().map_err(|error| {
+        let help = error
+            .help()
+            .map_or(String::new(), |help| format!("; {help}"));
+        format!("{error}{help}")
+    })
 }
 
 impl MachineArgs {

@@ -202,6 +202,7 @@ fn bad_flags_are_refused_with_what_would_do() {
             &["--interest", "50"],
             &["body 50 of a scene of 50", "counted from 0"],
         ),
+        (&["--interest", "1,x"], &["body indices as in 0,5,7"]),
         (&["--k", "8"], &["invalid value '8'", "6, 14, 18, 26"]),
         (
             &["--budget-tests", "5", "--budget-us", "5"],
