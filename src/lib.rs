@@ -2,6 +2,8 @@
 //!
 //! Data flows one way: mesh → volume → scene → effects → update → broad_phase → overlap → pairs → cost.
 
+#[cfg(feature = "proptest")]
+pub mod arbitrary;
 pub mod broad_phase;
 pub mod cost;
 pub mod effects;
@@ -15,6 +17,8 @@ pub mod simd;
 pub mod simulate;
 mod strategy;
 pub mod update;
+#[cfg(feature = "verify")]
+pub mod verify;
 pub mod volume;
 
 /// The README's example compiles and runs.

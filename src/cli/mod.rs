@@ -7,6 +7,7 @@ mod output;
 mod recording;
 mod run;
 mod scene_args;
+mod verify;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
@@ -27,6 +28,7 @@ pub struct Cli {
 enum Command {
     Run(run::Args),
     Mesh(mesh::Args),
+    Verify(verify::Args),
 }
 
 /// How a command ended when its input was good.
@@ -35,10 +37,6 @@ pub enum Outcome {
     /// All is well: exit code 0.
     Passed,
     /// A check failed: exit code 1.
-    #[allow(
-        dead_code,
-        reason = "the commands that check build on this contract of exit codes"
-    )]
     Failed,
 }
 
@@ -51,6 +49,7 @@ impl Cli {
         match self.command {
             Command::Run(args) => run::run(&args),
             Command::Mesh(args) => mesh::run(&args),
+            Command::Verify(args) => verify::run(&args),
         }
     }
 }

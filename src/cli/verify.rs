@@ -1,0 +1,233 @@
+//! `sdop verify`: the optimised culler against the exact reference, on hard cases, seeded rounds and scenes.
+
+mod report;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use miette::{IntoDiagnostic as _, WrapErr as _};
+use rayon::prelude::*;
+use sdop::scene::SceneFile;
+use sdop::simd::Level;
+use sdop::verify::hard::{FILES, Group, page, variants};
+use sdop::verify::rounds::{Failure, Ledger, RoundError, Source, group, round};
+use sdop::verify::scenes::scene;
+use sdop::verify::shrink::Smallest;
+
+use super::Outcome;
+use super::output::{Format, emit, print, progress};
+use report::Report;
+
+/// Judge the optimised culler by the exact reference
+///
+/// Hard cases first, then seeded rounds (a probe among bodies that nearly touch it, and a random crowd, for every k and
+/// axes), then the scenes given, meshes included. Every strategy, overlap test, finder and SIMD tier takes part. A missed
+/// pair ends in exit code 1 and the smallest scene that shows it.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100"
+)]
+pub struct Args {
+    /// Scenes to run and judge, meshes included
+    scenes: Vec<PathBuf>,
+    /// Seeded rounds: each judges 8,192 near and 89,400 random pairs
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    seeds: u64,
+    /// The first seed
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    first_seed: u64,
+    /// Start no round after so many seconds
+    #[arg(long, value_name = "S")]
+    time: Option<u64>,
+    /// Frames of each scene
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    frames: usize,
+    /// One SIMD tier alone, instead of all that the CPU has
+    #[arg(long, value_name = "LEVEL")]
+    simd: Option<Level>,
+    /// Where the scene that shows a missed pair is written
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+    /// Write the hard cases' exact answers and their page into this directory, and judge nothing
+    #[arg(long, value_name = "DIR")]
+    record_hard_cases: Option<PathBuf>,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A scene that can't be run, a directory that can't be written.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    if let Some(directory) = &args.record_hard_cases {
+        return record(directory);
+    }
+    let start = Instant::now();
+    let levels = match args.simd {
+        Some(level) => vec![level],
+        None => [Level::available(), vec![Level::SCALAR_FLUSH]].concat(),
+    };
+    let mut report = Report::new(&levels);
+    let mut failures = Vec::new();
+    let mut add = |name: String, ledger: Ledger| {
+        report.add(name, &ledger);
+        failures.extend(ledger.failures);
+    };
+    add("hard cases".to_owned(), hard_cases(&levels)?);
+    let deadline = args.time.map(|s| start + Duration::from_secs(s));
+    let [near, random] = rounds(args, &levels, deadline)?;
+    add("near pairs".to_owned(), near);
+    add("random pairs".to_owned(), random);
+    for path in &args.scenes {
+        let built = SceneFile::read(path)?.build()?;
+        let bar = progress(args.frames as u64, &built.name);
+        let ledger = scene(&built, args.frames, &levels, |n| {
+            bar.set_position(n as u64);
+        });
+        let ledger = ledger.into_diagnostic()?;
+        bar.finish_and_clear();
+        add(
+            format!(
+                "{}, {} bodies, {} frames",
+                built.name,
+                built.bodies.len(),
+                args.frames
+            ),
+            ledger,
+        );
+    }
+    report.finish(start.elapsed());
+    emit(args.format, &report, Report::tables)?;
+    if report.missed == 0 {
+        return Ok(Outcome::Passed);
+    }
+    for failure in failures.iter().take(1) {
+        show(failure, &args.out)?;
+    }
+    Ok(Outcome::Failed)
+}
+
+fn hard_cases(levels: &[Level]) -> miette::Result<Ledger> {
+    let jobs: Vec<_> = FILES
+        .iter()
+        .flat_map(|file| variants().map(move |variant| (file.1, variant)))
+        .collect();
+    let bar = progress(jobs.len() as u64, "hard cases");
+    let judged: Result<Vec<Ledger>, RoundError> = jobs
+        .par_iter()
+        .map(|(text, variant)| {
+            let ledger = group(&Group::parse(text)?, *variant, levels);
+            bar.inc(1);
+            ledger
+        })
+        .collect();
+    bar.finish_and_clear();
+    Ok(sum(judged.into_diagnostic()?))
+}
+
+/// Near and random rounds. With a deadline, as many as it allows.
+fn rounds(args: &Args, levels: &[Level], deadline: Option<Instant>) -> miette::Result<[Ledger; 2]> {
+    let variants: Vec<_> = variants().collect();
+    let jobs = args.seeds * variants.len() as u64;
+    let bar = progress(jobs, "seeded rounds");
+    let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
+    let job = || -> Result<[Ledger; 2], RoundError> {
+        let mut ledgers = [Ledger::default(), Ledger::default()];
+        loop {
+            let late = deadline.is_some_and(|end| Instant::now() >= end);
+            let n = next.fetch_add(1, Ordering::Relaxed);
+            if late || n >= jobs || failed.load(Ordering::Relaxed) {
+                return Ok(ledgers);
+            }
+            let seed = args.first_seed + n / variants.len() as u64;
+            let variant = variants[n as usize % variants.len()];
+            for (source, ledger) in [Source::Near, Source::Random].into_iter().zip(&mut ledgers) {
+                let judged = round(source, seed, variant, levels)
+                    .inspect_err(|_| failed.store(true, Ordering::Relaxed))?;
+                ledger.add(judged);
+            }
+            bar.inc(1);
+        }
+    };
+    let workers = rayon::current_num_threads();
+    let parts: Result<Vec<_>, RoundError> = (0..workers).into_par_iter().map(|_| job()).collect();
+    bar.finish_and_clear();
+    let mut sums = [Ledger::default(), Ledger::default()];
+    for part in parts.into_diagnostic()? {
+        for (sum, ledger) in sums.iter_mut().zip(part) {
+            sum.add(ledger);
+        }
+    }
+    Ok(sums)
+}
+
+fn sum(ledgers: Vec<Ledger>) -> Ledger {
+    ledgers.into_iter().fold(Ledger::default(), |mut all, one| {
+        all.add(one);
+        all
+    })
+}
+
+/// Shrinks a failure and says where the scene is.
+fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
+    let [i, j] = failure.pair;
+    let what = format!(
+        "{} misses bodies {i} and {j} ({}, k = {}, {} axes, {}, {})",
+        failure.settings.strategy,
+        failure.settings.pairs,
+        failure.settings.k,
+        failure.settings.axes,
+        failure.settings.overlap,
+        failure.level
+    );
+    let Some(smallest) = Smallest::of(failure) else {
+        return print(&format!(
+            "{what}\nthe frame alone does not show it: it depends on the frames before"
+        ));
+    };
+    let (path, shown) = smallest
+        .write(out)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot write to {}", out.display()))?;
+    let how = if shown {
+        "shown by"
+    } else {
+        "not shown once its shapes are built anew, but its numbers are in"
+    };
+    print(&format!(
+        "{what}\n{} bodies are enough, {how} {}",
+        smallest.bodies.len(),
+        path.display()
+    ))
+}
+
+/// Recomputes the answers of the groups in a directory, and their page.
+fn record(directory: &Path) -> miette::Result<Outcome> {
+    let failed = |what: &str, path: &Path| format!("cannot {what} {}", path.display());
+    let write = |name: &str, text: &str| {
+        let path = directory.join(name);
+        let written = std::fs::write(&path, text).into_diagnostic();
+        written.wrap_err_with(|| failed("write", &path))
+    };
+    let bar = progress(FILES.len() as u64, "exact answers");
+    let mut texts = Vec::new();
+    for (name, _) in FILES {
+        let path = directory.join(format!("{name}.toml"));
+        let text = std::fs::read_to_string(&path).into_diagnostic();
+        let text = text.wrap_err_with(|| failed("read", &path))?;
+        let mut group = Group::parse(&text).into_diagnostic()?;
+        group.record().into_diagnostic()?;
+        let head = text.split("\n[answers").next().unwrap_or(&text).trim_end();
+        let text = format!("{head}\n{}", group.answers_toml().into_diagnostic()?);
+        write(&format!("{name}.toml"), &text)?;
+        texts.push((*name, text));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let page = page(texts.iter().map(|(name, text)| (*name, text.as_str())));
+    write("README.md", &page.into_diagnostic()?)?;
+    Ok(Outcome::Passed)
+}

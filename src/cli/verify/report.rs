@@ -1,0 +1,158 @@
+//! What a verification run says of itself: answers by stage, lists by strategy, one table each a source.
+
+use std::time::Duration;
+
+use sdop::simd::Level;
+use sdop::verify::Predicate;
+use sdop::verify::rounds::{Ledger, Row};
+use serde::Serialize;
+
+use crate::cli::output::table;
+
+/// The result of `sdop verify`.
+#[derive(Serialize)]
+pub struct Report {
+    /// Tiers that took part.
+    simd: Vec<&'static str>,
+    /// Wall time.
+    seconds: f64,
+    /// Pairs missed, over all sources.
+    pub missed: u64,
+    sources: Vec<SourceReport>,
+}
+
+#[derive(Serialize)]
+struct SourceReport {
+    name: String,
+    answers: Vec<AnswersReport>,
+    strategies: Vec<StrategyReport>,
+}
+
+/// One predicate's answers: how many pairs, and which stage of the reference was certain.
+#[derive(Serialize)]
+struct AnswersReport {
+    name: &'static str,
+    judged: u64,
+    overlapping: u64,
+    by_filter: u64,
+    by_interval: u64,
+    exactly: u64,
+}
+
+/// One strategy's lists, over all finders and tiers.
+#[derive(Serialize)]
+struct StrategyReport {
+    name: String,
+    judged: u64,
+    required: u64,
+    reported: u64,
+    missed: u64,
+    /// Reported although the exact volumes are apart, per million pairs judged.
+    margin_per_million: Option<f64>,
+    /// Reported and rightly so, but the meshes are apart, per million pairs whose meshes were judged.
+    looseness_per_million: Option<f64>,
+}
+
+impl Report {
+    pub fn new(levels: &[Level]) -> Self {
+        Self {
+            simd: levels.iter().map(|level| level.name()).collect(),
+            seconds: 0.0,
+            missed: 0,
+            sources: Vec::new(),
+        }
+    }
+
+    pub fn add(&mut self, name: String, ledger: &Ledger) {
+        self.missed += ledger.missed();
+        let answers = ledger.predicates.iter().zip(Predicate::ALL);
+        self.sources.push(SourceReport {
+            name,
+            answers: answers
+                .filter(|((_, tally), _)| tally.total() > 0)
+                .map(|((overlapping, tally), predicate)| AnswersReport {
+                    name: predicate.name(),
+                    judged: tally.total(),
+                    overlapping: *overlapping,
+                    by_filter: tally.filter,
+                    by_interval: tally.interval,
+                    exactly: tally.exact,
+                })
+                .collect(),
+            strategies: ledger.rows.iter().map(strategy).collect(),
+        });
+    }
+
+    pub fn finish(&mut self, elapsed: Duration) {
+        self.seconds = elapsed.as_secs_f64();
+    }
+
+    /// Two tables a source.
+    pub fn tables(&self) -> String {
+        let mut text = String::new();
+        for source in &self.sources {
+            let header = [
+                "exact answers",
+                "pairs",
+                "overlap",
+                "filter",
+                "interval",
+                "integers",
+            ];
+            let mut answers = table(&header);
+            for a in &source.answers {
+                let counts = [
+                    a.judged,
+                    a.overlapping,
+                    a.by_filter,
+                    a.by_interval,
+                    a.exactly,
+                ];
+                answers.add_row(
+                    [a.name.to_owned()]
+                        .into_iter()
+                        .chain(counts.map(|n| n.to_string())),
+                );
+            }
+            let header = [
+                "strategy",
+                "judged",
+                "required",
+                "reported",
+                "missed",
+                "margin/M",
+                "looseness/M",
+            ];
+            let mut lists = table(&header);
+            for s in &source.strategies {
+                let counts = [s.judged, s.required, s.reported, s.missed].map(|n| n.to_string());
+                let rates = [s.margin_per_million, s.looseness_per_million]
+                    .map(|rate| rate.map_or("–".to_owned(), |x| format!("{x:.1}")));
+                lists.add_row([s.name.clone()].into_iter().chain(counts).chain(rates));
+            }
+            text += &format!("{}\n{answers}\n{lists}\n\n", source.name);
+        }
+        text + &format!(
+            "{} missed in {:.0} s on {}",
+            self.missed,
+            self.seconds,
+            self.simd.join(", ")
+        )
+    }
+}
+
+fn strategy((row, count): (&Row, &sdop::verify::Count)) -> StrategyReport {
+    let rate = |part: u64, of: u64| (of > 0).then(|| 1e6 * part as f64 / of as f64);
+    // What a budget leaves untested is no rounding margin.
+    let budgeted = row.strategy == sdop::scene::settings::Strategy::SDopTimeCritical;
+    let overlap = row.overlap.map(|overlap| format!(" {overlap}"));
+    StrategyReport {
+        name: format!("{}{}", row.strategy, overlap.unwrap_or_default()),
+        judged: count.judged,
+        required: count.required,
+        reported: count.reported,
+        missed: count.missed,
+        margin_per_million: rate(count.margin, count.judged).filter(|_| !budgeted),
+        looseness_per_million: rate(count.loose, count.meshes_judged),
+    }
+}

@@ -1,0 +1,42 @@
+//! The corpus's own page: what each group is for and what naive f32 tests miss there.
+
+use std::fmt::Write as _;
+
+use super::{Group, GroupError, naive_misses};
+
+const HEAD: &str = "\
+# Hard cases
+
+Each file is a group: why it is hard, a recipe, a seed, and the exact answers for every or-DOP, one bit a pair, by
+predicate. `tests/hard_cases.rs` checks the answers against the exact reference and every strategy, finder, overlap test and
+tier against the answers. `refused.toml` has what must not get in. Written by
+
+    cargo run --release -- verify --record-hard-cases data/hard_cases
+
+The columns count overlaps (or-DOP: k = 18, principal axes, two-sided) that a plain f32 test without margins denies, and
+under `surface` the meshes that meet by containment alone, which a test of surfaces denies.
+
+| group | pairs | sphere | aabb | or-dop | surface | why |
+|---|--:|--:|--:|--:|--:|---|
+";
+
+/// The page, computed from the groups' names and texts.
+///
+/// # Errors
+/// Groups that can't be made.
+pub fn page<'a>(
+    groups: impl IntoIterator<Item = (&'a str, &'a str)>,
+) -> Result<String, GroupError> {
+    let mut page = HEAD.to_owned();
+    for (name, text) in groups {
+        let group = Group::parse(text)?;
+        let (m, pairs) = naive_misses(&group)?;
+        // Formatting into a String cannot fail.
+        let _ = writeln!(
+            page,
+            "| {name} | {pairs} | {} | {} | {} | {} | {} |",
+            m.sphere, m.aabb, m.ordop, m.surface, group.why
+        );
+    }
+    Ok(page)
+}

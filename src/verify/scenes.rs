@@ -1,0 +1,76 @@
+//! A scene's run judged frame by frame, end to end: every mesh pair that meets exactly must be in every strategy's list.
+
+use rayon::prelude::*;
+use thiserror::Error;
+
+use super::answers::{Answers, Predicate};
+use super::judged::Shapes;
+use super::rounds::{Ledger, RoundError, check, ways};
+use crate::effects::{EffectError, Effects};
+use crate::scene::Scene;
+use crate::scene::bodies::Bodies;
+use crate::scene::contract::ContractError;
+use crate::simd::Level;
+
+/// Frames that are judged at once, to bound memory; a culler lives for one block.
+const BLOCK: usize = 10;
+
+/// Why a scene can't be judged.
+#[derive(Debug, Error)]
+pub enum JudgeError {
+    /// Culling or the reference refuses it.
+    #[error(transparent)]
+    Round(#[from] RoundError),
+    /// An effect that the scene can't have.
+    #[error(transparent)]
+    Effect(#[from] EffectError),
+    /// A body left the contract.
+    #[error(transparent)]
+    Contract(#[from] ContractError),
+}
+
+/// Runs `frames` frames of a scene, judges every pair by every predicate, meshes included, and culls the frames in every
+/// way on each of `levels`. `done` is told after each block of frames how many are behind.
+///
+/// # Errors
+/// A scene that can't be run or judged.
+pub fn scene(
+    scene: &Scene,
+    frames: usize,
+    levels: &[Level],
+    done: impl Fn(usize),
+) -> Result<Ledger, JudgeError> {
+    let shapes = Shapes::new(scene.shapes.clone()).map_err(RoundError::from)?;
+    let ways = ways(scene.cull.k, scene.cull.axes);
+    let mut effects = Effects::new(scene)?;
+    let mut bodies = scene.bodies.clone();
+    let mut ledger = Ledger::default();
+    let mut behind = 0;
+    while behind < frames {
+        let mut block: Vec<Bodies> = Vec::new();
+        while block.len() < BLOCK.min(frames - behind) {
+            if behind + block.len() > 0 {
+                effects.step(&mut bodies)?;
+            }
+            block.push(bodies.clone());
+        }
+        let judge = |frame| Answers::judge(&shapes, frame, scene.cull.k, &Predicate::ALL);
+        let answers: Result<Vec<_>, _> = block.par_iter().map(judge).collect();
+        let answers = answers.map_err(RoundError::from)?;
+        answers.iter().for_each(|frame| ledger.note(frame));
+        let culled: Result<Vec<_>, _> = ways
+            .par_iter()
+            .enumerate()
+            .map(|(n, way)| {
+                let mut part = Ledger::default();
+                let level = levels[n % levels.len()];
+                check(&shapes.built, &block, &answers, way, level, &mut part)?;
+                Ok::<_, RoundError>(part)
+            })
+            .collect();
+        culled?.into_iter().for_each(|part| ledger.add(part));
+        behind += block.len();
+        done(behind);
+    }
+    Ok(ledger)
+}

@@ -1,0 +1,260 @@
+//! The corpus of hard cases: recorded answers, the whole grid of ways to cull on every tier, and its own completeness.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use rayon::prelude::*;
+use sdop::mesh::ReadOptions;
+use sdop::pipeline::Culler;
+use sdop::scene::settings::{CullSettings, Finder, Overlap, Strategy};
+use sdop::simd::Level;
+use sdop::verify::compare::settings;
+use sdop::verify::hard::{
+    Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name, variants,
+};
+use sdop::verify::rounds::{Ledger, check, refines, ways};
+use sdop::verify::{Answers, Predicate};
+use sdop::volume::{Axes, DirectionSet};
+
+type Variant = (DirectionSet, Axes);
+
+/// Every group for every or-DOP, with its exact answers.
+fn for_all(test: impl Fn(&str, &Group, Variant, &Cases, &[Vec<Answers>]) + Sync) {
+    let jobs: Vec<_> = FILES
+        .iter()
+        .flat_map(|file| variants().map(move |variant| (file, variant)))
+        .collect();
+    jobs.par_iter().for_each(|((name, text), variant)| {
+        let group = Group::parse(text).unwrap();
+        let cases = group.cases(variant.0, variant.1).unwrap();
+        let answers = group.judge(&cases, variant.0).unwrap();
+        test(name, &group, *variant, &cases, &answers);
+    });
+}
+
+#[test]
+fn no_way_to_cull_misses_a_pair_on_the_scalar_tier_and_kernels_agree_on_all() {
+    let faster = Level::available()
+        .into_iter()
+        .filter(|level| *level != Level::SCALAR);
+    let faster: Vec<Level> = faster.collect();
+    for_all(|name, group, (k, axes), cases, answers| {
+        let recorded = group.answers.get(&variant_name(k, axes));
+        assert_eq!(
+            recorded,
+            Some(&spell(answers)),
+            "{name}: the recorded answers"
+        );
+        known_by_construction(name, group, cases, answers);
+        let mut ledger = Ledger::default();
+        for way in ways(k, axes) {
+            for (frames, answers) in cases.runs.iter().zip(answers) {
+                let shapes = &cases.shapes.built;
+                // Flush-to-zero decides otherwise here and there, but never misses.
+                for level in [Level::SCALAR, Level::SCALAR_FLUSH] {
+                    check(shapes, frames, answers, &way, level, &mut ledger).unwrap();
+                }
+                let failure = ledger.failures.first();
+                assert!(
+                    failure.is_none(),
+                    "{name}: {:?} on {:?}, pair {:?}",
+                    failure.unwrap().settings,
+                    failure.unwrap().level,
+                    failure.unwrap().pair
+                );
+                let scalar = lists(cases, frames, &way, Level::SCALAR);
+                for &level in &faster {
+                    assert_eq!(
+                        lists(cases, frames, &way, level),
+                        scalar,
+                        "{name}: {way:?} on {level}"
+                    );
+                }
+            }
+        }
+    });
+}
+
+/// The lists of a run in list order, and its counters.
+fn lists(
+    cases: &Cases,
+    frames: &[sdop::scene::bodies::Bodies],
+    way: &CullSettings,
+    level: Level,
+) -> (Vec<Vec<[u32; 2]>>, sdop::cost::Counters) {
+    let settings = settings(way.strategy, way, frames[0].len());
+    let mut culler = Culler::new(&cases.shapes.built, &frames[0], &settings, level).unwrap();
+    let lists = frames
+        .iter()
+        .map(|frame| culler.cull(frame).iter().collect())
+        .collect();
+    (lists, *culler.counters())
+}
+
+/// What integer arithmetic says of a recipe needs no reference.
+fn known_by_construction(name: &str, group: &Group, cases: &Cases, answers: &[Vec<Answers>]) {
+    for known in &group.known {
+        assert_eq!(known, Predicate::Sphere.name(), "{name}");
+        for (frame, answers) in cases.runs.iter().flatten().zip(answers.iter().flatten()) {
+            for (&[i, j], &touch) in answers.pairs.iter().zip(answers.of(Predicate::Sphere)) {
+                let [i, j] = [i, j].map(|body| body as usize);
+                let d2: i128 = (0..3)
+                    .map(|axis| {
+                        (frame.translation[i][axis] as i128 - frame.translation[j][axis] as i128)
+                            .pow(2)
+                    })
+                    .sum();
+                let radius = |body: usize| {
+                    cases.shapes.built[frame.shape[body] as usize].ball.radius as i128
+                };
+                assert_eq!(d2, (radius(i) + radius(j)).pow(2), "{name}: an exact touch");
+                assert!(touch, "{name}: the reference denies an exact touch");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_group_defeats_a_naive_test_and_the_page_says_so() {
+    let naive: Vec<_> = FILES
+        .par_iter()
+        .map(|(name, text)| {
+            (
+                name,
+                naive_misses(&Group::parse(text).unwrap())
+                    .unwrap()
+                    .0
+                    .total(),
+            )
+        })
+        .collect();
+    let toothless: Vec<_> = naive.iter().filter(|(_, misses)| *misses == 0).collect();
+    assert!(
+        toothless.is_empty(),
+        "naive f32 misses nothing in {toothless:?}"
+    );
+    let recorded = std::fs::read_to_string("data/hard_cases/README.md").unwrap();
+    assert_eq!(recorded, page(FILES.iter().copied()).unwrap());
+}
+
+#[test]
+fn every_file_is_a_group_and_every_group_has_its_answers() {
+    let mut files: BTreeSet<String> = BTreeSet::new();
+    for entry in std::fs::read_dir("data/hard_cases").unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension() == Some("toml".as_ref()) && path.file_stem() != Some("refused".as_ref())
+        {
+            files.insert(path.file_stem().unwrap().to_string_lossy().into_owned());
+        }
+    }
+    let listed: BTreeSet<String> = FILES.iter().map(|(name, _)| (*name).to_owned()).collect();
+    assert_eq!(files, listed);
+    for (name, text) in FILES {
+        let group = Group::parse(text).unwrap();
+        let expected: BTreeSet<String> =
+            variants().map(|(k, axes)| variant_name(k, axes)).collect();
+        assert_eq!(
+            group.answers.keys().cloned().collect::<BTreeSet<_>>(),
+            expected,
+            "{name}"
+        );
+        assert!(!group.why.is_empty(), "{name}");
+    }
+}
+
+/// A new strategy, finder, overlap test, volume or tier must show up here: the grid is counted, not assumed.
+#[test]
+fn the_grid_has_every_strategy_finder_overlap_volume_and_tier() {
+    let mut seen = BTreeSet::new();
+    for (k, axes) in variants() {
+        for way in ways(k, axes) {
+            seen.insert((way.strategy, way.pairs, way.overlap, way.k, way.axes));
+        }
+    }
+    for &strategy in Strategy::ALL {
+        for &finder in Finder::ALL {
+            for &k in DirectionSet::ALL {
+                for &axes in Axes::ALL {
+                    for &overlap in Overlap::ALL {
+                        let expected = refines(strategy) || overlap == Overlap::TwoSided;
+                        let way = (strategy, finder, overlap, k, axes);
+                        assert_eq!(seen.remove(&way), expected, "{way:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(seen.is_empty());
+    let tiers = ["scalar", "sse2", "avx2", "avx512", "neon"];
+    assert_eq!(
+        Level::NAMES,
+        tiers,
+        "a new tier: have it in this suite and in near_misses.rs"
+    );
+    // Every predicate is required by some strategy, so no volume goes unjudged.
+    let judged = |predicate: Predicate| match predicate {
+        Predicate::Sphere => Strategy::Sphere,
+        Predicate::OrDop(_) => Strategy::OrDop,
+        Predicate::Aabb => Strategy::Aabb,
+        Predicate::KDop => Strategy::KDop,
+        Predicate::Obb => Strategy::Obb,
+        Predicate::Mesh => Strategy::SDopBatch,
+    };
+    for predicate in Predicate::ALL {
+        assert!(Strategy::ALL.contains(&judged(predicate)));
+    }
+}
+
+#[test]
+fn what_must_be_refused_is_refused() {
+    #[derive(serde::Deserialize)]
+    struct Refused {
+        scene: Vec<Case>,
+        mesh: Vec<Case>,
+    }
+    #[derive(serde::Deserialize)]
+    struct Case {
+        what: String,
+        text: String,
+        says: String,
+    }
+    let text = std::fs::read_to_string("data/hard_cases/refused.toml").unwrap();
+    let refused: Refused = toml::from_str(&text).unwrap();
+    for case in refused.scene {
+        let scene =
+            sdop::scene::SceneFile::parse(&case.text, "refused.toml", Path::new("data/scenes"))
+                .and_then(|file| file.build());
+        let error = scene
+            .err()
+            .unwrap_or_else(|| panic!("{} was accepted", case.what));
+        assert!(
+            error.to_string().contains(&case.says),
+            "{}: {error}",
+            case.what
+        );
+    }
+    for case in refused.mesh {
+        let obj = sdop::mesh::MeshFormat::Obj;
+        let read = sdop::mesh::read_bytes(
+            "refused",
+            obj,
+            case.text.as_bytes(),
+            &ReadOptions::default(),
+        );
+        let error = read
+            .err()
+            .unwrap_or_else(|| panic!("{} was accepted", case.what));
+        assert!(
+            error.to_string().contains(&case.says),
+            "{}: {error}",
+            case.what
+        );
+    }
+}
+
+#[test]
+fn a_group_that_is_none_is_refused() {
+    assert!(matches!(Group::parse("why = 3"), Err(GroupError::File(_))));
+}

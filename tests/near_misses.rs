@@ -1,0 +1,180 @@
+//! Near-touching configurations drawn by proptest, on every SIMD tier: what the exact reference reports, every strategy
+//! over every finder reports.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::sync::LazyLock;
+
+use proptest::prelude::*;
+use proptest::test_runner::{FileFailurePersistence, TestRunner};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use sdop::arbitrary;
+use sdop::scene::bodies::Bodies;
+use sdop::simd::Level;
+use sdop::verify::contact::{Contact, Placed};
+use sdop::verify::draw::add;
+use sdop::verify::forms::{self, Form};
+use sdop::verify::hard::variants;
+use sdop::verify::rounds::{Ledger, check, ways};
+use sdop::verify::{Answers, Predicate, Shapes, compare};
+use sdop::volume::{Axes, DirectionSet};
+
+/// Forms and sizes that the draws choose from: round and flat, long and short, centred and not.
+static SHAPES: LazyLock<Vec<((DirectionSet, Axes), Shapes)>> = LazyLock::new(|| {
+    let mut forms: Vec<Form> = ["box", "l-shape", "needle", "plate", "tetrahedron", "point"]
+        .iter()
+        .map(|form| Form::of(form, [-1.0, 1.0]))
+        .collect();
+    for form in &mut forms {
+        if form.form == "point" {
+            form.radius = None;
+        }
+    }
+    forms.push(Form {
+        radius: None,
+        offset: Some([0.7, -0.3, 0.4]),
+        ..Form::of("l-shape", [0.0; 2])
+    });
+    let build = |(k, axes)| {
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let shapes = forms::build(&forms, 1, k, axes, &mut rng).unwrap();
+        ((k, axes), shapes)
+    };
+    variants().map(build).collect()
+});
+
+const FORMS: usize = 7;
+const PARTNERS: usize = 12;
+/// Probes for each or-DOP and tier.
+const CASES: u32 = 24;
+
+type Drawn = (Placed, Vec<(usize, [f32; 4], Contact)>);
+
+/// The probe in the middle of its partners; only the probe moves.
+fn frame(shapes: &Shapes, (probe, partners): &Drawn) -> Bodies {
+    let mut bodies = Bodies::default();
+    for (n, (shape, rotation, contact)) in partners.iter().enumerate() {
+        if n == partners.len() / 2 {
+            add(&mut bodies, probe, true);
+        }
+        if let Some(translation) = contact.place(shapes, probe, *shape, *rotation) {
+            let partner = Placed {
+                shape: *shape,
+                rotation: *rotation,
+                translation,
+            };
+            add(&mut bodies, &partner, false);
+        }
+    }
+    bodies
+}
+
+fn runner() -> TestRunner {
+    let seeds = FileFailurePersistence::Direct("tests/near_misses.regressions");
+    TestRunner::new(ProptestConfig {
+        failure_persistence: Some(Box::new(seeds)),
+        ..ProptestConfig::with_cases(CASES)
+    })
+}
+
+/// Every strategy, overlap test and finder on one tier. Returns what was judged.
+fn never_misses(level: Level) -> Ledger {
+    let mut all = Ledger::default();
+    for (variant, shapes) in &*SHAPES {
+        let ledger = std::cell::RefCell::new(Ledger::default());
+        let property = |drawn: Drawn| {
+            let bodies = frame(shapes, &drawn);
+            let answers = [Answers::judge(shapes, &bodies, variant.0, &Predicate::ALL).unwrap()];
+            let mut ledger = ledger.borrow_mut();
+            ledger.note(&answers[0]);
+            let frames = [bodies];
+            for way in ways(variant.0, variant.1) {
+                check(&shapes.built, &frames, &answers, &way, level, &mut ledger).unwrap();
+                if let Some(failure) = ledger.failures.pop() {
+                    return Err(TestCaseError::fail(format!(
+                        "{:?} missed by {:?} on {level}",
+                        failure.pair, failure.settings
+                    )));
+                }
+            }
+            Ok(())
+        };
+        let result = runner().run(&arbitrary::probe(FORMS, PARTNERS), property);
+        assert!(result.is_ok(), "{}", result.unwrap_err());
+        all.add(ledger.into_inner());
+    }
+    all
+}
+
+/// Stamps the suite on a tier. A tier that this CPU lacks has nothing to test.
+macro_rules! on_tiers {
+    ($($module:ident = $level:expr,)+) => {$(
+        mod $module {
+            use super::*;
+
+            #[test]
+            fn near_contacts_are_never_missed() {
+                let level: Option<Level> = $level;
+                let Some(level) = level else {
+                    return eprintln!("{} is not on this CPU", stringify!($module));
+                };
+                let ledger = never_misses(level);
+                // The draws must bite: of every predicate a good part is true and a good part is false.
+                for ((overlaps, tally), predicate) in
+                    ledger.predicates.iter().zip(Predicate::ALL)
+                {
+                    let share = *overlaps as f64 / tally.total() as f64;
+                    assert!((0.05..0.95).contains(&share), "{predicate:?}: {share}");
+                }
+            }
+        }
+    )+};
+}
+
+on_tiers! {
+    scalar = Some(Level::SCALAR),
+    scalar_flush = Some(Level::SCALAR_FLUSH),
+    sse2 = "sse2".parse().ok(),
+    avx2 = "avx2".parse().ok(),
+    avx512 = "avx512".parse().ok(),
+    neon = "neon".parse().ok(),
+}
+
+#[test]
+fn the_suite_is_stamped_on_every_tier() {
+    let stamped = ["scalar", "sse2", "avx2", "avx512", "neon"];
+    assert_eq!(stamped, Level::NAMES);
+    let names: Vec<_> = Level::available()
+        .iter()
+        .map(|level| level.name())
+        .collect();
+    assert!(names.iter().all(|name| stamped.contains(name)), "{names:?}");
+}
+
+#[test]
+fn a_list_that_lacks_one_required_pair_is_caught() {
+    let (variant, shapes) = &SHAPES[0];
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let spec = sdop::verify::draw::ContactSpec::default();
+    let bodies = sdop::verify::draw::probe(shapes, &spec, 0, 32, &mut rng);
+    let answers = Answers::judge(shapes, &bodies, variant.0, &Predicate::ALL).unwrap();
+    for way in ways(variant.0, variant.1) {
+        let settings = compare::settings(way.strategy, &way, bodies.len());
+        let list = compare::cull(&shapes.built, &bodies, &settings, Level::SCALAR).unwrap();
+        let (count, missed) = compare(&answers, &settings, &list);
+        assert_eq!((count.missed, missed), (0, vec![]));
+        if count.required == 0 {
+            continue;
+        }
+        for n in 0..list.len() {
+            let mut lacking = list.clone();
+            let pair = lacking.remove(n);
+            let at = answers.pairs.binary_search(&pair).unwrap();
+            let required = answers.required(way.strategy, way.overlap, &[0, 7, 14, 21, 28], at)
+                || answers.of(Predicate::Mesh)[at];
+            let (count, _) = compare(&answers, &settings, &lacking);
+            assert_eq!(count.missed, u64::from(required), "{way:?}");
+        }
+    }
+}

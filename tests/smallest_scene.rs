@@ -1,0 +1,69 @@
+//! A missed pair ends as the smallest scene that shows it. The culler misses none, so here a shape lies about its ball.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use sdop::scene::SceneFile;
+use sdop::scene::settings::{CullSettings, Strategy};
+use sdop::simd::Level;
+use sdop::verify::draw::crowd;
+use sdop::verify::forms::{self, Form};
+use sdop::verify::rounds::{Failure, Ledger, judge_and_check};
+use sdop::verify::shrink::Smallest;
+use sdop::verify::{Predicate, Shapes};
+use sdop::volume::{Axes, DirectionSet};
+
+fn lying_crowd() -> (Shapes, Ledger) {
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let variant = (DirectionSet::K18, Axes::Principal);
+    let forms = [Form::of("box", [0.0; 2]), Form::of("l-shape", [0.0; 2])];
+    let mut shapes = forms::build(&forms, 1, variant.0, variant.1, &mut rng).unwrap();
+    shapes.built[0].ball.radius = 0.01;
+    let frame = crowd(&shapes, 24, 4.0, &mut rng);
+    let ledger = judge_and_check(
+        &shapes,
+        &[vec![frame]],
+        variant,
+        &Predicate::ALL,
+        &[Level::SCALAR],
+    );
+    (shapes, ledger.unwrap())
+}
+
+#[test]
+fn a_lying_ball_is_found_out_and_shrinks_to_two_bodies() {
+    let (shapes, ledger) = lying_crowd();
+    assert!(ledger.missed() > 0);
+    for (row, count) in &ledger.rows {
+        let uses_spheres = !matches!(
+            row.strategy,
+            Strategy::None | Strategy::OrDop | Strategy::Aabb | Strategy::KDop | Strategy::Obb
+        );
+        assert_eq!(count.missed > 0, uses_spheres, "{row:?}");
+    }
+    let smallest = Smallest::of(&ledger.failures[0]).unwrap();
+    assert_eq!(smallest.bodies.len(), 2);
+    assert_eq!(smallest.shapes.len(), shapes.built.len());
+
+    let directory = tempfile::tempdir().unwrap();
+    let (path, shown) = smallest.write(directory.path()).unwrap();
+    assert!(!shown, "built anew, the shape tells the truth");
+    let scene = SceneFile::read(&path).unwrap().build().unwrap();
+    assert_eq!(scene.bodies.translation, smallest.bodies.translation);
+    assert_eq!(scene.bodies.rotation, smallest.bodies.rotation);
+    assert_eq!(scene.cull, smallest.settings);
+}
+
+#[test]
+fn a_scene_without_a_miss_is_not_shrunk() {
+    let (shapes, ledger) = lying_crowd();
+    let honest = Failure {
+        settings: CullSettings::default(),
+        level: Level::SCALAR,
+        shapes: shapes.built[1..].to_vec(),
+        frames: vec![Default::default()],
+        pair: ledger.failures[0].pair,
+    };
+    assert!(Smallest::of(&honest).is_none());
+}
