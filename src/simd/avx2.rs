@@ -94,6 +94,12 @@ impl Lanes for Avx2 {
         F8(unsafe { _mm256_loadu_ps(from.as_ptr()) })
     }
     #[inline(always)]
+    fn store(self, v: F8, to: &mut [f32]) {
+        let to = &mut to[..8];
+        // SAFETY: room for 8 floats is there, and the token proves AVX.
+        unsafe { _mm256_storeu_ps(to.as_mut_ptr(), v.0) };
+    }
+    #[inline(always)]
     fn min(self, a: F8, b: F8) -> F8 {
         // SAFETY: the token proves AVX.
         F8(unsafe { _mm256_min_ps(a.0, b.0) })
@@ -162,6 +168,17 @@ impl Lanes for Avx2 {
         })
     }
     #[inline(always)]
+    fn lookup_16(self, table: &[f32; 16], index: I8) -> F8 {
+        // SAFETY: 16 floats are there, and the token proves AVX2; the permutations read the low three bits, and bit 3,
+        // moved into the sign, picks the half.
+        F8(unsafe {
+            let low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(table.as_ptr()), index.0);
+            let high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(table.as_ptr().add(8)), index.0);
+            let half = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(index.0));
+            _mm256_blendv_ps(low, high, half)
+        })
+    }
+    #[inline(always)]
     fn splat_u32(self, x: u32) -> I8 {
         // SAFETY: the token proves AVX.
         I8(unsafe { _mm256_set1_epi32(x as i32) })
@@ -197,6 +214,14 @@ impl Lanes for Avx2 {
         })
     }
     #[inline(always)]
+    fn split_u32(self, a: I8) -> (I8, I8) {
+        // SAFETY: the token proves AVX2.
+        unsafe {
+            let low = _mm256_and_si256(a.0, _mm256_set1_epi32(15));
+            (I8(_mm256_srli_epi32::<4>(a.0)), I8(low))
+        }
+    }
+    #[inline(always)]
     fn compress(self, keep: u32, values: I8, out: &mut [u32]) {
         let out = &mut out[..8];
         let order = &PACK[(keep & 0xff) as usize];
@@ -205,6 +230,23 @@ impl Lanes for Avx2 {
             let order = _mm256_loadu_si256(order.as_ptr().cast());
             let packed = _mm256_permutevar8x32_epi32(values.0, order);
             _mm256_storeu_si256(out.as_mut_ptr().cast(), packed);
+        }
+    }
+    #[inline(always)]
+    fn load_quads(self, from: &[[f32; 4]]) -> [F8; 4] {
+        let from = &from[..8];
+        // SAFETY: 8 quads are there, and the token proves AVX.
+        unsafe { transpose_quads(std::array::from_fn(|lane| from[lane].as_ptr())) }
+    }
+    #[inline(always)]
+    fn gather_quads(self, quads: &[[f32; 4]], index: I8) -> [F8; 4] {
+        let last = quads.len() as u32 - 1;
+        let mut lanes = [0u32; 8];
+        // SAFETY: every index is clamped to the last quad; the token proves AVX2.
+        unsafe {
+            let index = _mm256_min_epu32(index.0, _mm256_set1_epi32(last as i32));
+            _mm256_storeu_si256(lanes.as_mut_ptr().cast(), index);
+            transpose_quads(lanes.map(|lane| quads.as_ptr().add(lane as usize).cast()))
         }
     }
     #[inline(always)]
@@ -220,6 +262,27 @@ impl Lanes for Avx2 {
             out[half..half + 8].copy_from_slice(&unsafe { transpose(picked) });
         }
         out
+    }
+}
+
+/// Eight quads as four columns: quads i and i + 4 share a register, so a 4 × 4 transpose within halves puts all in place.
+///
+/// # Safety
+/// The CPU has AVX, and each pointer leads to four floats.
+#[inline(always)]
+unsafe fn transpose_quads(quads: [*const f32; 8]) -> [F8; 4] {
+    // SAFETY: the caller vouches for the feature and the pointers.
+    unsafe {
+        let pair = |i: usize| _mm256_loadu2_m128(quads[i + 4], quads[i]);
+        let [a, b, c, d] = [pair(0), pair(1), pair(2), pair(3)];
+        let [ab_lo, ab_hi] = [_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b)];
+        let [cd_lo, cd_hi] = [_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d)];
+        [
+            F8(_mm256_shuffle_ps::<0x44>(ab_lo, cd_lo)),
+            F8(_mm256_shuffle_ps::<0xee>(ab_lo, cd_lo)),
+            F8(_mm256_shuffle_ps::<0x44>(ab_hi, cd_hi)),
+            F8(_mm256_shuffle_ps::<0xee>(ab_hi, cd_hi)),
+        ]
     }
 }
 

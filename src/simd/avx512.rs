@@ -75,6 +75,12 @@ impl Lanes for Avx512 {
         F16(unsafe { _mm512_loadu_ps(from.as_ptr()) })
     }
     #[inline(always)]
+    fn store(self, v: F16, to: &mut [f32]) {
+        let to = &mut to[..16];
+        // SAFETY: room for 16 floats is there, and the token proves AVX-512 F.
+        unsafe { _mm512_storeu_ps(to.as_mut_ptr(), v.0) };
+    }
+    #[inline(always)]
     fn min(self, a: F16, b: F16) -> F16 {
         // SAFETY: the token proves AVX-512 F.
         F16(unsafe { _mm512_min_ps(a.0, b.0) })
@@ -141,6 +147,11 @@ impl Lanes for Avx512 {
         })
     }
     #[inline(always)]
+    fn lookup_16(self, table: &[f32; 16], index: I16) -> F16 {
+        // SAFETY: 16 floats are there, and the token proves AVX-512 F; the permutation reads the low four bits.
+        F16(unsafe { _mm512_permutexvar_ps(index.0, _mm512_loadu_ps(table.as_ptr())) })
+    }
+    #[inline(always)]
     fn splat_u32(self, x: u32) -> I16 {
         // SAFETY: the token proves AVX-512 F.
         I16(unsafe { _mm512_set1_epi32(x as i32) })
@@ -172,6 +183,14 @@ impl Lanes for Avx512 {
         M16(unsafe { _mm512_test_epi32_mask(a.0, b.0) })
     }
     #[inline(always)]
+    fn split_u32(self, a: I16) -> (I16, I16) {
+        // SAFETY: the token proves AVX-512 F.
+        unsafe {
+            let low = _mm512_and_si512(a.0, _mm512_set1_epi32(15));
+            (I16(_mm512_srli_epi32::<4>(a.0)), I16(low))
+        }
+    }
+    #[inline(always)]
     fn compress(self, keep: u32, values: I16, out: &mut [u32]) {
         let out = &mut out[..16];
         // SAFETY: room for 16 integers is there, and the token proves AVX-512 F. Compressing in a register and
@@ -179,6 +198,23 @@ impl Lanes for Avx512 {
         unsafe {
             let packed = _mm512_maskz_compress_epi32(keep as u16, values.0);
             _mm512_storeu_epi32(out.as_mut_ptr().cast(), packed);
+        }
+    }
+    #[inline(always)]
+    fn load_quads(self, from: &[[f32; 4]]) -> [F16; 4] {
+        let from = &from[..16];
+        // SAFETY: 16 quads are there, and the token proves AVX-512 F.
+        unsafe { transpose_quads(std::array::from_fn(|lane| from[lane].as_ptr())) }
+    }
+    #[inline(always)]
+    fn gather_quads(self, quads: &[[f32; 4]], index: I16) -> [F16; 4] {
+        let last = quads.len() as u32 - 1;
+        let mut lanes = [0u32; 16];
+        // SAFETY: every index is clamped to the last quad; the token proves AVX-512 F.
+        unsafe {
+            let index = _mm512_min_epu32(index.0, _mm512_set1_epi32(last as i32));
+            _mm512_storeu_epi32(lanes.as_mut_ptr().cast(), index);
+            transpose_quads(lanes.map(|lane| quads.as_ptr().add(lane as usize).cast()))
         }
     }
     #[inline(always)]
@@ -190,6 +226,33 @@ impl Lanes for Avx512 {
         }
         // SAFETY: the token proves AVX-512 F.
         unsafe { transpose(picked) }
+    }
+}
+
+/// Sixteen quads as four columns: quads i, i + 4, i + 8 and i + 12 share a register, so a 4 × 4 transpose within quarters
+/// puts all in place. Some 12 cycles, where four gathers take 80.
+///
+/// # Safety
+/// The CPU has AVX-512 F, and each pointer leads to four floats.
+#[inline(always)]
+unsafe fn transpose_quads(quads: [*const f32; 16]) -> [F16; 4] {
+    // SAFETY: the caller vouches for the feature and the pointers.
+    unsafe {
+        let quarters = |i: usize| {
+            let first = _mm512_castps128_ps512(_mm_loadu_ps(quads[i]));
+            let second = _mm512_insertf32x4::<1>(first, _mm_loadu_ps(quads[i + 4]));
+            let third = _mm512_insertf32x4::<2>(second, _mm_loadu_ps(quads[i + 8]));
+            _mm512_insertf32x4::<3>(third, _mm_loadu_ps(quads[i + 12]))
+        };
+        let [a, b, c, d] = [quarters(0), quarters(1), quarters(2), quarters(3)];
+        let [ab_lo, ab_hi] = [_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b)];
+        let [cd_lo, cd_hi] = [_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d)];
+        [
+            F16(_mm512_shuffle_ps::<0x44>(ab_lo, cd_lo)),
+            F16(_mm512_shuffle_ps::<0xee>(ab_lo, cd_lo)),
+            F16(_mm512_shuffle_ps::<0x44>(ab_hi, cd_hi)),
+            F16(_mm512_shuffle_ps::<0xee>(ab_hi, cd_hi)),
+        ]
     }
 }
 

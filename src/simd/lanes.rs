@@ -26,6 +26,8 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     fn splat(self, x: f32) -> Self::F;
     /// The first `WIDTH` elements of `from`, which must have that many.
     fn load(self, from: &[f32]) -> Self::F;
+    /// Writes all lanes to the front of `to`, which must have `WIDTH` elements.
+    fn store(self, v: Self::F, to: &mut [f32]);
     /// Smaller lane by lane.
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     /// Larger lane by lane.
@@ -49,6 +51,8 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     fn lookup(self, table: &[f32; 8], octant: Self::I) -> Self::F;
     /// Entry `index` of a non-empty table, lane by lane; an index past the end reads the last entry.
     fn gather(self, table: &[f32], index: Self::I) -> Self::F;
+    /// Entry `index` (0 to 15) of a table, lane by lane.
+    fn lookup_16(self, table: &[f32; 16], index: Self::I) -> Self::F;
 
     /// `x` in every lane.
     fn splat_u32(self, x: u32) -> Self::I;
@@ -62,10 +66,17 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     fn max_u32(self, a: Self::I, b: Self::I) -> Self::I;
     /// Lanes whose bitwise and is not zero.
     fn any_bit(self, a: Self::I, b: Self::I) -> Self::M;
+    /// The upper 28 bits and the lower 4 bits.
+    fn split_u32(self, a: Self::I) -> (Self::I, Self::I);
     /// Writes the lanes whose bit in `keep` is set to the front of `out`, in lane order; `out` has at least `WIDTH` elements and
     /// those behind the kept ones are left in an unspecified state (that is what makes it free of branches).
     fn compress(self, keep: u32, values: Self::I, out: &mut [u32]);
 
+    /// The first `WIDTH` quads of `from`, which must have that many, as columns: element c of the result holds number c of
+    /// every quad.
+    fn load_quads(self, from: &[[f32; 4]]) -> [Self::F; 4];
+    /// Quads `quads[index]` of a non-empty table as columns; an index past the end reads the last quad.
+    fn gather_quads(self, quads: &[[f32; 4]], index: Self::I) -> [Self::F; 4];
     /// Rows `rows[pick[lane]]` as columns: element c of the result holds number c of every picked row.
     /// `pick` has at least `WIDTH` elements.
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW];

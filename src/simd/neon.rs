@@ -81,6 +81,12 @@ impl Lanes for Neon {
         F4(unsafe { vld1q_f32(from.as_ptr()) })
     }
     #[inline(always)]
+    fn store(self, v: F4, to: &mut [f32]) {
+        let to = &mut to[..4];
+        // SAFETY: room for 4 floats is there, and the token proves NEON.
+        unsafe { vst1q_f32(to.as_mut_ptr(), v.0) };
+    }
+    #[inline(always)]
     fn min(self, a: F4, b: F4) -> F4 {
         // SAFETY: the token proves NEON.
         F4(unsafe { vbslq_f32(vcltq_f32(a.0, b.0), a.0, b.0) })
@@ -148,6 +154,10 @@ impl Lanes for Neon {
         )
     }
     #[inline(always)]
+    fn lookup_16(self, table: &[f32; 16], index: I4) -> F4 {
+        self.load(&self.array(index).map(|entry| table[(entry & 15) as usize]))
+    }
+    #[inline(always)]
     fn splat_u32(self, x: u32) -> I4 {
         // SAFETY: the token proves NEON.
         I4(unsafe { vdupq_n_u32(x) })
@@ -179,6 +189,14 @@ impl Lanes for Neon {
         M4(unsafe { vtstq_u32(a.0, b.0) })
     }
     #[inline(always)]
+    fn split_u32(self, a: I4) -> (I4, I4) {
+        // SAFETY: the token proves NEON.
+        unsafe {
+            let low = vandq_u32(a.0, vdupq_n_u32(15));
+            (I4(vshrq_n_u32::<4>(a.0)), I4(low))
+        }
+    }
+    #[inline(always)]
     fn compress(self, keep: u32, values: I4, out: &mut [u32]) {
         let out = &mut out[..4];
         let mut kept = 0;
@@ -187,6 +205,22 @@ impl Lanes for Neon {
             out[kept] = value;
             kept += (keep >> lane & 1) as usize;
         }
+    }
+    #[inline(always)]
+    fn load_quads(self, from: &[[f32; 4]]) -> [F4; 4] {
+        let from = from[..4].as_flattened();
+        // SAFETY: 16 floats are there, and the token proves NEON. The load itself takes every fourth float to one vector.
+        let float32x4x4_t(a, b, c, d) = unsafe { vld4q_f32(from.as_ptr()) };
+        [F4(a), F4(b), F4(c), F4(d)]
+    }
+    #[inline(always)]
+    fn gather_quads(self, quads: &[[f32; 4]], index: I4) -> [F4; 4] {
+        let last = quads.len() - 1;
+        self.load_quads(
+            &self
+                .array(index)
+                .map(|entry| quads[(entry as usize).min(last)]),
+        )
     }
     #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F4; ROW] {

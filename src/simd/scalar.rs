@@ -92,6 +92,10 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
         F1::of(from[0])
     }
     #[inline(always)]
+    fn store(self, v: Self::F, to: &mut [f32]) {
+        to[0] = v.0;
+    }
+    #[inline(always)]
     fn min(self, a: Self::F, b: Self::F) -> Self::F {
         if a.0 < b.0 { a } else { b }
     }
@@ -138,6 +142,10 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
         F1::of(table[(index as usize).min(table.len() - 1)])
     }
     #[inline(always)]
+    fn lookup_16(self, table: &[f32; 16], index: u32) -> Self::F {
+        F1::of(table[(index & 15) as usize])
+    }
+    #[inline(always)]
     fn splat_u32(self, x: u32) -> u32 {
         x
     }
@@ -162,10 +170,22 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
         M1(a & b != 0)
     }
     #[inline(always)]
+    fn split_u32(self, a: u32) -> (u32, u32) {
+        (a >> 4, a & 15)
+    }
+    #[inline(always)]
     fn compress(self, keep: u32, values: u32, out: &mut [u32]) {
         if keep & 1 != 0 {
             out[0] = values;
         }
+    }
+    #[inline(always)]
+    fn load_quads(self, from: &[[f32; 4]]) -> [Self::F; 4] {
+        from[0].map(F1::of)
+    }
+    #[inline(always)]
+    fn gather_quads(self, quads: &[[f32; 4]], index: u32) -> [Self::F; 4] {
+        quads[(index as usize).min(quads.len() - 1)].map(F1::of)
     }
     #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW] {

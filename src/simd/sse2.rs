@@ -50,6 +50,14 @@ impl Sse2 {
     }
 
     #[inline(always)]
+    fn transposed(self, rows: [&[f32; 4]; 4]) -> [F4; 4] {
+        let [mut a, mut b, mut c, mut d] = rows.map(|row| self.load(row).0);
+        // SAFETY: the token proves SSE2.
+        unsafe { _MM_TRANSPOSE4_PS(&mut a, &mut b, &mut c, &mut d) };
+        [F4(a), F4(b), F4(c), F4(d)]
+    }
+
+    #[inline(always)]
     fn pick(self, m: __m128i, a: I4, b: I4) -> I4 {
         // SAFETY: the token proves SSE2.
         I4(unsafe { _mm_or_si128(_mm_and_si128(m, a.0), _mm_andnot_si128(m, b.0)) })
@@ -78,6 +86,12 @@ impl Lanes for Sse2 {
         let from = &from[..4];
         // SAFETY: 4 floats are there, and the token proves SSE2.
         F4(unsafe { _mm_loadu_ps(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self, v: F4, to: &mut [f32]) {
+        let to = &mut to[..4];
+        // SAFETY: room for 4 floats is there, and the token proves SSE2.
+        unsafe { _mm_storeu_ps(to.as_mut_ptr(), v.0) };
     }
     #[inline(always)]
     fn min(self, a: F4, b: F4) -> F4 {
@@ -146,6 +160,10 @@ impl Lanes for Sse2 {
         )
     }
     #[inline(always)]
+    fn lookup_16(self, table: &[f32; 16], index: I4) -> F4 {
+        self.load(&self.array(index).map(|entry| table[(entry & 15) as usize]))
+    }
+    #[inline(always)]
     fn splat_u32(self, x: u32) -> I4 {
         // SAFETY: the token proves SSE2.
         I4(unsafe { _mm_set1_epi32(x as i32) })
@@ -180,6 +198,14 @@ impl Lanes for Sse2 {
         })
     }
     #[inline(always)]
+    fn split_u32(self, a: I4) -> (I4, I4) {
+        // SAFETY: the token proves SSE2.
+        unsafe {
+            let low = _mm_and_si128(a.0, _mm_set1_epi32(15));
+            (I4(_mm_srli_epi32::<4>(a.0)), I4(low))
+        }
+    }
+    #[inline(always)]
     fn compress(self, keep: u32, values: I4, out: &mut [u32]) {
         let out = &mut out[..4];
         let mut kept = 0;
@@ -190,18 +216,27 @@ impl Lanes for Sse2 {
         }
     }
     #[inline(always)]
+    fn load_quads(self, from: &[[f32; 4]]) -> [F4; 4] {
+        let from = &from[..4];
+        self.transposed([&from[0], &from[1], &from[2], &from[3]])
+    }
+    #[inline(always)]
+    fn gather_quads(self, quads: &[[f32; 4]], index: I4) -> [F4; 4] {
+        let last = quads.len() - 1;
+        let rows = self
+            .array(index)
+            .map(|entry| &quads[(entry as usize).min(last)]);
+        self.transposed(rows)
+    }
+    #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F4; ROW] {
         let pick = &pick[..4];
         let mut out = [self.splat(0.0); ROW];
         for start in [0, 4, 8, 12] {
-            let mut r = [out[0].0; 4];
-            for (lane, row) in r.iter_mut().enumerate() {
-                *row = self.load(&rows[pick[lane] as usize][start..]).0;
+            let part = |lane: usize| rows[pick[lane] as usize][start..].first_chunk();
+            if let (Some(a), Some(b), Some(c), Some(d)) = (part(0), part(1), part(2), part(3)) {
+                out[start..start + 4].copy_from_slice(&self.transposed([a, b, c, d]));
             }
-            let [mut a, mut b, mut c, mut d] = r;
-            // SAFETY: the token proves SSE2.
-            unsafe { _MM_TRANSPOSE4_PS(&mut a, &mut b, &mut c, &mut d) };
-            out[start..start + 4].copy_from_slice(&[F4(a), F4(b), F4(c), F4(d)]);
         }
         out
     }

@@ -22,6 +22,7 @@ impl Kernel for Check {
             integers(l, start);
         }
         transposed(l);
+        quads(l);
     }
 }
 
@@ -51,6 +52,13 @@ fn arithmetic<L: Lanes>(l: L, start: usize) {
         &expect(&|x, y| if x > y { x } else { y })
     ));
     assert!(same(l, l.abs(x), &expect(&|x, _| x.abs())));
+    let mut stored = [f32::NAN; MAX_WIDTH + 1];
+    l.store(x, &mut stored);
+    assert_eq!(stored[..L::WIDTH], xs[..L::WIDTH]);
+    assert!(
+        stored[L::WIDTH].is_nan(),
+        "nothing is written behind the lanes"
+    );
     let flipped = expect(&|x, y| if y.is_sign_negative() { -x } else { x });
     assert!(same(l, l.flip_sign(x, y), &flipped));
     let greater = l.gt(x, y);
@@ -82,6 +90,9 @@ fn arithmetic<L: Lanes>(l: L, start: usize) {
         same(l, l.gather(&table, l.splat_u32(1000)), &[7.0; 16]),
         "clamped"
     );
+    let index: Vec<u32> = (0..16).map(|i| (7 * i + start as u32) % 16).collect();
+    let expected: Vec<f32> = index.iter().map(|&i| X[i as usize]).collect();
+    assert!(same(l, l.lookup_16(&X, l.load_u32(&index)), &expected));
 }
 
 fn integers<L: Lanes>(l: L, start: usize) {
@@ -104,6 +115,13 @@ fn integers<L: Lanes>(l: L, start: usize) {
         .map(|i| 1 << i)
         .sum();
     assert_eq!(l.bits(l.any_bit(va, vb)), any);
+    let codes: Vec<u32> = (0..16).map(|i| (i * 77_777_777) | i % 16).collect();
+    let (high, low) = l.split_u32(l.load_u32(&codes));
+    let expect = |f: &dyn Fn(u32) -> u32| -> Vec<u32> {
+        codes[..L::WIDTH].iter().map(|&code| f(code)).collect()
+    };
+    assert_eq!(as_floats(high), expect(&|code| code >> 4));
+    assert_eq!(as_floats(low), expect(&|code| code & 15));
     for n in 0..=L::WIDTH + 1 {
         assert_eq!(l.bits(l.first(n)).count_ones() as usize, n.min(L::WIDTH));
     }
@@ -127,6 +145,27 @@ fn transposed<L: Lanes>(l: L) {
             .map(|&row| (row * 100 + column as u32) as f32)
             .collect();
         assert!(same(l, lanes, &expected), "column {column}");
+    }
+}
+
+fn quads<L: Lanes>(l: L) {
+    let quads: Vec<[f32; 4]> = (0..40)
+        .map(|quad| std::array::from_fn(|column| (quad * 10 + column) as f32))
+        .collect();
+    // The last index lies behind the table and reads its end.
+    let pick: Vec<u32> = (0..16).map(|lane| (15 - lane) * 7).collect();
+    let columns = l
+        .load_quads(&quads[3..])
+        .into_iter()
+        .zip(l.gather_quads(&quads, l.load_u32(&pick)));
+    for (column, (loaded, gathered)) in columns.enumerate() {
+        let loaded_from: Vec<f32> = (3..19).map(|quad| quads[quad][column]).collect();
+        assert!(same(l, loaded, &loaded_from), "column {column}");
+        let gathered_from: Vec<f32> = pick
+            .iter()
+            .map(|&quad| quads[(quad as usize).min(39)][column])
+            .collect();
+        assert!(same(l, gathered, &gathered_from), "column {column}");
     }
 }
 
