@@ -6,11 +6,13 @@
 pub mod arbitrary;
 pub mod broad_phase;
 pub mod cost;
+pub mod crew;
 pub mod effects;
 pub mod mesh;
 pub mod overlap;
 pub mod pairs;
 pub mod pipeline;
+pub mod places;
 pub mod rounding;
 pub mod scene;
 pub mod simd;

@@ -79,6 +79,15 @@ impl PairList {
         self.advance(n);
     }
 
+    /// Replaces every index from pair `start` on by its entry in `names`.
+    pub(crate) fn rename(&mut self, start: usize, names: &[u32]) {
+        for column in [&mut self.first, &mut self.second] {
+            for index in &mut column[start..self.len] {
+                *index = names[*index as usize];
+            }
+        }
+    }
+
     /// Both columns behind the last pair, with room for `pairs` of them and a vector more.
     #[inline(always)]
     pub(crate) fn room(&mut self, pairs: usize) -> (&mut [u32], &mut [u32]) {

@@ -7,37 +7,45 @@
 
 use std::time::Instant;
 
-use crate::broad_phase::AllPairs;
+use crate::broad_phase::{PairFinder, Reorder};
 use crate::cost::{Counters, Seconds};
+use crate::crew::{Crew, CrewError};
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::ordop::SlabTables;
-use crate::overlap::sphere::SphereSlots;
+use crate::overlap::ordop::reach::reach;
 use crate::pairs::PairList;
+use crate::places::Places;
+use crate::rounding::up;
 use crate::scene::bodies::Bodies;
-use crate::scene::settings::{CullSettings, Overlap, SettingsError, Strategy, Updates};
-use crate::simd::{Level, MAX_WIDTH};
-use crate::strategy::{self, Memory, Refine, Stage};
-use crate::update::{Intervals, OrDopRows, ShapeFrame, Spheres};
+use crate::scene::settings::{CullSettings, Finder, Overlap, SettingsError, Strategy, Updates};
+use crate::simd::Level;
+use crate::strategy::{self, Memory, Stage, Worker};
+use crate::update::{Intervals, OrDopRows, ShapeFrame, update_spheres};
 use crate::volume::{Basis, DirectionSet, Hull, OrDop, Shape};
 
 /// Culls the frames of one scene: a fixed set of bodies whose poses change.
 #[derive(Debug)]
 pub struct Culler {
     settings: CullSettings,
+    needs: Needs,
     level: Level,
+    crew: Crew,
+    workers: Vec<Worker>,
     frames: Vec<ShapeFrame>,
     tables: SlabTables,
-    moving: Vec<u32>,
-    finder: AllPairs,
-    spheres: Spheres,
-    sphere_slots: SphereSlots,
+    places: Places,
+    /// 0, 1, 2 …: the names of slots where pairs are refined further.
+    numbers: Vec<u32>,
+    order: Vec<u32>,
+    finder: PairFinder,
+    /// What the finder bins, by place: the spheres, or what contains the volumes of a homogeneous strategy.
+    balls: Vec<[f32; 4]>,
     rows: OrDopRows,
     intervals: Option<Intervals>,
     interval_slots: IntervalSlots,
     interest: Vec<bool>,
     memory: Memory,
     candidates: PairList,
-    selected: PairList,
     pairs: PairList,
     stamp: u32,
     counters: Counters,
@@ -45,18 +53,21 @@ pub struct Culler {
 }
 
 /// Which volumes a strategy looks at.
+#[derive(Clone, Copy, Debug)]
 struct Needs {
-    spheres: bool,
+    /// Balls by place.
+    balls: bool,
     rows: bool,
     intervals: Option<DirectionSet>,
 }
 
 impl Needs {
     fn of(settings: &CullSettings) -> Self {
-        let (spheres, rows, intervals) = match settings.strategy {
+        let (balls, rows, intervals) = match settings.strategy {
             Strategy::None => (false, false, None),
             Strategy::Sphere => (true, false, None),
-            Strategy::OrDop | Strategy::Obb => (false, true, None),
+            // Binned by balls, which a finder that doesn't bin can do without.
+            Strategy::OrDop | Strategy::Obb => (settings.pairs != Finder::AllPairs, true, None),
             Strategy::Aabb => (false, false, Some(DirectionSet::K6)),
             Strategy::KDop => (false, false, Some(settings.k)),
             Strategy::SDopSequential
@@ -65,7 +76,7 @@ impl Needs {
             | Strategy::SDopTimeCritical => (true, true, None),
         };
         Self {
-            spheres,
+            balls,
             rows,
             intervals,
         }
@@ -73,7 +84,7 @@ impl Needs {
 }
 
 impl Culler {
-    /// Prepares culling of `bodies` in the tier `level`. Static bodies' volumes are placed here, once.
+    /// Prepares culling of `bodies` in the tier `level`, on the caller's thread. Static bodies' volumes are placed here, once.
     ///
     /// `bodies` must satisfy the contract (see [`check_bodies`](crate::scene::contract::check_bodies)); shapes are in the
     /// order that `bodies.shape` counts in. For [`Strategy::Obb`] each shape's own box replaces its or-DOP.
@@ -90,59 +101,69 @@ impl Culler {
         let start = Instant::now();
         let n = bodies.shape.len();
         let needs = Needs::of(settings);
-        let (statics, moving): (Vec<u32>, Vec<u32>) =
-            (0..n as u32).partition(|&body| !bodies.dynamic[body as usize]);
         let (frames, tables) = frames_and_tables(shapes, settings);
         let directions = needs.intervals;
         let mut culler = Self {
             settings: settings.clone(),
+            needs,
             level,
+            crew: Crew::default(),
+            workers: Vec::new(),
             frames,
             tables,
-            moving,
-            finder: AllPairs::new(&bodies.dynamic),
-            spheres: Spheres::new(n),
-            sphere_slots: SphereSlots::default(),
+            places: Places::new(bodies),
+            numbers: (0..n as u32).collect(),
+            order: Vec::new(),
+            finder: PairFinder::new(settings.pairs),
+            balls: vec![[0.0; 4]; n],
             rows: OrDopRows::new(n),
             intervals: directions.map(|directions| Intervals::new(directions, shapes, n)),
             interval_slots: IntervalSlots::default(),
             interest: vec![false; n],
             memory: Memory::default(),
             candidates: PairList::default(),
-            selected: PairList::default(),
             pairs: PairList::default(),
             stamp: 1,
             counters: Counters::default(),
             seconds: Seconds::default(),
         };
-        culler.update(bodies, &statics, &needs, false);
+        culler.update_volumes(bodies, 0..n);
+        culler.reorder(bodies);
+        culler.arrange();
         culler.seconds.construct = start.elapsed().as_secs_f64();
         Ok(culler)
     }
 
+    /// The same culler working on so many threads. Lists, counters and hashes don't depend on their number.
+    ///
+    /// # Errors
+    /// The system refuses to start the threads.
+    pub fn with_threads(mut self, threads: usize) -> Result<Self, CrewError> {
+        self.crew = Crew::new(threads)?;
+        Ok(self)
+    }
+
     /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
-    /// finder alone. Poses must satisfy the contract.
+    /// finder and on the frames so far alone. Poses must satisfy the contract.
     pub fn cull(&mut self, bodies: &Bodies) -> &PairList {
         let start = Instant::now();
         self.stamp += 1;
         self.pairs.clear();
-        self.candidates.clear();
-        let needs = Needs::of(&self.settings);
-        let moving = std::mem::take(&mut self.moving);
-        let lazy = self.settings.updates == Updates::Lazy;
-        self.update(bodies, &moving, &needs, lazy);
-        self.count_updates(&needs, moving.len() as u64, lazy);
-        self.moving = moving;
+        self.reorder(bodies);
+        let reordered = Instant::now();
+        self.update_volumes(bodies, 0..self.places.moving);
+        self.count_updates();
         let updated = Instant::now();
-        self.seconds.update += (updated - start).as_secs_f64();
+        self.seconds.update += (updated - reordered).as_secs_f64();
         let before = (self.seconds.ordop, self.seconds.update);
 
-        self.fill_slots(&needs);
+        self.arrange();
         self.run(bodies);
 
         self.counters.reported += self.pairs.len() as u64;
         let refined = (self.seconds.ordop - before.0) + (self.seconds.update - before.1);
-        self.seconds.pair_finding += updated.elapsed().as_secs_f64() - refined;
+        let finding = (reordered - start) + updated.elapsed();
+        self.seconds.pair_finding += finding.as_secs_f64() - refined;
         self.seconds.total += start.elapsed().as_secs_f64();
         &self.pairs
     }
@@ -170,25 +191,58 @@ impl Culler {
         self.memory.ages(self.stamp)
     }
 
-    fn update(&mut self, bodies: &Bodies, which: &[u32], needs: &Needs, lazy: bool) {
-        if needs.spheres {
-            self.spheres.update(&self.frames, bodies, which);
+    /// Whether slots are named by place: or-DOPs and slabs are looked up by place, spheres alone need the body only.
+    fn names_are_places(&self) -> bool {
+        self.needs.rows || self.needs.intervals.is_some()
+    }
+
+    /// Lets the finder put bodies in other places. What has moved is updated anyway, unless it is static.
+    fn reorder(&mut self, bodies: &Bodies) {
+        let by_place = self.names_are_places();
+        let names = match by_place {
+            true => &self.numbers,
+            false => &self.places.body,
+        };
+        let (balls, order) = (&self.balls, &mut self.order);
+        let changed = self.finder.reorder(&self.places, balls, names, order);
+        if changed == Reorder::None {
+            return;
         }
-        if needs.rows && !lazy {
-            self.rows.update(&self.frames, bodies, which, self.stamp);
-        }
-        if let Some(intervals) = &mut self.intervals {
-            intervals.update(&self.frames, bodies, which);
+        self.places.reorder(bodies, &self.order, by_place);
+        if changed == Reorder::All {
+            self.update_volumes(bodies, 0..self.places.len());
         }
     }
 
-    fn count_updates(&mut self, needs: &Needs, moved: u64, lazy: bool) {
+    /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies wait until a pair asks for them.
+    fn update_volumes(&mut self, bodies: &Bodies, range: std::ops::Range<usize>) {
+        let (frames, places, balls) = (&self.frames, &self.places, &mut self.balls);
+        if self.needs.balls {
+            update_spheres(balls, frames, bodies, places, range.clone());
+        }
+        if self.needs.rows {
+            let start = match self.settings.updates {
+                Updates::Eager => range.start,
+                Updates::Lazy => range.start.max(places.moving),
+            };
+            let eager = start.min(range.end)..range.end;
+            self.rows.update(frames, bodies, places, eager, self.stamp);
+        }
+        if let Some(intervals) = &mut self.intervals {
+            intervals.update(balls, frames, bodies, places, range);
+        }
+    }
+
+    fn count_updates(&mut self) {
+        let moved = self.places.moving as u64;
+        let spheres_first = self.needs.balls && !self.is_homogeneous();
+        self.counters.sphere.updates += if spheres_first { moved } else { 0 };
+        let eager = self.needs.rows && self.settings.updates == Updates::Eager;
         let oriented = match self.settings.strategy {
             Strategy::Obb => &mut self.counters.obb,
             _ => &mut self.counters.ordop,
         };
-        oriented.updates += if needs.rows && !lazy { moved } else { 0 };
-        self.counters.sphere.updates += if needs.spheres { moved } else { 0 };
+        oriented.updates += if eager { moved } else { 0 };
         match self.settings.strategy {
             Strategy::Aabb => self.counters.aabb.updates += moved,
             Strategy::KDop => self.counters.kdop.updates += moved,
@@ -196,57 +250,90 @@ impl Culler {
         }
     }
 
-    /// Brings the volumes of the first test into slot order.
-    fn fill_slots(&mut self, needs: &Needs) {
-        let order = self.finder.order();
-        if needs.spheres || needs.rows {
-            self.sphere_slots.fill(order, &self.spheres.of);
+    /// Whether one volume alone, and not the sphere, decides.
+    fn is_homogeneous(&self) -> bool {
+        matches!(
+            self.settings.strategy,
+            Strategy::OrDop | Strategy::Obb | Strategy::Aabb | Strategy::KDop
+        )
+    }
+
+    /// Brings the bodies, and the volumes of the first test, into slot order.
+    fn arrange(&mut self) {
+        if self.settings.strategy == Strategy::None {
+            return;
         }
+        let names = match self.names_are_places() {
+            true => &self.numbers,
+            false => &self.places.body,
+        };
+        self.finder
+            .arrange(self.level, &self.places, &self.balls, names);
         if let Some(intervals) = &self.intervals {
+            let order = &self.finder.slots().names[..self.places.len()];
             self.interval_slots.fill(order, &intervals.ends);
         }
     }
 
     fn run(&mut self, bodies: &Bodies) {
         if let Some(interest) = &self.settings.interest {
-            let spheres = &self.spheres.of;
-            let centre = |body: usize| [spheres[body][0], spheres[body][1], spheres[body][2]];
+            let frame = |body: usize| &self.frames[bodies.shape[body] as usize];
+            let centre = |body: usize| {
+                let pose = (bodies.rotation[body], bodies.translation[body]);
+                let [x, y, z, _] = frame(body).sphere(pose.0, pose.1);
+                [x, y, z]
+            };
             strategy::mark(interest, bodies, centre, &mut self.interest);
         }
         let overlap = match self.settings.strategy {
             Strategy::Obb => Overlap::Full,
             _ => self.settings.overlap,
         };
+        let (tests_before, names_are_places) = (self.first_tests(), self.names_are_places());
         let mut stage = Stage {
             level: self.level,
+            crew: &self.crew,
+            workers: &mut self.workers,
             finder: &self.finder,
-            spheres: &self.sphere_slots,
+            names_are_places,
+            places: &self.places,
+            bodies,
             intervals: &self.interval_slots,
-            refine: Refine {
-                level: self.level,
-                rows: &mut self.rows,
-                frames: &self.frames,
-                bodies,
-                tables: &self.tables,
-                overlap,
-                lazy: self.settings.updates == Updates::Lazy,
-                stamp: self.stamp,
-            },
+            spheres: &self.balls,
+            rows: &mut self.rows,
+            frames: &self.frames,
+            tables: &self.tables,
+            overlap,
+            lazy: self.settings.updates == Updates::Lazy,
+            stamp: self.stamp,
             interest: &self.interest,
             budget: self.settings.budget,
             order: self.settings.order,
             memory: &mut self.memory,
             candidates: &mut self.candidates,
-            selected: &mut self.selected,
             counters: &mut self.counters,
             seconds: &mut self.seconds,
             out: &mut self.pairs,
         };
         strategy::cull(self.settings.strategy, &mut stage);
+        self.finder.observe(self.first_tests() - tests_before);
+    }
+
+    /// How many candidates the first test has had.
+    fn first_tests(&self) -> u64 {
+        let counters = &self.counters;
+        match self.settings.strategy {
+            Strategy::OrDop => counters.ordop.tests,
+            Strategy::Obb => counters.obb.tests,
+            Strategy::Aabb => counters.aabb.tests,
+            Strategy::KDop => counters.kdop.tests,
+            _ => counters.sphere.tests,
+        }
     }
 }
 
-/// What updates and pair tests need of each shape: with `obb` the box in place of the or-DOP.
+/// What updates and pair tests need of each shape: with `obb` the box in place of the or-DOP; without a sphere stage, the
+/// ball that the or-DOP is binned by in place of the mesh's.
 fn frames_and_tables(shapes: &[Shape], settings: &CullSettings) -> (Vec<ShapeFrame>, SlabTables) {
     let boxes: Vec<OrDop> = match settings.strategy {
         Strategy::Obb => shapes
@@ -256,12 +343,6 @@ fn frames_and_tables(shapes: &[Shape], settings: &CullSettings) -> (Vec<ShapeFra
         _ => Vec::new(),
     };
     let ordop = |i: usize| boxes.get(i).unwrap_or(&shapes[i].ordop);
-    let basis = |i: usize| -> &Basis { &ordop(i).basis };
-    let frames = shapes
-        .iter()
-        .enumerate()
-        .map(|(i, shape)| ShapeFrame::new(shape, basis(i)))
-        .collect();
     let directions = match settings.strategy {
         Strategy::Obb => DirectionSet::K6,
         _ => shapes
@@ -272,41 +353,17 @@ fn frames_and_tables(shapes: &[Shape], settings: &CullSettings) -> (Vec<ShapeFra
         directions,
         shapes.iter().enumerate().map(|(i, s)| (s, ordop(i))),
     );
-    (frames, tables)
-}
-
-impl SphereSlots {
-    /// Gathers the spheres of all bodies into slot order and pads.
-    fn fill(&mut self, order: &[u32], spheres: &[[f32; 4]]) {
-        let padded = order.len() + MAX_WIDTH;
-        let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.r];
-        for (axis, column) in columns.into_iter().enumerate() {
-            column.clear();
-            column.extend(order.iter().map(|&body| spheres[body as usize][axis]));
-            column.resize(padded, 0.0);
-        }
-        self.body.clear();
-        self.body.extend_from_slice(order);
-        self.body.resize(padded, 0);
-    }
-}
-
-impl IntervalSlots {
-    /// Gathers the slabs of all bodies into slot order and pads.
-    fn fill(&mut self, order: &[u32], ends: &[[f32; 2]]) {
-        let slabs = ends.len().checked_div(order.len()).unwrap_or(0);
-        self.lo.resize(slabs, Vec::new());
-        self.hi.resize(slabs, Vec::new());
-        for (side, columns) in [&mut self.lo, &mut self.hi].into_iter().enumerate() {
-            for (slab, column) in columns.iter_mut().enumerate() {
-                column.clear();
-                let end = |&body: &u32| ends[body as usize * slabs + slab][side];
-                column.extend(order.iter().map(end));
-                column.resize(order.len() + MAX_WIDTH, 0.0);
+    let frame = |(i, shape): (usize, &Shape)| {
+        let basis: &Basis = &ordop(i).basis;
+        let frame = ShapeFrame::new(shape, basis);
+        match settings.strategy {
+            Strategy::OrDop | Strategy::Obb => {
+                let table = tables.shape(i as u32);
+                frame.with_radius(up(reach(table, directions.k(), shape.reach)))
             }
+            _ => frame,
         }
-        self.body.clear();
-        self.body.extend_from_slice(order);
-        self.body.resize(order.len() + MAX_WIDTH, 0);
-    }
+    };
+    let frames = shapes.iter().enumerate().map(frame).collect();
+    (frames, tables)
 }

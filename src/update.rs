@@ -3,12 +3,16 @@
 //! A body's volumes move, they are never re-fitted: a sphere update is a copy of the translation (ball-centred shapes) or one
 //! transformed point, an or-DOP update turns the basis. World-aligned volumes alone are re-fitted, from hull vertices.
 
+use std::ops::Range;
+
 use crate::overlap::ordop::{O, Q, T};
+use crate::places::Places;
 use crate::rounding::pose::{Rotation, refit, rotate, rotation, transform, world_axes};
 use crate::rounding::sphere::{inflate_radius, world_ball};
+use crate::rounding::up;
 use crate::scene::bodies::Bodies;
 use crate::simd::ROW;
-use crate::volume::{DirectionSet, Hull, Shape};
+use crate::volume::{Basis, DirectionSet, Hull, Shape};
 
 /// What updating a body needs to know of its shape.
 #[derive(Clone, Debug)]
@@ -22,13 +26,19 @@ pub struct ShapeFrame {
 impl ShapeFrame {
     /// The frame of a shape whose or-DOP stands on `basis`.
     #[must_use]
-    pub fn new(shape: &Shape, basis: &crate::volume::Basis) -> Self {
+    pub fn new(shape: &Shape, basis: &Basis) -> Self {
         Self {
             centre: shape.ball.centre.to_array(),
             radius: shape.ball.radius,
             reach: shape.reach,
             basis: basis.columns.map(|column| column.to_array()),
         }
+    }
+
+    /// The same with another radius about the ball's centre.
+    #[must_use]
+    pub fn with_radius(self, radius: f32) -> Self {
+        Self { radius, ..self }
     }
 
     /// Inflated world sphere (x, y, z, R) of a body in this shape.
@@ -61,14 +71,7 @@ impl ShapeFrame {
     }
 }
 
-/// World spheres in body order: x, y, z, inflated radius.
-#[derive(Clone, Debug, Default)]
-pub struct Spheres {
-    /// One (x, y, z, R) a body.
-    pub of: Vec<[f32; 4]>,
-}
-
-/// or-DOP rows in body order, each with the frame in which it was last made.
+/// or-DOP rows by place, each with the frame in which it was last made.
 #[derive(Clone, Debug, Default)]
 pub struct OrDopRows {
     /// One row a body.
@@ -76,27 +79,26 @@ pub struct OrDopRows {
     made: Vec<u32>,
 }
 
-impl Spheres {
-    /// Room for `bodies` bodies.
-    #[must_use]
-    pub fn new(bodies: usize) -> Self {
-        Self {
-            of: vec![[0.0; 4]; bodies],
-        }
-    }
-
-    /// Updates the spheres of the bodies in `moving`.
-    pub fn update(&mut self, frames: &[ShapeFrame], bodies: &Bodies, moving: &[u32]) {
-        for &body in moving {
-            let i = body as usize;
-            let frame = &frames[bodies.shape[i] as usize];
-            self.of[i] = frame.sphere(bodies.rotation[i], bodies.translation[i]);
-        }
+/// Updates the spheres (x, y, z, R) of the bodies in a range of places.
+pub fn update_spheres(
+    spheres: &mut [[f32; 4]],
+    frames: &[ShapeFrame],
+    bodies: &Bodies,
+    places: &Places,
+    range: Range<usize>,
+) {
+    for place in range {
+        let (body, frame) = (places.body[place] as usize, frame_of(frames, places, place));
+        spheres[place] = frame.sphere(bodies.rotation[body], bodies.translation[body]);
     }
 }
 
+fn frame_of<'a>(frames: &'a [ShapeFrame], places: &Places, place: usize) -> &'a ShapeFrame {
+    &frames[places.shape[place] as usize]
+}
+
 impl OrDopRows {
-    /// Room for `bodies` bodies, none of them made yet.
+    /// Room for `bodies` bodies.
     #[must_use]
     pub fn new(bodies: usize) -> Self {
         Self {
@@ -105,48 +107,62 @@ impl OrDopRows {
         }
     }
 
-    /// Updates the rows of the bodies in `moving`; `stamp` counts frames from 1.
-    pub fn update(&mut self, frames: &[ShapeFrame], bodies: &Bodies, moving: &[u32], stamp: u32) {
-        for &body in moving {
-            self.make(frames, bodies, body as usize, stamp);
+    /// Updates the rows of the bodies in a range of places; `stamp` counts frames from 1.
+    pub fn update(
+        &mut self,
+        frames: &[ShapeFrame],
+        bodies: &Bodies,
+        places: &Places,
+        range: Range<usize>,
+        stamp: u32,
+    ) {
+        for place in range {
+            self.make(frames, bodies, places, place, stamp);
         }
     }
 
-    /// Lazily updates the rows of the bodies in `wanted` that are dynamic and not yet made in this frame, or static and
-    /// never made. Returns how many were made.
+    /// Lazily updates the rows in the places `wanted` whose bodies move and whose rows are not yet made in this frame. Returns
+    /// how many were made.
     pub fn update_missing(
         &mut self,
         frames: &[ShapeFrame],
         bodies: &Bodies,
+        places: &Places,
         wanted: &[u32],
         stamp: u32,
     ) -> u64 {
         let mut made = 0;
-        for &body in wanted {
-            let i = body as usize;
-            let fresh = self.made[i] == stamp || (self.made[i] != 0 && !bodies.dynamic[i]);
-            if !fresh {
-                self.make(frames, bodies, i, stamp);
+        for &place in wanted {
+            let place = place as usize;
+            if place < places.moving && self.made[place] != stamp {
+                self.make(frames, bodies, places, place, stamp);
                 made += 1;
             }
         }
         made
     }
 
-    fn make(&mut self, frames: &[ShapeFrame], bodies: &Bodies, i: usize, stamp: u32) {
-        let frame = &frames[bodies.shape[i] as usize];
-        self.rows[i] = frame.row(bodies.rotation[i], bodies.translation[i]);
-        self.made[i] = stamp;
+    fn make(
+        &mut self,
+        frames: &[ShapeFrame],
+        bodies: &Bodies,
+        places: &Places,
+        place: usize,
+        stamp: u32,
+    ) {
+        let (body, frame) = (places.body[place] as usize, frame_of(frames, places, place));
+        self.rows[place] = frame.row(bodies.rotation[body], bodies.translation[body]);
+        self.made[place] = stamp;
     }
 }
 
-/// World-aligned slabs in body order, re-fitted each frame from the hull's vertices and rounded outward.
+/// World-aligned slabs by place, re-fitted each frame from the hull's vertices and rounded outward.
 #[derive(Clone, Debug)]
 pub struct Intervals {
     directions: DirectionSet,
     /// Hull vertices of each shape, body frame.
     hulls: Vec<Vec<[f32; 3]>>,
-    /// `ends[body·slabs + slab]` = [lo, hi].
+    /// `ends[place·slabs + slab]` = [lo, hi].
     pub ends: Vec<[f32; 2]>,
 }
 
@@ -167,24 +183,38 @@ impl Intervals {
         }
     }
 
-    /// Re-fits the slabs of the bodies in `moving`.
-    pub fn update(&mut self, frames: &[ShapeFrame], bodies: &Bodies, moving: &[u32]) {
+    /// Re-fits the slabs of the bodies in a range of places, and the cubes about their boxes: centre and half side.
+    pub fn update(
+        &mut self,
+        cubes: &mut [[f32; 4]],
+        frames: &[ShapeFrame],
+        bodies: &Bodies,
+        places: &Places,
+        range: Range<usize>,
+    ) {
         let coefficients = self.directions.coefficients();
-        for &body in moving {
-            let i = body as usize;
-            let shape = bodies.shape[i] as usize;
-            let (turn, t) = (rotation(bodies.rotation[i]), bodies.translation[i]);
-            let ends = &mut self.ends[i * coefficients.len()..][..coefficients.len()];
-            fit(
-                ends,
-                coefficients,
-                &self.hulls[shape],
-                &turn,
-                t,
-                frames[shape].reach,
-            );
+        for place in range {
+            let (body, shape) = (places.body[place] as usize, places.shape[place] as usize);
+            let (turn, t) = (rotation(bodies.rotation[body]), bodies.translation[body]);
+            let ends = &mut self.ends[place * coefficients.len()..][..coefficients.len()];
+            let hull = &self.hulls[shape];
+            fit(ends, coefficients, hull, &turn, t, frames[shape].reach);
+            cubes[place] = cube(ends);
         }
     }
+}
+
+/// The cube about a box, whose slabs are the first three: if two boxes meet, so do their cubes.
+fn cube(ends: &[[f32; 2]]) -> [f32; 4] {
+    let mut cube = [0.0; 4];
+    for (axis, &[lo, hi]) in ends[..3].iter().enumerate() {
+        let [lo, hi] = [lo, hi].map(f64::from);
+        let centre = (0.5 * (lo + hi)) as f32;
+        let half = (hi - f64::from(centre)).max(f64::from(centre) - lo);
+        cube[axis] = centre;
+        cube[3] = up(half).max(cube[3]);
+    }
+    cube
 }
 
 /// The slabs of posed points along integer directions of the world axes.

@@ -1,41 +1,47 @@
 //! The paper's finder: every one of the N(N−1)/2 pairs, less the S(S−1)/2 static ones.
 
-use super::RunTest;
-use crate::simd::Lanes;
+use std::ops::Range;
 
-/// Slots with the dynamic bodies first, so that every dynamic slot's run is all slots behind it.
-#[derive(Clone, Debug)]
+use super::{FirstTest, Slots};
+use crate::places::Places;
+use crate::simd::{Lanes, MAX_WIDTH};
+
+/// Slots whose pairs make one part of the work.
+const PART: usize = 16;
+
+/// Slots are places: the moving bodies first, so that every moving slot's run is all slots behind it.
+#[derive(Clone, Debug, Default)]
 pub struct AllPairs {
-    order: Vec<u32>,
-    dynamic: usize,
+    slots: Slots,
+    moving: usize,
+    len: usize,
 }
 
 impl AllPairs {
-    /// Arranges the bodies once: which of them are dynamic doesn't change within a run.
-    #[must_use]
-    pub fn new(dynamic: &[bool]) -> Self {
-        let bodies = 0..dynamic.len() as u32;
-        let (moving, fixed): (Vec<u32>, Vec<u32>) =
-            bodies.partition(|&body| dynamic[body as usize]);
-        let count = moving.len();
-        let order = moving.into_iter().chain(fixed).collect();
-        Self {
-            order,
-            dynamic: count,
+    pub(super) fn arrange(&mut self, places: &Places, balls: &[[f32; 4]], names: &[u32]) {
+        (self.moving, self.len) = (places.moving, places.body.len());
+        self.slots.names.clear();
+        self.slots.names.extend_from_slice(names);
+        self.slots.names.resize(self.len + MAX_WIDTH, 0);
+        for (axis, column) in self.slots.columns.iter_mut().enumerate() {
+            column.clear();
+            column.extend(balls.iter().map(|ball| ball[axis]));
+            column.resize(self.len + MAX_WIDTH, 0.0);
         }
     }
 
-    /// Which body stands in each slot.
-    #[must_use]
-    pub fn order(&self) -> &[u32] {
-        &self.order
+    pub(super) fn slots(&self) -> &Slots {
+        &self.slots
     }
 
-    /// Hands every candidate to `test`.
+    pub(super) fn parts(&self) -> usize {
+        self.moving.div_ceil(PART)
+    }
+
     #[inline(always)]
-    pub fn find<L: Lanes>(&self, l: L, test: &mut impl RunTest) {
-        for i in 0..self.dynamic {
-            test.run(l, i, i + 1..self.order.len());
+    pub(super) fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
+        for i in parts.start * PART..(parts.end * PART).min(self.moving) {
+            test.run(l, i, i + 1..self.len);
         }
     }
 }

@@ -1,19 +1,166 @@
 //! Pair finders: who hands which candidate pairs to the strategy's first volume test.
 //!
-//! A finder arranges bodies in slots so that the candidates of a slot are contiguous runs of other slots; the test loads
-//! columns in slot order and never sees how the run was found. Every pair of two bodies that are not both static and that
-//! the first test would report must be in some run exactly once; static–static pairs must be in none.
+//! A finder arranges bodies in slots and hands out candidates in two forms: a slot against a contiguous run of slots, and
+//! a [`Block`] of scattered pairs where runs are too short to fill a vector. Each pair of bodies that are not both static
+//! and that the first test would report is a candidate exactly once; two static bodies never are. Slots, candidates and
+//! their order depend on the bodies alone, never on the tier or on threads.
 
 use std::ops::Range;
 
-use crate::simd::Lanes;
+use crate::places::Places;
+use crate::scene::settings::Finder;
+use crate::simd::{Lanes, Level, MAX_WIDTH};
 
 mod all_pairs;
+mod block;
+mod bounds;
+mod grid;
 
 pub use all_pairs::AllPairs;
+pub use block::{BLOCK_BODIES, Block};
+pub use bounds::Bounds;
+pub use grid::Grid;
 
-/// The strategy's first volume test: takes runs of candidates.
-pub trait RunTest {
+/// The strategy's first volume test.
+pub trait FirstTest {
     /// Slot `i` against each slot of `run`.
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>);
+    /// Scattered pairs of slots.
+    fn block<L: Lanes>(&mut self, l: L, block: &Block);
+}
+
+/// World balls (x, y, z, R) in slot order, padded by [`MAX_WIDTH`] finite entries, and whose they are.
+#[derive(Clone, Debug, Default)]
+pub struct Slots {
+    /// The balls as the first test takes them.
+    pub balls: Vec<[f32; 4]>,
+    /// The same as columns, where the finder hands out long runs; otherwise empty.
+    pub columns: [Vec<f32>; 4],
+    /// The name of each slot's body.
+    pub names: Vec<u32>,
+}
+
+impl Slots {
+    /// Room for `slots` slots.
+    fn resize(&mut self, slots: usize) {
+        self.balls.resize(slots + MAX_WIDTH, [0.0; 4]);
+        self.names.resize(slots + MAX_WIDTH, 0);
+    }
+
+    /// The ball in a slot.
+    #[inline(always)]
+    pub fn ball(&self, slot: usize) -> [f32; 4] {
+        let [x, y, z, r] = &self.columns;
+        if x.is_empty() {
+            self.balls[slot]
+        } else {
+            [x[slot], y[slot], z[slot], r[slot]]
+        }
+    }
+
+    /// A vector of balls as columns.
+    #[inline(always)]
+    pub fn load<L: Lanes>(&self, l: L, start: usize) -> [L::F; 4] {
+        let [x, y, z, r] = &self.columns;
+        if x.is_empty() {
+            l.load_quads(&self.balls[start..])
+        } else {
+            [
+                l.load(&x[start..]),
+                l.load(&y[start..]),
+                l.load(&z[start..]),
+                l.load(&r[start..]),
+            ]
+        }
+    }
+}
+
+/// A pair finder with its bodies arranged.
+#[derive(Clone, Debug)]
+pub enum PairFinder {
+    /// Every pair.
+    AllPairs(AllPairs),
+    /// Cells.
+    Grid(Grid),
+}
+
+/// Which places take other bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reorder {
+    /// None.
+    None,
+    /// Those of moving bodies.
+    Moving,
+    /// All.
+    All,
+}
+
+impl PairFinder {
+    /// The finder of that name.
+    #[must_use]
+    pub fn new(finder: Finder) -> Self {
+        match finder {
+            Finder::AllPairs => Self::AllPairs(AllPairs::default()),
+            Finder::Grid | Finder::Sweep | Finder::Auto => Self::Grid(Grid::default()),
+        }
+    }
+
+    /// Looks for a better order of places and writes it to `order`, as the names that take the places one after the other.
+    /// Moving bodies stay in front. `balls` and `names` are those of the last frame.
+    pub fn reorder(
+        &mut self,
+        places: &Places,
+        balls: &[[f32; 4]],
+        names: &[u32],
+        order: &mut Vec<u32>,
+    ) -> Reorder {
+        match self {
+            Self::AllPairs(_) => Reorder::None,
+            Self::Grid(finder) => finder.reorder(places.moving, balls, names, order),
+        }
+    }
+
+    /// Hears how many candidates the last frame had, and may plan anew.
+    pub fn observe(&mut self, candidates: u64) {
+        match self {
+            Self::AllPairs(_) => {}
+            Self::Grid(finder) => finder.observe(candidates),
+        }
+    }
+
+    /// Arranges the bodies for a frame. `balls` and `names` are in the order of places, and nothing that the first test
+    /// reports lies outside two balls which meet.
+    pub fn arrange(&mut self, level: Level, places: &Places, balls: &[[f32; 4]], names: &[u32]) {
+        match self {
+            Self::AllPairs(finder) => finder.arrange(places, balls, names),
+            Self::Grid(finder) => finder.arrange(level, balls, names),
+        }
+    }
+
+    /// The arranged bodies.
+    #[must_use]
+    pub fn slots(&self) -> &Slots {
+        match self {
+            Self::AllPairs(finder) => finder.slots(),
+            Self::Grid(finder) => finder.slots(),
+        }
+    }
+
+    /// Into how many parts the work is cut.
+    #[must_use]
+    pub fn parts(&self) -> usize {
+        match self {
+            Self::AllPairs(finder) => finder.parts(),
+            Self::Grid(finder) => finder.parts(),
+        }
+    }
+
+    /// Hands the candidates of the given parts to `test`, in order.
+    #[inline(always)]
+    pub fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
+        match self {
+            Self::AllPairs(finder) => finder.find(l, parts, test),
+            Self::Grid(finder) => finder.find(l, parts, test),
+        }
+    }
 }

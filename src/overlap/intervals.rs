@@ -4,26 +4,39 @@
 
 use std::ops::Range;
 
-use crate::pairs::PairList;
-use crate::simd::Lanes;
+use crate::broad_phase::Block;
+use crate::simd::{LANES, Lanes, MAX_WIDTH};
 
-/// World-aligned slabs in the pair finder's slot order: one column a direction, each padded by
-/// [`MAX_WIDTH`](crate::simd::MAX_WIDTH) finite entries.
+/// World-aligned slabs in the pair finder's slot order: one column a direction, each padded by [`MAX_WIDTH`] finite entries.
 #[derive(Clone, Debug, Default)]
 pub struct IntervalSlots {
     /// Lower ends, `lo[direction][slot]`.
     pub lo: Vec<Vec<f32>>,
     /// Upper ends, `hi[direction][slot]`.
     pub hi: Vec<Vec<f32>>,
-    /// Which body stands in the slot.
-    pub body: Vec<u32>,
 }
 
 impl IntervalSlots {
-    /// Appends to `out` the pairs of slot `i` and each slot of `run` whose slabs all overlap, as body indices, lower first.
+    /// Gathers the slabs of all bodies into slot order: `ends[place·slabs + slab]` = [lo, hi], and the place in each slot.
+    pub fn fill(&mut self, order: &[u32], ends: &[[f32; 2]]) {
+        let slabs = ends.len().checked_div(order.len()).unwrap_or(0);
+        self.lo.resize(slabs, Vec::new());
+        self.hi.resize(slabs, Vec::new());
+        for (side, columns) in [&mut self.lo, &mut self.hi].into_iter().enumerate() {
+            for (slab, column) in columns.iter_mut().enumerate() {
+                column.clear();
+                let end = |&place: &u32| ends[place as usize * slabs + slab][side];
+                column.extend(order.iter().map(end));
+                column.resize(order.len() + MAX_WIDTH, 0.0);
+            }
+        }
+    }
+
+    /// Lists the slots of `run` whose slabs all overlap those of slot `i` at the front of `hits`, which has room for the run
+    /// and a vector more. Returns their number.
     #[inline(always)]
-    pub fn test_run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, out: &mut PairList) {
-        let body_i = l.splat_u32(self.body[i]);
+    pub fn test_run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        let mut found = 0;
         let mut start = run.start;
         while start < run.end {
             let mut alive = l.bits(l.first(run.end - start));
@@ -36,13 +49,37 @@ impl IntervalSlots {
                 }
             }
             if alive != 0 {
-                let body_j = l.load_u32(&self.body[start..]);
-                let (first, second) = out.room(L::WIDTH);
-                l.compress(alive, l.min_u32(body_i, body_j), first);
-                l.compress(alive, l.max_u32(body_i, body_j), second);
-                out.advance(alive.count_ones() as usize);
+                let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
+                l.compress(alive, slot, &mut hits[found..]);
+                found += alive.count_ones() as usize;
             }
             start += L::WIDTH;
         }
+        found
+    }
+
+    /// Lists the codes of the block's pairs whose slabs all overlap at the front of `hits`, which has room for the block and
+    /// a vector more. Returns their number.
+    #[inline(always)]
+    pub fn test_block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
+        let (mut start, mut found) = (0, 0);
+        while start < block.len() {
+            let code = l.load_u32(&block.codes()[start..]);
+            let (j, lane) = l.split_u32(code);
+            let i = l.add_u32(lane, l.splat_u32(block.first() as u32));
+            let mut alive = l.bits(l.first(block.len() - start));
+            for (lo, hi) in self.lo.iter().zip(&self.hi) {
+                let above = l.gt(l.gather(lo, j), l.gather(hi, i));
+                let below = l.gt(l.gather(lo, i), l.gather(hi, j));
+                alive &= !l.bits(above | below);
+                if alive == 0 {
+                    break;
+                }
+            }
+            l.compress(alive, code, &mut hits[found..]);
+            found += alive.count_ones() as usize;
+            start += L::WIDTH;
+        }
+        found
     }
 }

@@ -1,4 +1,4 @@
-//! Sphere against a run of spheres: cull iff d² > s², s = R_i + R_j, with R from [`inflate_radius`].
+//! Sphere against spheres: cull iff d² > s², s = R_i + R_j, with R from [`inflate_radius`].
 //!
 //! d² sums the squares of coordinate differences: expanding the square instead would cancel far from the origin.
 //!
@@ -6,46 +6,78 @@
 
 use std::ops::Range;
 
-use crate::pairs::PairList;
-use crate::simd::Lanes;
+use crate::broad_phase::{BLOCK_BODIES, Block, Slots};
+use crate::simd::{LANES, Lanes};
 
-/// World spheres as columns in the pair finder's slot order, padded by [`MAX_WIDTH`](crate::simd::MAX_WIDTH) finite
-/// entries.
-#[derive(Clone, Debug, Default)]
-pub struct SphereSlots {
-    /// Centre, world frame.
-    pub x: Vec<f32>,
-    /// Centre, world frame.
-    pub y: Vec<f32>,
-    /// Centre, world frame.
-    pub z: Vec<f32>,
-    /// Inflated radius.
-    pub r: Vec<f32>,
-    /// Which body stands in the slot.
-    pub body: Vec<u32>,
+/// Lists the slots of `run` whose spheres may touch that of slot `i` at the front of `hits`, which has room for the run and
+/// a vector more. Returns their number.
+#[inline(always)]
+pub fn test_run<L: Lanes>(
+    l: L,
+    slots: &Slots,
+    i: usize,
+    run: Range<usize>,
+    hits: &mut [u32],
+) -> usize {
+    let me = slots.ball(i).map(|number| l.splat(number));
+    let mut found = 0;
+    let mut start = run.start;
+    while start < run.end {
+        let hit = touching(l, me, slots.load(l, start), run.end - start);
+        // Seldom more than one vector in six has a hit when runs are long.
+        if hit != 0 {
+            let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
+            l.compress(hit, slot, &mut hits[found..]);
+            found += hit.count_ones() as usize;
+        }
+        start += L::WIDTH;
+    }
+    found
 }
 
-impl SphereSlots {
-    /// Appends to `out` the pairs of slot `i` and each slot of `run` whose spheres may touch, as body indices, lower first.
-    #[inline(always)]
-    pub fn test_run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, out: &mut PairList) {
-        let (xi, yi, zi) = (l.splat(self.x[i]), l.splat(self.y[i]), l.splat(self.z[i]));
-        let (ri, body_i) = (l.splat(self.r[i]), l.splat_u32(self.body[i]));
-        let mut start = run.start;
-        while start < run.end {
-            let (dx, dy) = (l.load(&self.x[start..]) - xi, l.load(&self.y[start..]) - yi);
-            let dz = l.load(&self.z[start..]) - zi;
-            let s = l.load(&self.r[start..]) + ri;
-            let apart = l.gt((dx * dx + dy * dy) + dz * dz, s * s);
-            let hit = !l.bits(apart) & l.bits(l.first(run.end - start));
-            if hit != 0 {
-                let body_j = l.load_u32(&self.body[start..]);
-                let (first, second) = out.room(L::WIDTH);
-                l.compress(hit, l.min_u32(body_i, body_j), first);
-                l.compress(hit, l.max_u32(body_i, body_j), second);
-                out.advance(hit.count_ones() as usize);
-            }
-            start += L::WIDTH;
+/// Lists the codes of the block's pairs whose spheres may touch at the front of `hits`, which has room for the block and a
+/// vector more. Returns their number.
+#[inline(always)]
+pub fn test_block<L: Lanes>(l: L, slots: &Slots, block: &Block, hits: &mut [u32]) -> usize {
+    let ours = columns(l, &slots.balls[block.first()..][..BLOCK_BODIES]);
+    let codes = block.codes();
+    let (mut start, mut found) = (0, 0);
+    while start < block.len() {
+        let code = l.load_u32(&codes[start..]);
+        let (slot, lane) = l.split_u32(code);
+        let [x, y, z, r] = &ours;
+        let one = [
+            l.lookup_16(x, lane),
+            l.lookup_16(y, lane),
+            l.lookup_16(z, lane),
+            l.lookup_16(r, lane),
+        ];
+        let other = l.gather_quads(&slots.balls, slot);
+        let hit = touching(l, one, other, block.len() - start);
+        l.compress(hit, code, &mut hits[found..]);
+        found += hit.count_ones() as usize;
+        start += L::WIDTH;
+    }
+    found
+}
+
+/// Bits of the lanes below `count` that no gap separates.
+#[inline(always)]
+fn touching<L: Lanes>(l: L, one: [L::F; 4], other: [L::F; 4], count: usize) -> u32 {
+    let (dx, dy, dz) = (other[0] - one[0], other[1] - one[1], other[2] - one[2]);
+    let s = other[3] + one[3];
+    let apart = l.gt((dx * dx + dy * dy) + dz * dz, s * s);
+    !l.bits(apart) & l.bits(l.first(count))
+}
+
+/// Sixteen balls as columns.
+#[inline(always)]
+fn columns<L: Lanes>(l: L, balls: &[[f32; 4]]) -> [[f32; BLOCK_BODIES]; 4] {
+    let mut columns = [[0.0; BLOCK_BODIES]; 4];
+    for start in (0..BLOCK_BODIES).step_by(L::WIDTH) {
+        for (column, lanes) in columns.iter_mut().zip(l.load_quads(&balls[start..])) {
+            l.store(lanes, &mut column[start..]);
         }
     }
+    columns
 }

@@ -35,6 +35,9 @@ pub const MAX_WIDTH: usize = 16;
 /// Floats in a row that [`Lanes::load_transposed`] turns into columns: one cache line.
 pub const ROW: usize = 16;
 
+/// The number of each lane, in any tier.
+pub const LANES: [u32; MAX_WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+
 /// A computation that is compiled once for every tier.
 pub trait Kernel {
     /// What it returns.

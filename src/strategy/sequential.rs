@@ -1,100 +1,105 @@
 //! S-DOP, sequential (paper, section 4a): a pair whose spheres overlap goes to the or-DOP test at once.
 //!
-//! "At once" means a block of up to [`BLOCK`] pairs here, since one pair can't fill a vector; no list of the potentially
-//! colliding set is kept. The same flow serves the object of interest, where some pairs of the block are not refined.
+//! "At once" means a block of some [`BLOCK`] pairs here, since one pair can't fill a vector; no list of the potentially
+//! colliding set is kept, except with lazy updates, which need it whole. The same flow serves the object of interest, where
+//! some pairs of the block are not refined, and oriented volumes without a sphere stage.
 
-use std::ops::Range;
-
-use super::{BLOCK, Refine, Stage};
-use crate::broad_phase::{AllPairs, RunTest};
-use crate::cost::{Counters, Seconds};
-use crate::overlap::sphere::SphereSlots;
+use super::listing::{First, Source};
+use super::refine::Refine;
+use super::workers::{Done, Worker, add, share};
+use super::{BLOCK, Stage};
 use crate::pairs::PairList;
-use crate::simd::{Kernel, Lanes, dispatch};
 
 pub(super) fn cull(stage: &mut Stage<'_>) {
-    flow(stage, None);
+    let done = flow(stage, First::Sphere, None);
+    add(&mut stage.counters.sphere, done.first);
+    add(&mut stage.counters.ordop, done.refined);
 }
 
-/// Spheres, then or-DOPs block by block; with `interest`, only for pairs that have a body of interest.
-pub(super) fn flow(stage: &mut Stage<'_>, interest: Option<&[bool]>) {
-    let test = Test {
-        spheres: stage.spheres,
-        interest,
-        refine: &mut stage.refine,
-        block: stage.candidates,
-        selected: stage.selected,
-        out: stage.out,
-        counters: stage.counters,
-        seconds: stage.seconds,
-    };
-    dispatch(
-        stage.level,
-        Flow {
-            finder: stage.finder,
-            test,
+/// Candidates that pass `first`, then or-DOPs block by block; with `interest`, only for pairs that have a body of interest.
+pub(super) fn flow(stage: &mut Stage<'_>, first: First<'_>, interest: Option<&[bool]>) -> Done {
+    if stage.lazy {
+        return flow_by_list(stage, first, interest);
+    }
+    let mut out = std::mem::take(stage.out);
+    let mut workers = std::mem::take(stage.workers);
+    let (source, refine) = (stage.source(first), stage.refine());
+    let parts = stage.finder.parts();
+    let done = share(
+        stage.crew,
+        &mut workers,
+        parts,
+        &mut out,
+        |parts, worker| {
+            work(&source, parts, &refine, interest, worker);
         },
     );
+    (*stage.out, *stage.workers) = (out, workers);
+    stage.seconds.ordop += done.refining;
+    done
 }
 
-struct Flow<'a, 'b> {
-    finder: &'a AllPairs,
-    test: Test<'a, 'b>,
-}
-
-impl Kernel for Flow<'_, '_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<L: Lanes>(mut self, l: L) {
-        self.finder.find(l, &mut self.test);
-        self.test.drain();
-    }
-}
-
-struct Test<'a, 'b> {
-    spheres: &'a SphereSlots,
-    interest: Option<&'a [bool]>,
-    refine: &'a mut Refine<'b>,
-    block: &'a mut PairList,
-    selected: &'a mut PairList,
-    out: &'a mut PairList,
-    counters: &'a mut Counters,
-    seconds: &'a mut Seconds,
-}
-
-impl Test<'_, '_> {
-    fn drain(&mut self) {
-        self.counters.sphere.hits += self.block.len() as u64;
-        let refined = match self.interest {
-            None => &*self.block,
+/// One worker's share: its list is drained whenever a block is full.
+fn work(
+    source: &Source<'_>,
+    parts: std::ops::Range<usize>,
+    refine: &Refine<'_>,
+    interest: Option<&[bool]>,
+    worker: &mut Worker,
+) {
+    let Worker {
+        out,
+        block,
+        selected,
+        first,
+        refined,
+        refining,
+    } = worker;
+    let mut drain = |block: &mut PairList| {
+        first.hits += block.len() as u64;
+        let pairs = match interest {
+            None => &*block,
             Some(interest) => {
-                self.selected.clear();
-                for [i, j] in self.block.iter() {
-                    let of_interest = interest[i as usize] || interest[j as usize];
-                    let list = if of_interest {
-                        &mut *self.selected
-                    } else {
-                        &mut *self.out
-                    };
-                    list.push(i, j);
-                }
-                &*self.selected
+                select(block, refine.body, interest, selected, out);
+                &*selected
             }
         };
-        let pairs = [refined.first(), refined.second()];
-        self.refine
-            .test(pairs, &mut self.counters.ordop, self.seconds, self.out);
-        self.block.clear();
+        refine.test([pairs.first(), pairs.second()], refined, refining, out);
+        block.clear();
+    };
+    let tests = source.drained(parts, block, BLOCK, &mut drain);
+    drain(block);
+    first.tests += tests;
+}
+
+/// Splits pairs of places: those with a body of interest to `selected`, the rest as bodies to `out`.
+fn select(
+    pairs: &PairList,
+    body: &[u32],
+    interest: &[bool],
+    selected: &mut PairList,
+    out: &mut PairList,
+) {
+    selected.clear();
+    for [i, j] in pairs.iter() {
+        let [a, b] = [i, j].map(|place| body[place as usize]);
+        if interest[a as usize] || interest[b as usize] {
+            selected.push(i, j);
+        } else {
+            out.push(a, b);
+        }
     }
 }
 
-impl RunTest for Test<'_, '_> {
-    #[inline(always)]
-    fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
-        self.counters.sphere.tests += run.len() as u64;
-        self.spheres.test_run(l, i, run, self.block);
-        if self.block.len() >= BLOCK {
-            self.drain();
-        }
+/// The same from a list of all candidates.
+fn flow_by_list(stage: &mut Stage<'_>, first: First<'_>, interest: Option<&[bool]>) -> Done {
+    let mut done = stage.list_candidates(first);
+    if let Some(interest) = interest {
+        let mut selected = PairList::default();
+        let body = &stage.places.body;
+        select(stage.candidates, body, interest, &mut selected, stage.out);
+        *stage.candidates = selected;
     }
+    done.refined = stage.refine_candidates();
+    done
 }

@@ -4,12 +4,13 @@
 //! A budget of tests gives the same pairs everywhere; a budget of time is looked at after every [`SLICE`] tests.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use super::Stage;
-use super::batch::list_spheres;
-use crate::overlap::sphere::SphereSlots;
-use crate::pairs::PairList;
+use super::listing::First;
+use super::workers::add;
+use crate::cost::VolumeCounters;
 use crate::scene::settings::{Budget, Order};
 
 /// Tests between two looks at the clock: some microseconds.
@@ -19,12 +20,12 @@ const SLICE: usize = 128;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
     refined: HashMap<[u32; 2], u32>,
-    slot: Vec<u32>,
 }
 
 pub(super) fn cull(stage: &mut Stage<'_>) {
     let start = Instant::now();
-    list_spheres(stage);
+    let listed = stage.list_candidates(First::Sphere);
+    add(&mut stage.counters.sphere, listed.first);
     arrange(stage);
     let (tests, deadline) = match stage.budget {
         Some(Budget::Tests(tests)) => (usize::try_from(tests).unwrap_or(usize::MAX), None),
@@ -39,24 +40,37 @@ pub(super) fn cull(stage: &mut Stage<'_>) {
         } else {
             limit
         };
-        let pairs = [
-            &stage.candidates.first()[done..end],
-            &stage.candidates.second()[done..end],
-        ];
-        stage
-            .refine
-            .test(pairs, &mut stage.counters.ordop, stage.seconds, stage.out);
+        refine(stage, done..end);
         done = end;
     }
+    let body = |place: u32| stage.places.body[place as usize];
     stage.counters.untested += (stage.candidates.len() - done) as u64;
     for [i, j] in stage.candidates.iter().skip(done) {
-        stage.out.push(i, j);
+        stage.out.push(body(i), body(j));
     }
     if stage.order == Order::OldestAnswer {
-        stage
-            .memory
-            .remember(stage.candidates, done, stage.refine.stamp);
+        let pairs = stage.candidates.iter().map(|pair| pair.map(body));
+        stage.memory.remember(pairs, done, stage.stamp);
     }
+}
+
+/// Refines a range of the candidates.
+fn refine(stage: &mut Stage<'_>, range: Range<usize>) {
+    let mut counters = VolumeCounters {
+        updates: stage.make_rows(range.clone()),
+        ..VolumeCounters::default()
+    };
+    let mut out = std::mem::take(stage.out);
+    let mut seconds = 0.0;
+    let pairs = [
+        &stage.candidates.first()[range.clone()],
+        &stage.candidates.second()[range],
+    ];
+    let refine = stage.refine();
+    refine.test(pairs, &mut counters, &mut seconds, &mut out);
+    *stage.out = out;
+    stage.seconds.ordop += seconds;
+    add(&mut stage.counters.ordop, counters);
 }
 
 /// Sorts the potentially colliding set into the order of refinement. Ties go by body index, so the order is the same for
@@ -65,25 +79,31 @@ fn arrange(stage: &mut Stage<'_>) {
     if stage.order == Order::AsFound {
         return;
     }
+    let body = |place: u32| stage.places.body[place as usize];
+    let bodies = |&pair: &[u32; 2]| pair.map(body);
     let mut pairs: Vec<[u32; 2]> = stage.candidates.iter().collect();
     match stage.order {
         Order::AsFound => {}
         Order::InterestFirst => {
             let dull = |body: u32| !stage.interest[body as usize];
-            pairs.sort_unstable_by_key(|&[i, j]| (dull(i) && dull(j), i, j));
+            pairs.sort_unstable_by_key(|pair| {
+                let [i, j] = bodies(pair);
+                (dull(i) && dull(j), i, j)
+            });
         }
         Order::LargestOverlap => {
-            stage.memory.locate(stage.finder.order());
             let mut keyed: Vec<_> = pairs
                 .iter()
-                .map(|&pair| (stage.memory.gap(stage.spheres, pair), pair))
+                .map(|&pair| (gap(stage.spheres, pair), pair))
                 .collect();
-            keyed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            keyed.sort_unstable_by(|(a, first), (b, second)| {
+                a.total_cmp(b).then(bodies(first).cmp(&bodies(second)))
+            });
             pairs = keyed.into_iter().map(|(_, pair)| pair).collect();
         }
         Order::OldestAnswer => {
-            let last = |pair: &[u32; 2]| stage.memory.refined.get(pair).copied().unwrap_or(0);
-            pairs.sort_unstable_by_key(|pair| (last(pair), *pair));
+            let last = |bodies: &[u32; 2]| stage.memory.refined.get(bodies).copied().unwrap_or(0);
+            pairs.sort_unstable_by_key(|pair| (last(&bodies(pair)), bodies(pair)));
         }
     }
     stage.candidates.clear();
@@ -92,37 +112,27 @@ fn arrange(stage: &mut Stage<'_>) {
     }
 }
 
+/// d²/s² of a pair's inflated spheres: 0 when concentric, 1 when touching.
+fn gap(spheres: &[[f32; 4]], pair: [u32; 2]) -> f32 {
+    let [a, b] = pair.map(|place| spheres[place as usize]);
+    let (dx, dy, dz, s) = (a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] + b[3]);
+    (dx * dx + dy * dy + dz * dz) / (s * s)
+}
+
 impl Memory {
     /// The frames since each pair of the last potentially colliding set was refined, given the current frame's stamp.
     pub(crate) fn ages(&self, stamp: u32) -> impl Iterator<Item = u32> + '_ {
         self.refined.values().map(move |&last| stamp - last)
     }
 
-    fn remember(&mut self, pairs: &PairList, done: usize, stamp: u32) {
+    fn remember(&mut self, pairs: impl Iterator<Item = [u32; 2]>, done: usize, stamp: u32) {
         let last = std::mem::take(&mut self.refined);
         self.refined = pairs
-            .iter()
             .enumerate()
             .map(|(at, pair)| {
                 let before = last.get(&pair).copied().unwrap_or(0);
                 (pair, if at < done { stamp } else { before })
             })
             .collect();
-    }
-
-    /// Notes in which slot each body stands.
-    fn locate(&mut self, body: &[u32]) {
-        self.slot.resize(body.len(), 0);
-        for (slot, &body) in body.iter().enumerate() {
-            self.slot[body as usize] = slot as u32;
-        }
-    }
-
-    /// d²/s² of a pair's inflated spheres: 0 when concentric, 1 when touching.
-    fn gap(&self, spheres: &SphereSlots, [i, j]: [u32; 2]) -> f32 {
-        let [i, j] = [i, j].map(|body| self.slot[body as usize] as usize);
-        let (dx, dy) = (spheres.x[i] - spheres.x[j], spheres.y[i] - spheres.y[j]);
-        let (dz, s) = (spheres.z[i] - spheres.z[j], spheres.r[i] + spheres.r[j]);
-        (dx * dx + dy * dy + dz * dz) / (s * s)
     }
 }

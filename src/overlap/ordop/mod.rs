@@ -13,6 +13,7 @@
 mod axes;
 pub mod edges;
 pub mod kernel;
+pub mod reach;
 pub mod support;
 pub mod table;
 

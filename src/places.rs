@@ -1,0 +1,61 @@
+//! The order in which bodies are stored inside a culler.
+//!
+//! A body has a place: all volumes stand in columns by place. Moving bodies come first, then static ones, so that
+//! updates and static pairs need no look at a flag; a pair finder sorts places by location now and then, so that
+//! neighbours in space are neighbours in memory, whatever the order of the user's columns.
+
+use crate::scene::bodies::Bodies;
+
+/// Which body stands where. All columns have one length.
+#[derive(Clone, Debug, Default)]
+pub struct Places {
+    /// The body in each place.
+    pub body: Vec<u32>,
+    /// Its shape.
+    pub shape: Vec<u32>,
+    /// How many bodies move: theirs are the first places.
+    pub moving: usize,
+}
+
+impl Places {
+    /// Moving bodies, then static ones, each in the order of the user's columns.
+    #[must_use]
+    pub fn new(bodies: &Bodies) -> Self {
+        let everyone = 0..bodies.shape.len() as u32;
+        let (mut body, fixed): (Vec<u32>, Vec<u32>) =
+            everyone.partition(|&body| bodies.dynamic[body as usize]);
+        let moving = body.len();
+        body.extend(fixed);
+        let shape = body.iter().map(|&b| bodies.shape[b as usize]).collect();
+        Self {
+            body,
+            shape,
+            moving,
+        }
+    }
+
+    /// Number of bodies.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.body.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.body.is_empty()
+    }
+
+    /// Puts the bodies in another order: `order` names the body that takes each place, by its present place or by itself.
+    pub(crate) fn reorder(&mut self, bodies: &Bodies, order: &[u32], by_place: bool) {
+        if by_place {
+            let body = |&place: &u32| self.body[place as usize];
+            self.body = order.iter().map(body).collect();
+        } else {
+            self.body.copy_from_slice(order);
+        }
+        for (shape, &body) in self.shape.iter_mut().zip(&self.body) {
+            *shape = bodies.shape[body as usize];
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! Candidates through the first volume test into a list of pairs.
+
+use std::ops::Range;
+
+use super::Stage;
+use super::workers::{Done, share};
+use crate::broad_phase::{Block, FirstTest, PairFinder, Slots};
+use crate::overlap::intervals::IntervalSlots;
+use crate::overlap::sphere;
+use crate::pairs::PairList;
+use crate::simd::{Kernel, Lanes, Level, MAX_WIDTH, dispatch};
+
+/// Slots of a run that are tested before their hits are listed; no block has more pairs.
+const PIECE: usize = 1024;
+
+/// The first volume test of a strategy.
+#[derive(Clone, Copy)]
+pub(super) enum First<'a> {
+    /// Spheres.
+    Sphere,
+    /// World-aligned slabs.
+    Intervals(&'a IntervalSlots),
+    /// None: every candidate goes on.
+    Every,
+}
+
+/// What is listed, from which part of the finder's work.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub level: Level,
+    pub finder: &'a PairFinder,
+    pub first: First<'a>,
+    /// The body in each place where the slots' names are places.
+    pub body: Option<&'a [u32]>,
+}
+
+impl Source<'_> {
+    /// Lists the pairs of some parts that pass the first test. Returns the number of tests.
+    pub(super) fn list(&self, parts: Range<usize>, out: &mut PairList) -> u64 {
+        self.drained(parts, out, usize::MAX, &mut |_| {})
+    }
+
+    /// As [`Self::list`]; `take` gets the list whenever it has reached `at` pairs, and empties it.
+    pub(super) fn drained(
+        &self,
+        parts: Range<usize>,
+        out: &mut PairList,
+        at: usize,
+        take: &mut dyn FnMut(&mut PairList),
+    ) -> u64 {
+        let drain = Drain { at, take };
+        dispatch(
+            self.level,
+            List {
+                source: *self,
+                parts,
+                out,
+                drain,
+            },
+        )
+    }
+}
+
+impl Stage<'_> {
+    /// Where this frame's candidates come from.
+    pub(super) fn source<'s>(&'s self, first: First<'s>) -> Source<'s> {
+        Source {
+            level: self.level,
+            finder: self.finder,
+            first,
+            body: self.names_are_places.then_some(&self.places.body),
+        }
+    }
+
+    /// Reports the pairs that pass the first test.
+    pub(super) fn list(&mut self, first: First<'_>) -> Done {
+        let mut out = std::mem::take(self.out);
+        let done = self.list_into(first, &mut out);
+        if self.names_are_places {
+            out.rename(0, &self.places.body);
+        }
+        *self.out = out;
+        done
+    }
+
+    /// Lists the pairs that pass the first test as candidates, by places.
+    pub(super) fn list_candidates(&mut self, first: First<'_>) -> Done {
+        let mut candidates = std::mem::take(self.candidates);
+        candidates.clear();
+        let done = self.list_into(first, &mut candidates);
+        *self.candidates = candidates;
+        done
+    }
+
+    fn list_into(&mut self, first: First<'_>, list: &mut PairList) -> Done {
+        let mut workers = std::mem::take(self.workers);
+        let source = self.source(first);
+        let parts = self.finder.parts();
+        let mut done = share(self.crew, &mut workers, parts, list, |parts, worker| {
+            worker.first.tests = source.list(parts, &mut worker.out);
+        });
+        *self.workers = workers;
+        done.first.hits = list.len() as u64;
+        done
+    }
+}
+
+struct Drain<'a> {
+    at: usize,
+    take: &'a mut dyn FnMut(&mut PairList),
+}
+
+struct List<'a> {
+    source: Source<'a>,
+    parts: Range<usize>,
+    out: &'a mut PairList,
+    drain: Drain<'a>,
+}
+
+impl Kernel for List<'_> {
+    type Output = u64;
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> u64 {
+        let finder = self.source.finder;
+        match self.source.first {
+            First::Sphere => self.with(l, finder.slots()),
+            First::Intervals(intervals) => self.with(l, intervals),
+            First::Every => self.with(l, &Every),
+        }
+    }
+}
+
+impl List<'_> {
+    #[inline(always)]
+    fn with<L: Lanes>(self, l: L, test: &impl HitTest) -> u64 {
+        let Source { finder, body, .. } = self.source;
+        let mut lister = Lister {
+            test,
+            names: &finder.slots().names,
+            body,
+            out: self.out,
+            drain: self.drain,
+            tests: 0,
+            hits: [0; PIECE + MAX_WIDTH],
+        };
+        finder.find(l, self.parts, &mut lister);
+        lister.tests
+    }
+}
+
+/// A first test as a list of hits.
+trait HitTest {
+    /// Slots of `run` that pass against slot `i`.
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize;
+    /// Codes of the block that pass.
+    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize;
+}
+
+impl HitTest for Slots {
+    #[inline(always)]
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        sphere::test_run(l, self, i, run, hits)
+    }
+    #[inline(always)]
+    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
+        sphere::test_block(l, self, block, hits)
+    }
+}
+
+impl HitTest for IntervalSlots {
+    #[inline(always)]
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        self.test_run(l, i, run, hits)
+    }
+    #[inline(always)]
+    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
+        self.test_block(l, block, hits)
+    }
+}
+
+struct Every;
+
+impl HitTest for Every {
+    #[inline(always)]
+    fn run<L: Lanes>(&self, _: L, _: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        for (hit, slot) in hits.iter_mut().zip(run.clone()) {
+            *hit = slot as u32;
+        }
+        run.len()
+    }
+    #[inline(always)]
+    fn block<L: Lanes>(&self, _: L, block: &Block, hits: &mut [u32]) -> usize {
+        hits[..block.len()].copy_from_slice(&block.codes()[..block.len()]);
+        block.len()
+    }
+}
+
+struct Lister<'a, 'd, T> {
+    test: &'a T,
+    names: &'a [u32],
+    body: Option<&'a [u32]>,
+    out: &'d mut PairList,
+    drain: Drain<'d>,
+    tests: u64,
+    hits: [u32; PIECE + MAX_WIDTH],
+}
+
+impl<T: HitTest> FirstTest for Lister<'_, '_, T> {
+    #[inline(always)]
+    fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
+        self.tests += run.len() as u64;
+        let mut start = run.start;
+        while start < run.end {
+            let piece = start..run.end.min(start + PIECE);
+            start = piece.end;
+            let found = self.test.run(l, i, piece, &mut self.hits);
+            self.append(found, |slot| (i, slot as usize));
+        }
+    }
+
+    #[inline(always)]
+    fn block<L: Lanes>(&mut self, l: L, block: &Block) {
+        self.tests += block.len() as u64;
+        let found = self.test.block(l, block, &mut self.hits);
+        let first = block.first();
+        self.append(found, |code| {
+            (first + (code & 15) as usize, (code >> 4) as usize)
+        });
+    }
+}
+
+impl<T> Lister<'_, '_, T> {
+    /// Lists the first `found` hits by name, the lower body first.
+    #[inline(always)]
+    fn append(&mut self, found: usize, slots: impl Fn(u32) -> (usize, usize)) {
+        let (first, second) = self.out.room(found);
+        let pairs = first.iter_mut().zip(second).zip(&self.hits[..found]);
+        match self.body {
+            None => {
+                for ((first, second), &hit) in pairs {
+                    let (i, j) = slots(hit);
+                    let (i, j) = (self.names[i], self.names[j]);
+                    (*first, *second) = (i.min(j), i.max(j));
+                }
+            }
+            Some(body) => {
+                for ((first, second), &hit) in pairs {
+                    let (i, j) = slots(hit);
+                    let (i, j) = (self.names[i], self.names[j]);
+                    let swap = body[i as usize] > body[j as usize];
+                    (*first, *second) = if swap { (j, i) } else { (i, j) };
+                }
+            }
+        }
+        self.out.advance(found);
+        if self.out.len() >= self.drain.at {
+            (self.drain.take)(self.out);
+        }
+    }
+}

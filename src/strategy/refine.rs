@@ -1,0 +1,110 @@
+//! The or-DOP test of listed pairs.
+
+use std::ops::Range;
+use std::time::Instant;
+
+use super::Stage;
+use super::workers::{Done, add, share};
+use crate::cost::VolumeCounters;
+use crate::overlap::ordop::OrDopColumns;
+use crate::pairs::PairList;
+use crate::simd::{Level, MAX_WIDTH};
+
+/// The or-DOP test with made rows: takes pairs of places, leaves pairs of bodies.
+#[derive(Clone, Copy)]
+pub(super) struct Refine<'a> {
+    pub level: Level,
+    pub columns: OrDopColumns<'a>,
+    /// The body in each place.
+    pub body: &'a [u32],
+}
+
+impl Refine<'_> {
+    /// Tests pairs and appends the survivors to `out`, in list order. A block a call: the dispatch is paid once for all.
+    pub fn test(
+        &self,
+        [first, second]: [&[u32]; 2],
+        counters: &mut VolumeCounters,
+        seconds: &mut f64,
+        out: &mut PairList,
+    ) {
+        let start = Instant::now();
+        let listed = out.len();
+        let tested = self.columns.test_pairs(self.level, first, second, out);
+        out.rename(listed, self.body);
+        counters.tests += tested.tests;
+        counters.hits += tested.hits;
+        *seconds += start.elapsed().as_secs_f64();
+    }
+}
+
+impl<'a> Stage<'a> {
+    /// The test with the rows as they are.
+    pub(super) fn refine(&self) -> Refine<'_> {
+        Refine {
+            level: self.level,
+            columns: OrDopColumns {
+                rows: &self.rows.rows,
+                shape: &self.places.shape,
+                tables: self.tables,
+                overlap: self.overlap,
+            },
+            body: &self.places.body,
+        }
+    }
+
+    /// With lazy updates: makes the rows of a range of the listed candidates that this frame lacks. Returns their number.
+    pub(super) fn make_rows(&mut self, range: Range<usize>) -> u64 {
+        if !self.lazy {
+            return 0;
+        }
+        let begin = Instant::now();
+        let mut made = 0;
+        for column in [self.candidates.first(), self.candidates.second()] {
+            let wanted = &column[range.clone()];
+            let (frames, places) = (self.frames, self.places);
+            made += self
+                .rows
+                .update_missing(frames, self.bodies, places, wanted, self.stamp);
+        }
+        self.seconds.update += begin.elapsed().as_secs_f64();
+        made
+    }
+
+    /// Tests all listed candidates, on all threads, and appends the survivors to the reported pairs.
+    pub(super) fn refine_candidates(&mut self) -> VolumeCounters {
+        let mut counters = VolumeCounters {
+            updates: self.make_rows(0..self.candidates.len()),
+            ..VolumeCounters::default()
+        };
+        let vectors = self.candidates.len().div_ceil(MAX_WIDTH);
+        let mut out = std::mem::take(self.out);
+        let mut workers = std::mem::take(self.workers);
+        let (refine, candidates) = (self.refine(), &*self.candidates);
+        let Done {
+            refined, refining, ..
+        } = share(
+            self.crew,
+            &mut workers,
+            vectors,
+            &mut out,
+            |range, worker| {
+                let pairs = range.start * MAX_WIDTH..(range.end * MAX_WIDTH).min(candidates.len());
+                let pairs = [
+                    &candidates.first()[pairs.clone()],
+                    &candidates.second()[pairs],
+                ];
+                refine.test(
+                    pairs,
+                    &mut worker.refined,
+                    &mut worker.refining,
+                    &mut worker.out,
+                );
+            },
+        );
+        (*self.out, *self.workers) = (out, workers);
+        self.seconds.ordop += refining;
+        add(&mut counters, refined);
+        counters
+    }
+}
