@@ -11,6 +11,7 @@ use super::measure::{Trial, side_by_side, time};
 use super::predict::{Price, Prices, Volume};
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
 use crate::pairs::PairList;
+use crate::places::Places;
 use crate::scene::Scene;
 use crate::scene::bodies::Bodies;
 use crate::scene::number::Interval;
@@ -179,13 +180,19 @@ fn time_hits(scene: &Scene, hits: &PairList, level: Level) -> Row<4> {
         .iter()
         .map(|s| ShapeFrame::new(s, &s.ordop.basis))
         .collect();
-    let everyone: Vec<u32> = (0..scene.bodies.len() as u32).collect();
-    let mut rows = OrDopRows::new(scene.bodies.len());
-    rows.update(&frames, &scene.bodies, &everyone, 1);
+    // In the order of the user's columns, as the listed pairs count.
+    let n = scene.bodies.len();
+    let places = Places {
+        body: (0..n as u32).collect(),
+        shape: scene.bodies.shape.clone(),
+        moving: n,
+    };
+    let mut rows = OrDopRows::new(n);
+    rows.update(&frames, &scene.bodies, &places, 0..n, 1);
     let tables = SlabTables::new(scene.cull.k, scene.shapes.iter().map(|s| (s, &s.ordop)));
     let columns = OrDopColumns {
         rows: &rows.rows,
-        shape: &scene.bodies.shape,
+        shape: &places.shape,
         tables: &tables,
         overlap: scene.cull.overlap,
     };
