@@ -60,17 +60,12 @@ fn segments_meet([p, q]: [&Point; 2], [a, b]: [&Point; 2]) -> bool {
             || on_segment([p, q], a)
             || on_segment([p, q], b);
     }
-    // In the plane that both span, each has its ends on either side of the other's line.
-    let turn =
-        |from: &Point, to: &Point, x: &Point| dot(&across, &cross(&sub(to, from), &sub(x, from)));
-    let splits = |from, to, x, y| {
-        let (x, y) = (
-            turn(from, to, x).cmp(&IBig::ZERO),
-            turn(from, to, y).cmp(&IBig::ZERO),
-        );
-        x != y || x == Ordering::Equal
+    // In the plane that both span, each has its ends on either side of the other's line, or one of them on it; both
+    // are not, as the lines are not parallel.
+    let turn = |from: &Point, to: &Point, x: &Point| {
+        dot(&across, &cross(&sub(to, from), &sub(x, from))).cmp(&IBig::ZERO)
     };
-    splits(p, q, a, b) && splits(a, b, p, q)
+    turn(p, q, a) != turn(p, q, b) && turn(a, b, p) != turn(a, b, q)
 }
 
 /// Is x on the closed segment ab, which may be a point?

@@ -144,3 +144,35 @@ pub fn crossing<S: Side>(
         Some(true)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_that_touch_the_border_do_not_count() {
+        let point = |p: [i32; 3]| p.map(IBig::from);
+        let t = [[0, 0, 0], [4, 0, 0], [0, 4, 0]].map(point);
+        let crossing = |p, q| crossing(&Known::stage(), [&point(p), &point(q)], &t);
+        assert_eq!(crossing([1, 1, -1], [1, 1, 1]), Some(Some(true)));
+        assert_eq!(
+            crossing([1, 1, 1], [1, 1, 2]),
+            Some(Some(false)),
+            "one side"
+        );
+        assert_eq!(crossing([5, 5, -1], [5, 5, 1]), Some(Some(false)), "beside");
+        assert_eq!(
+            crossing([5, 5, 0], [5, 5, 1]),
+            Some(Some(false)),
+            "beside, from the plane"
+        );
+        assert_eq!(crossing([2, 0, -1], [2, 0, 1]), Some(None), "an edge");
+        assert_eq!(crossing([4, 0, -1], [4, 0, 1]), Some(None), "a corner");
+        assert_eq!(crossing([-1, 1, 0], [5, 1, 0]), Some(None), "in the plane");
+        assert_eq!(
+            crossing([1, 1, 0], [1, 1, 3]),
+            Some(None),
+            "from the surface"
+        );
+    }
+}

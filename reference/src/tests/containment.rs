@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::rational::{self, posed, rational, rational3};
-use super::shapes::{Draws, cuboid, exact_basis, poses, shape, slabs, torus};
+use super::shapes::{Draws, cuboid, exact_basis, exact_slabs, poses, shape, slabs, torus};
 use crate::containment::{
     Breach, ball_in_ball, check_ball, check_directions, check_shape, check_slabs,
 };
@@ -64,7 +64,21 @@ fn contact_is_containment_to_the_bit() {
             &inner,
             &turned
         ));
-        assert!(!ball_in_ball(&ball(0.5 * scale), &inner, &turned));
+        let concentric = Ball {
+            radius: 2.0 * scale,
+            ..ball(0.0)
+        };
+        assert!(!ball_in_ball(&ball(scale), &concentric, &turned));
+        assert!(ball_in_ball(&concentric, &concentric, &turned));
+        for direction in DirectionSet::ALL {
+            let mut tight = exact_slabs(direction, exact_basis([0, 0, 0, 1]), &vertex);
+            assert_eq!(check_slabs(&tight, &vertex, &Pose::IDENTITY), Ok(()));
+            tight.hi[2] = tight.hi[2].next_down();
+            assert_eq!(
+                check_slabs(&tight, &vertex, &Pose::IDENTITY),
+                Err(Breach::Slab { vertex: 0, slab: 2 })
+            );
+        }
     }
 }
 

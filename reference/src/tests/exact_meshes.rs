@@ -185,6 +185,16 @@ fn inside_needs_a_closed_component() {
         meets(&prepared(&(vertices, triangles)), &inner, [0.0; 3]),
         "inside one component"
     );
+    // An open box about the inner and a closed one elsewhere.
+    let (mut vertices, mut triangles) = cuboid([1.0; 3]);
+    triangles.pop();
+    let (closer, faces) = cuboid([0.5; 3]);
+    triangles.extend(faces.iter().map(|t| t.map(|i| i + 8)));
+    vertices.extend(closer.iter().map(|v| [v[0] + 3.0, v[1], v[2]]));
+    assert!(
+        !meets(&prepared(&(vertices, triangles)), &inner, [0.0; 3]),
+        "inside an open one alone"
+    );
     // Two shells, one inside the other: the point is inside both, once each.
     let (mut vertices, mut triangles) = cuboid([1.0; 3]);
     let (closer, faces) = cuboid([0.5; 3]);
@@ -197,8 +207,9 @@ fn inside_needs_a_closed_component() {
 }
 
 #[test]
-fn rays_along_edges_and_through_collapsed_faces_are_thrown_away() {
-    // A box whose faces carry zero-area slivers and point faces; queried from many points inside and out.
+fn collapsed_faces_do_not_confuse_the_parity() {
+    // A box whose faces carry zero-area slivers, and about it a closed pair of faces that are one point;
+    // queried from many points inside and out.
     let (mut vertices, mut triangles) = cuboid([1.0; 3]);
     let middle = vertices.len() as u32;
     vertices.extend([[0.0, -1.0, -1.0], [0.0, -1.0, -1.0]]);
@@ -220,6 +231,9 @@ fn rays_along_edges_and_through_collapsed_faces_are_thrown_away() {
         [a, middle + 1, middle],
         [middle, middle + 1, b],
     ]);
+    let speck = vertices.len() as u32;
+    vertices.extend([[7.0, 7.0, 7.0]; 3]);
+    triangles.extend([[speck, speck + 1, speck + 2], [speck, speck + 2, speck + 1]]);
     let shell = Mesh::new(&vertices, &triangles).unwrap();
     assert!(shell.components.iter().all(|component| component.closed));
     let mut draws = Draws(9);

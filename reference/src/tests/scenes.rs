@@ -1,7 +1,7 @@
 //! Whole scenes: the exact judge against the plain one, the promise, and world-aligned volumes against rationals.
 
 use super::rational::{self, posed, rational3};
-use super::shapes::{Draws, cuboid, exact_basis, shape, torus};
+use super::shapes::{Draws, cuboid, exact_basis, shape, torus, wedge};
 use crate::exact::judge::{self, meeting_pairs};
 use crate::exact::{Tally, world};
 use crate::number::power_of_two;
@@ -29,11 +29,7 @@ fn forms(directions: DirectionSet) -> Vec<Shape> {
             directions,
             exact_basis([1, 2, -3, 5]),
         ),
-        shape(
-            cuboid([0.6, 0.5, 0.4]),
-            directions,
-            exact_basis([0, 0, 0, 1]),
-        ),
+        shape(wedge(0.8), directions, exact_basis([0, 0, 0, 1])),
         shape(
             cuboid([1.2, 0.05, 0.02]),
             directions,

@@ -27,6 +27,20 @@ pub fn cuboid(half: [f32; 3]) -> Mesh {
     )
 }
 
+/// A closed tetrahedron with legs 1 : 2 : 3 about no centre of symmetry: what a mirrored formula would show on.
+pub fn wedge(size: f32) -> Mesh {
+    let vertices = [
+        [0.0, 0.0, 0.0],
+        [0.5, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.5],
+    ];
+    (
+        vertices.map(|v| v.map(|x| x * size)).to_vec(),
+        vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+    )
+}
+
 /// A closed torus of `rings` × `sides` quads.
 pub fn torus(major: f32, minor: f32, rings: u32, sides: u32) -> Mesh {
     let point = |n: u32| {

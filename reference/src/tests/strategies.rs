@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::shapes::{Draws, cuboid, exact_basis, poses, shape, torus};
+use super::shapes::{Draws, cuboid, exact_basis, poses, shape, torus, wedge};
 use crate::overlap::{obb, ordop, sphere};
 use crate::strategy::{Plain, run};
 use crate::{Body, DirectionSet, Overlap, Pose, Shape, Strategy, pairs};
@@ -10,7 +10,7 @@ use crate::{Body, DirectionSet, Overlap, Pose, Shape, Strategy, pairs};
 fn forms() -> Vec<Shape> {
     let basis = exact_basis([1, 2, -3, 5]);
     vec![
-        shape(cuboid([0.5, 0.7, 0.9]), DirectionSet::K18, basis),
+        shape(wedge(0.8), DirectionSet::K18, basis),
         shape(torus(0.8, 0.2, 12, 6), DirectionSet::K26, basis),
         shape(
             cuboid([1.0, 0.01, 0.01]),
