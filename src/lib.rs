@@ -13,6 +13,8 @@ pub mod overlap;
 pub mod pairs;
 pub mod pipeline;
 pub mod places;
+#[cfg(feature = "cli")]
+pub mod reproduce;
 pub mod rounding;
 pub mod scene;
 pub mod simd;

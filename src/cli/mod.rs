@@ -2,9 +2,11 @@
 //!
 //! A new command is a file with `Args` and `run`, a module line, a variant and a line in [`Cli::run`].
 
+mod cost;
 mod mesh;
 mod output;
 mod recording;
+mod reproduce;
 mod run;
 mod scene_args;
 mod verify;
@@ -26,7 +28,9 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Reproduce(reproduce::Args),
     Run(run::Args),
+    Cost(cost::Args),
     Mesh(mesh::Args),
     Verify(verify::Args),
 }
@@ -47,7 +51,9 @@ impl Cli {
     /// Bad input: exit code 2.
     pub fn run(self) -> miette::Result<Outcome> {
         match self.command {
+            Command::Reproduce(args) => reproduce::run(&args),
             Command::Run(args) => run::run(&args),
+            Command::Cost(args) => cost::run(&args),
             Command::Mesh(args) => mesh::run(&args),
             Command::Verify(args) => verify::run(&args),
         }

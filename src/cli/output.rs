@@ -79,8 +79,10 @@ pub fn progress(steps: u64, what: &str) -> ProgressBar {
     bar.with_message(what.to_owned())
 }
 
+/// CSV of a list of records, or of one.
+///
 /// Objects are flattened with dots, lists of named objects by their names; the header is the union over all records.
-fn csv_text(value: Value) -> miette::Result<String> {
+pub fn csv_text(value: Value) -> miette::Result<String> {
     let records = match value {
         Value::Array(records) => records,
         single => vec![single],

@@ -79,6 +79,14 @@ impl SceneArgs {
     /// # Errors
     /// A scene that can't be read or built, or settings that it can't have.
     pub fn build(&self) -> miette::Result<Scene> {
+        Ok(self.read()?.build()?)
+    }
+
+    /// Reads the scene and puts the overrides in place.
+    ///
+    /// # Errors
+    /// A scene that can't be read, or settings that no scene can have.
+    pub fn read(&self) -> miette::Result<SceneFile> {
         let mut file = SceneFile::read(&self.scene)?;
         if let Some(frames) = self.frames {
             file.spec.frames = frames;
@@ -94,7 +102,17 @@ impl SceneArgs {
                 file.spec.cull.pairs
             ));
         }
-        Ok(file.build()?)
+        Ok(file)
+    }
+
+    /// The frames asked for, if any.
+    pub fn frames(&self) -> Option<u32> {
+        self.frames.map(NonZeroU32::get)
+    }
+
+    /// The strategy asked for, if any.
+    pub fn strategy(&self) -> Option<Strategy> {
+        self.cull.strategy
     }
 }
 

@@ -33,6 +33,9 @@ const FEWEST: usize = 24;
 /// Candidate pairs, if all are, after which a calibration run may end.
 const PAIRS: f64 = 8e6;
 
+/// The number of calibration scenes.
+pub const SCENES: usize = SIZES.len() * SIDES.len();
+
 /// How long to calibrate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
@@ -76,7 +79,7 @@ pub fn calibrate(
 
 /// The calibration scenes of a scene: every size in every box.
 pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
-    (0..SIZES.len() * SIDES.len()).map(|number| {
+    (0..SCENES).map(|number| {
         let (size, side) = (SIZES[number / SIDES.len()], SIDES[number % SIDES.len()]);
         let bodies = (scene.bodies.len() as f64 * size) as usize;
         resample(scene, bodies.max(FEWEST), side as f32, number as u64)

@@ -64,6 +64,7 @@ impl Volume {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Price {
     /// The volume.
+    #[serde(rename = "name")]
     pub volume: Volume,
     /// Its prices.
     #[serde(flatten)]
@@ -79,6 +80,7 @@ pub struct Prices(pub Vec<Price>);
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Terms {
     /// The volume.
+    #[serde(rename = "name")]
     pub volume: Volume,
     /// Co.
     pub construct: f64,
@@ -91,6 +93,14 @@ pub struct Terms {
 }
 
 impl Terms {
+    /// Adds the terms of another run.
+    pub fn add(&mut self, other: &Self) {
+        self.construct += other.construct;
+        self.update += other.update;
+        self.finding += other.finding;
+        self.test += other.test;
+    }
+
     /// What recurs: all but the construction.
     #[must_use]
     pub fn recurring(&self) -> f64 {

@@ -4,6 +4,7 @@
 
 mod mesh;
 mod recording;
+mod reproduce;
 mod run;
 
 use std::path::{Path, PathBuf};

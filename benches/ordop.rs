@@ -1,0 +1,79 @@
+//! Cv of or-DOPs after spheres: hits alone, misses alone, and as S-DOP lists them; an element a pair.
+//!
+//! A miss alone may leave at its first separating axis; among hits its vector stays busy until the last one.
+
+mod common;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use sdop::overlap::ordop::{OrDopColumns, SlabTables};
+use sdop::pairs::PairList;
+use sdop::pipeline::Culler;
+use sdop::scene::Scene;
+use sdop::scene::settings::{CullSettings, Overlap, Strategy};
+use sdop::simd::Level;
+use sdop::update::{OrDopRows, ShapeFrame};
+use sdop::volume::DirectionSet;
+
+fn pairs(scene: &Scene, strategy: Strategy) -> PairList {
+    let settings = CullSettings {
+        strategy,
+        ..scene.cull.clone()
+    };
+    let culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Level::detect());
+    culler
+        .map(|mut culler| culler.cull(&scene.bodies).clone())
+        .unwrap_or_default()
+}
+
+fn ordop(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("or-dop after sphere");
+    for &k in DirectionSet::ALL {
+        for &overlap in Overlap::ALL {
+            let mut scene = common::scene("crowded-500");
+            scene.shapes = scene
+                .shapes
+                .into_iter()
+                .map(|shape| shape.with_directions(k))
+                .collect();
+            (scene.cull.k, scene.cull.overlap) = (k, overlap);
+            let (listed, hits) = (
+                pairs(&scene, Strategy::Sphere),
+                pairs(&scene, Strategy::SDopBatch),
+            );
+            let sorted = hits.sorted();
+            let misses: PairList = listed
+                .iter()
+                .filter(|pair| sorted.binary_search(pair).is_err())
+                .collect();
+            let frames: Vec<_> = scene
+                .shapes
+                .iter()
+                .map(|s| ShapeFrame::new(s, &s.ordop.basis))
+                .collect();
+            let everyone: Vec<u32> = (0..scene.bodies.len() as u32).collect();
+            let mut rows = OrDopRows::new(scene.bodies.len());
+            rows.update(&frames, &scene.bodies, &everyone, 1);
+            let tables = SlabTables::new(k, scene.shapes.iter().map(|s| (s, &s.ordop)));
+            let columns = OrDopColumns {
+                rows: &rows.rows,
+                shape: &scene.bodies.shape,
+                tables: &tables,
+                overlap,
+            };
+            for (name, list) in [("hits", &hits), ("misses", &misses), ("as listed", &listed)] {
+                group.throughput(Throughput::Elements(list.len() as u64));
+                let id = BenchmarkId::new(format!("k = {k}, {overlap}"), name);
+                let mut out = PairList::default();
+                group.bench_function(id, |bencher| {
+                    bencher.iter(|| {
+                        out.clear();
+                        columns.test_pairs(Level::detect(), list.first(), list.second(), &mut out)
+                    });
+                });
+            }
+        }
+    }
+}
+
+criterion_group!(benches, ordop);
+criterion_main!(benches);

@@ -1,0 +1,52 @@
+//! Figures as SVG, one file each.
+
+mod costs;
+mod frame_rates;
+mod residuals;
+mod sphere;
+mod style;
+mod useful_tests;
+
+use std::path::Path;
+
+use miette::IntoDiagnostic as _;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use super::rows::Tables;
+
+/// Where a figure is drawn.
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// Why nothing could be drawn.
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+/// How drawing ends.
+type Drawn = Result<(), Failure>;
+
+/// A figure's file name, size, and what draws it.
+type Figure = (&'static str, (u32, u32), fn(&Area<'_>, &Tables) -> Drawn);
+
+const FIGURES: [Figure; 5] = [
+    ("frame_rates", (1000, 620), frame_rates::draw),
+    ("useful_tests", (860, 560), useful_tests::draw),
+    ("costs", (1060, 640), costs::draw),
+    ("residuals", (900, 420), residuals::draw),
+    ("sphere", (760, 430), sphere::draw),
+];
+
+/// Draws every figure into the directory.
+///
+/// # Errors
+/// A file that can't be written.
+pub fn draw_all(directory: &Path, tables: &Tables) -> miette::Result<()> {
+    for (name, size, draw) in FIGURES {
+        let mut svg = String::new();
+        {
+            let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+            area.fill(&WHITE).into_diagnostic()?;
+            draw(&area, tables).map_err(|error| miette::miette!("cannot draw {name}: {error}"))?;
+            area.present().into_diagnostic()?;
+        }
+        super::write(&directory.join(name).with_extension("svg"), &svg)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,57 @@
+//! The machine that measured, as far as it explains times: no names, no paths.
+
+use sdop::simd::Level;
+use serde::Serialize;
+
+/// What a measurement says of its machine.
+#[derive(Clone, Debug, Serialize)]
+pub struct Machine {
+    pub cpu: String,
+    pub cores: usize,
+    pub os: String,
+    pub rustc: &'static str,
+    pub version: &'static str,
+    pub simd: &'static str,
+    pub optimised: bool,
+}
+
+impl Machine {
+    /// This machine, culling in the tier `level`.
+    pub fn here(level: Level) -> Self {
+        Self {
+            cpu: cpu().unwrap_or_else(|| format!("unknown ({})", std::env::consts::ARCH)),
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            os: format!("{} {}", os(), std::env::consts::ARCH),
+            rustc: env!("SDOP_RUSTC"),
+            version: env!("CARGO_PKG_VERSION"),
+            simd: level.name(),
+            optimised: !cfg!(debug_assertions),
+        }
+    }
+}
+
+/// The CPU's name, where the system has it in a file; ids tell models of one name apart.
+fn cpu() -> Option<String> {
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let value = |key: &str| {
+        let line = text
+            .lines()
+            .find(|line| line.split(':').next().map(str::trim) == Some(key))?;
+        Some(line.split_once(':')?.1.trim().to_owned())
+    };
+    let name = value("model name")?;
+    let ids = ["cpu family", "model"].map(|key| value(key).unwrap_or_default());
+    Some(format!("{name} (family {}, model {})", ids[0], ids[1]))
+}
+
+/// The system and its release, as far as a file tells.
+fn os() -> String {
+    let kernel = std::fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
+    let release: String = kernel
+        .chars()
+        .take_while(|c| c.is_ascii_digit() || *c == '.')
+        .collect();
+    format!("{} {}", std::env::consts::OS, release.trim_matches('.'))
+        .trim()
+        .to_owned()
+}

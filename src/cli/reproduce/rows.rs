@@ -1,0 +1,235 @@
+//! The result files: each CSV file is one table, and `results.json` holds all but the two of single runs.
+//!
+//! Of those, `counts` has what is equal on every machine, and its hash stands in the summary; `times` has what is not.
+
+use miette::IntoDiagnostic as _;
+use sdop::cost::predict::Prices;
+use sdop::reproduce::check::{Claim, Verdict};
+use sdop::reproduce::closed_form::{probability, relative_reach};
+use sdop::reproduce::rates::{self, Rate};
+use sdop::reproduce::readings::{self, Cell};
+use sdop::reproduce::terms::{self, Cost};
+use sdop::reproduce::{Estimate, Results, Run, Shard, claims, study};
+use serde::Serialize;
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use super::machine::Machine;
+use crate::cli::output::csv_text;
+
+/// Everything that is written.
+#[derive(Serialize)]
+pub struct Tables {
+    pub command: String,
+    pub machine: Machine,
+    pub shard: Option<Shard>,
+    pub seeds: Vec<u64>,
+    pub frames: u32,
+    pub volumes_sha256: String,
+    pub counts_sha256: String,
+    pub boxes: Vec<BoxRow>,
+    pub prices: Prices,
+    pub table_1: Vec<Cell>,
+    pub rates: Vec<Rate>,
+    pub costs: Vec<Cost>,
+    pub survival: Vec<SurvivalRow>,
+    pub claims: Vec<Claim>,
+    pub study: Vec<Claim>,
+    #[serde(skip)]
+    pub counts: Vec<CountRow>,
+    #[serde(skip)]
+    pub times: Vec<TimeRow>,
+}
+
+/// A scene's bodies and box, and the share of sphere tests that hit there in the closed form.
+#[derive(Serialize)]
+pub struct BoxRow {
+    pub scene: String,
+    pub bodies: usize,
+    pub statics: usize,
+    pub side: f64,
+    pub radius: f64,
+    pub percent: f64,
+}
+
+/// What one strategy did in one run.
+#[derive(Serialize)]
+pub struct CountRow {
+    scene: String,
+    bodies: usize,
+    statics: usize,
+    seed: u64,
+    frames: u32,
+    strategy: &'static str,
+    sphere_updates: u64,
+    ordop_updates: u64,
+    sphere_tests: u64,
+    sphere_hits: u64,
+    ordop_tests: u64,
+    ordop_hits: u64,
+    reported: u64,
+    pairs_sha256: Option<String>,
+}
+
+/// What it took, in seconds: medians over frames, the mean, the simulation's step, and Co once.
+#[derive(Serialize)]
+pub struct TimeRow {
+    scene: String,
+    seed: u64,
+    strategy: &'static str,
+    construct: f64,
+    update: f64,
+    pair_finding: f64,
+    ordop: f64,
+    total: f64,
+    mean: f64,
+    simulation_step: f64,
+}
+
+/// or-DOP hits among sphere hits.
+#[derive(Serialize)]
+pub struct SurvivalRow {
+    pub k: usize,
+    pub overlap: &'static str,
+    pub percent: Estimate,
+}
+
+/// One number behind one claim.
+#[derive(Serialize)]
+struct CheckRow<'a> {
+    source: &'a str,
+    claim: &'a str,
+    claim_verdict: Verdict,
+    quantity: &'a str,
+    value: f64,
+    half_width: f64,
+    expected: &'a str,
+    verdict: Verdict,
+}
+
+impl Tables {
+    /// All tables of the results.
+    pub fn new(
+        results: &Results,
+        machine: &Machine,
+        shard: Option<Shard>,
+        command: String,
+    ) -> Self {
+        let counts: Vec<CountRow> = results.runs.iter().map(count_row).collect();
+        let survival = |row: &sdop::reproduce::Survival| SurvivalRow {
+            k: row.k.k(),
+            overlap: row.overlap.name(),
+            percent: Estimate::of(&row.shares).scaled(100.0),
+        };
+        Self {
+            command,
+            machine: machine.clone(),
+            shard,
+            seeds: results.plan.seeds.clone(),
+            frames: results.plan.frames,
+            volumes_sha256: results.volumes_sha256.clone(),
+            counts_sha256: hash(&counts).unwrap_or_default(),
+            boxes: results
+                .plan
+                .names
+                .iter()
+                .filter_map(|scene| results.example(scene))
+                .map(box_row)
+                .collect(),
+            prices: results.prices.clone(),
+            table_1: readings::table(results),
+            rates: rates::table(results),
+            costs: terms::table(results),
+            survival: results.survival.iter().map(survival).collect(),
+            claims: claims::all(results),
+            study: study::all(results),
+            counts,
+            times: results.runs.iter().map(time_row).collect(),
+        }
+    }
+
+    /// The CSV files: name without extension, rows.
+    pub fn files(&self) -> miette::Result<Vec<(&'static str, Value)>> {
+        let value = |rows: serde_json::Result<Value>| rows.into_diagnostic();
+        Ok(vec![
+            ("counts", value(serde_json::to_value(&self.counts))?),
+            ("times", value(serde_json::to_value(&self.times))?),
+            ("table_1", value(serde_json::to_value(&self.table_1))?),
+            ("frame_rates", value(serde_json::to_value(&self.rates))?),
+            ("costs", value(serde_json::to_value(&self.costs))?),
+            ("prices", value(serde_json::to_value(&self.prices))?),
+            ("survival", value(serde_json::to_value(&self.survival))?),
+            ("claims", value(serde_json::to_value(self.checks()))?),
+        ])
+    }
+
+    fn checks(&self) -> Vec<CheckRow<'_>> {
+        let mut rows = Vec::new();
+        for claim in self.claims.iter().chain(&self.study) {
+            rows.extend(claim.checks.iter().map(|check| CheckRow {
+                source: claim.source,
+                claim: claim.claim,
+                claim_verdict: claim.verdict(),
+                quantity: &check.quantity,
+                value: check.value,
+                half_width: check.half_width,
+                expected: &check.expected,
+                verdict: check.verdict,
+            }));
+        }
+        rows
+    }
+}
+
+/// SHA-256 of the counts as their CSV file has them.
+fn hash(counts: &[CountRow]) -> miette::Result<String> {
+    let text = csv_text(serde_json::to_value(counts).into_diagnostic()?)?;
+    let digest = Sha256::digest(text);
+    Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+fn box_row(run: &Run) -> BoxRow {
+    BoxRow {
+        scene: run.scene.clone(),
+        bodies: run.bodies,
+        statics: run.statics,
+        side: run.side,
+        radius: run.radius,
+        percent: 100.0 * probability(relative_reach(run.side, run.radius)),
+    }
+}
+
+fn count_row(run: &Run) -> CountRow {
+    let counters = &run.counters;
+    CountRow {
+        scene: run.scene.clone(),
+        bodies: run.bodies,
+        statics: run.statics,
+        seed: run.seed,
+        frames: run.frames,
+        strategy: run.strategy.name(),
+        sphere_updates: counters.sphere.updates,
+        ordop_updates: counters.ordop.updates,
+        sphere_tests: counters.sphere.tests,
+        sphere_hits: counters.sphere.hits,
+        ordop_tests: counters.ordop.tests,
+        ordop_hits: counters.ordop.hits,
+        reported: counters.reported,
+        pairs_sha256: run.pairs_sha256.clone(),
+    }
+}
+
+fn time_row(run: &Run) -> TimeRow {
+    TimeRow {
+        scene: run.scene.clone(),
+        seed: run.seed,
+        strategy: run.strategy.name(),
+        construct: run.seconds.construct,
+        update: run.seconds.update,
+        pair_finding: run.seconds.pair_finding,
+        ordop: run.seconds.ordop,
+        total: run.seconds.total,
+        mean: run.mean,
+        simulation_step: run.step,
+    }
+}

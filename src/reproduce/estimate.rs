@@ -1,0 +1,124 @@
+//! Means with confidence intervals over seeds.
+//!
+//! Frames of one run are correlated: at the paper's speeds a body needs about a hundred frames to travel its own diameter.
+//! So a run counts as one observation, whatever its number of frames, and intervals are Student's over the runs' means.
+
+use serde::Serialize;
+use special::{Beta as _, Gamma as _};
+
+/// How often an interval covers the truth.
+pub const CONFIDENCE: f64 = 0.95;
+
+/// A mean over seeds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The mean.
+    pub mean: f64,
+    /// Half the width of the [`CONFIDENCE`] interval; infinite for one seed.
+    pub half_width: f64,
+    /// The number of seeds.
+    pub seeds: usize,
+}
+
+impl Estimate {
+    /// From one value a seed.
+    #[must_use]
+    pub fn of(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let error = (squares / (n - 1.0) / n).sqrt();
+        Self {
+            mean,
+            half_width: if values.len() < 2 {
+                f64::INFINITY
+            } else {
+                quantile(CONFIDENCE, n - 1.0) * error
+            },
+            seeds: values.len(),
+        }
+    }
+
+    /// The interval's ends.
+    #[must_use]
+    pub fn interval(&self) -> [f64; 2] {
+        [self.mean - self.half_width, self.mean + self.half_width]
+    }
+
+    /// Whether the interval covers a value.
+    #[must_use]
+    pub fn covers(&self, value: f64) -> bool {
+        (value - self.mean).abs() <= self.half_width
+    }
+
+    /// Probability of a mean at least this far from `truth`, if that were the truth; 1 for one seed.
+    #[must_use]
+    pub fn p_value(&self, truth: f64) -> f64 {
+        if self.seeds < 2 {
+            return 1.0;
+        }
+        let freedom = self.seeds as f64 - 1.0;
+        let error = self.half_width / quantile(CONFIDENCE, freedom);
+        if error == 0.0 {
+            return f64::from(u8::from(self.mean == truth));
+        }
+        let t = (self.mean - truth) / error;
+        // Two tails: I_x(ν/2, ½) at x = ν/(ν + t²).
+        let (a, b) = (0.5 * freedom, 0.5_f64);
+        (freedom / (freedom + t * t)).inc_beta(a, b, a.ln_beta(b))
+    }
+
+    /// The estimate in another unit.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            mean: factor * self.mean,
+            half_width: factor.abs() * self.half_width,
+            ..*self
+        }
+    }
+}
+
+/// The probability that χ² with `freedom` degrees of freedom exceeds `chi_squared`.
+#[must_use]
+pub fn chi_squared_p(chi_squared: f64, freedom: f64) -> f64 {
+    1.0 - (0.5 * chi_squared).inc_gamma(0.5 * freedom)
+}
+
+/// Half-width of a two-sided Student interval in standard errors: t = √(ν(1/x − 1)) with I_x(ν/2, ½) = 1 − confidence.
+fn quantile(confidence: f64, freedom: f64) -> f64 {
+    let (a, b) = (0.5 * freedom, 0.5_f64);
+    let x = (1.0 - confidence).inv_inc_beta(a, b, a.ln_beta(b));
+    (freedom * (1.0 / x - 1.0)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_are_student_s() {
+        // t at .975: 12.706 for one degree of freedom, 2.776 for four (any table).
+        let two = Estimate::of(&[1.0, 3.0]);
+        assert!((two.half_width - 12.706).abs() < 1e-3, "{two:?}");
+        let five = Estimate::of(&[1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert!((five.half_width - 2.776 * (2.5_f64 / 5.0).sqrt()).abs() < 1e-3);
+        assert!(five.covers(1.1) && !five.covers(1.0));
+        assert_eq!(Estimate::of(&[2.0]).half_width, f64::INFINITY);
+    }
+
+    #[test]
+    fn the_p_value_crosses_five_percent_at_the_interval_s_end() {
+        let estimate = Estimate::of(&[1.0, 2.0, 3.0, 4.0, 5.0, 9.0]);
+        let [lo, hi] = estimate.interval();
+        for end in [lo, hi] {
+            assert!((estimate.p_value(end) - 0.05).abs() < 1e-9);
+        }
+        assert!((estimate.p_value(estimate.mean) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn chi_squared_tail_is_the_table_s() {
+        assert!((chi_squared_p(7.815, 3.0) - 0.05).abs() < 1e-4);
+    }
+}

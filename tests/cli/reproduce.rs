@@ -1,0 +1,158 @@
+//! `sdop reproduce` and `sdop cost`.
+
+use std::path::Path;
+
+use super::{json, refusal, sdop, stdout, text};
+
+const TINY: [&str; 7] = [
+    "reproduce",
+    "--quick",
+    "--seeds",
+    "2",
+    "--frames",
+    "3",
+    "--out",
+];
+
+#[test]
+fn reproduce_writes_tables_figures_and_a_summary() {
+    let directory = tempfile::tempdir().unwrap();
+    let [out, paper] = ["tables", "paper"].map(|name| directory.path().join(name));
+    let brief = stdout(&[&TINY[..], &[text(&out), "--paper", text(&paper)]].concat());
+    assert!(
+        brief.contains("Collisions in percent of tests, 2 seeds of 3 frames"),
+        "{brief}"
+    );
+    let read = |path: &Path| std::fs::read_to_string(path).unwrap();
+    let counts = read(&out.join("counts.csv"));
+    assert_eq!(counts.lines().count(), 1 + 2 * 6 * 6);
+    let summary = read(&paper.join("summary.md"));
+    // Equal on every machine: the counts' hash says so for all of them.
+    assert!(
+        summary.contains("`6a826ee5bcc855a5c769231e5e964cfffdecb0d6d4af1d5d0f6462914135ae34`"),
+        "{}",
+        summary.split("## Hashes").nth(1).unwrap()
+    );
+    assert!(
+        !summary.contains(text(directory.path())),
+        "a path of this machine"
+    );
+    for name in [
+        "frame_rates",
+        "useful_tests",
+        "costs",
+        "residuals",
+        "sphere",
+    ] {
+        let svg = read(&paper.join("figures").join(name).with_extension("svg"));
+        assert!(
+            svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"),
+            "{name}"
+        );
+        assert!(summary.contains(&format!("(figures/{name}.svg)")), "{name}");
+    }
+    for name in [
+        "times",
+        "table_1",
+        "frame_rates",
+        "costs",
+        "prices",
+        "survival",
+        "claims",
+    ] {
+        assert!(
+            read(&out.join(name).with_extension("csv")).lines().count() > 1,
+            "{name}"
+        );
+    }
+    let results: serde_json::Value =
+        serde_json::from_str(&read(&out.join("results.json"))).unwrap();
+    assert_eq!(results["seeds"], serde_json::json!([1, 2]));
+    assert_eq!(results["claims"][0]["checks"].as_array().unwrap().len(), 20);
+}
+
+#[test]
+fn reproduce_says_what_it_needs() {
+    let elsewhere = refusal(&["reproduce", "--scenes", "no/such/place"]);
+    assert!(
+        elsewhere.contains("there is no directory no/such/place")
+            && elsewhere.contains("--scenes DIR"),
+        "{elsewhere}"
+    );
+    let shard = refusal(&["reproduce", "--quick", "--shard", "6/7"]);
+    assert!(
+        shard.contains("shard 6 of 7 has none of the 5 seeds"),
+        "{shard}"
+    );
+    assert_eq!(
+        sdop(&["reproduce", "--shard", "half"]).status.code(),
+        Some(2)
+    );
+}
+
+#[test]
+fn cost_predicts_every_term_of_the_strategies_asked_for() {
+    let arguments = [
+        "cost",
+        "data/scenes/paper-50.toml",
+        "--frames",
+        "3",
+        "--seeds",
+        "2",
+    ];
+    let one = json(&[&arguments[..], &["--strategy", "s-dop-batch"]].concat());
+    assert_eq!((&one["bodies"], &one["frames"]), (&50.into(), &3.into()));
+    let strategies = one["strategies"].as_array().unwrap();
+    assert_eq!(strategies.len(), 1);
+    let names = |list: &serde_json::Value| {
+        let names = list.as_array().unwrap().iter();
+        names
+            .map(|item| item["name"].as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(names(&one["prices"]), ["sphere", "or-dop after sphere"]);
+    assert_eq!(
+        names(&strategies[0]["terms"]),
+        ["sphere", "or-dop after sphere"]
+    );
+    let terms = strategies[0]["terms"].as_array().unwrap().iter();
+    let recurring = |term: &serde_json::Value| {
+        ["update", "finding", "test"]
+            .map(|key| term[key].as_f64().unwrap())
+            .iter()
+            .sum::<f64>()
+    };
+    let sum: f64 = terms.map(recurring).sum();
+    let predicted = strategies[0]["predicted"].as_f64().unwrap();
+    assert!((sum / predicted - 1.0).abs() < 1e-12 && predicted > 0.0);
+}
+
+#[test]
+fn cost_covers_every_strategy_that_the_scene_has_settings_for() {
+    let csv = stdout(&[
+        "cost",
+        "data/scenes/paper-50.toml",
+        "--frames",
+        "2",
+        "--seeds",
+        "1",
+        "--format",
+        "csv",
+    ]);
+    let rows: Vec<&str> = csv
+        .lines()
+        .skip(1)
+        .filter_map(|line| line.split(',').nth(2))
+        .collect();
+    let expected = [
+        "sphere",
+        "or-dop",
+        "s-dop-sequential",
+        "s-dop-batch",
+        "s-dop-object-of-interest",
+        "aabb",
+        "k-dop",
+        "obb",
+    ];
+    assert_eq!(rows, expected, "{csv}");
+}

@@ -1,0 +1,174 @@
+//! The paper's experiments, small: counts and hashes that no CPU may change, the closed form, shards, verdicts.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+
+use sdop::cost::calibrate::{self, Effort};
+use sdop::reproduce::check::Verdict;
+use sdop::reproduce::closed_form::{probability, relative_reach};
+use sdop::reproduce::readings::{Reading, cell, table};
+use sdop::reproduce::{Estimate, Plan, Results, Shard, claims, rates, run_scene, study, terms};
+use sdop::scene::SceneFile;
+use sdop::scene::settings::Strategy;
+use sdop::simd::Level;
+
+fn scenes() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes")
+}
+
+/// A few frames of the smallest scene and of the crowded one.
+fn plan(seeds: u64, level: Level) -> Plan {
+    let effort = Effort {
+        frames: 4,
+        builds: 1,
+    };
+    let mut plan = Plan::new(&scenes(), seeds, 5, effort, level);
+    plan.names = ["paper-50", "crowded-500"].map(str::to_owned).to_vec();
+    plan
+}
+
+fn run(plan: &Plan) -> Results {
+    let mut steps = 0;
+    let results = plan.run(|_| steps += 1).unwrap();
+    assert_eq!(steps, plan.steps());
+    results
+}
+
+#[test]
+fn counts_and_hashes_are_golden() {
+    let results = run(&plan(1, Level::detect()));
+    let line = |run: &sdop::reproduce::Run| {
+        let [sphere, ordop] =
+            [run.counters.sphere, run.counters.ordop].map(|v| [v.updates, v.tests, v.hits]);
+        let hash = run.pairs_sha256.as_deref().map_or("-", |hash| &hash[..16]);
+        format!(
+            "{} {} {sphere:?} {ordop:?} {} {hash}\n",
+            run.scene, run.strategy, run.counters.reported
+        )
+    };
+    let lines: String = results.runs.iter().map(line).collect();
+    assert_eq!(lines, include_str!("golden/reproduce.txt"));
+    assert!(calibrate::SCENES > 0 && results.survival.iter().all(|row| row.shares.len() == 1));
+}
+
+#[test]
+fn every_tier_counts_the_same() {
+    let scene = SceneFile::read(&scenes().join("paper-150.toml"))
+        .unwrap()
+        .build()
+        .unwrap();
+    let of = |level| {
+        let runs = run_scene(&scene, Strategy::ALL.split_at(6).0, 6, level).unwrap();
+        runs.into_iter()
+            .map(|run| (run.strategy, run.counters, run.pairs_sha256))
+            .collect::<Vec<_>>()
+    };
+    let scalar = of(Level::SCALAR);
+    for level in Level::available() {
+        assert_eq!(of(level), scalar, "{level}");
+    }
+}
+
+#[test]
+fn shards_share_out_the_seeds() {
+    let whole = plan(7, Level::SCALAR);
+    let mut seeds: Vec<u64> = (1..=3)
+        .flat_map(|index| whole.clone().shard(Shard { index, of: 3 }).unwrap().seeds)
+        .collect();
+    seeds.sort_unstable();
+    assert_eq!(seeds, whole.seeds);
+    for (index, of) in [(0, 3), (4, 3), (8, 9)] {
+        let error = whole.clone().shard(Shard { index, of }).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .contains(&format!("shard {index} of {of}")),
+            "{error}"
+        );
+    }
+}
+
+/// Centres are uniform in side − 2r, in the first frame and after minutes of motion with elastic walls; static bodies are
+/// placed the same way, and their mutual pairs are not tests. The seeds are fixed, so this can't fail by chance.
+#[test]
+fn sphere_percentage_is_the_closed_form_s() {
+    for name in ["paper-150", "crowded-500"] {
+        let mut file = SceneFile::read(&scenes().join(name).with_extension("toml")).unwrap();
+        let mut percentages = Vec::new();
+        let mut expected = 0.0;
+        for seed in 1..=24 {
+            file.spec.seed = seed;
+            let run = run_scene(
+                &file.build().unwrap(),
+                &[Strategy::Sphere],
+                240,
+                Level::detect(),
+            )
+            .unwrap()
+            .remove(0);
+            percentages.push(Reading::OwnTests.percentage(
+                run.strategy,
+                &run.counters,
+                run.frames,
+                run.bodies,
+            ));
+            expected = 100.0 * probability(relative_reach(run.side, run.radius));
+        }
+        let measured = Estimate::of(&percentages);
+        assert!(
+            measured.covers(expected),
+            "{name}: {measured:?} for {expected}"
+        );
+        assert!(
+            measured.half_width < 0.05 * expected,
+            "{name}: {measured:?} decides nothing"
+        );
+    }
+}
+
+#[test]
+fn tables_and_verdicts_follow_from_the_runs() {
+    let results = run(&plan(3, Level::detect()));
+    assert_eq!(table(&results).len(), 2 * 4 * Reading::ALL.len());
+    assert_eq!(rates::table(&results).len(), 2 * 6 * 2);
+    assert_eq!(terms::table(&results).len(), 2 * 5);
+    let crowded = cell(&results, "crowded-500", Strategy::Sphere, Reading::OwnTests);
+    assert_eq!(
+        (crowded.bodies, crowded.paper),
+        (500, None),
+        "the paper's box is another"
+    );
+    let small = cell(
+        &results,
+        "paper-50",
+        Strategy::SDopBatch,
+        Reading::TestsAndList,
+    );
+    let whole = cell(&results, "paper-50", Strategy::SDopBatch, Reading::OwnTests);
+    assert_eq!(
+        (small.paper, whole.measured.mean),
+        (Some(16.88), 2.0 * small.measured.mean)
+    );
+    for claim in claims::all(&results).iter().chain(&study::all(&results)) {
+        assert!(!claim.checks.is_empty(), "{}", claim.claim);
+    }
+    // What counts alone decide.
+    let verdict = |text: &str| {
+        let all = claims::all(&results)
+            .into_iter()
+            .chain(study::all(&results));
+        let mut found = all.filter(|claim| claim.claim.contains(text));
+        found.next().map(|claim| claim.verdict())
+    };
+    assert_eq!(
+        verdict("highest percentage in all experiments"),
+        Some(Verdict::InPart)
+    );
+    assert_eq!(verdict("or-DOP row contradicts"), Some(Verdict::Supported));
+    assert_eq!(verdict("2r/L from .128 to .144"), Some(Verdict::Supported));
+    assert_eq!(
+        verdict("can't exceed the sphere row."),
+        Some(Verdict::Supported)
+    );
+}
