@@ -129,29 +129,39 @@ impl<'a> Simulation<'a> {
             ..*culling
         }
     }
+
+    /// Runs to the last frame. `observe` sees every frame, after its culling and outside of the timing.
+    ///
+    /// # Errors
+    /// As [`Self::next_frame`], or what `observe` returns.
+    pub fn run<E: From<SimulationError>>(
+        mut self,
+        mut observe: impl FnMut(&Frame<'_>) -> Result<(), E>,
+    ) -> Result<Summary, E> {
+        let mut hash = PairsHash::default();
+        while let Some(frame) = self.next_frame()? {
+            hash.frame(frame.number, &frame.pairs.sorted());
+            observe(&frame)?;
+        }
+        let culls = self.scene.cull.strategy != Strategy::None;
+        Ok(Summary {
+            counters: *self.counters(),
+            seconds: self.seconds(),
+            effects: self.effects.reports().to_vec(),
+            volumes_sha256: volumes_sha256(&self.scene.shapes),
+            pairs_sha256: culls.then(|| hash.finish()),
+        })
+    }
 }
 
-/// Runs the whole scene. `observe` sees every frame, after its culling and outside of the timing.
+/// Runs the whole scene in the tier `level`, on the caller's thread: [`Simulation::run`] of a new simulation.
 ///
 /// # Errors
-/// As [`Simulation::new`] and [`Simulation::next_frame`], or what `observe` returns.
+/// As [`Simulation::new`] and [`Simulation::run`].
 pub fn run<E: From<SimulationError>>(
     scene: &Scene,
     level: Level,
-    mut observe: impl FnMut(&Frame<'_>) -> Result<(), E>,
+    observe: impl FnMut(&Frame<'_>) -> Result<(), E>,
 ) -> Result<Summary, E> {
-    let mut simulation = Simulation::new(scene, level)?;
-    let mut hash = PairsHash::default();
-    while let Some(frame) = simulation.next_frame()? {
-        hash.frame(frame.number, &frame.pairs.sorted());
-        observe(&frame)?;
-    }
-    let culls = scene.cull.strategy != Strategy::None;
-    Ok(Summary {
-        counters: *simulation.counters(),
-        seconds: simulation.seconds(),
-        effects: simulation.effects.reports().to_vec(),
-        volumes_sha256: volumes_sha256(&scene.shapes),
-        pairs_sha256: culls.then(|| hash.finish()),
-    })
+    Simulation::new(scene, level)?.run(observe)
 }
