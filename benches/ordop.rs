@@ -8,6 +8,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use sdop::overlap::ordop::{OrDopColumns, SlabTables};
 use sdop::pairs::PairList;
 use sdop::pipeline::Culler;
+use sdop::places::Places;
 use sdop::scene::Scene;
 use sdop::scene::settings::{CullSettings, Overlap, Strategy};
 use sdop::simd::Level;
@@ -50,13 +51,13 @@ fn ordop(criterion: &mut Criterion) {
                 .iter()
                 .map(|s| ShapeFrame::new(s, &s.ordop.basis))
                 .collect();
-            let everyone: Vec<u32> = (0..scene.bodies.len() as u32).collect();
-            let mut rows = OrDopRows::new(scene.bodies.len());
-            rows.update(&frames, &scene.bodies, &everyone, 1);
+            let places = Places::as_given(&scene.bodies);
+            let mut rows = OrDopRows::new(places.len());
+            rows.update(&frames, &scene.bodies, &places, 0..places.len(), 1);
             let tables = SlabTables::new(k, scene.shapes.iter().map(|s| (s, &s.ordop)));
             let columns = OrDopColumns {
                 rows: &rows.rows,
-                shape: &scene.bodies.shape,
+                shape: &places.shape,
                 tables: &tables,
                 overlap,
             };

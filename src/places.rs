@@ -34,6 +34,17 @@ impl Places {
         }
     }
 
+    /// The order of the user's columns, every body taken as moving: what times a stage apart from a culler.
+    #[must_use]
+    pub fn as_given(bodies: &Bodies) -> Self {
+        let n = bodies.shape.len();
+        Self {
+            body: (0..n as u32).collect(),
+            shape: bodies.shape.clone(),
+            moving: n,
+        }
+    }
+
     /// Number of bodies.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -183,13 +183,8 @@ fn time_hits(scene: &Scene, hits: &PairList, level: Level) -> Row<4> {
         .iter()
         .map(|s| ShapeFrame::new(s, &s.ordop.basis))
         .collect();
-    // In the order of the user's columns, as the listed pairs count.
     let n = scene.bodies.len();
-    let places = Places {
-        body: (0..n as u32).collect(),
-        shape: scene.bodies.shape.clone(),
-        moving: n,
-    };
+    let places = Places::as_given(&scene.bodies);
     let mut rows = OrDopRows::new(n);
     rows.update(&frames, &scene.bodies, &places, 0..n, 1);
     let tables = SlabTables::new(scene.cull.k, scene.shapes.iter().map(|s| (s, &s.ordop)));
