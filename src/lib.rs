@@ -20,6 +20,8 @@ pub mod scene;
 pub mod simd;
 pub mod simulate;
 mod strategy;
+#[cfg(feature = "cli")]
+pub mod tradeoff;
 pub mod update;
 #[cfg(feature = "verify")]
 pub mod verify;

@@ -174,6 +174,12 @@ impl Culler {
         &self.pairs
     }
 
+    /// For strategies that list it, the potentially colliding set of the last frame in the order of refinement.
+    #[must_use]
+    pub fn potentially_colliding(&self) -> &PairList {
+        &self.candidates
+    }
+
     /// Counters summed over all frames so far.
     #[must_use]
     pub fn counters(&self) -> &Counters {

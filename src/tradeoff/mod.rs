@@ -1,0 +1,63 @@
+//! What accuracy costs in time: every volume and strategy on one scene, judged by the exact truth.
+//!
+//! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`] (when does it pay?)
+//!
+//! Counts come first and reproduce to the bit; time is measured afterwards and never decides a count. Every variant must
+//! report every true pair: a recall below 1 is a failed check.
+
+pub mod budget;
+pub mod counts;
+pub mod density;
+mod estimate;
+pub mod gjk;
+pub mod interest;
+pub mod pays;
+pub mod shapes;
+mod study;
+pub mod timing;
+pub mod truth;
+pub mod variant;
+
+mod contender;
+
+pub use contender::{Contender, HullTest};
+pub use estimate::{CONFIDENCE, Estimate};
+pub use study::{Plan, Row, Tradeoff, study};
+
+use std::path::PathBuf;
+
+use miette::Diagnostic;
+use thiserror::Error;
+
+use crate::scene::SceneError;
+use crate::scene::settings::SettingsError;
+use crate::simulate::SimulationError;
+
+/// Why there is no answer.
+#[derive(Debug, Error, Diagnostic)]
+pub enum TradeoffError {
+    /// The scene can't be built.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneError),
+    /// The scene can't be run on.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Simulation(#[from] SimulationError),
+    /// Culling settings that can't be carried out.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Settings(#[from] SettingsError),
+    /// A number that the exact reference refuses to judge.
+    #[error("the exact reference refuses the scene: {0}")]
+    Refused(#[from] sdop_reference::InvalidInput),
+    /// The truth can't be kept.
+    #[error("cannot write {}", file.display())]
+    #[diagnostic(help("choose a writable directory with --cache"))]
+    Cache {
+        /// The file.
+        file: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}
