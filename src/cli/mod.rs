@@ -9,6 +9,7 @@ mod recording;
 mod reproduce;
 mod run;
 mod scene_args;
+mod tradeoff;
 mod verify;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -32,6 +33,7 @@ enum Command {
     Run(run::Args),
     Cost(cost::Args),
     Mesh(mesh::Args),
+    Tradeoff(tradeoff::Args),
     Verify(verify::Args),
 }
 
@@ -55,6 +57,7 @@ impl Cli {
             Command::Run(args) => run::run(&args),
             Command::Cost(args) => cost::run(&args),
             Command::Mesh(args) => mesh::run(&args),
+            Command::Tradeoff(args) => tradeoff::run(&args),
             Command::Verify(args) => verify::run(&args),
         }
     }

@@ -1,7 +1,7 @@
 //! The arguments of every command that runs a scene: the file, and flags that override what it says.
 
 use std::num::NonZeroU32;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use miette::{Diagnostic as _, miette};
 use sdop::scene::settings::{
@@ -80,6 +80,11 @@ impl SceneArgs {
     /// A scene that can't be read or built, or settings that it can't have.
     pub fn build(&self) -> miette::Result<Scene> {
         Ok(self.read()?.build()?)
+    }
+
+    /// The file as named.
+    pub fn path(&self) -> &Path {
+        &self.scene
     }
 
     /// Reads the scene and puts the overrides in place.

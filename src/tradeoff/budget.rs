@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::counts::shared;
@@ -20,10 +20,10 @@ use crate::simd::Level;
 const SHARES: [f64; 7] = [0.0, 0.125, 0.25, 0.5, 0.75, 1.0, 1.25];
 
 /// One order under one budget of tests.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BudgetRow {
     /// Order of refinement.
-    pub order: &'static str,
+    pub order: String,
     /// Tests a frame.
     pub tests: u64,
     /// Refined pairs / pairs whose spheres overlap.
@@ -39,7 +39,7 @@ pub struct BudgetRow {
 }
 
 /// How far a budget by the clock is overrun.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClockRow {
     /// The budget, microseconds a frame, from the start of the strategy.
     pub microseconds: u64,
@@ -140,7 +140,7 @@ fn row(
     };
     let counters = culler.counters();
     Ok(BudgetRow {
-        order: settings.order.name(),
+        order: settings.order.to_string(),
         tests: match settings.budget {
             Some(Budget::Tests(tests)) => tests,
             _ => 0,

@@ -1,6 +1,6 @@
 //! Counts against the truth: precision, reported per true, recall. The same to the bit on every machine.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::contender::Contender;
 use super::truth::{Sample, Truth};
@@ -31,11 +31,12 @@ pub struct Tally {
 }
 
 /// A share of pairs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quality {
     /// True pairs / reported pairs; 1 where nothing is reported.
     pub precision: f64,
     /// Reported pairs / true pairs, infinite where nothing is true.
+    #[serde(deserialize_with = "super::estimate::or_infinite")]
     pub per_true: f64,
     /// True pairs found / true pairs; 1 where nothing is true.
     pub recall: f64,

@@ -3,7 +3,7 @@
 //! Crowding raises Np in proportion while finding pairs stays what it is, so an or-DOP test pays the sooner the denser a
 //! scene. Only counts of reported pairs and times are needed here, no truth.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::counts::Tally;
@@ -20,7 +20,7 @@ use crate::simd::Level;
 const FACTORS: [f32; 7] = [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
 
 /// Break-evens at one density.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Density {
     /// Multiple of the scene's own density.
     pub factor: f32,
@@ -35,7 +35,7 @@ pub struct Density {
 }
 
 /// Where an S-DOP begins to pay.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BreakEven {
     /// The variant.
     pub name: String,

@@ -2,18 +2,20 @@
 //!
 //! Frames of one run are correlated, so a run counts as one observation, and intervals are Student's over the runs.
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 use special::Beta as _;
 
 /// How often an interval covers the truth.
 pub const CONFIDENCE: f64 = 0.95;
 
 /// A mean over seeds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The mean.
+    #[serde(deserialize_with = "or_infinite")]
     pub mean: f64,
     /// Half the width of the [`CONFIDENCE`] interval; infinite for one seed.
+    #[serde(deserialize_with = "or_infinite")]
     pub half_width: f64,
 }
 
@@ -40,6 +42,11 @@ impl Estimate {
     pub fn covers(&self, value: f64) -> bool {
         (value - self.mean).abs() <= self.half_width
     }
+}
+
+/// JSON has no infinity and writes `null`.
+pub(super) fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
+    Option::deserialize(number).map(|number| number.unwrap_or(f64::INFINITY))
 }
 
 /// Half-width of the two-sided Student interval in standard errors: t = √(ν(1/x − 1)) with I_x(ν/2, ½) = 1 − confidence.

@@ -1,6 +1,6 @@
 //! Object of interest: precision and cost as the interest set grows from one body to all.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::counts::{Quality, Tally};
@@ -15,7 +15,7 @@ use crate::simd::Level;
 const SHARES: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0];
 
 /// One size of the interest set.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InterestRow {
     /// Bodies of interest.
     pub bodies: usize,

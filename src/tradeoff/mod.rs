@@ -12,6 +12,7 @@ mod estimate;
 pub mod gjk;
 pub mod interest;
 pub mod pays;
+pub mod safety;
 pub mod shapes;
 mod study;
 pub mod timing;
@@ -22,7 +23,7 @@ mod contender;
 
 pub use contender::{Contender, HullTest};
 pub use estimate::{CONFIDENCE, Estimate};
-pub use study::{Plan, Row, Tradeoff, study};
+pub use study::{Plan, Row, Tradeoff, steps, study};
 
 use std::path::PathBuf;
 
@@ -51,6 +52,14 @@ pub enum TradeoffError {
     /// A number that the exact reference refuses to judge.
     #[error("the exact reference refuses the scene: {0}")]
     Refused(#[from] sdop_reference::InvalidInput),
+    /// A shape can't be made.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Form(#[from] crate::mesh::shapes::ShapeError),
+    /// A shape can't be bounded.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Volume(#[from] crate::volume::VolumeError),
     /// The truth can't be kept.
     #[error("cannot write {}", file.display())]
     #[diagnostic(help("choose a writable directory with --cache"))]

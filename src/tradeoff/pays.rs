@@ -4,12 +4,12 @@
 //! lower envelope. All break-evens lie between neighbours on it. The pairs by which two variants differ are false ones:
 //! the Cp that counts is that of a pair that doesn't meet.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::truth::NarrowPhase;
 
 /// One variant's cost a frame.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// The variant.
     pub name: String,
@@ -20,7 +20,7 @@ pub struct Line {
 }
 
 /// A stretch of Cp in which one variant is the cheapest.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stretch {
     /// The cheapest variant.
     pub name: String,

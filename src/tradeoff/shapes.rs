@@ -4,21 +4,23 @@
 //! the first's: exactly the sphere hits of a uniform scene. For convex bodies the share that meets is the mean
 //! Minkowski volume (2V + SM/2π, M the mean width integral) over that of two balls, 32πR³/3, which makes known answers.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::estimate::Estimate;
 use super::gjk::{HullGraph, PosedHull, may_touch};
 use super::truth::Judge;
+use crate::mesh::shapes::ProceduralShape;
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
 use crate::pairs::PairList;
+use crate::places::Places;
 use crate::rounding::pose::{rotate, rotation};
 use crate::scene::bodies::Bodies;
 use crate::scene::random::Stream;
 use crate::scene::settings::{Axes, DirectionSet, Overlap};
 use crate::simd::Level;
 use crate::update::{OrDopRows, ShapeFrame};
-use crate::volume::{Basis, Hull, OrDop, Shape};
+use crate::volume::{Basis, Hull, OrDop, Shape, ShapeSpec};
 
 /// Where the draws start; scenes count their seeds from 1.
 const SEED: u64 = 0x5a3e_7000_0000_0000;
@@ -26,20 +28,20 @@ const SEED: u64 = 0x5a3e_7000_0000_0000;
 const BATCHES: usize = 8;
 
 /// What is let through with one kind of or-DOP.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Survival {
     /// Half-spaces.
     pub k: usize,
     /// Axes.
-    pub axes: &'static str,
+    pub axes: String,
     /// Overlap test.
-    pub overlap: &'static str,
+    pub overlap: String,
     /// Survivors per sphere hit.
     pub share: Estimate,
 }
 
 /// What one shape's volumes let through.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShapeSurvival {
     /// The mesh.
     pub shape: String,
@@ -99,13 +101,13 @@ impl Crowd {
         level: Level,
     ) -> PairList {
         let frames = [ShapeFrame::new(shape, &ordop.basis)];
-        let everyone: Vec<u32> = (0..self.bodies.len() as u32).collect();
-        let mut rows = OrDopRows::new(self.bodies.len());
-        rows.update(&frames, &self.bodies, &everyone, 1);
+        let places = Places::as_given(&self.bodies);
+        let mut rows = OrDopRows::new(places.len());
+        rows.update(&frames, &self.bodies, &places, 0..places.len(), 1);
         let tables = SlabTables::new(ordop.directions, [(shape, ordop)]);
         let columns = OrDopColumns {
             rows: &rows.rows,
-            shape: &self.bodies.shape,
+            shape: &places.shape,
             tables: &tables,
             overlap,
         };
@@ -124,6 +126,30 @@ impl Crowd {
             .filter(|&[i, j]| may_touch(&posed(i), &posed(j)))
             .count()
     }
+}
+
+/// Shapes of known form to compare with: two boxes whose answer is known, and the procedural ones.
+///
+/// # Errors
+/// None: the sizes are the library's own.
+pub fn builtin() -> Result<Vec<Shape>, TradeoffError> {
+    let boxes = [("cube", 1.0), ("box 1:1:2", 2.0)].map(|(name, z)| {
+        let sizes = [("x", 1.0), ("y", 1.0), ("z", z)];
+        (name, ProceduralShape::from_name("box", &sizes))
+    });
+    let others = ProceduralShape::NAMES
+        .iter()
+        .filter(|name| **name != "box")
+        .map(|name| (*name, ProceduralShape::from_name(name, &[])));
+    boxes
+        .into_iter()
+        .chain(others)
+        .map(|(name, form)| {
+            let mut mesh = form.and_then(|form| form.build())?;
+            name.clone_into(&mut mesh.name);
+            Ok(Shape::build(&mesh, &ShapeSpec::default())?)
+        })
+        .collect()
 }
 
 /// The or-DOP of a shape with other directions and axes.
@@ -159,8 +185,8 @@ pub fn survival(shape: &Shape, pairs: u32, level: Level) -> Result<ShapeSurvival
             for &overlap in Overlap::ALL {
                 ordops.push(Survival {
                     k: k.k(),
-                    axes: axes.name(),
-                    overlap: overlap.name(),
+                    axes: axes.to_string(),
+                    overlap: overlap.to_string(),
                     share: share(&|crowd| crowd.ordop_hits(shape, &ordop, overlap, level).len()),
                 });
             }

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::budget::{self, BudgetRow, ClockRow, Window};
 use super::counts::Tally;
 use super::density::{self, Density};
 use super::interest::{self, InterestRow};
 use super::pays::{self, Line, Stretch};
+use super::safety::{self, SafetyRow};
 use super::shapes::{self, ShapeSurvival};
 use super::timing::{self, VariantPrices, VolumeTerms};
 use super::truth::{Judge, NarrowPhase, Sample, Truth, samples};
@@ -39,20 +40,20 @@ pub struct Plan {
 }
 
 /// One variant's result.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// What tables call it.
     pub name: String,
     /// The strategy.
-    pub strategy: &'static str,
+    pub strategy: String,
     /// The volume that decides last.
-    pub volume: &'static str,
+    pub volume: String,
     /// Half-spaces, where the strategy has or-DOPs or k-DOPs.
     pub k: Option<usize>,
     /// The or-DOP's axes, where it has or-DOPs.
-    pub axes: Option<&'static str>,
+    pub axes: Option<String>,
     /// The overlap test, where it has or-DOPs.
-    pub overlap: Option<&'static str>,
+    pub overlap: Option<String>,
     /// Pairs reported a frame.
     pub reported: Estimate,
     /// True pairs / reported pairs.
@@ -76,7 +77,7 @@ pub struct Row {
 }
 
 /// Everything about one scene.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tradeoff {
     /// The scene.
     pub scene: String,
@@ -89,7 +90,7 @@ pub struct Tradeoff {
     /// The runs' seeds.
     pub seeds: Vec<u64>,
     /// The SIMD tier.
-    pub simd: &'static str,
+    pub simd: String,
     /// True pairs a frame.
     pub truth: Estimate,
     /// Sphere overlaps a body.
@@ -108,8 +109,10 @@ pub struct Tradeoff {
     pub clock: Vec<ClockRow>,
     /// Interest sets.
     pub interest: Vec<InterestRow>,
-    /// The scene's shapes, each against itself.
+    /// The scene's shapes and some of known form, each against itself.
     pub shapes: Vec<ShapeSurvival>,
+    /// Margins, arithmetic and tiers.
+    pub safety: Vec<SafetyRow>,
     /// What to do.
     pub advice: String,
 }
@@ -121,7 +124,7 @@ impl Tradeoff {
         let budgets = self.budgets.iter().filter(|row| row.recall != 1.0);
         let interest = self.interest.iter().filter(|row| row.quality.recall != 1.0);
         rows.map(|row| row.name.as_str())
-            .chain(budgets.map(|row| row.order))
+            .chain(budgets.map(|row| row.order.as_str()))
             .chain(interest.map(|_| "s-dop of interest"))
     }
 }
@@ -175,13 +178,16 @@ pub fn study(
 }
 
 /// How many times [`study`] calls `step`.
+///
+/// # Errors
+/// A scene that can't be built.
 #[must_use]
 pub fn steps(file: &SceneFile, plan: &Plan) -> Result<u64, TradeoffError> {
     let scene = file.build()?;
     let variants = variant::all(&scene, 1).len() as u64;
     let samples = u64::from(plan.samples.clamp(1, scene.frames));
     let runs = plan.seeds.max(1);
-    Ok(runs * (1 + variants + variants * samples) + variants + density::steps() + 4)
+    Ok(runs * (1 + variants + variants * samples) + variants + density::steps() + 5)
 }
 
 fn judged_run(file: &SceneFile, plan: &Plan, seed: u64) -> Result<Run, TradeoffError> {
@@ -250,11 +256,11 @@ fn row(variant: &Variant, at: usize, runs: &[Run], prices: &VariantPrices) -> Ro
         |count: fn(&Tally) -> u64| runs.iter().map(|run| count(&run.tallies[at])).sum::<u64>();
     Row {
         name: variant.name.clone(),
-        strategy: settings.strategy.name(),
-        volume: variant.volume(),
+        strategy: settings.strategy.to_string(),
+        volume: variant.volume().to_owned(),
         k: (ordop || variant.volume() == "k-dop").then(|| settings.k.k()),
-        axes: ordop.then(|| settings.axes.name()),
-        overlap: ordop.then(|| settings.overlap.name()),
+        axes: ordop.then(|| settings.axes.to_string()),
+        overlap: ordop.then(|| settings.overlap.to_string()),
         reported: over_runs(&|_, t| t.reported as f64 / f64::from(t.frames)),
         precision: over_runs(&|_, t| t.quality().precision),
         per_true: over_runs(&|_, t| t.quality().per_true),
@@ -304,8 +310,12 @@ fn finish(
     step("interest");
     let interest = interest::sweep(scene, level, &first.samples, &first.truth)?;
     let densities = density::sweep(file, level, plan.samples.min(6), || step("density"))?;
+    step("safety");
+    let safety = safety::compare(scene, &first.samples)?;
     step("shapes");
+    let builtin = shapes::builtin()?;
     let shapes = distinct(scene)
+        .chain(&builtin)
         .map(|shape| shapes::survival(shape, plan.pairs, level))
         .collect::<Result<Vec<_>, _>>()?;
     let lines: Vec<Line> = rows.iter().map(line).collect();
@@ -318,7 +328,7 @@ fn finish(
         frames: scene.frames,
         samples: first.samples.len(),
         seeds: runs.iter().map(|run| run.scene.seed).collect(),
-        simd: level.name(),
+        simd: level.name().to_owned(),
         truth: Estimate::of(&runs.iter().map(per_frame).collect::<Vec<_>>()),
         partners: 2.0 * hits / scene.bodies.len() as f64,
         advice: pays::advice(&cheapest, &narrow_phase),
@@ -330,6 +340,7 @@ fn finish(
         clock,
         interest,
         shapes,
+        safety,
     })
 }
 

@@ -3,7 +3,7 @@
 //! Prices come from [`calibrate`](crate::cost::calibrate), that is from other runs; hull prices are measured on the same
 //! resampled scenes. What is measured here is whole frames, all variants in turns on the same poses.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::contender::{Contender, HullTest};
 use super::counts::Tally;
@@ -51,10 +51,10 @@ pub fn measure(
 }
 
 /// Counts and prices of one volume of a variant.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VolumeTerms {
     /// The volume.
-    pub name: &'static str,
+    pub name: String,
     /// Updates a frame.
     pub nu: f64,
     /// Tests a frame.
@@ -91,18 +91,19 @@ impl VariantPrices {
     #[must_use]
     pub fn terms(&self, variant: &Variant, tally: &Tally, bodies: usize) -> Vec<VolumeTerms> {
         let frames = f64::from(tally.frames);
-        let term = |name, costs: &VolumeCosts, counters: crate::cost::VolumeCounters, finding| {
-            VolumeTerms {
-                name,
-                nu: counters.updates as f64 / frames,
-                nv: counters.tests as f64 / frames,
-                hits: counters.hits as f64 / frames,
-                cu: costs.update,
-                cv: costs.test(&counters) / counters.tests.max(1) as f64,
-                finding,
-                co: costs.construct,
-            }
-        };
+        let term =
+            |name: &str, costs: &VolumeCosts, counters: crate::cost::VolumeCounters, finding| {
+                VolumeTerms {
+                    name: name.to_owned(),
+                    nu: counters.updates as f64 / frames,
+                    nv: counters.tests as f64 / frames,
+                    hits: counters.hits as f64 / frames,
+                    cu: costs.update,
+                    cv: costs.test(&counters) / counters.tests.max(1) as f64,
+                    finding,
+                    co: costs.construct,
+                }
+            };
         let mut terms: Vec<VolumeTerms> = Volume::of(variant.settings.strategy)
             .iter()
             .map(|&volume| {
@@ -232,7 +233,7 @@ pub fn mean(runs: &[Vec<VolumeTerms>]) -> Vec<VolumeTerms> {
                 runs.iter().map(|run| term(&run[at])).sum::<f64>() / runs.len() as f64
             };
             VolumeTerms {
-                name: first[at].name,
+                name: first[at].name.clone(),
                 nu: over(|t| t.nu),
                 nv: over(|t| t.nv),
                 hits: over(|t| t.hits),

@@ -215,7 +215,7 @@ impl Judge {
 }
 
 /// Cp: seconds that the exact narrow phase takes for a pair.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct NarrowPhase {
     /// A pair that doesn't meet: what culling saves.
     pub miss: f64,

@@ -1,0 +1,136 @@
+//! `sdop tradeoff`: what each step of accuracy costs in time on one scene, and when it pays.
+
+mod page;
+mod plot;
+mod tables;
+
+use std::fs;
+use std::num::NonZeroU64;
+use std::path::{Path, PathBuf};
+
+use miette::{IntoDiagnostic as _, WrapErr as _};
+use sdop::tradeoff::{self, Plan, Tradeoff};
+
+use super::Outcome;
+use super::output::{Format, csv_text, emit, progress};
+use super::scene_args::{MachineArgs, SceneArgs};
+
+/// What accuracy costs in time, for every volume and strategy
+///
+/// Culls sample frames of the scene with every volume and strategy, compares with the exact truth about the meshes, then
+/// measures time. Counts depend on scene and flags alone; seconds are this machine's. Given the JSON of an earlier run
+/// instead of a scene, prints and draws that.
+#[derive(clap::Args)]
+#[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
+    Example: sdop tradeoff data/scenes/paper-500.toml --out target/tradeoff")]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+    /// Fewer seeds, frames and pairs: wide intervals in a quarter of the time
+    #[arg(long)]
+    quick: bool,
+    /// Runs, each with a seed of its own from the scene's on [default: 5, or 2 with --quick]
+    #[arg(long)]
+    seeds: Option<NonZeroU64>,
+    /// Write the page, the figures, JSON and CSV into this directory
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Where exact truths are kept between runs
+    #[arg(long, value_name = "DIR", default_value = "target/truth")]
+    cache: PathBuf,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A bad scene, settings that it can't have, files that can't be written.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let result = match recorded(args.scene.path()) {
+        Some(path) => read(path)?,
+        None => compare(args)?,
+    };
+    if let Some(directory) = &args.out {
+        write(directory, &result)?;
+    }
+    match args.format {
+        // A line a variant; the rest is in the other formats.
+        Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
+        format => emit(format, &result, tables::text)?,
+    }
+    let failures: Vec<&str> = result.failures().collect();
+    if failures.is_empty() {
+        return Ok(Outcome::Passed);
+    }
+    eprintln!("true pairs were missed by: {}", failures.join("; "));
+    Ok(Outcome::Failed)
+}
+
+fn compare(args: &Args) -> miette::Result<Tradeoff> {
+    let file = args.scene.read()?;
+    let plan = plan(args);
+    let bar = progress(tradeoff::steps(&file, &plan)?, &file.spec.name);
+    let result = tradeoff::study(&file, &plan, &mut |what| {
+        bar.set_message(format!("{}: {what}", file.spec.name));
+        bar.inc(1);
+    })?;
+    bar.finish_and_clear();
+    Ok(result)
+}
+
+fn plan(args: &Args) -> Plan {
+    let quick = |quick, thorough| if args.quick { quick } else { thorough };
+    Plan {
+        seeds: args.seeds.map_or(quick(2, 5), NonZeroU64::get),
+        samples: quick(6, 20) as u32,
+        pairs: quick(8_000, 80_000) as u32,
+        window: quick(30, 120) as u32,
+        stride: 10,
+        level: args.machine.level(),
+        cache: Some(args.cache.clone()),
+    }
+}
+
+/// The argument as the JSON of an earlier run, by its name.
+fn recorded(path: &Path) -> Option<&Path> {
+    path.extension()
+        .is_some_and(|ending| ending == "json")
+        .then_some(path)
+}
+
+fn read(path: &Path) -> miette::Result<Tradeoff> {
+    let text = fs::read_to_string(path)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", path.display()))?;
+    serde_json::from_str(&text)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{} is no result of sdop tradeoff", path.display()))
+}
+
+/// Writes what the page needs beside the page.
+fn write(directory: &Path, result: &Tradeoff) -> miette::Result<()> {
+    let json = serde_json::to_string_pretty(result).into_diagnostic()? + "\n";
+    let csv = csv_text(serde_json::to_value(&result.rows).into_diagnostic()?)?;
+    let files = [
+        ("tradeoff.json", json),
+        ("tradeoff.csv", csv),
+        ("tradeoff.md", page::page(result)),
+        ("tradeoff.svg", plot::precision(result)?),
+        ("tradeoff-pays.svg", plot::break_even(result)?),
+        ("tradeoff-budget.svg", plot::budget(result)?),
+    ];
+    fs::create_dir_all(directory)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot make {}", directory.display()))?;
+    for (name, text) in files {
+        let path = directory.join(name);
+        fs::write(&path, text)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot write {}", path.display()))?;
+    }
+    Ok(())
+}

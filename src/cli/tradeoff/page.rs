@@ -1,0 +1,158 @@
+//! The page that a reader can quote: what each step of accuracy costs.
+
+use std::fmt::Write as _;
+
+use comfy_table::Table;
+use sdop::scene::settings::Overlap;
+use sdop::tradeoff::{Row, Tradeoff};
+
+use super::tables;
+
+/// P(or-DOP hit | sphere hit), two-sided, from an earlier study of 12 public meshes and 3 boxes.
+const STUDY: [(usize, f64); 4] = [(6, 0.666), (14, 0.478), (18, 0.441), (26, 0.409)];
+
+/// The whole page, as Markdown.
+pub fn page(result: &Tradeoff) -> String {
+    let mut out = String::new();
+    // Writing to a String cannot fail.
+    let _ = write_page(&mut out, result);
+    out
+}
+
+fn write_page(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
+    writeln!(out, "# What accuracy costs in time\n")?;
+    writeln!(
+        out,
+        "Made by `sdop tradeoff data/scenes/{}.toml --out DIR`. {}. Truth is the exact intersection of the meshes. \
+         Counts reproduce to the bit; seconds are one machine's. ± is a 95 % interval over seeds.\n",
+        result.scene,
+        tables::heading(result)
+    )?;
+    writeln!(out, "**{}**\n", result.advice)?;
+    steps(out, result)?;
+    writeln!(out, "![Precision against time](tradeoff.svg)\n")?;
+    section(out, "Every volume and strategy", &tables::variants(result))?;
+    writeln!(
+        out,
+        "● is the Pareto front of time and precision. Nu, Nv, Cu and Cv are a volume each, in the order of the tests; \
+         T = Nu·Cu + Nv·Cv + pair finding + Co/frames is predicted with prices from other, resampled scenes.\n"
+    )?;
+    section(out, "When does an or-DOP pay?", &tables::break_even(result))?;
+    pays(out, result)?;
+    survival(out, result)?;
+    section(out, "Time-critical", &tables::budgets(result))?;
+    writeln!(out, "![Precision against budget](tradeoff-budget.svg)\n")?;
+    section(out, "Budgets by the clock", &tables::clock(result))?;
+    section(out, "Object of interest", &tables::interest(result))?;
+    section(out, "The price of safety", &tables::safety(result))?;
+    writeln!(
+        out,
+        "Margins sit in the volumes, so the tests are the same instructions with and without them: they cost no time, \
+         only the extra pairs. f64 is the reference's plain loops over the same predicate, uninflated."
+    )
+}
+
+/// The steps of accuracy along the front, in words and numbers.
+fn steps(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
+    let mut front: Vec<&Row> = result.rows.iter().filter(|row| row.front).collect();
+    front.sort_by(|a, b| a.seconds.mean.total_cmp(&b.seconds.mean));
+    writeln!(out, "## Each step of accuracy\n")?;
+    writeln!(
+        out,
+        "| step | µs a frame | false pairs a frame | ns per false pair removed |"
+    )?;
+    writeln!(out, "|---|---:|---:|---:|")?;
+    let mut before: Option<(f64, f64)> = None;
+    for row in front {
+        let (time, wrong) = (
+            row.seconds.mean,
+            row.reported.mean * (1.0 - row.precision.mean),
+        );
+        let price = before.map_or("–".to_owned(), |(t, w)| {
+            format!("{:.0}", 1e9 * (time - t) / (w - wrong))
+        });
+        writeln!(
+            out,
+            "| {} | {:.1} | {wrong:.1} | {price} |",
+            row.name,
+            1e6 * time
+        )?;
+        before = Some((time, wrong));
+    }
+    writeln!(out)
+}
+
+fn pays(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
+    writeln!(
+        out,
+        "Cp in ns above which T + Np·Cp is below that of spheres alone. The exact reference takes {:.1} µs for a pair \
+         that doesn't meet and {:.1} µs for one that does.\n",
+        1e6 * result.narrow_phase.miss,
+        1e6 * result.narrow_phase.hit
+    )?;
+    writeln!(out, "![Break-even](tradeoff-pays.svg)\n")?;
+    writeln!(out, "Cheapest at each density, from which Cp on:\n")?;
+    for density in &result.densities {
+        let parts: Vec<String> = density
+            .cheapest
+            .iter()
+            .map(|s| format!("{} ({:.0} ns)", s.name, 1e9 * s.from))
+            .collect();
+        writeln!(
+            out,
+            "- {:.3} overlaps a body: {}",
+            density.partners,
+            parts.join(", ")
+        )?;
+    }
+    writeln!(out)
+}
+
+/// P(hit | spheres hit) beside the earlier study.
+fn survival(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
+    section(out, "Survivors per sphere hit", &tables::shapes(result))?;
+    writeln!(
+        out,
+        "Two-sided, mean over the shapes, beside an earlier study of 12 meshes and 3 boxes:\n"
+    )?;
+    writeln!(out, "| k | principal axes | model axes | study |")?;
+    writeln!(out, "|---:|---:|---:|---:|")?;
+    for (k, study) in STUDY {
+        let mean = |axes: &str| {
+            let shares: Vec<f64> = result
+                .shapes
+                .iter()
+                .filter_map(|shape| tables::survivors(shape, k, axes, Overlap::TwoSided))
+                .map(|share| share.mean)
+                .collect();
+            shares.iter().sum::<f64>() / shares.len() as f64
+        };
+        let (principal, model) = (mean("principal"), mean("model"));
+        writeln!(out, "| {k} | {principal:.3} | {model:.3} | {study:.3} |")?;
+    }
+    writeln!(
+        out,
+        "\nThe means depend on which shapes are averaged, not on chance: elongated and flat shapes (needle, plate, gear) \
+         fill little of their spheres and let few pairs through, compact ones (cube, sphere) many.\n"
+    )
+}
+
+fn section(out: &mut String, title: &str, table: &Table) -> std::fmt::Result {
+    writeln!(out, "## {title}\n")?;
+    let header: Vec<String> = table
+        .header()
+        .map(|row| row.cell_iter().map(comfy_table::Cell::content).collect())
+        .unwrap_or_default();
+    writeln!(out, "| {} |", header.join(" | "))?;
+    let ruler: Vec<&str> = header
+        .iter()
+        .enumerate()
+        .map(|(place, _)| if place == 0 { "---" } else { "---:" })
+        .collect();
+    writeln!(out, "|{}|", ruler.join("|"))?;
+    for row in table.row_iter() {
+        let cells: Vec<String> = row.cell_iter().map(comfy_table::Cell::content).collect();
+        writeln!(out, "| {} |", cells.join(" | "))?;
+    }
+    writeln!(out)
+}

@@ -1,0 +1,201 @@
+//! The figures, as SVG: precision against time, break-even against density, precision against budget.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::ops::Range;
+
+use miette::miette;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use sdop::tradeoff::Tradeoff;
+
+const SIZE: (u32, u32) = (960, 600);
+const FONT: &str = "sans-serif";
+/// Colours that stay apart for most eyes (Okabe & Ito).
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(0, 0, 0),
+];
+
+type Points = Vec<(f64, f64)>;
+
+/// Precision against time a frame; the Pareto front is a line with names.
+pub fn precision(result: &Tradeoff) -> miette::Result<String> {
+    let mut groups: BTreeMap<&str, Points> = BTreeMap::new();
+    let mut front = Vec::new();
+    for row in &result.rows {
+        let point = (1e6 * row.seconds.mean, row.precision.mean);
+        groups.entry(&row.volume).or_default().push(point);
+        if row.front {
+            front.push((point, row.name.clone()));
+        }
+    }
+    front.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
+    let times = span(groups.values().flatten().map(|p| p.0));
+    figure(|area| {
+        let mut chart = ChartBuilder::on(&area)
+            .caption(format!("{}: what accuracy costs", result.scene), (FONT, 20))
+            .margin(14)
+            .x_label_area_size(46)
+            .y_label_area_size(56)
+            .build_cartesian_2d((times.start / 1.5..times.end * 4.0).log_scale(), 0.0..1.0)?;
+        chart
+            .configure_mesh()
+            .x_desc("time a frame, µs (log)")
+            .y_desc("precision: true pairs / reported pairs")
+            .label_style((FONT, 14))
+            .light_line_style(RGBColor(238, 238, 238))
+            .draw()?;
+        let steps = front.iter().map(|(point, _)| *point);
+        chart.draw_series(LineSeries::new(steps, BLACK.mix(0.4).stroke_width(2)))?;
+        for ((volume, points), colour) in groups.iter().zip(COLOURS) {
+            let dots = points.iter().map(|&p| Circle::new(p, 4, colour.filled()));
+            chart
+                .draw_series(dots)?
+                .label(*volume)
+                .legend(move |(x, y)| Circle::new((x + 8, y), 4, colour.filled()));
+        }
+        let names = front.iter().map(|(point, name)| {
+            EmptyElement::at(*point) + Text::new(name.clone(), (8, 4), (FONT, 12))
+        });
+        chart.draw_series(names)?;
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::LowerRight)
+            .border_style(RGBColor(200, 200, 200))
+            .background_style(WHITE)
+            .label_font((FONT, 14))
+            .draw()?;
+        Ok(())
+    })
+}
+
+/// For each S-DOP, the Cp above which it is cheaper than spheres alone, against density.
+pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
+    let mut curves: BTreeMap<String, Points> = BTreeMap::new();
+    for density in &result.densities {
+        for even in density.break_even.iter().filter(|b| b.cp > 0.0) {
+            let point = (density.partners, 1e9 * even.cp);
+            curves.entry(even.name.clone()).or_default().push(point);
+        }
+    }
+    let reference = 1e9 * result.narrow_phase.miss;
+    let densities = span(curves.values().flatten().map(|p| p.0));
+    let prices = span(curves.values().flatten().map(|p| p.1).chain([reference]));
+    curves.insert(
+        "exact narrow phase".into(),
+        vec![(densities.start, reference), (densities.end, reference)],
+    );
+    let legend_room = 6.0;
+    lines(
+        &curves,
+        &format!("{}: when an or-DOP pays", result.scene),
+        [
+            "sphere overlaps a body (log)",
+            "Cp, ns a surviving pair (log)",
+        ],
+        (densities.start..densities.end * legend_room).log_scale(),
+        (prices.start / 1.5..prices.end * 1.5).log_scale(),
+    )
+}
+
+/// Precision against the budget of tests, a curve an order.
+pub fn budget(result: &Tradeoff) -> miette::Result<String> {
+    let mut curves: BTreeMap<String, Points> = BTreeMap::new();
+    for row in &result.budgets {
+        let point = (row.tests as f64, row.precision);
+        curves.entry(row.order.clone()).or_default().push(point);
+    }
+    let most = result
+        .budgets
+        .iter()
+        .map(|row| row.tests)
+        .max()
+        .unwrap_or(1);
+    lines(
+        &curves,
+        &format!("{}: time-critical culling", result.scene),
+        [
+            "or-DOP tests a frame",
+            "precision: true pairs / reported pairs",
+        ],
+        0.0..1.4 * most.max(1) as f64,
+        0.0..1.0_f64,
+    )
+}
+
+/// Named curves with a legend on the right.
+fn lines<X, Y>(
+    curves: &BTreeMap<String, Points>,
+    caption: &str,
+    axes: [&str; 2],
+    x: X,
+    y: Y,
+) -> miette::Result<String>
+where
+    X: plotters::coord::ranged1d::AsRangedCoord<Value = f64>,
+    Y: plotters::coord::ranged1d::AsRangedCoord<Value = f64>,
+    X::CoordDescType: plotters::coord::ranged1d::ValueFormatter<f64>,
+    Y::CoordDescType: plotters::coord::ranged1d::ValueFormatter<f64>,
+{
+    figure(|area| {
+        let mut chart = ChartBuilder::on(&area)
+            .caption(caption, (FONT, 20))
+            .margin(14)
+            .x_label_area_size(46)
+            .y_label_area_size(64)
+            .build_cartesian_2d(x, y)?;
+        chart
+            .configure_mesh()
+            .x_desc(axes[0])
+            .y_desc(axes[1])
+            .label_style((FONT, 14))
+            .light_line_style(RGBColor(238, 238, 238))
+            .draw()?;
+        for (place, (name, points)) in curves.iter().enumerate() {
+            let colour = COLOURS[place % COLOURS.len()];
+            // Beyond the palette, thinner lines.
+            let style = colour.stroke_width(if place < COLOURS.len() { 3 } else { 1 });
+            let line = LineSeries::new(points.iter().copied(), style).point_size(3);
+            chart
+                .draw_series(line)?
+                .label(name)
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], style));
+        }
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .border_style(RGBColor(200, 200, 200))
+            .background_style(WHITE)
+            .label_font((FONT, 12))
+            .draw()?;
+        Ok(())
+    })
+}
+
+/// Draws on a white page and returns the SVG.
+fn figure(
+    draw: impl FnOnce(DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), Box<dyn Error>>,
+) -> miette::Result<String> {
+    let mut text = String::new();
+    let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+    area.fill(&WHITE)
+        .map_err(Into::into)
+        .and_then(|()| draw(area))
+        .map_err(|error: Box<dyn Error>| miette!("cannot draw: {error}"))?;
+    Ok(text)
+}
+
+/// From the least to the greatest positive value; one decade about 1 when there is none.
+fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let positive = values.filter(|value| *value > 0.0 && value.is_finite());
+    let (lo, hi) = positive.fold((f64::INFINITY, 0.0_f64), |(lo, hi), v| {
+        (lo.min(v), hi.max(v))
+    });
+    if lo < hi { lo..hi } else { 0.3..3.0 }
+}

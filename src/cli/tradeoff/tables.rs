@@ -1,0 +1,254 @@
+//! The result as tables: what a terminal shows, and what the page quotes.
+
+use comfy_table::Table;
+use sdop::scene::settings::Overlap;
+use sdop::tradeoff::shapes::ShapeSurvival;
+use sdop::tradeoff::timing::VolumeTerms;
+use sdop::tradeoff::{Estimate, Row, Tradeoff};
+
+use super::super::output::table;
+
+/// Everything, for people.
+pub fn text(result: &Tradeoff) -> String {
+    let parts = [
+        heading(result),
+        variants(result).to_string(),
+        "Time-critical: precision against the budget of tests".into(),
+        budgets(result).to_string(),
+        "Time-critical: the clock overrun, microseconds".into(),
+        clock(result).to_string(),
+        "Object of interest".into(),
+        interest(result).to_string(),
+        "Cp (ns) above which each pays, spheres alone before it, by density".into(),
+        break_even(result).to_string(),
+        "Survivors per sphere hit (two bodies of one shape, principal axes)".into(),
+        shapes(result).to_string(),
+        "The price of safety".into(),
+        safety(result).to_string(),
+        result.advice.clone(),
+    ];
+    parts.join("\n\n")
+}
+
+/// What was run.
+pub fn heading(result: &Tradeoff) -> String {
+    format!(
+        "{}: {} bodies, {} of {} frames judged, seeds {:?}, {}; {} true pairs a frame, {:.2} sphere overlaps a body",
+        result.scene,
+        result.bodies,
+        result.samples,
+        result.frames,
+        result.seeds,
+        result.simd,
+        plus_minus(&result.truth, 1.0, 1),
+        result.partners,
+    )
+}
+
+/// The mean and its interval, scaled.
+pub fn plus_minus(estimate: &Estimate, scale: f64, digits: usize) -> String {
+    let (mean, half) = (scale * estimate.mean, scale * estimate.half_width);
+    if half.is_finite() {
+        format!("{mean:.digits$} ± {half:.digits$}")
+    } else {
+        format!("{mean:.digits$}")
+    }
+}
+
+/// A line a variant; the Pareto front is marked.
+pub fn variants(result: &Tradeoff) -> Table {
+    let mut rows = table(&[
+        "variant",
+        "front",
+        "precision",
+        "reported / true",
+        "recall",
+        "volume / hull",
+        "Nu",
+        "Nv",
+        "Cu ns",
+        "Cv ns",
+        "Co ms",
+        "T µs",
+        "µs / frame",
+    ]);
+    for row in &result.rows {
+        rows.add_row(variant(row));
+    }
+    rows
+}
+
+fn variant(row: &Row) -> Vec<String> {
+    let joined = |term: &dyn Fn(&VolumeTerms) -> String| {
+        let terms: Vec<String> = row.volumes.iter().map(term).collect();
+        terms.join(" + ")
+    };
+    let construct: f64 = row.volumes.iter().map(|v| v.co).sum();
+    vec![
+        row.name.clone(),
+        if row.front { "●" } else { "" }.into(),
+        plus_minus(&row.precision, 1.0, 3),
+        plus_minus(&row.per_true, 1.0, 2),
+        if row.recall == 1.0 {
+            "1".into()
+        } else {
+            format!("{:.6}", row.recall)
+        },
+        row.volume_over_hull
+            .map_or("–".into(), |ratio| format!("{ratio:.2}")),
+        joined(&|v| format!("{:.0}", v.nu)),
+        joined(&|v| format!("{:.0}", v.nv)),
+        joined(&|v| format!("{:.1}", 1e9 * v.cu)),
+        joined(&|v| format!("{:.2}", 1e9 * v.cv)),
+        format!("{:.2}", 1e3 * construct),
+        format!("{:.1}", 1e6 * row.predicted),
+        plus_minus(&row.seconds, 1e6, 1),
+    ]
+}
+
+/// A line an order and budget.
+pub fn budgets(result: &Tradeoff) -> Table {
+    let mut rows = table(&[
+        "order",
+        "tests / frame",
+        "refined",
+        "precision",
+        "recall",
+        "mean age",
+        "oldest",
+    ]);
+    for row in &result.budgets {
+        rows.add_row([
+            row.order.clone(),
+            row.tests.to_string(),
+            format!("{:.3}", row.refined),
+            format!("{:.3}", row.precision),
+            format!("{}", row.recall),
+            format!("{:.1}", row.mean_age),
+            row.oldest.to_string(),
+        ]);
+    }
+    rows
+}
+
+/// A line a clock budget.
+pub fn clock(result: &Tradeoff) -> Table {
+    let mut rows = table(&["budget µs", "refined", "overrun p50", "overrun p99"]);
+    for row in &result.clock {
+        rows.add_row([
+            row.microseconds.to_string(),
+            format!("{:.3}", row.refined),
+            format!("{:+.1}", row.p50),
+            format!("{:+.1}", row.p99),
+        ]);
+    }
+    rows
+}
+
+/// A line an interest set.
+pub fn interest(result: &Tradeoff) -> Table {
+    let mut rows = table(&[
+        "of interest",
+        "or-DOP tests",
+        "reported",
+        "precision",
+        "recall",
+        "µs / frame",
+        "lazy µs",
+    ]);
+    for row in &result.interest {
+        rows.add_row([
+            row.bodies.to_string(),
+            format!("{:.1}", row.tests),
+            format!("{:.1}", row.reported),
+            format!("{:.3}", row.quality.precision),
+            format!("{}", row.quality.recall),
+            format!("{:.1}", 1e6 * row.seconds),
+            format!("{:.1}", 1e6 * row.lazy_seconds),
+        ]);
+    }
+    rows
+}
+
+/// A line a density, a column an S-DOP.
+pub fn break_even(result: &Tradeoff) -> Table {
+    let names = result.densities.first().map_or(Vec::new(), |density| {
+        density.break_even.iter().map(|b| b.name.as_str()).collect()
+    });
+    let mut header = vec!["partners", "sphere hits"];
+    header.extend(&names);
+    let mut rows = table(&header);
+    for density in &result.densities {
+        let hits = density.lines.first().map_or(0.0, |line| line.pairs);
+        let mut cells = vec![format!("{:.3}", density.partners), format!("{hits:.1}")];
+        cells.extend(names.iter().map(|name| {
+            let found = density.break_even.iter().find(|b| b.name == *name);
+            found.map_or("–".into(), |b| format!("{:.0}", 1e9 * b.cp))
+        }));
+        rows.add_row(cells);
+    }
+    rows
+}
+
+/// A line a shape: two-sided at each k beside what each other test lets through, hulls and meshes.
+pub fn shapes(result: &Tradeoff) -> Table {
+    let mut header = vec!["shape".to_owned()];
+    for &overlap in Overlap::ALL {
+        header.extend([6, 14, 18, 26].map(|k| format!("{overlap} {k}")));
+    }
+    header.extend(["hull".to_owned(), "mesh".to_owned()]);
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let mut rows = table(&header);
+    for shape in &result.shapes {
+        let mut cells = vec![shape.shape.clone()];
+        for &overlap in Overlap::ALL {
+            let share = |k| survivors(shape, k, "principal", overlap);
+            cells.extend([6, 14, 18, 26].map(|k| share(k).map_or("–".into(), short)));
+        }
+        cells.extend([short(&shape.hull), short(&shape.mesh)]);
+        rows.add_row(cells);
+    }
+    rows
+}
+
+/// Survivors per sphere hit of one kind of or-DOP.
+pub fn survivors<'a>(
+    shape: &'a ShapeSurvival,
+    k: usize,
+    axes: &str,
+    overlap: Overlap,
+) -> Option<&'a Estimate> {
+    let fits = |s: &&sdop::tradeoff::shapes::Survival| {
+        s.k == k && s.axes == axes && s.overlap == overlap.name()
+    };
+    shape.ordops.iter().find(fits).map(|s| &s.share)
+}
+
+fn short(estimate: &Estimate) -> String {
+    plus_minus(estimate, 1.0, 3)
+}
+
+/// A line an arithmetic and tier.
+pub fn safety(result: &Tradeoff) -> Table {
+    let mut rows = table(&[
+        "strategy",
+        "arithmetic",
+        "simd",
+        "reported",
+        "extra",
+        "lost",
+        "µs / frame",
+    ]);
+    for row in &result.safety {
+        rows.add_row([
+            row.strategy.clone(),
+            row.arithmetic.clone(),
+            row.simd.clone(),
+            row.reported.to_string(),
+            row.extra.to_string(),
+            row.lost.to_string(),
+            format!("{:.1}", 1e6 * row.seconds),
+        ]);
+    }
+    rows
+}
