@@ -1,6 +1,6 @@
 //! The optimised culler against the exact reference: `optimised ⊇ reference predicate ⊇ exact mesh intersection`.
 //!
-//! [`answers`] are the reference's, pair by pair; [`compare`] holds a culler's list against them. What is judged comes
+//! [`answers`] are the reference's, pair by pair; [`compare()`] holds a culler's list against them. What is judged comes
 //! from seeds ([`draw`]: random crowds, and contacts put together on purpose), from the corpus of [`hard`] cases, and
 //! from scenes. When a pair is missed, [`shrink`] makes the smallest scene that shows it.
 

@@ -74,7 +74,7 @@ fn every_command_has_help_with_an_example() {
         let (_, examples) = help
             .split_once("\nExample")
             .unwrap_or_else(|| panic!("{help}"));
-        assert!(examples.contains(&format!(": sdop {name} ")), "{help}");
+        assert!(examples.contains(&format!(": sdop {name}")), "{help}");
         number += 1;
     }
     assert!(number >= 2, "{commands}");
