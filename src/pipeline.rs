@@ -204,6 +204,10 @@ impl Culler {
 
     /// Lets the finder put bodies in other places. What has moved is updated anyway, unless it is static.
     fn reorder(&mut self, bodies: &Bodies) {
+        if self.settings.strategy == Strategy::None {
+            // The control arranges nothing, so there is no order to follow.
+            return;
+        }
         let by_place = self.names_are_places();
         let names = match by_place {
             true => &self.numbers,
