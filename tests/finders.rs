@@ -372,7 +372,11 @@ fn bodies_may_gather_and_part_over_many_frames() {
         let wanted = first.cull(&scene.bodies).sorted();
         for culler in rest {
             let found = culler.cull(&scene.bodies).sorted();
-            compare(&[found], &[wanted.clone()], &format!("frame {frame}"));
+            compare(
+                &[found],
+                std::slice::from_ref(&wanted),
+                &format!("frame {frame}"),
+            );
         }
     }
 }

@@ -28,6 +28,10 @@ impl Block {
 
     /// An empty block for the slots from `first` on.
     #[inline(always)]
+    #[allow(
+        clippy::new_without_default,
+        reason = "made once a search, never as a part that defaults"
+    )]
     pub fn new() -> Self {
         Self {
             first: 0,

@@ -115,7 +115,7 @@ fn integers<L: Lanes>(l: L, start: usize) {
         .map(|i| 1 << i)
         .sum();
     assert_eq!(l.bits(l.any_bit(va, vb)), any);
-    let codes: Vec<u32> = (0..16).map(|i| (i * 77_777_777) | i % 16).collect();
+    let codes: Vec<u32> = (0..16).map(|i| (i * 77_777_777) | (i % 16)).collect();
     let (high, low) = l.split_u32(l.load_u32(&codes));
     let expect = |f: &dyn Fn(u32) -> u32| -> Vec<u32> {
         codes[..L::WIDTH].iter().map(|&code| f(code)).collect()

@@ -181,7 +181,6 @@ pub fn study(
 ///
 /// # Errors
 /// A scene that can't be built.
-#[must_use]
 pub fn steps(file: &SceneFile, plan: &Plan) -> Result<u64, TradeoffError> {
     let scene = file.build()?;
     let variants = variant::all(&scene, 1).len() as u64;
