@@ -66,22 +66,20 @@ pub fn break_even(steep: &Line, flat: &Line) -> f64 {
 /// One line: which variant to take, by what a narrow-phase check costs.
 #[must_use]
 pub fn advice(cheapest: &[Stretch], narrow_phase: &NarrowPhase) -> String {
-    let mut text = String::from("At this density ");
-    for (place, stretch) in cheapest.iter().enumerate() {
-        let at = 1e9 * stretch.from;
-        text += &match place {
-            0 => format!("{} is cheapest at first", stretch.name),
-            _ => format!(
-                "; {} pays above {at:.0} ns per narrow-phase check",
-                stretch.name
-            ),
-        };
-    }
+    let parts: Vec<String> = cheapest
+        .iter()
+        .map(|stretch| match stretch.from {
+            0.0 => stretch.name.clone(),
+            from => format!("{} above {:.0} ns", stretch.name, 1e9 * from),
+        })
+        .collect();
     let own = cheapest.iter().rfind(|s| s.from <= narrow_phase.miss);
-    let own = own.map_or("nothing", |s| s.name.as_str());
-    let miss = 1e9 * narrow_phase.miss;
-    text + &format!(
-        ". The exact reference takes {miss:.0} ns to find two meshes apart: with it, take {own}."
+    format!(
+        "Cheapest at this density, by the price of a narrow-phase check: {}. The exact reference takes {:.0} ns to find two \
+         meshes apart: with it, take {}.",
+        parts.join("; "),
+        1e9 * narrow_phase.miss,
+        own.map_or("nothing", |s| s.name.as_str())
     )
 }
 

@@ -53,7 +53,7 @@ pub struct ShapeSurvival {
     pub mesh: Estimate,
 }
 
-/// Pairs of a shape with itself: body 2n with body 2n + 1.
+/// Random pairs of shapes: body 2n with body 2n + 1.
 #[derive(Clone, Debug)]
 pub struct Crowd {
     /// The bodies.
@@ -61,27 +61,29 @@ pub struct Crowd {
 }
 
 impl Crowd {
-    /// `pairs` pairs, the second's ball centre uniform in a ball of `radius` about the first's.
+    /// `pairs` pairs of shapes drawn from `shapes`. The second's ball centre is uniform in the ball of `stretch` times
+    /// both radii about the first's: at 1 these are exactly the pairs whose spheres overlap.
     #[must_use]
-    pub fn new(shape: &Shape, radius: f32, pairs: u32, stream: u64) -> Self {
+    pub fn new(shapes: &[Shape], stretch: f32, pairs: u32, stream: u64) -> Self {
         let mut draws = Stream::new(SEED, stream);
         let mut bodies = Bodies::default();
-        for body in 0..2 * pairs {
-            let q = draws.rotation();
-            // The ball's centre is put where it is drawn, whatever the body's origin.
-            let offset = rotate(&rotation(q), shape.ball.centre.to_array());
-            let centre = if body % 2 == 0 {
-                [0.0; 3]
-            } else {
-                draws.ball(radius)
-            };
-            let t = [0, 1, 2].map(|axis| (f64::from(centre[axis]) - offset[axis]) as f32);
-            bodies.shape.push(0);
-            bodies.dynamic.push(true);
-            bodies.rotation.push(q);
-            bodies.translation.push(t);
-            bodies.velocity.push([0.0; 3]);
-            bodies.spin.push([0.0; 3]);
+        for _ in 0..pairs {
+            let [a, b] = [(); 2].map(|()| draws.index(shapes.len() as u32));
+            let reach = shapes[a as usize].ball.radius + shapes[b as usize].ball.radius;
+            let centre = draws.ball(stretch * reach);
+            for (shape, centre) in [(a, [0.0; 3]), (b, centre)] {
+                let q = draws.rotation();
+                let ball = shapes[shape as usize].ball.centre.to_array();
+                // The ball's centre is put where it is drawn, whatever the body's origin.
+                let offset = rotate(&rotation(q), ball);
+                let t = [0, 1, 2].map(|axis| (f64::from(centre[axis]) - offset[axis]) as f32);
+                bodies.shape.push(shape);
+                bodies.dynamic.push(true);
+                bodies.rotation.push(q);
+                bodies.translation.push(t);
+                bodies.velocity.push([0.0; 3]);
+                bodies.spin.push([0.0; 3]);
+            }
         }
         Self { bodies }
     }
@@ -91,20 +93,22 @@ impl Crowd {
         (0..self.bodies.len() as u32 / 2).map(|pair| [2 * pair, 2 * pair + 1])
     }
 
-    /// The pairs whose or-DOPs overlap.
+    /// The pairs whose or-DOPs, one a shape and all with the same directions, overlap.
     #[must_use]
     pub fn ordop_hits(
         &self,
-        shape: &Shape,
-        ordop: &OrDop,
+        shapes: &[Shape],
+        ordops: &[OrDop],
         overlap: Overlap,
         level: Level,
     ) -> PairList {
-        let frames = [ShapeFrame::new(shape, &ordop.basis)];
+        let built = || shapes.iter().zip(ordops);
+        let frames: Vec<_> = built().map(|(s, o)| ShapeFrame::new(s, &o.basis)).collect();
         let places = Places::as_given(&self.bodies);
         let mut rows = OrDopRows::new(places.len());
         rows.update(&frames, &self.bodies, &places, 0..places.len(), 1);
-        let tables = SlabTables::new(ordop.directions, [(shape, ordop)]);
+        let directions = ordops.first().map_or(DirectionSet::K6, |o| o.directions);
+        let tables = SlabTables::new(directions, built());
         let columns = OrDopColumns {
             rows: &rows.rows,
             shape: &places.shape,
@@ -119,8 +123,8 @@ impl Crowd {
 
     /// How many pairs' hulls meet.
     #[must_use]
-    pub fn hull_hits(&self, shape: &Shape) -> usize {
-        let graphs = [HullGraph::new(shape)];
+    pub fn hull_hits(&self, shapes: &[Shape]) -> usize {
+        let graphs: Vec<_> = shapes.iter().map(HullGraph::new).collect();
         let posed = |body| PosedHull::of(&graphs, &self.bodies, body as usize);
         self.pairs()
             .filter(|&[i, j]| may_touch(&posed(i), &posed(j)))
@@ -162,52 +166,51 @@ pub fn ordop_of(shape: &Shape, k: DirectionSet, axes: Axes) -> OrDop {
     OrDop::build(&shape.vertices, basis, k)
 }
 
-/// Measures a shape by `pairs` pairs in all; meshes are judged exactly on the first tenth of each batch.
+/// Measures a shape by `pairs` pairs in all; meshes are judged exactly on a tenth of them.
 ///
 /// # Errors
 /// A mesh that the reference refuses.
 pub fn survival(shape: &Shape, pairs: u32, level: Level) -> Result<ShapeSurvival, TradeoffError> {
+    let shape = std::slice::from_ref(shape);
     let each = pairs.div_ceil(BATCHES as u32).max(1);
     let crowds: Vec<Crowd> = (0..BATCHES as u64)
-        .map(|batch| Crowd::new(shape, 2.0 * shape.ball.radius, each, batch))
+        .map(|batch| Crowd::new(shape, 1.0, each, batch))
         .collect();
-    let share = |hits: &dyn Fn(&Crowd) -> usize| {
-        let shares: Vec<f64> = crowds
-            .iter()
-            .map(|crowd| hits(crowd) as f64 / f64::from(each))
-            .collect();
-        Estimate::of(&shares)
-    };
     let mut ordops = Vec::new();
     for &k in DirectionSet::ALL {
         for &axes in Axes::ALL {
-            let ordop = ordop_of(shape, k, axes);
+            let ordop = [ordop_of(&shape[0], k, axes)];
             for &overlap in Overlap::ALL {
                 ordops.push(Survival {
                     k: k.k(),
                     axes: axes.to_string(),
                     overlap: overlap.to_string(),
-                    share: share(&|crowd| crowd.ordop_hits(shape, &ordop, overlap, level).len()),
+                    share: share(&crowds, |crowd| {
+                        crowd.ordop_hits(shape, &ordop, overlap, level).len()
+                    }),
                 });
             }
         }
     }
+    let judge = Judge::new(shape)?;
+    let few: Vec<Crowd> = (0..BATCHES as u64)
+        .map(|batch| Crowd::new(shape, 1.0, each.div_ceil(10), batch))
+        .collect();
+    let meeting = few
+        .iter()
+        .map(|crowd| judge.count(&crowd.bodies, crowd.pairs()))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut meeting = meeting.into_iter();
     Ok(ShapeSurvival {
-        shape: shape.name.clone(),
+        shape: shape[0].name.clone(),
         ordops,
-        hull: share(&|crowd| crowd.hull_hits(shape)),
-        mesh: mesh_share(shape, each.div_ceil(10))?,
+        hull: share(&crowds, |crowd| crowd.hull_hits(shape)),
+        mesh: share(&few, |_| meeting.next().unwrap_or_default()),
     })
 }
 
-/// The share of pairs whose meshes meet, batch by batch.
-fn mesh_share(shape: &Shape, pairs: u32) -> Result<Estimate, TradeoffError> {
-    let judge = Judge::new(std::slice::from_ref(shape))?;
-    let mut shares = Vec::new();
-    for batch in 0..BATCHES as u64 {
-        let crowd = Crowd::new(shape, 2.0 * shape.ball.radius, pairs, batch);
-        let hits = judge.count(&crowd.bodies, crowd.pairs())?;
-        shares.push(hits as f64 / f64::from(pairs));
-    }
-    Ok(Estimate::of(&shares))
+/// The share of hits over equally large crowds.
+pub fn share(crowds: &[Crowd], mut hits: impl FnMut(&Crowd) -> usize) -> Estimate {
+    let share = |crowd: &Crowd| hits(crowd) as f64 / crowd.pairs().len() as f64;
+    Estimate::of(&crowds.iter().map(share).collect::<Vec<_>>())
 }

@@ -48,7 +48,8 @@ fn write_page(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
     writeln!(
         out,
         "Margins sit in the volumes, so the tests are the same instructions with and without them: they cost no time, \
-         only the extra pairs. f64 is the reference's plain loops over the same predicate, uninflated."
+         only extra pairs, and those are rare. f64 is the reference's plain loops over the same predicate with true supports; \
+         what f32 reports beyond it without any margin comes from supports by weak duality."
     )
 }
 

@@ -24,7 +24,7 @@ const COLOURS: [RGBColor; 7] = [
 
 type Points = Vec<(f64, f64)>;
 
-/// Precision against time a frame; the Pareto front is a line with names.
+/// Precision against time a frame; the Pareto front is a numbered line.
 pub fn precision(result: &Tradeoff) -> miette::Result<String> {
     let mut groups: BTreeMap<&str, Points> = BTreeMap::new();
     let mut front = Vec::new();
@@ -43,13 +43,14 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
             .margin(14)
             .x_label_area_size(46)
             .y_label_area_size(56)
-            .build_cartesian_2d((times.start / 1.5..times.end * 4.0).log_scale(), 0.0..1.0)?;
+            .build_cartesian_2d((times.start / 1.5..times.end * 12.0).log_scale(), 0.0..1.0)?;
         chart
             .configure_mesh()
             .x_desc("time a frame, µs (log)")
             .y_desc("precision: true pairs / reported pairs")
             .label_style((FONT, 14))
-            .light_line_style(RGBColor(238, 238, 238))
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(RGBColor(228, 228, 228))
             .draw()?;
         let steps = front.iter().map(|(point, _)| *point);
         chart.draw_series(LineSeries::new(steps, BLACK.mix(0.4).stroke_width(2)))?;
@@ -60,10 +61,17 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
                 .label(*volume)
                 .legend(move |(x, y)| Circle::new((x + 8, y), 4, colour.filled()));
         }
-        let names = front.iter().map(|(point, name)| {
-            EmptyElement::at(*point) + Text::new(name.clone(), (8, 4), (FONT, 12))
-        });
-        chart.draw_series(names)?;
+        // Names would hide one another: the front is numbered, and the legend tells.
+        for (number, (point, name)) in (1..).zip(&front) {
+            let mark = EmptyElement::at(*point)
+                + Circle::new((0, 0), 6, BLACK.stroke_width(1))
+                + Text::new(format!("{number}"), (-18, -14), (FONT, 13));
+            let place = number.to_string();
+            chart
+                .draw_series([mark])?
+                .label(name.as_str())
+                .legend(move |(x, y)| Text::new(place.clone(), (x + 4, y - 6), (FONT, 13)));
+        }
         chart
             .configure_series_labels()
             .position(SeriesLabelPosition::LowerRight)
@@ -155,7 +163,8 @@ where
             .x_desc(axes[0])
             .y_desc(axes[1])
             .label_style((FONT, 14))
-            .light_line_style(RGBColor(238, 238, 238))
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(RGBColor(228, 228, 228))
             .draw()?;
         for (place, (name, points)) in curves.iter().enumerate() {
             let colour = COLOURS[place % COLOURS.len()];

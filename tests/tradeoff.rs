@@ -1,0 +1,286 @@
+//! The comparison of volumes: its truth, its hulls, its counts, and the command that prints them.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot build its input has failed"
+)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use sdop::rounding::sphere::inflate_radius;
+use sdop::scene::{Scene, SceneFile};
+use sdop::simd::Level;
+use sdop::tradeoff::counts::Tally;
+use sdop::tradeoff::gjk::{HullGraph, PosedHull, may_touch};
+use sdop::tradeoff::safety::without_margins;
+use sdop::tradeoff::shapes::{Crowd, builtin};
+use sdop::tradeoff::truth::{Judge, samples};
+use sdop::tradeoff::variant::{self, Variant};
+use sdop::volume::Hull;
+use sdop_reference::Pose;
+use sdop_reference::exact::{meeting, mesh::Mesh};
+
+const SCENE: &str = r#"
+name = "few"
+seed = 3
+frames = 40
+[box]
+side = 6.0
+[[bodies]]
+shape = "gear"
+count = 20
+radius = 1.0
+speed = [1.0, 2.0]
+[[bodies]]
+shape = "l-shape"
+count = 15
+radius = [0.6, 1.2]
+speed = [1.0, 2.0]
+[[bodies]]
+shape = "torus"
+count = 15
+radius = 1.0
+static = true
+[effects]
+motion = true
+walls = "specular"
+spin = { rate = [0.5, 1.0] }
+"#;
+
+fn scene() -> Scene {
+    SceneFile::parse(SCENE, "few.toml", Path::new(""))
+        .unwrap()
+        .build()
+        .unwrap()
+}
+
+#[test]
+fn hulls_agree_with_the_exact_meeting_of_hull_meshes() {
+    let (mut meetings, mut pairs) = (0, 0);
+    for shape in builtin().unwrap() {
+        let hull = Hull::of(&shape.vertices);
+        let vertices: Vec<_> = shape.vertices.iter().map(|v| v.to_array()).collect();
+        let mesh = Mesh::new(&vertices, &hull.facets).unwrap();
+        let graphs = [HullGraph::new(&shape)];
+        let crowd = Crowd::new(std::slice::from_ref(&shape), 1.0, 300, 5);
+        let bodies = &crowd.bodies;
+        for [i, j] in crowd.pairs() {
+            let pose = |b: u32| {
+                Pose::new(bodies.rotation[b as usize], bodies.translation[b as usize]).unwrap()
+            };
+            let exact = meeting::meet((&mesh, &pose(i)), (&mesh, &pose(j))).meets;
+            let posed = |b: u32| PosedHull::of(&graphs, bodies, b as usize);
+            assert_eq!(may_touch(&posed(i), &posed(j)), exact, "{} {i}", shape.name);
+            meetings += u32::from(exact);
+            pairs += 1;
+        }
+    }
+    assert!(meetings > pairs / 5 && meetings < 4 * pairs / 5);
+}
+
+#[test]
+fn touching_hulls_are_reported() {
+    // Unit cubes face to face, corner to corner, edge to edge: exact in f32, a sign in f64 could fall either way.
+    let cubes = [builtin().unwrap().swap_remove(0)];
+    let graphs = [HullGraph::new(&cubes[0])];
+    let half = 0.5_f32;
+    for gap in [
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 1.0],
+        [1.0, -1.0, 0.3],
+        [0.0, 0.0, 0.0],
+    ] {
+        for (stretch, touch) in [(1.0, true), (1.0 + 1e-6, gap == [0.0; 3])] {
+            let mut crowd = Crowd::new(&cubes, 1.0, 1, 0);
+            crowd.bodies.rotation = vec![[0.0, 0.0, 0.0, 1.0]; 2];
+            crowd.bodies.translation = vec![[0.0; 3], gap.map(|x: f32| 2.0 * half * x * stretch)];
+            let posed = |b| PosedHull::of(&graphs, &crowd.bodies, b);
+            assert_eq!(may_touch(&posed(0), &posed(1)), touch, "{gap:?} {stretch}");
+        }
+    }
+}
+
+#[test]
+fn the_truth_is_every_meeting_and_is_kept() {
+    let scene = scene();
+    let samples = samples(&scene, 3).unwrap();
+    assert_eq!(
+        samples.iter().map(|s| s.frame).collect::<Vec<_>>(),
+        [0, 13, 26]
+    );
+    let judge = Judge::new(&scene.shapes).unwrap();
+    let cache = tempfile::tempdir().unwrap();
+    let truth = judge.truth(&samples, Some(cache.path())).unwrap();
+
+    let n = scene.bodies.len() as u32;
+    let all = (0..n).flat_map(|i| (i + 1..n).map(move |j| [i, j]));
+    let moving =
+        |&[i, j]: &[u32; 2]| scene.bodies.dynamic[i as usize] || scene.bodies.dynamic[j as usize];
+    let counted = judge.count(&samples[0].bodies, all.filter(moving)).unwrap();
+    assert_eq!(truth[0].len(), counted);
+    assert!(counted > 20 && truth.iter().all(|pairs| pairs.is_sorted()));
+
+    // What was kept is read again; a file that was tampered with is not.
+    let file = fs::read_dir(cache.path())
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap()
+        .path();
+    let kept = fs::read_to_string(&file).unwrap();
+    let first = format!("{} {} ", truth[0][0][0], truth[0][0][1]);
+    fs::write(&file, kept.replacen(&first, "", 1)).unwrap();
+    assert_eq!(judge.truth(&samples, Some(cache.path())).unwrap(), truth);
+    assert_eq!(fs::read_to_string(&file).unwrap(), kept);
+    // Another scene has another file.
+    judge.truth(&samples[..2], Some(cache.path())).unwrap();
+    assert_eq!(fs::read_dir(cache.path()).unwrap().count(), 2);
+}
+
+#[test]
+fn every_variant_finds_every_true_pair_and_finer_ones_report_fewer() {
+    let scene = scene();
+    let samples = samples(&scene, 5).unwrap();
+    let truth = Judge::new(&scene.shapes)
+        .unwrap()
+        .truth(&samples, None)
+        .unwrap();
+    let level = Level::detect();
+    let tally = |variant: &Variant| Tally::of(&scene, variant, level, &samples, &truth).unwrap();
+    let variants = variant::all(&scene, 30);
+    let tallies: Vec<Tally> = variants.iter().map(tally).collect();
+    for (variant, found) in variants.iter().zip(&tallies) {
+        assert_eq!(found.quality().recall, 1.0, "{}", variant.name);
+        assert_eq!(*found, tally(variant), "{}", variant.name);
+        let tightness = variant.tightness(&scene).unwrap();
+        assert!(tightness >= 1.0 - 1e-6, "{}: {tightness}", variant.name);
+    }
+    let reported = |name: &str| {
+        let place = variants.iter().position(|v| v.name == name).unwrap();
+        tallies[place].reported
+    };
+    for k in [6, 14, 18, 26] {
+        let of = |overlap| reported(&format!("s-dop {k}, principal, {overlap}"));
+        assert!(of("one-sided") >= of("two-sided") && of("two-sided") >= of("full"));
+        assert!(reported("sphere") > of("one-sided"));
+        assert!(of("full") >= reported("sphere + hull"));
+    }
+    assert_eq!(reported("aabb"), reported("6-dop"));
+    for same in ["s-dop lazy", "s-dop batch", "s-dop batch lazy"] {
+        assert_eq!(reported(same), reported("s-dop 18, principal, two-sided"));
+    }
+}
+
+#[test]
+fn shrunk_volumes_are_what_the_margins_make_of_the_true_ones() {
+    for shape in builtin().unwrap() {
+        let bare = without_margins(&shape);
+        assert!(inflate_radius(bare.ball.radius) <= shape.ball.radius);
+        assert!(inflate_radius(bare.ball.radius.next_up()) > shape.ball.radius);
+        let shrunk = shape
+            .ordop
+            .hi
+            .iter()
+            .zip(&bare.ordop.hi)
+            .all(|(hi, bare)| bare < hi);
+        assert!(shrunk, "{}", shape.name);
+    }
+}
+
+fn sdop(arguments: &[&str], directory: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_sdop"))
+        .args(arguments)
+        .current_dir(directory)
+        .output()
+        .unwrap()
+}
+
+/// The counts of a result: everything but seconds and what follows from them.
+fn counts(path: &Path) -> Vec<serde_json::Value> {
+    let result: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let mut parts = vec![
+        result["truth"].clone(),
+        result["budgets"].clone(),
+        result["shapes"].clone(),
+    ];
+    for row in result["rows"].as_array().unwrap() {
+        let keys = [
+            "name",
+            "reported",
+            "precision",
+            "per_true",
+            "recall",
+            "volume_over_hull",
+            "pairs_sha256",
+        ];
+        parts.extend(keys.map(|key| row[key].clone()));
+        for volume in row["volumes"].as_array().unwrap() {
+            parts.extend(["nu", "nv", "hits"].map(|key| volume[key].clone()));
+        }
+    }
+    for row in result["interest"].as_array().unwrap() {
+        parts.extend(["bodies", "tests", "reported", "precision"].map(|key| row[key].clone()));
+    }
+    parts
+}
+
+#[test]
+fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
+    let place = tempfile::tempdir().unwrap();
+    let here = place.path();
+    fs::write(here.join("few.toml"), SCENE).unwrap();
+    for out in ["one", "two"] {
+        let run = sdop(&["tradeoff", "few.toml", "--quick", "--out", out], here);
+        assert_eq!(
+            run.status.code(),
+            Some(0),
+            "{}",
+            String::from_utf8_lossy(&run.stderr)
+        );
+        let text = String::from_utf8(run.stdout).unwrap();
+        assert!(text.contains("Cheapest at this density") && text.contains("sphere + hull"));
+    }
+    assert_eq!(
+        counts(&here.join("one/tradeoff.json")),
+        counts(&here.join("two/tradeoff.json"))
+    );
+
+    let again = sdop(
+        &[
+            "tradeoff",
+            "one/tradeoff.json",
+            "--out",
+            "again",
+            "--format",
+            "csv",
+        ],
+        here,
+    );
+    assert_eq!(again.status.code(), Some(0));
+    for file in [
+        "tradeoff.md",
+        "tradeoff.svg",
+        "tradeoff-pays.svg",
+        "tradeoff-budget.svg",
+        "tradeoff.csv",
+        "tradeoff.json",
+    ] {
+        let [one, two] = ["one", "again"].map(|out| fs::read(here.join(out).join(file)).unwrap());
+        assert_eq!(one, two, "{file}");
+    }
+    let lines = String::from_utf8(again.stdout).unwrap();
+    assert_eq!(lines.lines().count(), 1 + 41);
+
+    let record = fs::read_to_string(here.join("one/tradeoff.json")).unwrap();
+    let missed = record.replacen("\"recall\": 1.0", "\"recall\": 0.5", 1);
+    fs::write(here.join("missed.json"), missed).unwrap();
+    let run = sdop(&["tradeoff", "missed.json"], here);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&run.stderr).contains("missed by: sphere"));
+
+    let run = sdop(&["tradeoff", "few.json"], here);
+    assert_eq!(run.status.code(), Some(2));
+}
