@@ -175,9 +175,11 @@ impl Culler {
     }
 
     /// For strategies that list it, the potentially colliding set of the last frame in the order of refinement.
-    #[must_use]
-    pub fn potentially_colliding(&self) -> &PairList {
-        &self.candidates
+    pub fn potentially_colliding(&self) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
+        self.candidates.iter().map(|pair| {
+            let [a, b] = pair.map(|place| self.places.body[place as usize]);
+            [a.min(b), a.max(b)]
+        })
     }
 
     /// Counters summed over all frames so far.

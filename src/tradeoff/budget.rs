@@ -125,11 +125,7 @@ fn row(
             true_pairs += truth.len() as u64;
         }
         let untested = (culler.counters().untested - before) as usize;
-        starved.frame(
-            sample.frame,
-            culler.potentially_colliding().iter(),
-            untested,
-        );
+        starved.frame(sample.frame, culler.potentially_colliding(), untested);
     }
     let share = |part: u64, whole: u64| {
         if whole == 0 {

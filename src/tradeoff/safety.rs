@@ -17,9 +17,10 @@ use crate::rounding::pose::norm;
 use crate::rounding::slab::{SLAB_FLOOR, SLAB_MARGIN};
 use crate::rounding::sphere::inflate_radius;
 use crate::scene::Scene;
-use crate::scene::settings::{CullSettings, Overlap, Strategy, Updates};
+use crate::scene::settings::{CullSettings, Strategy, Updates};
 use crate::simd::Level;
-use crate::volume::{DirectionSet, Shape};
+use crate::verify::judged::{Shapes, overlap};
+use crate::volume::Shape;
 
 /// One arithmetic in one tier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -137,57 +138,18 @@ fn in_f64(
     settings: &CullSettings,
     samples: &[Sample],
 ) -> Result<(Frames, Vec<f64>), TradeoffError> {
-    let shapes = scene
-        .shapes
-        .iter()
-        .map(judged)
-        .collect::<Result<Vec<_>, _>>()?;
+    let shapes = Shapes::new(scene.shapes.clone())?;
     let strategy = match settings.strategy {
         Strategy::Sphere => reference::Strategy::Sphere,
         _ => reference::Strategy::Sequential,
     };
-    let overlap = match settings.overlap {
-        Overlap::OneSided => reference::Overlap::OneSided,
-        Overlap::TwoSided => reference::Overlap::TwoSided,
-        Overlap::Full => reference::Overlap::Full,
-    };
     let (mut frames, mut seconds) = (Vec::new(), Vec::new());
     for sample in samples {
-        let bodies = &sample.bodies;
-        let judged = (0..bodies.len())
-            .map(|i| {
-                Ok(reference::Body {
-                    shape: &shapes[bodies.shape[i] as usize],
-                    pose: reference::Pose::new(bodies.rotation[i], bodies.translation[i])?,
-                    dynamic: bodies.dynamic[i],
-                })
-            })
-            .collect::<Result<Vec<_>, reference::InvalidInput>>()?;
+        let judged = shapes.bodies(&sample.bodies)?;
         let start = Instant::now();
-        let pairs = reference::pairs(&judged, strategy, overlap);
+        let pairs = reference::pairs(&judged, strategy, overlap(settings.overlap));
         seconds.push(start.elapsed().as_secs_f64());
         frames.push(pairs.into_iter().map(|(i, j)| [i, j]).collect());
     }
     Ok((frames, seconds))
-}
-
-/// A shape's numbers for the reference.
-fn judged(shape: &Shape) -> Result<reference::Shape, reference::InvalidInput> {
-    let ball = reference::Ball {
-        centre: shape.ball.centre.to_array(),
-        radius: shape.ball.radius,
-    };
-    let slabs = reference::Slabs {
-        directions: match shape.ordop.directions {
-            DirectionSet::K6 => reference::DirectionSet::K6,
-            DirectionSet::K14 => reference::DirectionSet::K14,
-            DirectionSet::K18 => reference::DirectionSet::K18,
-            DirectionSet::K26 => reference::DirectionSet::K26,
-        },
-        basis: shape.ordop.basis.columns.map(|column| column.to_array()),
-        lo: shape.ordop.lo.clone(),
-        hi: shape.ordop.hi.clone(),
-    };
-    let vertices = shape.vertices.iter().map(|v| v.to_array()).collect();
-    reference::Shape::new(ball, slabs, vertices, shape.triangles.clone())
 }
