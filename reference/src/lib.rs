@@ -6,6 +6,24 @@
 //!
 //! Conventions: right-handed axes, column vectors `[x, y, z]`, quaternions `(x, y, z, w)` of any non-zero norm, a pose
 //! is x ↦ R(q)x/|q|² + t. Volumes are the exactly posed, uninflated ones; touching counts as overlap.
+//!
+//! ```
+//! use sdop_reference::exact::judge::meeting_pairs;
+//! use sdop_reference::{Ball, Body, DirectionSet, Overlap, Pose, Shape, Slabs, Strategy, pairs};
+//!
+//! let ball = Ball { centre: [0.0; 3], radius: 2.0 };
+//! let basis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let slabs = Slabs { directions: DirectionSet::K6, basis, lo: vec![0.0; 3], hi: vec![1.0, 1.0, 0.0] };
+//! let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+//! let shape = Shape::new(ball, slabs, vertices, vec![[0, 1, 2]])?;
+//! let at = |x| Pose::new([0.0, 0.0, 0.0, 2.0], [x, 0.0, 0.0]);
+//! let bodies = [at(0.0)?, at(1.0)?, at(2.5)?].map(|pose| Body { shape: &shape, pose, dynamic: true });
+//!
+//! assert_eq!(pairs(&bodies, Strategy::Sphere, Overlap::TwoSided), [(0, 1), (0, 2), (1, 2)]);
+//! assert_eq!(pairs(&bodies, Strategy::Sequential, Overlap::TwoSided), [(0, 1)]);
+//! assert_eq!(meeting_pairs(&bodies).0, [(0, 1)]);
+//! # Ok::<(), sdop_reference::InvalidInput>(())
+//! ```
 
 pub mod broad_phase;
 pub mod containment;

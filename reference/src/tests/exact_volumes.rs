@@ -287,60 +287,73 @@ fn certificates_that_do_not_hold_are_refused() {
     assert!(!miss.value.verify((&origin, &small), (&touching, &large)));
 }
 
-/// A k-DOP beside itself, turned so that f64 rounds every corner; a face apart by some ulps of a slab end, or none.
+/// Two k-DOPs on either side of a plane, turned so that f64 rounds every corner; A ends on the plane or next to
+/// nothing before or behind it.
 #[test]
 fn turned_faces_that_touch() {
     let mut draws = Draws(29);
     let mut paths = Tally::default();
-    for n in 0..400 {
+    for n in 0..600 {
         let directions = DirectionSet::ALL[n % 4];
         let coefficients = directions.coefficients();
-        let end = |c: &[i32; 3]| 0.75 * c.iter().map(|x| x.abs()).sum::<i32>() as f32;
-        let hi: Vec<f32> = coefficients.iter().map(end).collect();
-        let lo: Vec<f32> = hi.iter().map(|x| -x).collect();
-        let gap = [0.0, 2.0f32.powi(-17), -2.0f32.powi(-17)][n / 4 % 3];
-        let shift = |ends: &[f32]| {
-            let ends = ends.iter().zip(&coefficients);
-            ends.map(|(x, c)| TURN * (x + c[0] as f32 * (1.5 + gap)))
+        let half = |c: &[i32; 3]| 0.75 * c.iter().map(|x| x.abs()).sum::<i32>() as f32;
+        // The ends of the regular k-DOP about (x, 0, 0).
+        let ends = |x: f32, sign: f32, scale: f32| -> Vec<f32> {
+            coefficients
+                .iter()
+                .map(|c| scale * (sign * half(c) + x * c[0] as f32))
                 .collect()
         };
+        let nothing = power_of_two(-20 - n as i32 / 12 % 50) as f32;
+        let past = [0.0, nothing, -nothing][n / 4 % 3];
+        let mut hi = ends(-0.75, 1.0, 1.0);
+        hi[0] = past;
         let axes = exact_basis([0, 0, 0, 1]);
-        let beside = Slabs {
-            directions,
-            basis: axes.map(turned_back),
-            lo: shift(&lo),
-            hi: shift(&hi),
-        };
-        let here = Polytope::new(&Slabs {
+        let below = Slabs {
             directions,
             basis: axes,
+            lo: ends(-0.75, -1.0, 1.0),
+            hi,
+        };
+        let (lo, hi) = (ends(0.75, -1.0, TURN), ends(0.75, 1.0, TURN));
+        let above = Slabs {
+            directions,
+            basis: axes.map(turned_back),
             lo,
             hi,
-        })
-        .unwrap();
-        let beside = Polytope::new(&beside).unwrap();
+        };
+        let [below, above] = [below, above].map(|slabs| Polytope::new(&slabs).unwrap());
         let (pose_a, pose_b) = draws.turned_poses();
-        let (a, b) = ((&pose_a, &here), (&pose_b, &beside));
+        let (a, b) = ((&pose_a, &below), (&pose_b, &above));
         for (a, b) in [(a, b), (b, a)] {
             let decision = ordop::meet(a, b);
+            let meets = matches!(decision.value, Certificate::Common { .. });
             assert_eq!(
-                matches!(decision.value, Certificate::Common { .. }),
-                gap <= 0.0,
-                "{pose_a:?} {gap}"
+                meets,
+                past >= 0.0,
+                "{pose_a:?} {past:e} {:?}",
+                decision.path
             );
-            assert!(decision.value.verify(a, b), "{pose_a:?} {gap}");
+            assert!(
+                decision.value.verify(a, b),
+                "{pose_a:?} {past:e} {:?}",
+                decision.path
+            );
             assert_eq!(
                 axes::overlap_one_sided(a, b).value,
-                gap <= 0.0,
-                "one-sided {pose_a:?} {gap}"
+                meets,
+                "one-sided {pose_a:?} {past:e}"
             );
             assert_eq!(
                 axes::overlap_two_sided(a, b).value,
-                gap <= 0.0,
-                "two-sided {pose_a:?} {gap}"
+                meets,
+                "two-sided {pose_a:?} {past:e}"
             );
             paths.count(decision.path);
         }
     }
-    assert!(paths.exact > 200 && paths.filter > 400, "{paths:?}");
+    assert!(
+        paths.exact > 400 && paths.interval > 10 && paths.filter > 200,
+        "{paths:?}"
+    );
 }
