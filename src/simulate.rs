@@ -7,6 +7,7 @@ use miette::Diagnostic;
 use thiserror::Error;
 
 use crate::cost::{Counters, Seconds};
+use crate::crew::CrewError;
 use crate::effects::{EffectError, EffectReport, Effects};
 use crate::pairs::{PairList, PairsHash};
 use crate::pipeline::Culler;
@@ -63,6 +64,10 @@ pub enum SimulationError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Effect(#[from] EffectError),
+    /// Threads that the system refused.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Threads(#[from] CrewError),
     /// A body left the contract.
     #[error("frame {frame}: {error}")]
     Contract {
@@ -87,6 +92,15 @@ impl<'a> Simulation<'a> {
             culler: Culler::new(&scene.shapes, &scene.bodies, &scene.cull, level)?,
             frame: 0,
         })
+    }
+
+    /// The same simulation culling on so many threads; nothing but seconds depends on their number.
+    ///
+    /// # Errors
+    /// The system refuses to start the threads.
+    pub fn with_threads(mut self, threads: usize) -> Result<Self, SimulationError> {
+        self.culler = self.culler.with_threads(threads)?;
+        Ok(self)
     }
 
     /// Advances to the next frame (the first needs no step) and culls it; `None` after the last.

@@ -1,6 +1,7 @@
 //! `sdop run`: simulate and cull one scene, and say what it counted and cost.
 
 use std::fmt::Write as _;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use sdop::cost::{Counters, Seconds, VolumeCounters};
@@ -8,7 +9,7 @@ use sdop::effects::EffectReport;
 use sdop::scene::Scene;
 use sdop::scene::settings::{Budget, CullSettings, Interest, Strategy};
 use sdop::simd::Level;
-use sdop::simulate::{self, Summary};
+use sdop::simulate::{Simulation, Summary};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -20,7 +21,7 @@ use super::scene_args::{MachineArgs, SceneArgs};
 /// Simulate and cull one scene
 ///
 /// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of each stage and hashes.
-/// Counters and hashes depend on scene, seed and flags alone, not on the CPU; with --budget-us they depend on the clock.
+/// Counters and hashes depend on scene, seed and flags alone, not on the CPU or threads; with --budget-us they depend on the clock.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
@@ -36,6 +37,9 @@ pub struct Args {
     scene: SceneArgs,
     #[command(flatten)]
     machine: MachineArgs,
+    /// Threads that cull; nothing but time depends on their number
+    #[arg(long, value_name = "N", default_value_t = NonZeroUsize::MIN)]
+    threads: NonZeroUsize,
 }
 
 /// What is printed.
@@ -81,7 +85,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         None => None,
     };
     let bar = progress(scene.frames.into(), &scene.name);
-    let summary = simulate::run(&scene, level, |frame| -> miette::Result<()> {
+    let simulation = Simulation::new(&scene, level)?.with_threads(args.threads.get())?;
+    let summary = simulation.run(|frame| -> miette::Result<()> {
         if let Some(recorder) = &mut recorder {
             recorder.frame(frame)?;
         }
@@ -92,13 +97,18 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(recorder) = recorder {
         recorder.finish()?;
     }
-    emit(args.format, &report(&scene, level, &summary), |report| {
+    let machine = (level, args.threads.get());
+    emit(args.format, &report(&scene, machine, &summary), |report| {
         text(report, &scene, &summary)
     })?;
     Ok(Outcome::Passed)
 }
 
-fn report<'a>(scene: &'a Scene, level: Level, summary: &'a Summary) -> Report<'a> {
+fn report<'a>(
+    scene: &'a Scene,
+    (level, threads): (Level, usize),
+    summary: &'a Summary,
+) -> Report<'a> {
     let CullSettings {
         strategy,
         pairs,
@@ -124,7 +134,7 @@ fn report<'a>(scene: &'a Scene, level: Level, summary: &'a Summary) -> Report<'a
         interest: interest.as_ref(),
         budget: *budget,
         simd: level.name(),
-        threads: 1,
+        threads,
         counters: counters(*strategy, &summary.counters),
         seconds: summary.seconds,
         effects: summary.effects.iter().map(effect_line).collect(),
@@ -192,7 +202,7 @@ fn write_text(
     )?;
     writeln!(
         out,
-        "{} over {}, k = {}, {} axes, {}, {} updates; {}, {} thread",
+        "{} over {}, k = {}, {} axes, {}, {} updates; {}, threads: {}",
         report.strategy,
         report.pairs,
         report.k,

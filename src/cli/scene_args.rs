@@ -100,9 +100,9 @@ impl SceneArgs {
             file.spec.seed = seed;
         }
         self.cull.apply(&mut file.spec.cull);
-        if file.spec.cull.pairs != Finder::AllPairs {
+        if matches!(file.spec.cull.pairs, Finder::Sweep | Finder::Auto) {
             return Err(miette!(
-                help = "use --pairs all-pairs",
+                help = "use --pairs grid or --pairs all-pairs",
                 "the pair finder `{}` is not there yet",
                 file.spec.cull.pairs
             ));

@@ -64,6 +64,30 @@ fn counters_and_hashes_are_the_same_twice_and_in_every_simd_level() {
 }
 
 #[test]
+fn threads_and_finders_leave_the_pairs_as_they_are() {
+    let expected = run(&["--strategy", "sphere"]);
+    for finder in ["all-pairs", "grid"] {
+        let one = run(&["--pairs", finder]);
+        for strategy in ["sphere", "s-dop-batch"] {
+            let flags = ["--pairs", finder, "--threads", "3", "--strategy", strategy];
+            let report = run(&flags);
+            assert_eq!(report["threads"], 3);
+            assert_eq!(report["pairs"], finder);
+            let same = if strategy == "sphere" {
+                &expected
+            } else {
+                &one
+            };
+            assert_eq!(report["pairs_sha256"], same["pairs_sha256"], "{flags:?}");
+            for count in ["sphere_hits", "reported"] {
+                let (seen, expected) = (&report["counters"][count], &same["counters"][count]);
+                assert_eq!(seen, expected, "{count} {flags:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn counters_follow_from_bodies_frames_and_strategy() {
     let count = |report: &Value, name: &str| report["counters"][name].as_u64().unwrap();
     let sequential = run(&[]);
@@ -203,6 +227,11 @@ fn bad_flags_are_refused_with_what_would_do() {
             &["body 50 of a scene of 50", "counted from 0"],
         ),
         (&["--interest", "1,x"], &["body indices as in 0,5,7"]),
+        (
+            &["--pairs", "sweep"],
+            &["`sweep` is not there yet", "--pairs grid"],
+        ),
+        (&["--threads", "0"], &["invalid value '0'"]),
         (&["--k", "8"], &["invalid value '8'", "6, 14, 18, 26"]),
         (
             &["--budget-tests", "5", "--budget-us", "5"],
