@@ -51,7 +51,7 @@ fn no_way_to_cull_misses_a_pair_on_the_scalar_tier_and_kernels_agree_on_all() {
         let mut ledger = Ledger::default();
         for way in ways(k, axes) {
             for (frames, answers) in cases.runs.iter().zip(answers) {
-                let shapes = &cases.shapes.built;
+                let shapes = &cases.shapes;
                 // Flush-to-zero decides otherwise here and there, but never misses.
                 for level in [Level::SCALAR, Level::SCALAR_FLUSH] {
                     check(shapes, frames, answers, &way, level, &mut ledger).unwrap();

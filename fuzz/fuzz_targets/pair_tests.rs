@@ -70,7 +70,7 @@ fuzz_target!(|data: &[u8]| {
         let levels = Level::available();
         let level = levels[n % levels.len()];
         let frames = [bodies.clone()];
-        check(&shapes.built, &frames, &answers, way, level, &mut ledger).expect("settings fit");
+        check(shapes, &frames, &answers, way, level, &mut ledger).expect("settings fit");
     }
     assert_eq!(ledger.missed(), 0, "{:?}", ledger.failures.first().map(|f| &f.settings));
 });

@@ -6,8 +6,9 @@ use reference::exact::world::Extents;
 use reference::exact::{Decision, Tally, meeting, ordop, sphere, world};
 
 use super::judged::{self, InvalidInput, Shapes};
+use crate::rounding::{U, up};
 use crate::scene::bodies::Bodies;
-use crate::scene::settings::{Overlap, Strategy};
+use crate::scene::settings::{CullSettings, Interest, Overlap, Strategy};
 use crate::volume::DirectionSet;
 
 /// A question about a pair.
@@ -157,26 +158,86 @@ impl Answers {
         interest: &[u32],
         n: usize,
     ) -> bool {
-        let is = |predicate: Predicate| self.of(predicate)[n];
-        match strategy {
-            Strategy::None => false,
-            Strategy::Sphere => is(Predicate::Sphere),
-            Strategy::OrDop => is(Predicate::OrDop(overlap)),
-            Strategy::SDopSequential | Strategy::SDopBatch | Strategy::SDopTimeCritical => {
-                is(Predicate::Sphere) && is(Predicate::OrDop(overlap))
-            }
-            Strategy::SDopObjectOfInterest => {
-                let looked_at = self.pairs[n].iter().any(|body| interest.contains(body));
-                is(Predicate::Sphere) && (!looked_at || is(Predicate::OrDop(overlap)))
-            }
-            Strategy::Aabb => is(Predicate::Aabb),
-            Strategy::KDop => is(Predicate::KDop),
-            Strategy::Obb => is(Predicate::Obb),
-        }
+        let looked_at = self.pairs[n].iter().any(|body| interest.contains(body));
+        reports(strategy, overlap, looked_at, |predicate| {
+            self.of(predicate)[n]
+        })
     }
 }
 
-/// Whether two meshes meet; those further apart than their reaches surely don't.
+/// Whether the rounding margins explain the report of a pair: volumes wider by them overlap exactly. World-aligned
+/// volumes have no other looseness than their rounding.
+///
+/// # Errors
+/// A pose outside the contract.
+pub fn explained_by_margins(
+    shapes: &Shapes,
+    bodies: &Bodies,
+    settings: &CullSettings,
+    [i, j]: [u32; 2],
+) -> Result<bool, InvalidInput> {
+    let (a, b) = (
+        shapes.widened_body(bodies, i)?,
+        shapes.widened_body(bodies, j)?,
+    );
+    let looked_at = match &settings.interest {
+        Some(Interest::Bodies(list)) => list.contains(&i) || list.contains(&j),
+        _ => false,
+    };
+    Ok(reports(
+        settings.strategy,
+        settings.overlap,
+        looked_at,
+        |predicate| match predicate {
+            Predicate::Sphere => {
+                let (ball_a, ball_b) = (world_ball(&a), world_ball(&b));
+                sphere::overlap_balls((&ball_a, &a.pose), (&ball_b, &b.pose)).value
+            }
+            Predicate::OrDop(test) => ordop::overlap(&a, &b, judged::overlap(test)).value,
+            Predicate::Obb => ordop::overlap_obb(&a, &b).value,
+            Predicate::Aabb | Predicate::KDop | Predicate::Mesh => true,
+        },
+    ))
+}
+
+/// The widened ball; a centre off the body's origin is rounded in world coordinates, which adds up to √3 ulps of them.
+fn world_ball(body: &reference::Body<'_>) -> reference::Ball {
+    let ball = body.shape.ball;
+    if ball.centre == [0.0; 3] {
+        return ball;
+    }
+    let size = |v: [f64; 3]| v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let world = size(body.pose.translation()) + 2.0 * size(ball.centre.map(f64::from));
+    reference::Ball {
+        radius: up(f64::from(ball.radius) + 4.0 * U * world),
+        ..ball
+    }
+}
+
+/// The strategies as predicates (design, section 2): which volumes must overlap.
+fn reports(
+    strategy: Strategy,
+    overlap: Overlap,
+    of_interest: bool,
+    is: impl Fn(Predicate) -> bool,
+) -> bool {
+    match strategy {
+        Strategy::None => false,
+        Strategy::Sphere => is(Predicate::Sphere),
+        Strategy::OrDop => is(Predicate::OrDop(overlap)),
+        Strategy::SDopSequential | Strategy::SDopBatch | Strategy::SDopTimeCritical => {
+            is(Predicate::Sphere) && is(Predicate::OrDop(overlap))
+        }
+        Strategy::SDopObjectOfInterest => {
+            is(Predicate::Sphere) && (!of_interest || is(Predicate::OrDop(overlap)))
+        }
+        Strategy::Aabb => is(Predicate::Aabb),
+        Strategy::KDop => is(Predicate::KDop),
+        Strategy::Obb => is(Predicate::Obb),
+    }
+}
+
+/// Whether two meshes meet.
 fn mesh(a: &reference::Body<'_>, b: &reference::Body<'_>) -> Decision<bool> {
     let meeting = meeting::overlap(a, b);
     Decision {

@@ -18,9 +18,11 @@ pub struct Count {
     pub reported: u64,
     /// Required and not reported: the promise broken.
     pub missed: u64,
-    /// Reported although the exact volumes don't overlap: the price of the rounding margins (and, with
-    /// `s-dop-time-critical`, of its budget).
+    /// Reported although the exact volumes don't overlap, but volumes wider by the stated margins do: the price of rounding.
     pub margin: u64,
+    /// Reported although not even those overlap: an or-DOP's support is bounded from its slabs, not from its corners
+    /// (and, with `s-dop-time-critical`, what the budget left untested).
+    pub bound: u64,
     /// Reported and required although the meshes don't meet: the volumes' looseness. Of `meshes_judged` pairs.
     pub loose: u64,
     /// Pairs of which the meshes were judged too.
@@ -35,6 +37,7 @@ impl Count {
         self.reported += other.reported;
         self.missed += other.missed;
         self.margin += other.margin;
+        self.bound += other.bound;
         self.loose += other.loose;
         self.meshes_judged += other.meshes_judged;
     }
@@ -66,8 +69,9 @@ pub fn cull(
         .sorted())
 }
 
-/// Compares a sorted list with the answers. Returns the count and the missed pairs: a strategy's predicate, and the mesh
-/// intersections themselves where they were judged.
+/// Compares a sorted list with the answers. Returns the count, in which all that is reported and not required is `bound`,
+/// the missed pairs (a strategy's predicate, and the mesh intersections themselves where they were judged), and
+/// those reported and not required.
 ///
 /// A pair that the list holds twice or that isn't among the judged pairs (i ≥ j, static–static) counts as missed.
 #[must_use]
@@ -75,7 +79,7 @@ pub fn compare(
     answers: &Answers,
     settings: &CullSettings,
     sorted: &[[u32; 2]],
-) -> (Count, Vec<[u32; 2]>) {
+) -> (Count, Vec<[u32; 2]>, Vec<[u32; 2]>) {
     let interest: &[u32] = match &settings.interest {
         Some(Interest::Bodies(list)) => list,
         _ => &[],
@@ -87,7 +91,7 @@ pub fn compare(
         reported: sorted.len() as u64,
         ..Count::default()
     };
-    let mut missed = Vec::new();
+    let (mut missed, mut extra) = (Vec::new(), Vec::new());
     let mut rest = sorted.iter().peekable();
     for (n, pair) in answers.pairs.iter().enumerate() {
         let reported = rest.next_if_eq(&pair).is_some();
@@ -95,7 +99,9 @@ pub fn compare(
         let meet = meshes.get(n).copied();
         count.required += u64::from(required);
         count.meshes_judged += u64::from(meet.is_some());
-        count.margin += u64::from(reported && !required);
+        if reported && !required {
+            extra.push(*pair);
+        }
         count.loose += u64::from(reported && required && meet == Some(false));
         if !reported && (required || (culls && meet == Some(true))) {
             missed.push(*pair);
@@ -103,7 +109,8 @@ pub fn compare(
     }
     missed.extend(rest);
     count.missed = missed.len() as u64;
-    (count, missed)
+    count.bound = extra.len() as u64;
+    (count, missed, extra)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use sdop_reference::exact::Tally;
 
-use super::answers::{Answers, Predicate};
+use super::answers::{Answers, Predicate, explained_by_margins};
 use super::compare::{Count, compare, settings};
 use super::draw::{ContactSpec, crowd, probe};
 use super::forms::{self, Form, FormError};
@@ -160,7 +160,7 @@ pub fn ways(k: DirectionSet, axes: Axes) -> Vec<CullSettings> {
 /// # Errors
 /// Settings that the bodies can't have.
 pub fn check(
-    shapes: &[Shape],
+    shapes: &Shapes,
     frames: &[Bodies],
     answers: &[Answers],
     way: &CullSettings,
@@ -171,15 +171,22 @@ pub fn check(
         return Ok(());
     };
     let settings = settings(way.strategy, way, first.len());
-    let mut culler = Culler::new(shapes, first, &settings, level)?;
+    let mut culler = Culler::new(&shapes.built, first, &settings, level)?;
     for (n, (frame, answers)) in frames.iter().zip(answers).enumerate() {
-        let (count, missed) = compare(answers, &settings, &culler.cull(frame).sorted());
+        let (mut count, missed, extra) = compare(answers, &settings, &culler.cull(frame).sorted());
+        if settings.strategy != Strategy::SDopTimeCritical {
+            for pair in extra {
+                let margin = u64::from(explained_by_margins(shapes, frame, &settings, pair)?);
+                count.margin += margin;
+                count.bound -= margin;
+            }
+        }
         ledger.count(&settings, &count);
         if let (Some(&pair), true) = (missed.first(), ledger.failures.len() < MOST_FAILURES) {
             ledger.failures.push(Failure {
                 settings: settings.clone(),
                 level,
-                shapes: shapes.to_vec(),
+                shapes: shapes.built.clone(),
                 frames: frames[..=n].to_vec(),
                 pair,
             });
@@ -207,7 +214,7 @@ pub fn judge_and_check(
         for (n, way) in ways(k, axes).iter().enumerate() {
             // Tiers are bit-identical (tested), so each way takes its turn on one of them.
             let level = levels[n % levels.len().max(1)];
-            check(&shapes.built, frames, &answers, way, level, &mut ledger)?;
+            check(shapes, frames, &answers, way, level, &mut ledger)?;
         }
     }
     Ok(ledger)

@@ -64,7 +64,7 @@ pub fn scene(
             .map(|(n, way)| {
                 let mut part = Ledger::default();
                 let level = levels[n % levels.len()];
-                check(&shapes.built, &block, &answers, way, level, &mut part)?;
+                check(&shapes, &block, &answers, way, level, &mut part)?;
                 Ok::<_, RoundError>(part)
             })
             .collect();

@@ -47,8 +47,10 @@ struct StrategyReport {
     required: u64,
     reported: u64,
     missed: u64,
-    /// Reported although the exact volumes are apart, per million pairs judged.
+    /// Reported although the exact volumes are apart, but not those wider by the rounding margins; per million judged.
     margin_per_million: Option<f64>,
+    /// Reported although those are apart too, since supports are bounded from slabs; per million judged.
+    bound_per_million: Option<f64>,
     /// Reported and rightly so, but the meshes are apart, per million pairs whose meshes were judged.
     looseness_per_million: Option<f64>,
 }
@@ -115,19 +117,18 @@ impl Report {
                 );
             }
             let header = [
-                "strategy",
-                "judged",
-                "required",
-                "reported",
-                "missed",
-                "margin/M",
-                "looseness/M",
+                "strategy", "judged", "required", "reported", "missed", "margin/M", "bound/M",
+                "loose/M",
             ];
             let mut lists = table(&header);
             for s in &source.strategies {
                 let counts = [s.judged, s.required, s.reported, s.missed].map(|n| n.to_string());
-                let rates = [s.margin_per_million, s.looseness_per_million]
-                    .map(|rate| rate.map_or("–".to_owned(), |x| format!("{x:.1}")));
+                let rates = [
+                    s.margin_per_million,
+                    s.bound_per_million,
+                    s.looseness_per_million,
+                ]
+                .map(|rate| rate.map_or("–".to_owned(), |x| format!("{x:.1}")));
                 lists.add_row([s.name.clone()].into_iter().chain(counts).chain(rates));
             }
             text += &format!("{}\n{answers}\n{lists}\n\n", source.name);
@@ -153,6 +154,7 @@ fn strategy((row, count): (&Row, &sdop::verify::Count)) -> StrategyReport {
         reported: count.reported,
         missed: count.missed,
         margin_per_million: rate(count.margin, count.judged).filter(|_| !budgeted),
+        bound_per_million: rate(count.bound, count.judged).filter(|_| !budgeted),
         looseness_per_million: rate(count.loose, count.meshes_judged),
     }
 }

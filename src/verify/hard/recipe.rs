@@ -219,6 +219,8 @@ fn quadruples(mut shapes: Shapes, nudged: bool, rng: &mut impl Rng) -> Cases {
 fn set_radius(shapes: &mut Shapes, shape: usize, radius: f32) {
     shapes.built[shape].ball.radius = radius;
     shapes.judged[shape].ball.radius = radius;
+    let wider = f64::from(radius) * (1.0 + 15.0 * crate::rounding::U);
+    shapes.widened[shape].ball.radius = crate::rounding::up(wider);
 }
 
 fn lattice(mut shapes: Shapes, edge: usize, rng: &mut impl Rng) -> Cases {
