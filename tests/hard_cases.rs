@@ -93,6 +93,31 @@ fn lists(
     (lists, *culler.counters())
 }
 
+#[test]
+fn more_threads_report_the_same_lists() {
+    for (name, text) in FILES {
+        if !["counts", "duplicates", "teleports"].contains(name) {
+            continue;
+        }
+        let (k, axes) = (DirectionSet::K18, Axes::Principal);
+        let cases = Group::parse(text).unwrap().cases(k, axes).unwrap();
+        for way in ways(k, axes) {
+            for frames in &cases.runs {
+                let alone = lists(&cases, frames, &way, Level::detect());
+                let settings = settings(way.strategy, &way, frames[0].len());
+                let shapes = &cases.shapes.built;
+                let culler = Culler::new(shapes, &frames[0], &settings, Level::detect()).unwrap();
+                let mut crew = culler.with_threads(3).unwrap();
+                let shared: Vec<Vec<_>> = frames
+                    .iter()
+                    .map(|frame| crew.cull(frame).iter().collect())
+                    .collect();
+                assert_eq!((shared, *crew.counters()), alone, "{name}: {way:?}");
+            }
+        }
+    }
+}
+
 /// What integer arithmetic says of a recipe needs no reference.
 fn known_by_construction(name: &str, group: &Group, cases: &Cases, answers: &[Vec<Answers>]) {
     for known in &group.known {
