@@ -1,5 +1,5 @@
 # A dot product of three terms, fl(fl(fl(x1 y1) + fl(x2 y2)) + fl(x3 y3)), of f32 vectors with |x| |y| <= T: within 5.2u T.
-# Serves v = Q^T delta, e = M a and tau = a.v. By Cauchy-Schwarz each product and partial sum is at most T (2^-20 of slack for
+# Serves v = Q^T delta, e = M a and tau = a.v. By Cauchy-Schwarz each product and partial sum is at most T (2^-16 of slack for
 # inputs that are rounded unit vectors). Scaled to T in [1, 2]; f..: what flushing changes, at most 2^-30 T (LEMMAS.md).
 
 @rnd = float<24, ne>;
@@ -13,7 +13,7 @@ V = S + x3 * y3;
 
 { T in [1, 2] /\
   x1 * y1 = T * k1 /\ x2 * y2 = T * k2 /\ x3 * y3 = T * k3 /\ S = T * ks /\ V = T * kv /\
-  |k1| <= 0x1.00001p0 /\ |k2| <= 0x1.00001p0 /\ |k3| <= 0x1.00001p0 /\ |ks| <= 0x1.00001p0 /\ |kv| <= 0x1.00001p0 /\
+  |k1| <= 0x1.0001p0 /\ |k2| <= 0x1.0001p0 /\ |k3| <= 0x1.0001p0 /\ |ks| <= 0x1.0001p0 /\ |kv| <= 0x1.0001p0 /\
   |f1| <= 1b-30 /\ |f2| <= 1b-30 /\ |f3| <= 1b-30 /\ |f4| <= 1b-30 /\ |f5| <= 1b-30
   -> (v - V) - T * 0x5.2p-24 <= 0 }
 

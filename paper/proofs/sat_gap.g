@@ -1,6 +1,6 @@
-# One coordinate of the gap of the centres, fl(fl(tb - ta) + fl(ob - oa)): within 5.2u T of the exact t + (OB - OA), t = tb - ta of
-# the exact inputs, O = R c exact, o = fl(O + d) once rounded. While the bodies can touch, |t|, |OA|, |OB|, |OB - OA| and
-# the gap itself are at most T (LEMMAS.md). With c = 0 the one rounding left is u T. Scaled to T in [1, 2].
+# One coordinate of the gap of the centres, fl(fl(tb - ta) + fl(ob - oa)): within 9.2u T of the exact G = t + (OB - OA), t = tb - ta
+# of the exact inputs, O = R c exact, o = fl(O + d) once rounded. |G| <= 3T (beyond, bodies and slabs are apart on any account),
+# |OA|, |OB| and |OB - OA| <= T, hence |t| <= 4T. With c = 0 only u |G| is left. Scaled to T in [1, 2].
 
 @rnd = float<24, ne>;
 oa = rnd(OA + da);
@@ -13,9 +13,9 @@ G = t + C;
 
 { T in [1, 2] /\
   t = T * k1 /\ OA = T * ka /\ OB = T * kb /\ C = T * k2 /\ G = T * kg /\
-  |k1| <= 1 /\ |ka| <= 1 /\ |kb| <= 1 /\ |k2| <= 1 /\ |kg| <= 1 /\
+  |k1| <= 4 /\ |ka| <= 1 /\ |kb| <= 1 /\ |k2| <= 1 /\ |kg| <= 3 /\
   |da| <= 1b-30 /\ |db| <= 1b-30 /\ |f1| <= 1b-30 /\ |f2| <= 1b-30 /\ |f3| <= 1b-30
-  -> (g - G) - T * 0x5.2p-24 <= 0 }
+  -> (g - G) - T * 0x9.2p-24 <= 0 }
 
 OA + da - OA -> da; OB + db - OB -> db;
 t + f1 - t -> f1;

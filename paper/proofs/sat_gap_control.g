@@ -1,4 +1,4 @@
-# Control of sat_gap.g, one notch tighter: 5u instead of 5.2u. Gappa must fail.
+# Control of sat_gap.g, one notch tighter: 9u instead of 9.2u. Gappa must fail.
 
 @rnd = float<24, ne>;
 oa = rnd(OA + da);
@@ -11,9 +11,9 @@ G = t + C;
 
 { T in [1, 2] /\
   t = T * k1 /\ OA = T * ka /\ OB = T * kb /\ C = T * k2 /\ G = T * kg /\
-  |k1| <= 1 /\ |ka| <= 1 /\ |kb| <= 1 /\ |k2| <= 1 /\ |kg| <= 1 /\
+  |k1| <= 4 /\ |ka| <= 1 /\ |kb| <= 1 /\ |k2| <= 1 /\ |kg| <= 3 /\
   |da| <= 1b-30 /\ |db| <= 1b-30 /\ |f1| <= 1b-30 /\ |f2| <= 1b-30 /\ |f3| <= 1b-30
-  -> (g - G) - T * 5b-24 <= 0 }
+  -> (g - G) - T * 9b-24 <= 0 }
 
 OA + da - OA -> da; OB + db - OB -> db;
 t + f1 - t -> f1;

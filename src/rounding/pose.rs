@@ -83,3 +83,41 @@ pub fn refit(lo: f64, hi: f64, reach: f32, t: [f32; 3]) -> (f32, f32) {
     let margin = REFIT_MARGIN * size + REFIT_FLOOR;
     (down(lo - margin), up(hi + margin))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_norm_and_sign_of_a_quaternion_is_the_same_rotation() {
+        let q = [0.5, -0.25, 0.125, 1.0];
+        for scale in [-1.0, 2.0f32.powi(60), -(2.0f32.powi(-100))] {
+            assert_eq!(rotation(q.map(|x| x * scale)), rotation(q));
+        }
+    }
+
+    #[test]
+    fn a_quarter_turn_about_z_takes_x_to_y() {
+        let turn = rotation([0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(
+            transform(&turn, [1.0, 2.0, 3.0], [10.0, 0.0, 0.0]),
+            [8.0, 1.0, 3.0]
+        );
+        let basis = [[0.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5]];
+        assert_eq!(
+            world_axes(&turn, basis),
+            [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+        );
+    }
+
+    #[test]
+    fn a_refitted_extent_grows_with_the_distance_from_the_origin() {
+        let width = |t: f32| {
+            let (lo, hi) = refit(-1.0, 1.0, 1.0, [0.0, t, 0.0]);
+            f64::from(hi) - f64::from(lo)
+        };
+        assert!(width(0.0) < 2.000_001);
+        // 2⁶⁰ away the f64 coordinates themselves are 2⁷ apart.
+        assert!(width(-(2.0f32.powi(60))) > 2.0 * exp2(60) * REFIT_MARGIN);
+    }
+}

@@ -50,3 +50,31 @@ pub fn world_ball(rotation: &Rotation, t: [f32; 3], c: [f32; 3], r: f32) -> ([f3
         up(f64::from(r) + 1.0001 * moved + CENTRE_ERROR * size + CENTRE_FLOOR),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inflation_is_eight_u_and_the_floor() {
+        assert_eq!(inflate_radius(0.0), RADIUS_FLOOR);
+        assert_eq!(inflate_radius(1.0), 1.0 + 4.0 * f32::EPSILON);
+        assert!(inflate_radius(f32::NAN).is_nan());
+    }
+
+    #[test]
+    fn a_ball_at_the_body_origin_moves_as_a_copy() {
+        let turn = crate::rounding::pose::rotation([0.3, -0.2, 0.9, 0.1]);
+        let t = [1.0e-40, -7.25, 3.0e17];
+        assert_eq!(world_ball(&turn, t, [0.0, -0.0, 0.0], 1.5), (t, 1.5));
+    }
+
+    #[test]
+    fn a_ball_beside_the_origin_takes_up_the_rounding_of_its_centre() {
+        let turn = crate::rounding::pose::rotation([0.0, 0.0, 0.0, 1.0]);
+        let (centre, radius) = world_ball(&turn, [16_777_216.0, 0.0, 0.0], [0.75, 0.0, 0.0], 1.0);
+        // 2²⁴ + ¾ rounds to 2²⁴: the ball must reach ¾ farther to stay around the exact one.
+        assert_eq!(centre, [16_777_216.0, 0.0, 0.0]);
+        assert!((1.75..1.751).contains(&radius), "{radius}");
+    }
+}

@@ -1,0 +1,116 @@
+//! Attacks on the sphere test: the rounding of d² against s², the floor, and what finders must widen by.
+
+use sdop::rounding::U;
+use sdop::rounding::sphere::{RADIUS_FACTOR, inflate_radius};
+
+use super::climb::{Random, climb};
+use super::machine::F;
+
+/// (d², t) as the culler computes them from centres and stored radii.
+fn test<const FLUSH: bool>(a: [f32; 3], b: [f32; 3], ra: f32, rb: f32) -> (F<FLUSH>, F<FLUSH>) {
+    let [x, y, z] = [0, 1, 2].map(|i| F::<FLUSH>::new(b[i]) - F::new(a[i]));
+    let s = F::new(rb) + F::new(ra);
+    ((x * x + y * y) + z * z, s * s)
+}
+
+fn squared_distance(a: [f32; 3], b: [f32; 3]) -> f64 {
+    (0..3)
+        .map(|i| (f64::from(b[i]) - f64::from(a[i])).powi(2))
+        .sum()
+}
+
+fn start(random: &mut Random) -> [f32; 8] {
+    std::array::from_fn(|i| {
+        if i < 6 {
+            random.signed()
+        } else {
+            random.between(0.25, 1.0)
+        }
+    })
+}
+
+/// d²/D ÷ t/Q − 1 in u: what the stored radii must gain.
+pub fn decision(seed: u64, evaluations: u64) -> f64 {
+    climb(
+        seed,
+        evaluations,
+        start,
+        |&[ax, ay, az, bx, by, bz, ra, rb]| {
+            let (a, b) = ([ax, ay, az], [bx, by, bz]);
+            let (d2, t) = test::<false>(a, b, ra, rb);
+            let s = f64::from(ra) + f64::from(rb);
+            (d2.real() / squared_distance(a, b) * (s * s / t.real()) - 1.0) / U
+        },
+    )
+    .0
+}
+
+/// √D/(R_A + R_B) − 1 in u, for d² = t: how far beyond the stored radii a pair may be and still be reported.
+pub fn reported(seed: u64, evaluations: u64) -> f64 {
+    climb(
+        seed,
+        evaluations,
+        start,
+        |&[ax, ay, az, bx, by, bz, ra, rb]| {
+            let (a, b) = ([ax, ay, az], [bx, by, bz]);
+            let (d2, t) = test::<false>(a, b, ra, rb);
+            let s = f64::from(ra) + f64::from(rb);
+            ((squared_distance(a, b) / d2.real() * (t.real() / (s * s))).sqrt() - 1.0) / U
+        },
+    )
+    .0
+}
+
+/// How near to being culled touching pairs come with radii as the culler inflates them: 1 culled, below 0 not.
+pub fn touching(seed: u64, evaluations: u64) -> f64 {
+    touching_with(seed, evaluations, inflate_radius)
+}
+
+/// The same with radii inflated otherwise.
+pub fn touching_with(seed: u64, evaluations: u64, inflated: impl Fn(f32) -> f32) -> f64 {
+    let start = |random: &mut Random| touching_start(random, 1.0);
+    climb(seed, evaluations, start, |p| gain::<false>(p, &inflated)).0
+}
+
+/// The same at sizes from 2⁻⁵⁰ down to 2⁻⁹⁵, where underflow and the floor matter.
+pub fn tiny<const FLUSH: bool>(seed: u64, evaluations: u64, floor: f32) -> f64 {
+    let start = |random: &mut Random| {
+        let exponent = random.below(45) as i32 + 50;
+        touching_start(random, 2.0f32.powi(-exponent))
+    };
+    let inflated = |r: f32| (F::<FLUSH>::new(r) * F::new(RADIUS_FACTOR) + F::new(floor)).get();
+    climb(seed, evaluations, start, |p| gain::<FLUSH>(p, inflated)).0
+}
+
+/// Centres and radii of spheres that barely touch.
+fn touching_start(random: &mut Random, scale: f32) -> [f32; 8] {
+    let [ax, ay, az, bx, by, bz] = [(); 6].map(|()| random.signed() * scale);
+    let length = squared_distance([ax, ay, az], [bx, by, bz]).sqrt();
+    let share = f64::from(random.between(0.0, 1.0));
+    let (ra, rb) = (
+        (length * share) as f32,
+        ((length * (1.0 - share)) as f32).next_up(),
+    );
+    [ax, ay, az, bx, by, bz, ra, rb]
+}
+
+fn gain<const FLUSH: bool>(
+    &[ax, ay, az, bx, by, bz, ra, rb]: &[f32; 8],
+    inflated: impl Fn(f32) -> f32,
+) -> f64 {
+    let (a, b, ra, rb) = ([ax, ay, az], [bx, by, bz], ra.abs(), rb.abs());
+    let reach = f64::from(ra) + f64::from(rb);
+    let squared = squared_distance(a, b);
+    // A product of f64 rounds, so a touch is believed only with 2⁻⁵⁰ to spare.
+    if squared > reach * reach * (1.0 - 4.0 * f64::EPSILON) {
+        return f64::NEG_INFINITY;
+    }
+    let (d2, t) = test::<FLUSH>(a, b, inflated(ra), inflated(rb));
+    let [d2, t] = [d2.real(), t.real().max(1e-60)];
+    if d2 > t {
+        return 1.0;
+    }
+    // d² and t are few floats apart: the error behind them is what leads over the plateaus.
+    let error = (d2 / t) * (reach * reach / squared).min(2.0);
+    (d2 / t - 2.0) + 0.001 * error
+}
