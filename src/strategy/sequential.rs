@@ -51,20 +51,28 @@ fn work(
         out,
         block,
         selected,
+        passed,
         first,
         refined,
         refining,
     } = worker;
     let mut drain = |block: &mut PairList| {
         first.hits += block.len() as u64;
-        let pairs = match interest {
-            None => &*block,
+        match interest {
+            None => refine.test([block.first(), block.second()], refined, refining, out),
             Some(interest) => {
-                select(block, refine.body, interest, selected, out);
-                &*selected
+                let chosen = Chosen {
+                    pairs: block,
+                    body: refine.body,
+                    interest,
+                };
+                chosen.select(selected);
+                passed.clear();
+                let pairs = [selected.first(), selected.second()];
+                refine.test(pairs, refined, refining, passed);
+                chosen.merge(passed, out);
             }
-        };
-        refine.test([pairs.first(), pairs.second()], refined, refining, out);
+        }
         block.clear();
     };
     let tests = source.drained(parts, block, BLOCK, &mut drain);
@@ -72,21 +80,42 @@ fn work(
     first.tests += tests;
 }
 
-/// Splits pairs of places: those with a body of interest to `selected`, the rest as bodies to `out`.
-fn select(
-    pairs: &PairList,
-    body: &[u32],
-    interest: &[bool],
-    selected: &mut PairList,
-    out: &mut PairList,
-) {
-    selected.clear();
-    for [i, j] in pairs.iter() {
-        let [a, b] = [i, j].map(|place| body[place as usize]);
-        if interest[a as usize] || interest[b as usize] {
-            selected.push(i, j);
-        } else {
-            out.push(a, b);
+/// Pairs of places, some of which have a body of interest.
+struct Chosen<'a> {
+    pairs: &'a PairList,
+    /// The body in each place.
+    body: &'a [u32],
+    interest: &'a [bool],
+}
+
+impl Chosen<'_> {
+    /// Every pair with its bodies, and whether one of them is of interest.
+    fn judged(&self) -> impl Iterator<Item = ([u32; 2], [u32; 2], bool)> {
+        self.pairs.iter().map(|places| {
+            let bodies = places.map(|place| self.body[place as usize]);
+            let chosen = bodies.iter().any(|&body| self.interest[body as usize]);
+            (places, bodies, chosen)
+        })
+    }
+
+    /// Lists the pairs that are to be refined.
+    fn select(&self, selected: &mut PairList) {
+        selected.clear();
+        for ([i, j], _, chosen) in self.judged() {
+            if chosen {
+                selected.push(i, j);
+            }
+        }
+    }
+
+    /// Appends, as bodies, the pairs that weren't to be refined and those that `passed`, in their common order: a list
+    /// must not show where blocks, and so threads, begin.
+    fn merge(&self, passed: &PairList, out: &mut PairList) {
+        let mut passed = passed.iter().peekable();
+        for (_, [a, b], chosen) in self.judged() {
+            if !chosen || passed.next_if_eq(&[a, b]).is_some() {
+                out.push(a, b);
+            }
         }
     }
 }
@@ -94,12 +123,26 @@ fn select(
 /// The same from a list of all candidates.
 fn flow_by_list(stage: &mut Stage<'_>, first: First<'_>, interest: Option<&[bool]>) -> Done {
     let mut done = stage.list_candidates(first);
-    if let Some(interest) = interest {
-        let mut selected = PairList::default();
-        let body = &stage.places.body;
-        select(stage.candidates, body, interest, &mut selected, stage.out);
-        *stage.candidates = selected;
+    let Some(interest) = interest else {
+        done.refined = stage.refine_candidates();
+        return done;
+    };
+    let mut selected = PairList::default();
+    Chosen {
+        pairs: stage.candidates,
+        body: &stage.places.body,
+        interest,
     }
+    .select(&mut selected);
+    let listed = std::mem::replace(stage.candidates, selected);
     done.refined = stage.refine_candidates();
+    let passed = std::mem::take(stage.out);
+    Chosen {
+        pairs: &listed,
+        body: &stage.places.body,
+        interest,
+    }
+    .merge(&passed, stage.out);
+    *stage.candidates = listed;
     done
 }

@@ -15,6 +15,7 @@ pub(crate) struct Worker {
     pub out: PairList,
     pub block: PairList,
     pub selected: PairList,
+    pub passed: PairList,
     pub first: VolumeCounters,
     pub refined: VolumeCounters,
     /// Seconds spent in the or-DOP test.
