@@ -16,7 +16,7 @@ use sdop::simd::Level;
 use sdop::volume::{DirectionSet, Shape, ShapeSpec};
 use support::{random_quaternion, shapes};
 
-const FINDERS: [Finder; 1] = [Finder::Grid];
+const FINDERS: [Finder; 2] = [Finder::Grid, Finder::Sweep];
 
 /// Strategies with each first test.
 const STRATEGIES: [Strategy; 6] = [

@@ -3,6 +3,8 @@
 //! At 1.5 sphere partners a body a run holds one candidate in the mean. A vector a run then leaves 15 of 16 lanes idle
 //! (90 cycles a body, measured); written one behind the other, the runs of sixteen bodies fill five vectors (19 cycles).
 
+use std::ops::Range;
+
 use crate::simd::MAX_WIDTH;
 
 /// Slots whose candidates share a block.
@@ -11,22 +13,30 @@ pub const BLOCK_BODIES: usize = 16;
 /// Candidates that are written at once; a run's surplus is overwritten by the next.
 const STRIDE: usize = 8;
 
-/// Room for candidates.
-const CAPACITY: usize = 1024;
+/// The longest run whose slots are written down; longer ones fill vectors by themselves.
+const LONGEST_WRITTEN: usize = 2 * STRIDE;
 
-/// Candidate pairs of up to sixteen neighbouring slots: `slot·16 + lane` stands for (first slot + lane, slot).
+/// Runs that a block has room for.
+const RUNS: usize = 160;
+
+/// Room for codes.
+const CAPACITY: usize = RUNS * LONGEST_WRITTEN;
+
+/// The most candidates in a block.
+pub const MOST_CANDIDATES: usize = CAPACITY;
+
+/// Candidate pairs of up to sixteen neighbouring slots.
 #[derive(Clone, Debug)]
 pub struct Block {
     first: usize,
     len: usize,
     codes: [u32; CAPACITY + MAX_WIDTH],
+    long_len: usize,
+    long: [(u32, u32, u32); RUNS],
 }
 
 impl Block {
-    /// The longest run that may be pushed; longer ones fill vectors by themselves.
-    pub const LONGEST_RUN: usize = 16;
-
-    /// An empty block for the slots from `first` on.
+    /// An empty block.
     #[inline(always)]
     #[allow(
         clippy::new_without_default,
@@ -37,6 +47,8 @@ impl Block {
             first: 0,
             len: 0,
             codes: [0; CAPACITY + MAX_WIDTH],
+            long_len: 0,
+            long: [(0, 0, 0); RUNS],
         }
     }
 
@@ -46,55 +58,84 @@ impl Block {
         self.first
     }
 
-    /// The codes, padded by a vector of valid ones.
+    /// Candidates in short runs: `slot·16 + lane` stands for the pair (first slot + lane, slot).
     #[inline(always)]
     pub fn codes(&self) -> &[u32] {
+        &self.codes[..self.len]
+    }
+
+    /// The same and a vector of whatever codes behind them.
+    #[inline(always)]
+    pub fn padded_codes(&self) -> &[u32] {
         &self.codes[..self.len + MAX_WIDTH]
     }
 
-    /// Number of candidates.
+    /// Long runs, each with the slot that it is for.
     #[inline(always)]
-    pub fn len(&self) -> usize {
-        self.len
+    pub fn long_runs(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
+        let long = &self.long[..self.long_len];
+        long.iter()
+            .map(|&(i, start, end)| (i as usize, start as usize..end as usize))
     }
 
-    /// Whether there is none.
+    /// Empties the block, for the slots from `first` on, and lets a pen write its runs.
     #[inline(always)]
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
+    pub fn restart(&mut self, first: usize) -> Pen<'_> {
+        self.first = first;
+        Pen {
+            block: self,
+            len: 0,
+            long_len: 0,
+        }
+    }
+}
+
+/// Writes runs into a block. Its place is a pair of local numbers, which registers can hold: kept in the block, each run
+/// waits for the last one's store (25 cycles a body, measured).
+pub struct Pen<'a> {
+    block: &'a mut Block,
+    len: usize,
+    long_len: usize,
+}
+
+impl Pen<'_> {
+    /// Appends the slots of `run` as candidates of `slot`, one of the sixteen.
+    #[inline(always)]
+    pub fn push(&mut self, slot: usize, run: Range<u32>) {
+        let length = run.end.wrapping_sub(run.start) as usize;
+        let code = run.start << 4 | (slot - self.block.first) as u32;
+        self.write(0, code);
+        if length <= STRIDE {
+            self.len += length;
+        } else if length <= LONGEST_WRITTEN {
+            self.write(STRIDE, code);
+            self.len += length;
+        } else {
+            self.block.long[self.long_len] = (slot as u32, run.start, run.end);
+            self.long_len += 1;
+        }
     }
 
-    /// Starts over at the slots from `first` on.
     #[inline(always)]
-    pub fn restart(&mut self, first: usize) {
-        (self.first, self.len) = (first, 0);
+    fn write(&mut self, skip: usize, code: u32) {
+        let at = self.len + skip;
+        if let Some(codes) = self.block.codes.get_mut(at..at + STRIDE) {
+            for (i, to) in codes.iter_mut().enumerate() {
+                *to = code.wrapping_add(((skip + i) << 4) as u32);
+            }
+        }
     }
 
     /// Whether `runs` more runs might not find room.
     #[inline(always)]
     pub fn is_full(&self, runs: usize) -> bool {
-        self.len + runs * Self::LONGEST_RUN > CAPACITY
+        self.len + runs * LONGEST_WRITTEN > CAPACITY || self.long_len + runs > RUNS
     }
 
-    /// Appends the slots from `start` on, `length` of them, as candidates of `lane`.
+    /// Closes the block.
     #[inline(always)]
-    pub fn push(&mut self, lane: usize, start: u32, length: usize) {
-        debug_assert!(lane < BLOCK_BODIES && length <= Self::LONGEST_RUN);
-        let code = start << 4 | lane as u32;
-        self.write(0, code);
-        if length > STRIDE {
-            self.write(STRIDE, code);
-        }
-        self.len += length;
-    }
-
-    #[inline(always)]
-    fn write(&mut self, skip: usize, code: u32) {
-        if let Some(codes) = self.codes[self.len + skip..].first_chunk_mut::<STRIDE>() {
-            for (i, to) in codes.iter_mut().enumerate() {
-                *to = code + ((skip + i) << 4) as u32;
-            }
-        }
+    pub fn done(self) {
+        (self.block.len, self.block.long_len) = (self.len, self.long_len);
     }
 }
 
@@ -105,21 +146,40 @@ mod tests {
     #[test]
     fn runs_of_any_length_follow_each_other_without_gaps() {
         let mut block = Block::new();
-        block.restart(64);
-        let mut expected = Vec::new();
-        for (lane, length) in [0, 1, 7, 8, 9, 16, 0, 15].into_iter().enumerate() {
-            assert!(!block.is_full(1));
-            block.push(lane, 100 * lane as u32, length);
-            expected.extend((0..length).map(|i| (100 * lane + i) << 4 | lane));
+        let mut pen = block.restart(64);
+        let (mut short, mut long) = (Vec::new(), Vec::new());
+        for (lane, length) in [0, 1, 7, 8, 9, 16, 0, 17, 15, 300, 2]
+            .into_iter()
+            .enumerate()
+        {
+            assert!(!pen.is_full(1));
+            let start = 1000 * lane as u32;
+            pen.push(64 + lane, start..start + length);
+            if length <= 16 {
+                short.extend((start..start + length).map(|slot| (slot << 4) | lane as u32));
+            } else {
+                long.push((64 + lane, start as usize..(start + length) as usize));
+            }
         }
-        let codes: Vec<usize> = block.codes()[..block.len()]
-            .iter()
-            .map(|&code| code as usize)
-            .collect();
-        assert_eq!(codes, expected);
-        while !block.is_full(1) {
-            block.push(15, 7, 16);
+        pen.done();
+        assert_eq!(block.codes(), short);
+        assert_eq!(block.long_runs().collect::<Vec<_>>(), long);
+        assert_eq!(block.padded_codes().len(), short.len() + MAX_WIDTH);
+    }
+
+    #[test]
+    fn a_block_takes_what_it_promises() {
+        let mut block = Block::new();
+        for length in [16, 17] {
+            let mut pen = block.restart(0);
+            let mut runs = 0;
+            while !pen.is_full(1) {
+                pen.push(15, 7..7 + length);
+                runs += 1;
+            }
+            pen.done();
+            assert_eq!(runs, RUNS);
         }
-        assert!(block.len() > CAPACITY - 32 && block.codes().len() == block.len() + MAX_WIDTH);
+        assert!(block.codes().is_empty());
     }
 }

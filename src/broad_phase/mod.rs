@@ -15,17 +15,19 @@ mod all_pairs;
 mod block;
 mod bounds;
 mod grid;
+mod sweep;
 
 pub use all_pairs::AllPairs;
-pub use block::{BLOCK_BODIES, Block};
+pub use block::{BLOCK_BODIES, Block, MOST_CANDIDATES, Pen};
 pub use bounds::Bounds;
 pub use grid::Grid;
+pub use sweep::Sweep;
 
 /// The strategy's first volume test.
 pub trait FirstTest {
     /// Slot `i` against each slot of `run`.
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>);
-    /// Scattered pairs of slots.
+    /// Scattered pairs of slots, but not the block's long runs.
     fn block<L: Lanes>(&mut self, l: L, block: &Block);
 }
 
@@ -75,6 +77,18 @@ impl Slots {
     }
 }
 
+/// Sixteen balls as columns.
+#[inline(always)]
+pub(crate) fn columns<L: Lanes>(l: L, balls: &[[f32; 4]]) -> [[f32; BLOCK_BODIES]; 4] {
+    let mut columns = [[0.0; BLOCK_BODIES]; 4];
+    for start in (0..BLOCK_BODIES).step_by(L::WIDTH) {
+        for (column, lanes) in columns.iter_mut().zip(l.load_quads(&balls[start..])) {
+            l.store(lanes, &mut column[start..]);
+        }
+    }
+    columns
+}
+
 /// A pair finder with its bodies arranged.
 #[derive(Clone, Debug)]
 pub enum PairFinder {
@@ -82,6 +96,8 @@ pub enum PairFinder {
     AllPairs(AllPairs),
     /// Cells.
     Grid(Grid),
+    /// Sorted ends along an axis.
+    Sweep(Sweep),
 }
 
 /// Which places take other bodies.
@@ -101,7 +117,8 @@ impl PairFinder {
     pub fn new(finder: Finder) -> Self {
         match finder {
             Finder::AllPairs => Self::AllPairs(AllPairs::default()),
-            Finder::Grid | Finder::Sweep | Finder::Auto => Self::Grid(Grid::default()),
+            Finder::Grid | Finder::Auto => Self::Grid(Grid::default()),
+            Finder::Sweep => Self::Sweep(Sweep::default()),
         }
     }
 
@@ -117,13 +134,14 @@ impl PairFinder {
         match self {
             Self::AllPairs(_) => Reorder::None,
             Self::Grid(finder) => finder.reorder(places.moving, balls, names, order),
+            Self::Sweep(finder) => finder.reorder(places.moving, names, order),
         }
     }
 
     /// Hears how many candidates the last frame had, and may plan anew.
     pub fn observe(&mut self, candidates: u64) {
         match self {
-            Self::AllPairs(_) => {}
+            Self::AllPairs(_) | Self::Sweep(_) => {}
             Self::Grid(finder) => finder.observe(candidates),
         }
     }
@@ -134,6 +152,7 @@ impl PairFinder {
         match self {
             Self::AllPairs(finder) => finder.arrange(places, balls, names),
             Self::Grid(finder) => finder.arrange(level, balls, names),
+            Self::Sweep(finder) => finder.arrange(places, balls, names),
         }
     }
 
@@ -143,6 +162,7 @@ impl PairFinder {
         match self {
             Self::AllPairs(finder) => finder.slots(),
             Self::Grid(finder) => finder.slots(),
+            Self::Sweep(finder) => finder.slots(),
         }
     }
 
@@ -152,6 +172,7 @@ impl PairFinder {
         match self {
             Self::AllPairs(finder) => finder.parts(),
             Self::Grid(finder) => finder.parts(),
+            Self::Sweep(finder) => finder.parts(),
         }
     }
 
@@ -161,6 +182,7 @@ impl PairFinder {
         match self {
             Self::AllPairs(finder) => finder.find(l, parts, test),
             Self::Grid(finder) => finder.find(l, parts, test),
+            Self::Sweep(finder) => finder.find(l, parts, test),
         }
     }
 }

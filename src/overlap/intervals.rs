@@ -62,12 +62,13 @@ impl IntervalSlots {
     /// a vector more. Returns their number.
     #[inline(always)]
     pub fn test_block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
+        let (codes, count) = (block.padded_codes(), block.codes().len());
         let (mut start, mut found) = (0, 0);
-        while start < block.len() {
-            let code = l.load_u32(&block.codes()[start..]);
+        while start < count {
+            let code = l.load_u32(&codes[start..]);
             let (j, lane) = l.split_u32(code);
             let i = l.add_u32(lane, l.splat_u32(block.first() as u32));
-            let mut alive = l.bits(l.first(block.len() - start));
+            let mut alive = l.bits(l.first(count - start));
             for (lo, hi) in self.lo.iter().zip(&self.hi) {
                 let above = l.gt(l.gather(lo, j), l.gather(hi, i));
                 let below = l.gt(l.gather(lo, i), l.gather(hi, j));

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::broad_phase::{BLOCK_BODIES, Block, Slots};
+use crate::broad_phase::{BLOCK_BODIES, Block, Slots, columns};
 use crate::simd::{LANES, Lanes};
 
 /// Lists the slots of `run` whose spheres may touch that of slot `i` at the front of `hits`, which has room for the run and
@@ -40,11 +40,11 @@ pub fn test_run<L: Lanes>(
 #[inline(always)]
 pub fn test_block<L: Lanes>(l: L, slots: &Slots, block: &Block, hits: &mut [u32]) -> usize {
     let ours = columns(l, &slots.balls[block.first()..][..BLOCK_BODIES]);
-    let codes = block.codes();
+    let (codes, count) = (block.padded_codes(), block.codes().len());
     let (mut start, mut found) = (0, 0);
-    while start < block.len() {
+    while start < count {
         let code = l.load_u32(&codes[start..]);
-        let (slot, lane) = l.split_u32(code);
+        let (_, lane) = l.split_u32(code);
         let [x, y, z, r] = &ours;
         let one = [
             l.lookup_16(x, lane),
@@ -52,8 +52,8 @@ pub fn test_block<L: Lanes>(l: L, slots: &Slots, block: &Block, hits: &mut [u32]
             l.lookup_16(z, lane),
             l.lookup_16(r, lane),
         ];
-        let other = l.gather_quads(&slots.balls, slot);
-        let hit = touching(l, one, other, block.len() - start);
+        let other = l.gather_quads(&slots.balls, &codes[start..]);
+        let hit = touching(l, one, other, count - start);
         l.compress(hit, code, &mut hits[found..]);
         found += hit.count_ones() as usize;
         start += L::WIDTH;
@@ -68,16 +68,4 @@ fn touching<L: Lanes>(l: L, one: [L::F; 4], other: [L::F; 4], count: usize) -> u
     let s = other[3] + one[3];
     let apart = l.gt((dx * dx + dy * dy) + dz * dz, s * s);
     !l.bits(apart) & l.bits(l.first(count))
-}
-
-/// Sixteen balls as columns.
-#[inline(always)]
-fn columns<L: Lanes>(l: L, balls: &[[f32; 4]]) -> [[f32; BLOCK_BODIES]; 4] {
-    let mut columns = [[0.0; BLOCK_BODIES]; 4];
-    for start in (0..BLOCK_BODIES).step_by(L::WIDTH) {
-        for (column, lanes) in columns.iter_mut().zip(l.load_quads(&balls[start..])) {
-            l.store(lanes, &mut column[start..]);
-        }
-    }
-    columns
 }

@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::{Lanes, Sealed, float_operators};
+use super::lanes::{Lanes, Sealed, clamp_codes, float_operators, last_code, quad_of};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has AVX2.
@@ -236,17 +236,38 @@ impl Lanes for Avx2 {
     fn load_quads(self, from: &[[f32; 4]]) -> [F8; 4] {
         let from = &from[..8];
         // SAFETY: 8 quads are there, and the token proves AVX.
-        unsafe { transpose_quads(std::array::from_fn(|lane| from[lane].as_ptr())) }
+        unsafe {
+            let mut at = [from.as_ptr().cast(); 8];
+            for (lane, at) in at.iter_mut().enumerate() {
+                *at = from[lane].as_ptr();
+            }
+            transpose_quads(at)
+        }
     }
     #[inline(always)]
-    fn gather_quads(self, quads: &[[f32; 4]], index: I8) -> [F8; 4] {
-        let last = quads.len() as u32 - 1;
-        let mut lanes = [0u32; 8];
-        // SAFETY: every index is clamped to the last quad; the token proves AVX2.
+    fn gather_quads(self, quads: &[[f32; 4]], codes: &[u32]) -> [F8; 4] {
+        let limit = last_code(quads.len());
+        let codes = &codes[..8];
+        // SAFETY: 8 codes are there, and the token proves AVX2.
+        let past_the_end = unsafe {
+            let limit = _mm256_set1_epi32(limit as i32);
+            // Codes are compared by how far they exceed the limit: the tier has no unsigned comparison.
+            let codes = _mm256_loadu_si256(codes.as_ptr().cast());
+            let over = _mm256_sub_epi32(_mm256_max_epu32(codes, limit), limit);
+            _mm256_testz_si256(over, over) == 0
+        };
+        let mut clamped = [0; 8];
+        let codes = match past_the_end {
+            false => codes,
+            true => clamp_codes(codes, limit, &mut clamped),
+        };
+        // SAFETY: no code exceeds that of the last quad, so every pointer leads to a quad; the token proves AVX2.
         unsafe {
-            let index = _mm256_min_epu32(index.0, _mm256_set1_epi32(last as i32));
-            _mm256_storeu_si256(lanes.as_mut_ptr().cast(), index);
-            transpose_quads(lanes.map(|lane| quads.as_ptr().add(lane as usize).cast()))
+            let mut at = [quads.as_ptr().cast(); 8];
+            for (lane, at) in at.iter_mut().enumerate() {
+                *at = quad_of(quads, codes[lane]);
+            }
+            transpose_quads(at)
         }
     }
     #[inline(always)]
@@ -273,8 +294,11 @@ impl Lanes for Avx2 {
 unsafe fn transpose_quads(quads: [*const f32; 8]) -> [F8; 4] {
     // SAFETY: the caller vouches for the feature and the pointers.
     unsafe {
-        let pair = |i: usize| _mm256_loadu2_m128(quads[i + 4], quads[i]);
-        let [a, b, c, d] = [pair(0), pair(1), pair(2), pair(3)];
+        let mut r = [_mm256_setzero_ps(); 4];
+        for (i, r) in r.iter_mut().enumerate() {
+            *r = _mm256_loadu2_m128(quads[i + 4], quads[i]);
+        }
+        let [a, b, c, d] = r;
         let [ab_lo, ab_hi] = [_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b)];
         let [cd_lo, cd_hi] = [_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d)];
         [

@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::{Lanes, Sealed, float_operators};
+use super::lanes::{Lanes, Sealed, clamp_codes, float_operators, last_code, quad_of};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has AVX-512 F, BW, DQ and VL.
@@ -204,17 +204,36 @@ impl Lanes for Avx512 {
     fn load_quads(self, from: &[[f32; 4]]) -> [F16; 4] {
         let from = &from[..16];
         // SAFETY: 16 quads are there, and the token proves AVX-512 F.
-        unsafe { transpose_quads(std::array::from_fn(|lane| from[lane].as_ptr())) }
+        unsafe {
+            let mut at = [from.as_ptr().cast(); 16];
+            for (lane, at) in at.iter_mut().enumerate() {
+                *at = from[lane].as_ptr();
+            }
+            transpose_quads(at)
+        }
     }
     #[inline(always)]
-    fn gather_quads(self, quads: &[[f32; 4]], index: I16) -> [F16; 4] {
-        let last = quads.len() as u32 - 1;
-        let mut lanes = [0u32; 16];
-        // SAFETY: every index is clamped to the last quad; the token proves AVX-512 F.
+    fn gather_quads(self, quads: &[[f32; 4]], codes: &[u32]) -> [F16; 4] {
+        let limit = last_code(quads.len());
+        let codes = &codes[..16];
+        // SAFETY: 16 codes are there, and the token proves AVX-512 F.
+        let past_the_end = unsafe {
+            let limit = _mm512_set1_epi32(limit as i32);
+            let codes = _mm512_loadu_epi32(codes.as_ptr().cast());
+            _mm512_cmpgt_epu32_mask(codes, limit) != 0
+        };
+        let mut clamped = [0; 16];
+        let codes = match past_the_end {
+            false => codes,
+            true => clamp_codes(codes, limit, &mut clamped),
+        };
+        // SAFETY: no code exceeds that of the last quad, so every pointer leads to a quad; the token proves AVX-512 F.
         unsafe {
-            let index = _mm512_min_epu32(index.0, _mm512_set1_epi32(last as i32));
-            _mm512_storeu_epi32(lanes.as_mut_ptr().cast(), index);
-            transpose_quads(lanes.map(|lane| quads.as_ptr().add(lane as usize).cast()))
+            let mut at = [quads.as_ptr().cast(); 16];
+            for (lane, at) in at.iter_mut().enumerate() {
+                *at = quad_of(quads, codes[lane]);
+            }
+            transpose_quads(at)
         }
     }
     #[inline(always)]
@@ -238,13 +257,14 @@ impl Lanes for Avx512 {
 unsafe fn transpose_quads(quads: [*const f32; 16]) -> [F16; 4] {
     // SAFETY: the caller vouches for the feature and the pointers.
     unsafe {
-        let quarters = |i: usize| {
+        let mut r = [_mm512_setzero_ps(); 4];
+        for (i, r) in r.iter_mut().enumerate() {
             let first = _mm512_castps128_ps512(_mm_loadu_ps(quads[i]));
             let second = _mm512_insertf32x4::<1>(first, _mm_loadu_ps(quads[i + 4]));
             let third = _mm512_insertf32x4::<2>(second, _mm_loadu_ps(quads[i + 8]));
-            _mm512_insertf32x4::<3>(third, _mm_loadu_ps(quads[i + 12]))
-        };
-        let [a, b, c, d] = [quarters(0), quarters(1), quarters(2), quarters(3)];
+            *r = _mm512_insertf32x4::<3>(third, _mm_loadu_ps(quads[i + 12]));
+        }
+        let [a, b, c, d] = r;
         let [ab_lo, ab_hi] = [_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b)];
         let [cd_lo, cd_hi] = [_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d)];
         [

@@ -75,11 +75,41 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     /// The first `WIDTH` quads of `from`, which must have that many, as columns: element c of the result holds number c of
     /// every quad.
     fn load_quads(self, from: &[[f32; 4]]) -> [Self::F; 4];
-    /// Quads `quads[index]` of a non-empty table as columns; an index past the end reads the last quad.
-    fn gather_quads(self, quads: &[[f32; 4]], index: Self::I) -> [Self::F; 4];
+    /// Quads of a non-empty table as columns: of each of the first `WIDTH` codes, of which there must be that many, the
+    /// upper 28 bits are the index (see [`Self::split_u32`]). An index past the end reads the last quad.
+    fn gather_quads(self, quads: &[[f32; 4]], codes: &[u32]) -> [Self::F; 4];
     /// Rows `rows[pick[lane]]` as columns: element c of the result holds number c of every picked row.
     /// `pick` has at least `WIDTH` elements.
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW];
+}
+
+/// The greatest code that leads to a quad of a table with `len` quads, of which there is one at least.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(super) fn last_code(len: usize) -> u32 {
+    assert!(len > 0, "the table has a quad");
+    (len.min(1 << 28) as u32 - 1) << 4 | 15
+}
+
+/// Copies codes to `to`, none of them above `limit`.
+#[cfg(target_arch = "x86_64")]
+#[cold]
+pub(super) fn clamp_codes<'a>(codes: &[u32], limit: u32, to: &'a mut [u32]) -> &'a [u32] {
+    for (to, &code) in to.iter_mut().zip(codes) {
+        *to = code.min(limit);
+    }
+    to
+}
+
+/// The quad that a code leads to: sixteen bytes a quad are sixteen codes, so no shift is needed.
+///
+/// # Safety
+/// The code is not above [`last_code`].
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(super) unsafe fn quad_of(quads: &[[f32; 4]], code: u32) -> *const f32 {
+    // SAFETY: the caller vouches that the index is below the number of quads.
+    unsafe { quads.as_ptr().byte_add((code & !15) as usize) }.cast()
 }
 
 /// Implements the arithmetic operators of a tier's vector by its intrinsics.

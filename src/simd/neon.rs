@@ -214,13 +214,10 @@ impl Lanes for Neon {
         [F4(a), F4(b), F4(c), F4(d)]
     }
     #[inline(always)]
-    fn gather_quads(self, quads: &[[f32; 4]], index: I4) -> [F4; 4] {
-        let last = quads.len() - 1;
-        self.load_quads(
-            &self
-                .array(index)
-                .map(|entry| quads[(entry as usize).min(last)]),
-        )
+    fn gather_quads(self, quads: &[[f32; 4]], codes: &[u32]) -> [F4; 4] {
+        let (codes, last) = (&codes[..4], quads.len() - 1);
+        let quad = |lane: usize| quads[((codes[lane] >> 4) as usize).min(last)];
+        self.load_quads(&[quad(0), quad(1), quad(2), quad(3)])
     }
     #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F4; ROW] {

@@ -184,8 +184,8 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
         from[0].map(F1::of)
     }
     #[inline(always)]
-    fn gather_quads(self, quads: &[[f32; 4]], index: u32) -> [Self::F; 4] {
-        quads[(index as usize).min(quads.len() - 1)].map(F1::of)
+    fn gather_quads(self, quads: &[[f32; 4]], codes: &[u32]) -> [Self::F; 4] {
+        quads[((codes[0] >> 4) as usize).min(quads.len() - 1)].map(F1::of)
     }
     #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW] {

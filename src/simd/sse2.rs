@@ -221,12 +221,10 @@ impl Lanes for Sse2 {
         self.transposed([&from[0], &from[1], &from[2], &from[3]])
     }
     #[inline(always)]
-    fn gather_quads(self, quads: &[[f32; 4]], index: I4) -> [F4; 4] {
-        let last = quads.len() - 1;
-        let rows = self
-            .array(index)
-            .map(|entry| &quads[(entry as usize).min(last)]);
-        self.transposed(rows)
+    fn gather_quads(self, quads: &[[f32; 4]], codes: &[u32]) -> [F4; 4] {
+        let (codes, last) = (&codes[..4], quads.len() - 1);
+        let quad = |lane: usize| &quads[((codes[lane] >> 4) as usize).min(last)];
+        self.transposed([quad(0), quad(1), quad(2), quad(3)])
     }
     #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F4; ROW] {

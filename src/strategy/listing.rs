@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use super::Stage;
 use super::workers::{Done, share};
-use crate::broad_phase::{Block, FirstTest, PairFinder, Slots};
+use crate::broad_phase::{Block, FirstTest, MOST_CANDIDATES, PairFinder, Slots};
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::sphere;
 use crate::pairs::PairList;
 use crate::simd::{Kernel, Lanes, Level, MAX_WIDTH, dispatch};
 
-/// Slots of a run that are tested before their hits are listed; no block has more pairs.
-const PIECE: usize = 1024;
+/// Slots of a run that are tested before their hits are listed.
+const PIECE: usize = MOST_CANDIDATES;
 
 /// The first volume test of a strategy.
 #[derive(Clone, Copy)]
@@ -190,8 +190,9 @@ impl HitTest for Every {
     }
     #[inline(always)]
     fn block<L: Lanes>(&self, _: L, block: &Block, hits: &mut [u32]) -> usize {
-        hits[..block.len()].copy_from_slice(&block.codes()[..block.len()]);
-        block.len()
+        let codes = block.codes();
+        hits[..codes.len()].copy_from_slice(codes);
+        codes.len()
     }
 }
 
@@ -220,7 +221,7 @@ impl<T: HitTest> FirstTest for Lister<'_, '_, T> {
 
     #[inline(always)]
     fn block<L: Lanes>(&mut self, l: L, block: &Block) {
-        self.tests += block.len() as u64;
+        self.tests += block.codes().len() as u64;
         let found = self.test.block(l, block, &mut self.hits);
         let first = block.first();
         self.append(found, |code| {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::Grid;
 use super::cells::Layout;
 use super::level::Level;
-use super::near::{candidates, make_room};
+use super::near::hand_over;
 use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest};
 use crate::rounding::widen;
 use crate::simd::Lanes;
@@ -56,43 +56,36 @@ impl Grid {
         block: &mut Block,
         test: &mut impl FirstTest,
     ) {
+        let starts = target.starts.as_slice();
+        let table = target.cells.table_len();
         let mut first = seekers.start;
         while first < seekers.end {
-            block.restart(first);
+            let mut pen = block.restart(first);
             for i in first..seekers.end.min(first + BLOCK_BODIES) {
-                self.around(l, i, target, block, test);
-            }
-            test.block(l, block);
-            first += BLOCK_BODIES;
-        }
-    }
-
-    #[inline(always)]
-    fn around<L: Lanes>(
-        &self,
-        l: L,
-        i: usize,
-        target: &Level,
-        block: &mut Block,
-        test: &mut impl FirstTest,
-    ) {
-        let ball = &self.slots.balls[i];
-        let reach = f64::from(widen(ball[3])) + target.widest;
-        let Some([lo, hi]) = target.cells.around(ball, reach) else {
-            return;
-        };
-        let starts = target.starts.as_slice();
-        for z in lo[2]..=hi[2] {
-            for y in lo[1]..=hi[1] {
-                make_room(l, block, test);
-                let first = target.cells.index([lo[0], y, z]) as usize;
-                let end = first + (hi[0] - lo[0]) as usize + 1;
-                let table = target.cells.table_len();
-                candidates(l, i, starts[first]..starts[end.min(table)], block, test);
-                if end > table {
-                    candidates(l, i, starts[0]..starts[end - table], block, test);
+                let ball = &self.slots.balls[i];
+                let reach = f64::from(widen(ball[3])) + target.widest;
+                let Some([lo, hi]) = target.cells.around(ball, reach) else {
+                    continue;
+                };
+                for z in lo[2]..=hi[2] {
+                    for y in lo[1]..=hi[1] {
+                        if pen.is_full(2) {
+                            pen.done();
+                            hand_over(l, block, test);
+                            pen = block.restart(first);
+                        }
+                        let row = target.cells.index([lo[0], y, z]) as usize;
+                        let end = row + (hi[0] - lo[0]) as usize + 1;
+                        pen.push(i, starts[row]..starts[end.min(table)]);
+                        if end > table {
+                            pen.push(i, starts[0]..starts[end - table]);
+                        }
+                    }
                 }
             }
+            pen.done();
+            hand_over(l, block, test);
+            first += BLOCK_BODIES;
         }
     }
 }

@@ -92,16 +92,16 @@ impl Level {
 }
 
 /// Compiled once a tier, for wide conversions to f64 and back.
-struct Assign<'a> {
-    cells: &'a Cells,
-    balls: &'a [[f32; 4]],
-    to: &'a mut [u32],
+pub(super) struct Assign<'a> {
+    pub cells: &'a Cells,
+    pub balls: &'a [[f32; 4]],
+    pub to: &'a mut [u32],
 }
 
 impl Kernel for Assign<'_> {
     type Output = ();
     #[inline(always)]
-    fn run<L: Lanes>(self, _: L) {
-        self.cells.assign(self.balls, self.to);
+    fn run<L: Lanes>(self, l: L) {
+        self.cells.assign(l, self.balls, self.to);
     }
 }

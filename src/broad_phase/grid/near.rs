@@ -8,7 +8,7 @@ use std::ops::Range;
 use super::Grid;
 use super::cells::Layout;
 use super::level::Level;
-use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest};
+use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest, Pen};
 use crate::simd::Lanes;
 
 impl Grid {
@@ -25,93 +25,69 @@ impl Grid {
         let mut first = range.start;
         while first < range.end {
             let bodies = first..range.end.min(first + BLOCK_BODIES);
-            block.restart(first);
-            match level.cells.layout() {
-                Layout::Box => self.near_in_box(l, level, bodies, block, test),
-                Layout::Wrapped => self.near_wrapped(l, level, bodies, block, test),
+            let pen = block.restart(first);
+            let rows = level.cells.forward();
+            match (level.cells.layout(), rows.first_chunk::<4>()) {
+                (Layout::Box, Some(rows)) => self.in_box(level, bodies, rows, pen),
+                (Layout::Box, None) => self.in_box(level, bodies, rows, pen),
+                (Layout::Wrapped, _) => self.wrapped(level, bodies, pen),
             }
-            test.block(l, block);
+            hand_over(l, block, test);
             first += BLOCK_BODIES;
         }
     }
 
+    /// `rows` is a slice, or an array whose length the compiler knows.
     #[inline(always)]
-    fn near_in_box<L: Lanes>(
+    fn in_box<'a>(
         &self,
-        l: L,
         level: &Level,
         bodies: Range<usize>,
-        block: &mut Block,
-        test: &mut impl FirstTest,
+        rows: impl IntoIterator<Item = &'a u32> + Copy,
+        mut pen: Pen<'_>,
     ) {
         let starts = level.starts.as_slice();
-        for (i, &cell) in bodies.clone().zip(&self.slot_cells[bodies.clone()]) {
-            make_room(l, block, test);
-            candidates(l, i, i as u32 + 1..starts[cell as usize + 2], block, test);
-            for &row in level.cells.forward() {
-                if let Some(&[start, _, _, end]) = starts[(cell + row) as usize - 1..].first_chunk()
-                {
-                    candidates(l, i, start..end, block, test);
+        for (i, &cell) in bodies.clone().zip(&self.slot_cells[bodies]) {
+            pen.push(i, i as u32 + 1..starts[cell as usize + 2]);
+            for &row in rows {
+                let at = (cell + row) as usize;
+                if let Some(&[start, _, _, end]) = starts.get(at - 1..at + 3) {
+                    pen.push(i, start..end);
                 }
             }
         }
+        pen.done();
     }
 
     /// As in a box, but a run may cross the table's end and go on at its beginning.
     #[inline(always)]
-    fn near_wrapped<L: Lanes>(
-        &self,
-        l: L,
-        level: &Level,
-        bodies: Range<usize>,
-        block: &mut Block,
-        test: &mut impl FirstTest,
-    ) {
+    fn wrapped(&self, level: &Level, bodies: Range<usize>, mut pen: Pen<'_>) {
         let (starts, mask) = (level.starts.as_slice(), level.cells.mask());
         let table = mask as usize + 1;
-        for (i, &cell) in bodies.clone().zip(&self.slot_cells[bodies.clone()]) {
-            make_room(l, block, test);
+        for (i, &cell) in bodies.clone().zip(&self.slot_cells[bodies]) {
             let own_end = cell as usize + 2;
-            candidates(l, i, i as u32 + 1..starts[own_end.min(table)], block, test);
+            pen.push(i, i as u32 + 1..starts[own_end.min(table)]);
             if own_end > table {
-                candidates(l, i, starts[0]..starts[1], block, test);
+                pen.push(i, starts[0]..starts[1]);
             }
             for &row in level.cells.forward() {
                 let at = (cell.wrapping_add(row).wrapping_sub(1) & mask) as usize;
-                let end = (at + 3).min(table);
-                candidates(l, i, starts[at]..starts[end], block, test);
-                if at + 3 > table {
-                    candidates(l, i, starts[0]..starts[at + 3 - table], block, test);
+                let end = at + 3;
+                pen.push(i, starts[at]..starts[end.min(table)]);
+                if end > table {
+                    pen.push(i, starts[0]..starts[end - table]);
                 }
             }
         }
+        pen.done();
     }
 }
 
-/// Empties the block if one more body's runs might not find room in it.
+/// Hands a block's candidates to the test.
 #[inline(always)]
-pub(super) fn make_room<L: Lanes>(l: L, block: &mut Block, test: &mut impl FirstTest) {
-    /// Own row, four others, and as many again where runs are cut in two.
-    const RUNS: usize = 10;
-    if block.is_full(RUNS) {
-        test.block(l, block);
-        block.restart(block.first());
-    }
-}
-
-/// Slot `i` against a run: into the block, or at once when it is long.
-#[inline(always)]
-pub(super) fn candidates<L: Lanes>(
-    l: L,
-    i: usize,
-    run: Range<u32>,
-    block: &mut Block,
-    test: &mut impl FirstTest,
-) {
-    let length = run.len();
-    if length <= Block::LONGEST_RUN {
-        block.push(i - block.first(), run.start, length);
-    } else {
-        test.run(l, i, run.start as usize..run.end as usize);
+pub(super) fn hand_over<L: Lanes>(l: L, block: &Block, test: &mut impl FirstTest) {
+    test.block(l, block);
+    for (i, run) in block.long_runs() {
+        test.run(l, i, run);
     }
 }

@@ -7,8 +7,9 @@
 use std::ops::Range;
 
 use super::cells::{Cells, Layout};
-use super::level::Level;
+use super::level::{Assign, Level};
 use crate::broad_phase::Bounds;
+use crate::simd::{self, dispatch};
 
 /// Bodies that a body may find in its own cell, itself included, in the mean, before wide ones are split off. Uniform
 /// scenes reach it at 13 sphere partners a body.
@@ -67,7 +68,8 @@ fn fit(balls: &[[f32; 4]]) -> (Layout, u64) {
 
 fn crowd(cells: &Cells, balls: &[[f32; 4]]) -> u64 {
     let mut cell_of = vec![0; balls.len()];
-    cells.assign(balls, &mut cell_of);
+    let to = &mut cell_of;
+    dispatch(simd::Level::SCALAR, Assign { cells, balls, to });
     let mut counts = vec![0u64; cells.table_len()];
     for &cell in &cell_of {
         counts[cell as usize] += 1;
