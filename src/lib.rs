@@ -5,10 +5,12 @@
 #[cfg(feature = "proptest")]
 pub mod arbitrary;
 pub mod broad_phase;
+pub mod choice;
 pub mod cost;
 pub mod crew;
 pub mod effects;
 pub mod mesh;
+mod models;
 pub mod overlap;
 pub mod pairs;
 pub mod pipeline;
@@ -26,6 +28,7 @@ pub mod update;
 #[cfg(feature = "verify")]
 pub mod verify;
 pub mod volume;
+pub mod world;
 
 /// The README's example compiles and runs.
 #[cfg(doctest)]

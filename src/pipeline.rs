@@ -7,21 +7,21 @@
 
 use std::time::Instant;
 
-use crate::broad_phase::{PairFinder, Reorder};
+use crate::broad_phase::{Groups, PairFinder, Reorder};
 use crate::cost::{Counters, Seconds};
 use crate::crew::{Crew, CrewError};
+use crate::models::Models;
 use crate::overlap::intervals::IntervalSlots;
-use crate::overlap::ordop::SlabTables;
-use crate::overlap::ordop::reach::reach;
 use crate::pairs::PairList;
 use crate::places::Places;
-use crate::rounding::up;
 use crate::scene::bodies::Bodies;
-use crate::scene::settings::{CullSettings, Finder, Overlap, SettingsError, Strategy, Updates};
+use crate::scene::settings::{
+    CullSettings, Finder, Interest, Overlap, SettingsError, Strategy, Updates,
+};
 use crate::simd::Level;
 use crate::strategy::{self, Memory, Stage, Worker};
-use crate::update::{Intervals, OrDopRows, ShapeFrame, update_spheres};
-use crate::volume::{Basis, DirectionSet, Hull, OrDop, Shape};
+use crate::update::{Intervals, OrDopRows, update_spheres};
+use crate::volume::{DirectionSet, Shape};
 
 /// Culls the frames of one scene: a fixed set of bodies whose poses change.
 #[derive(Debug)]
@@ -31,9 +31,9 @@ pub struct Culler {
     level: Level,
     crew: Crew,
     workers: Vec<Worker>,
-    frames: Vec<ShapeFrame>,
-    tables: SlabTables,
+    models: Models,
     places: Places,
+    groups: Option<Vec<Groups>>,
     /// 0, 1, 2 …: the names of slots where pairs are refined further.
     numbers: Vec<u32>,
     order: Vec<u32>,
@@ -101,7 +101,6 @@ impl Culler {
         let start = Instant::now();
         let n = bodies.shape.len();
         let needs = Needs::of(settings);
-        let (frames, tables) = frames_and_tables(shapes, settings);
         let directions = needs.intervals;
         let mut culler = Self {
             settings: settings.clone(),
@@ -109,9 +108,9 @@ impl Culler {
             level,
             crew: Crew::default(),
             workers: Vec::new(),
-            frames,
-            tables,
+            models: Models::new(shapes, settings),
             places: Places::new(bodies),
+            groups: None,
             numbers: (0..n as u32).collect(),
             order: Vec::new(),
             finder: PairFinder::new(settings.pairs),
@@ -141,6 +140,46 @@ impl Culler {
     pub fn with_threads(mut self, threads: usize) -> Result<Self, CrewError> {
         self.crew = Crew::new(threads)?;
         Ok(self)
+    }
+
+    /// Adds a model: the shape grown by `margin` ≥ 0. Bodies wear it by the returned number in `bodies.shape`.
+    pub(crate) fn grow(&mut self, shape: u32, margin: f32) -> u32 {
+        self.models.grow(shape, margin)
+    }
+
+    /// Takes up bodies that wear another model since the last frame.
+    pub(crate) fn wear(&mut self, bodies: &Bodies) {
+        self.places.wear(bodies);
+    }
+
+    /// Takes up another set of bodies: those that are `present`. Volumes, static ones too, are placed anew; bodies that were
+    /// there keep their neighbours.
+    pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
+        self.places.replace(bodies, present);
+        let n = self.places.len();
+        self.numbers = (0..n as u32).collect();
+        self.balls.resize(n, [0.0; 4]);
+        self.rows.resize(n);
+        if let Some(intervals) = &mut self.intervals {
+            intervals.resize(n);
+        }
+        self.interest.resize(bodies.len(), false);
+        self.finder = PairFinder::new(self.settings.pairs);
+        self.update_volumes(bodies, 0..n);
+        self.reorder(bodies);
+        self.arrange();
+    }
+
+    /// From now on, only pairs of bodies that may collide are listed; `None`: all may.
+    ///
+    /// Pairs are filtered behind the first test, whose hits are few, and before anything else is done with them.
+    pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) {
+        self.groups = groups;
+    }
+
+    /// The bodies of interest from now on.
+    pub(crate) fn look_at(&mut self, bodies: Vec<u32>) {
+        self.settings.interest = Some(Interest::Bodies(bodies));
     }
 
     /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
@@ -228,7 +267,7 @@ impl Culler {
 
     /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies wait until a pair asks for them.
     fn update_volumes(&mut self, bodies: &Bodies, range: std::ops::Range<usize>) {
-        let (frames, places, balls) = (&self.frames, &self.places, &mut self.balls);
+        let (frames, places, balls) = (&self.models.frames, &self.places, &mut self.balls);
         if self.needs.balls {
             update_spheres(balls, frames, bodies, places, range.clone());
         }
@@ -289,7 +328,7 @@ impl Culler {
 
     fn run(&mut self, bodies: &Bodies) {
         if let Some(interest) = &self.settings.interest {
-            let frame = |body: usize| &self.frames[bodies.shape[body] as usize];
+            let frame = |body: usize| &self.models.frames[bodies.shape[body] as usize];
             let centre = |body: usize| {
                 let pose = (bodies.rotation[body], bodies.translation[body]);
                 let [x, y, z, _] = frame(body).sphere(pose.0, pose.1);
@@ -309,12 +348,13 @@ impl Culler {
             finder: &self.finder,
             names_are_places,
             places: &self.places,
+            groups: self.groups.as_deref(),
             bodies,
             intervals: &self.interval_slots,
             spheres: &self.balls,
             rows: &mut self.rows,
-            frames: &self.frames,
-            tables: &self.tables,
+            frames: &self.models.frames,
+            tables: &self.models.tables,
             overlap,
             lazy: self.settings.updates == Updates::Lazy,
             stamp: self.stamp,
@@ -342,40 +382,4 @@ impl Culler {
             _ => counters.sphere.tests,
         }
     }
-}
-
-/// What updates and pair tests need of each shape: with `obb` the box in place of the or-DOP; without a sphere stage, the
-/// ball that the or-DOP is binned by in place of the mesh's.
-fn frames_and_tables(shapes: &[Shape], settings: &CullSettings) -> (Vec<ShapeFrame>, SlabTables) {
-    let boxes: Vec<OrDop> = match settings.strategy {
-        Strategy::Obb => shapes
-            .iter()
-            .map(|s| s.obb(&Hull::of(&s.vertices)))
-            .collect(),
-        _ => Vec::new(),
-    };
-    let ordop = |i: usize| boxes.get(i).unwrap_or(&shapes[i].ordop);
-    let directions = match settings.strategy {
-        Strategy::Obb => DirectionSet::K6,
-        _ => shapes
-            .first()
-            .map_or(settings.k, |shape| shape.ordop.directions),
-    };
-    let tables = SlabTables::new(
-        directions,
-        shapes.iter().enumerate().map(|(i, s)| (s, ordop(i))),
-    );
-    let frame = |(i, shape): (usize, &Shape)| {
-        let basis: &Basis = &ordop(i).basis;
-        let frame = ShapeFrame::new(shape, basis);
-        match settings.strategy {
-            Strategy::OrDop | Strategy::Obb => {
-                let table = tables.shape(i as u32);
-                frame.with_radius(up(reach(table, directions.k(), shape.reach)))
-            }
-            _ => frame,
-        }
-    };
-    let frames = shapes.iter().enumerate().map(frame).collect();
-    (frames, tables)
 }

@@ -57,6 +57,31 @@ impl Places {
         self.body.is_empty()
     }
 
+    /// Takes up the bodies that are `present`. Those that were there keep their order; the others follow.
+    pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
+        let mut is_new = present.to_vec();
+        let mut order = Vec::with_capacity(present.len());
+        for &body in self.body.iter().filter(|&&body| present[body as usize]) {
+            is_new[body as usize] = false;
+            order.push(body);
+        }
+        order.extend((0..present.len() as u32).filter(|&body| is_new[body as usize]));
+        let (moving, fixed): (Vec<u32>, Vec<u32>) = order
+            .into_iter()
+            .partition(|&body| bodies.dynamic[body as usize]);
+        self.moving = moving.len();
+        self.body = [moving, fixed].concat();
+        self.shape.resize(self.body.len(), 0);
+        self.wear(bodies);
+    }
+
+    /// Takes up the bodies' shapes.
+    pub(crate) fn wear(&mut self, bodies: &Bodies) {
+        for (shape, &body) in self.shape.iter_mut().zip(&self.body) {
+            *shape = bodies.shape[body as usize];
+        }
+    }
+
     /// Puts the bodies in another order: `order` names the body that takes each place, by its present place or by itself.
     pub(crate) fn reorder(&mut self, bodies: &Bodies, order: &[u32], by_place: bool) {
         if by_place {
@@ -65,8 +90,6 @@ impl Places {
         } else {
             self.body.copy_from_slice(order);
         }
-        for (shape, &body) in self.shape.iter_mut().zip(&self.body) {
-            *shape = bodies.shape[body as usize];
-        }
+        self.wear(bodies);
     }
 }

@@ -7,9 +7,9 @@ use std::ops::Range;
 
 use crate::overlap::ordop::{O, Q, T};
 use crate::places::Places;
-use crate::rounding::pose::{Rotation, refit, rotate, rotation, transform, world_axes};
+use crate::rounding::pose::{Rotation, norm, refit, rotate, rotation, transform, world_axes};
 use crate::rounding::sphere::{inflate_radius, world_ball};
-use crate::rounding::up;
+use crate::rounding::{down, up};
 use crate::scene::bodies::Bodies;
 use crate::simd::ROW;
 use crate::volume::{Basis, DirectionSet, Hull, Shape};
@@ -17,6 +17,9 @@ use crate::volume::{Basis, DirectionSet, Hull, Shape};
 /// What updating a body needs to know of its shape.
 #[derive(Clone, Debug)]
 pub struct ShapeFrame {
+    /// The shape, and how far it is grown.
+    shape: u32,
+    margin: f32,
     centre: [f32; 3],
     radius: f32,
     reach: f32,
@@ -28,6 +31,8 @@ impl ShapeFrame {
     #[must_use]
     pub fn new(shape: &Shape, basis: &Basis) -> Self {
         Self {
+            shape: 0,
+            margin: 0.0,
             centre: shape.ball.centre.to_array(),
             radius: shape.ball.radius,
             reach: shape.reach,
@@ -39,6 +44,36 @@ impl ShapeFrame {
     #[must_use]
     pub fn with_radius(self, radius: f32) -> Self {
         Self { radius, ..self }
+    }
+
+    /// The same as that of the shape of this number, whose hull world-aligned volumes are fitted to.
+    #[must_use]
+    pub fn numbered(self, shape: u32) -> Self {
+        Self { shape, ..self }
+    }
+
+    /// The same, grown by `margin` all around.
+    #[must_use]
+    pub fn grown(&self, margin: f32) -> Self {
+        let grow = |size: f32| up(f64::from(size) + f64::from(margin));
+        Self {
+            margin,
+            radius: grow(self.radius),
+            reach: grow(self.reach),
+            ..*self
+        }
+    }
+
+    /// The ball's centre, body frame.
+    #[must_use]
+    pub fn centre(&self) -> [f32; 3] {
+        self.centre
+    }
+
+    /// What no point of the shape is farther from the body origin than.
+    #[must_use]
+    pub fn reach(&self) -> f32 {
+        self.reach
     }
 
     /// Inflated world sphere (x, y, z, R) of a body in this shape.
@@ -105,6 +140,12 @@ impl OrDopRows {
             rows: vec![[0.0; ROW]; bodies],
             made: vec![0; bodies],
         }
+    }
+
+    /// Room for another number of bodies.
+    pub(crate) fn resize(&mut self, bodies: usize) {
+        self.rows.resize(bodies, [0.0; ROW]);
+        self.made.resize(bodies, 0);
     }
 
     /// Updates the rows of the bodies in a range of places; `stamp` counts frames from 1.
@@ -183,6 +224,12 @@ impl Intervals {
         }
     }
 
+    /// Room for another number of bodies.
+    pub(crate) fn resize(&mut self, bodies: usize) {
+        let slabs = self.directions.slabs();
+        self.ends.resize(bodies * slabs, [0.0; 2]);
+    }
+
     /// Re-fits the slabs of the bodies in a range of places, and the cubes about their boxes: centre and half side.
     pub fn update(
         &mut self,
@@ -194,11 +241,14 @@ impl Intervals {
     ) {
         let coefficients = self.directions.coefficients();
         for place in range {
-            let (body, shape) = (places.body[place] as usize, places.shape[place] as usize);
+            let (body, frame) = (places.body[place] as usize, frame_of(frames, places, place));
             let (turn, t) = (rotation(bodies.rotation[body]), bodies.translation[body]);
             let ends = &mut self.ends[place * coefficients.len()..][..coefficients.len()];
-            let hull = &self.hulls[shape];
-            fit(ends, coefficients, hull, &turn, t, frames[shape].reach);
+            let hull = &self.hulls[frame.shape as usize];
+            fit(ends, coefficients, hull, &turn, t, frame.reach);
+            if frame.margin > 0.0 {
+                widen(ends, coefficients, frame.margin);
+            }
             cubes[place] = cube(ends);
         }
     }
@@ -238,5 +288,13 @@ fn fit(
     for (end, extreme) in ends.iter_mut().zip(extremes) {
         let (lo, hi) = refit(extreme[0], extreme[1], reach, t);
         *end = [lo, hi];
+    }
+}
+
+/// Moves slabs out by `margin`.
+fn widen(ends: &mut [[f32; 2]], coefficients: &[[i8; 3]], margin: f32) {
+    for ([lo, hi], c) in ends.iter_mut().zip(coefficients) {
+        let out = f64::from(margin) * norm(c.map(f32::from));
+        (*lo, *hi) = (down(f64::from(*lo) - out), up(f64::from(*hi) + out));
     }
 }

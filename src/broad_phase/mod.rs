@@ -15,12 +15,14 @@ mod all_pairs;
 mod block;
 mod bounds;
 mod grid;
+mod groups;
 mod sweep;
 
 pub use all_pairs::AllPairs;
 pub use block::{BLOCK_BODIES, Block, MOST_CANDIDATES, Pen};
 pub use bounds::Bounds;
 pub use grid::Grid;
+pub use groups::Groups;
 pub use sweep::Sweep;
 
 /// The strategy's first volume test.

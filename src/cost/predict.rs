@@ -8,7 +8,7 @@
 use serde::Serialize;
 
 use super::{Counters, VolumeCosts, VolumeCounters};
-use crate::scene::choice::choices;
+use crate::choice::choices;
 use crate::scene::settings::Strategy;
 
 choices! {

@@ -9,8 +9,8 @@
 use std::ops::Range;
 
 use super::{Effect, Made};
+use crate::choice::choices;
 use crate::scene::bodies::Bodies;
-use crate::scene::choice::choices;
 use crate::scene::{Scene, world_centre};
 
 choices! {

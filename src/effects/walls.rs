@@ -7,9 +7,9 @@
 use std::ops::Range;
 
 use super::{Effect, Made};
+use crate::choice::choices;
 use crate::scene::Scene;
 use crate::scene::bodies::Bodies;
-use crate::scene::choice::choices;
 use crate::scene::world_centre;
 
 choices! {

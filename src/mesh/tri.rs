@@ -20,7 +20,7 @@ use glam::Vec3;
 use super::text::{self, Cursor, Fault, Token};
 use super::weld::Welder;
 use super::{Problem, check_triangle};
-use crate::scene::choice::choices;
+use crate::choice::choices;
 
 choices! {
     /// A `.tri` dialect.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Estimate;
-use crate::scene::choice::choices;
+use crate::choice::choices;
 
 choices! {
     /// What the numbers say.

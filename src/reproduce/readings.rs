@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::experiment::Results;
 use super::{Estimate, paper};
+use crate::choice::choices;
 use crate::cost::Counters;
-use crate::scene::choice::choices;
 use crate::scene::settings::Strategy;
 
 choices! {

@@ -133,7 +133,7 @@ fn refuse(
 
 // All limits are written as `x ≤ limit`, and what isn't so is refused: a NaN fails.
 
-fn has_sound_size(shape: &Shape) -> bool {
+pub(crate) fn has_sound_size(shape: &Shape) -> bool {
     // The reach bounds the ball's centre and radius; a NaN in them it does not.
     [shape.reach, shape.ball.radius, shape.ball.centre.length()]
         .iter()
@@ -144,7 +144,7 @@ fn is_within_limit(v: &[f32; 3]) -> bool {
     (v[0].abs() <= LIMIT) & (v[1].abs() <= LIMIT) & (v[2].abs() <= LIMIT)
 }
 
-fn is_invertible(q: &[f32; 4]) -> bool {
+pub(crate) fn is_invertible(q: &[f32; 4]) -> bool {
     // In f64, where the square of no f32 underflows or overflows.
     let [x, y, z, w] = q.map(f64::from);
     let norm2 = x * x + y * y + z * z + w * w;

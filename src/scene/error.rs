@@ -6,9 +6,9 @@ use std::path::Path;
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use thiserror::Error;
 
-use super::choice::suggest;
 use super::contract::ContractError;
 use super::settings::SettingsError;
+use crate::choice::suggest;
 
 /// Why a scene could not be made.
 #[derive(Debug, Error, Diagnostic)]

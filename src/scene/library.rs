@@ -7,11 +7,11 @@ use std::time::Instant;
 use miette::Diagnostic;
 use toml::Spanned;
 
-use super::choice::suggest;
 use super::error::{SceneError, Source};
 use super::file::SceneFile;
 use super::number::Real;
 use super::settings::CullSettings;
+use crate::choice::suggest;
 use crate::mesh::{ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError};
 use crate::volume::{Origin, Shape, ShapeSpec};
 

@@ -6,7 +6,6 @@
 
 pub mod bodies;
 mod build;
-pub(crate) mod choice;
 pub mod contract;
 mod density;
 pub mod error;

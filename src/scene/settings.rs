@@ -7,8 +7,8 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use thiserror::Error;
 
-pub use super::choice::UnknownChoice;
-use super::choice::choices;
+pub use crate::choice::UnknownChoice;
+use crate::choice::choices;
 pub use crate::volume::{Axes, DirectionSet};
 
 choices! {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Stage;
 use super::workers::{Done, share};
-use crate::broad_phase::{Block, FirstTest, MOST_CANDIDATES, PairFinder, Slots};
+use crate::broad_phase::{Block, FirstTest, Groups, MOST_CANDIDATES, PairFinder, Slots};
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::sphere;
 use crate::pairs::PairList;
@@ -32,6 +32,8 @@ pub(super) struct Source<'a> {
     pub first: First<'a>,
     /// The body in each place where the slots' names are places.
     pub body: Option<&'a [u32]>,
+    /// Each body's groups where not all collide with all.
+    pub groups: Option<&'a [Groups]>,
 }
 
 impl Source<'_> {
@@ -69,6 +71,7 @@ impl Stage<'_> {
             finder: self.finder,
             first,
             body: self.names_are_places.then_some(&self.places.body),
+            groups: self.groups,
         }
     }
 
@@ -133,11 +136,17 @@ impl Kernel for List<'_> {
 impl List<'_> {
     #[inline(always)]
     fn with<L: Lanes>(self, l: L, test: &impl HitTest) -> u64 {
-        let Source { finder, body, .. } = self.source;
+        let Source {
+            finder,
+            body,
+            groups,
+            ..
+        } = self.source;
         let mut lister = Lister {
             test,
             names: &finder.slots().names,
             body,
+            groups,
             out: self.out,
             drain: self.drain,
             tests: 0,
@@ -200,6 +209,7 @@ struct Lister<'a, 'd, T> {
     test: &'a T,
     names: &'a [u32],
     body: Option<&'a [u32]>,
+    groups: Option<&'a [Groups]>,
     out: &'d mut PairList,
     drain: Drain<'d>,
     tests: u64,
@@ -234,6 +244,18 @@ impl<T> Lister<'_, '_, T> {
     /// Lists the first `found` hits by name, the lower body first.
     #[inline(always)]
     fn append(&mut self, found: usize, slots: impl Fn(u32) -> (usize, usize)) {
+        if let Some(groups) = self.groups {
+            self.append_colliding(found, slots, groups);
+        } else {
+            self.append_all(found, slots);
+        }
+        if self.out.len() >= self.drain.at {
+            (self.drain.take)(self.out);
+        }
+    }
+
+    #[inline(always)]
+    fn append_all(&mut self, found: usize, slots: impl Fn(u32) -> (usize, usize)) {
         let (first, second) = self.out.room(found);
         let pairs = first.iter_mut().zip(second).zip(&self.hits[..found]);
         match self.body {
@@ -254,8 +276,24 @@ impl<T> Lister<'_, '_, T> {
             }
         }
         self.out.advance(found);
-        if self.out.len() >= self.drain.at {
-            (self.drain.take)(self.out);
+    }
+
+    /// Lists those hits whose bodies may collide.
+    fn append_colliding(
+        &mut self,
+        found: usize,
+        slots: impl Fn(u32) -> (usize, usize),
+        groups: &[Groups],
+    ) {
+        let body = |name: u32| self.body.map_or(name, |body| body[name as usize]);
+        for &hit in &self.hits[..found] {
+            let (i, j) = slots(hit);
+            let (i, j) = (self.names[i], self.names[j]);
+            let (a, b) = (body(i), body(j));
+            if groups[a as usize].collide(groups[b as usize]) {
+                let (i, j) = if a > b { (j, i) } else { (i, j) };
+                self.out.push(i, j);
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 //! A strategy takes updated volumes and a pair finder and leaves the reported pairs. Strategies differ in false positives
 //! and time, never in misses: each reports every pair whose meshes meet, `none` excepted.
 
-use crate::broad_phase::PairFinder;
+use crate::broad_phase::{Groups, PairFinder};
 use crate::cost::{Counters, Seconds};
 use crate::crew::Crew;
 use crate::overlap::intervals::IntervalSlots;
@@ -44,6 +44,8 @@ pub(crate) struct Stage<'a> {
     /// Whether the finder's slots are named by place, not by body.
     pub names_are_places: bool,
     pub places: &'a Places,
+    /// Each body's groups where not all collide with all.
+    pub groups: Option<&'a [Groups]>,
     pub bodies: &'a Bodies,
     pub intervals: &'a IntervalSlots,
     /// Spheres by place.

@@ -7,7 +7,7 @@
 
 use glam::{DMat3, DQuat, Vec3};
 
-use crate::scene::choice::choices;
+use crate::choice::choices;
 
 /// The largest |q|² of an integer quaternion.
 const MAX_NORM: i64 = 1 << 22;

@@ -3,7 +3,7 @@
 //! Directions are never normalised, so (1,1,0) = (1,0,0) + (0,1,0) holds to the bit and the support of any axis can be
 //! bounded from the slabs alone (weak duality). All sets share one order: axes, face diagonals, cube diagonals.
 
-use crate::scene::choice::choices;
+use crate::choice::choices;
 
 const AXES: [[i8; 3]; 3] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 #[rustfmt::skip]

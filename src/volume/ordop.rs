@@ -7,6 +7,7 @@
 use glam::{DVec3, Vec3};
 
 use super::{Basis, DirectionSet};
+use crate::rounding::{down, up};
 
 /// An oriented k-DOP in the body frame: `lo[i] ≤ d_i·x ≤ hi[i]` for every vertex x in exact arithmetic,
 /// with d_i = Σ_j coefficient_ij·column_j.
@@ -37,6 +38,21 @@ impl OrDop {
             lo,
             hi,
         }
+    }
+
+    /// The slabs moved out by `margin`: what they contain with all points up to `margin` away.
+    #[must_use]
+    pub fn grown(&self, margin: f32) -> Self {
+        let mut grown = self.clone();
+        let ends = grown.lo.iter_mut().zip(&mut grown.hi);
+        for ((lo, hi), &coefficients) in ends.zip(self.directions.coefficients()) {
+            // The factor is above what three f64 roundings take where lo and the margin nearly cancel; elsewhere the
+            // step outward is.
+            let length = self.basis.direction(coefficients).as_dvec3().length();
+            let out = f64::from(margin) * length * (1.0 + 2f64.powi(-40));
+            (*lo, *hi) = (down(f64::from(*lo) - out), up(f64::from(*hi) + out));
+        }
+        grown
     }
 }
 

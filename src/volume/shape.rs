@@ -7,7 +7,7 @@
 use glam::Vec3;
 
 use super::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, ball};
-use crate::{mesh::TriangleMesh, rounding::LIMIT, scene::choice::choices};
+use crate::{choice::choices, mesh::TriangleMesh, rounding::LIMIT};
 
 choices! {
     /// Which point of the mesh becomes the body's origin.

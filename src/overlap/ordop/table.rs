@@ -105,12 +105,17 @@ impl SlabTables {
     ) -> Self {
         let entries = shapes
             .into_iter()
-            .flat_map(|(shape, ordop)| table(shape, ordop))
+            .flat_map(|(shape, ordop)| table(ordop, shape.ball.centre.to_array(), shape.reach))
             .collect();
         Self {
             directions,
             entries,
         }
+    }
+
+    /// Appends a table: an or-DOP about the ball's `centre`, no point of it farther than `reach` from the body origin.
+    pub(crate) fn push(&mut self, ordop: &OrDop, centre: [f32; 3], reach: f32) {
+        self.entries.extend(table(ordop, centre, reach));
     }
 
     /// The directions that all tables have.
@@ -133,7 +138,7 @@ impl SlabTables {
     }
 }
 
-fn table(shape: &Shape, ordop: &OrDop) -> [f32; TABLE] {
+fn table(ordop: &OrDop, centre: [f32; 3], reach: f32) -> [f32; TABLE] {
     let mut table = [0.0; TABLE];
     let columns = ordop.basis.columns.map(|column| column.to_array());
     let scale = norm(columns[0]);
@@ -149,8 +154,8 @@ fn table(shape: &Shape, ordop: &OrDop) -> [f32; TABLE] {
             ordop.hi[slab],
             direction,
             scale,
-            shape.ball.centre.to_array(),
-            shape.reach,
+            centre,
+            reach,
         );
         let OwnSlab { group, plus, minus } = OWN[member];
         // Octants that differ only in coordinates the group doesn't use face the same end.

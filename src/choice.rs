@@ -78,12 +78,12 @@ macro_rules! choices {
         }
 
         impl std::str::FromStr for $name {
-            type Err = $crate::scene::choice::UnknownChoice;
+            type Err = $crate::choice::UnknownChoice;
 
             fn from_str(text: &str) -> Result<Self, Self::Err> {
                 match text {
                     $($text => Ok(Self::$variant),)+
-                    _ => Err($crate::scene::choice::UnknownChoice::new($what, text, Self::NAMES)),
+                    _ => Err($crate::choice::UnknownChoice::new($what, text, Self::NAMES)),
                 }
             }
         }
@@ -96,7 +96,7 @@ macro_rules! choices {
 
         impl<'de> serde::Deserialize<'de> for $name {
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                deserializer.deserialize_str($crate::scene::choice::NameVisitor {
+                deserializer.deserialize_str($crate::choice::NameVisitor {
                     what: $what,
                     names: Self::NAMES,
                     values: Self::ALL,

@@ -1,0 +1,89 @@
+//! Few margins for many bodies: each is rounded up to a class, and a shape with a class is one model of the culler.
+//!
+//! Classes are eight steps an octave, so a body grows by at most an eighth of its margin too much. Rounding errors of
+//! local translations alone have a class in common as long as they are below 2⁻¹² of the shape.
+
+use std::collections::HashMap;
+
+use crate::rounding::exp2;
+
+/// Errors of placement up to this share of a shape's size are rounded up to it.
+const FINE: f64 = exp2(-12);
+
+/// The model of each shape in each class in use.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Margins {
+    models: HashMap<(u32, u32), u32>,
+}
+
+impl Margins {
+    /// The model for a shape of size `reach` with a margin, placed with an error of at most `moved`; `grow` makes it
+    /// where it is new.
+    pub fn model(
+        &mut self,
+        shape: u32,
+        reach: f32,
+        margin: f32,
+        moved: f64,
+        grow: impl FnOnce(u32, f32) -> u32,
+    ) -> u32 {
+        if margin == 0.0 && moved == 0.0 {
+            return shape; // the shape itself is a model, of its own number
+        }
+        let moved = if moved > 0.0 {
+            moved.max(FINE * f64::from(reach))
+        } else {
+            0.0
+        };
+        let class = class_of(f64::from(margin) + moved);
+        *self
+            .models
+            .entry((shape, class))
+            .or_insert_with(|| grow(shape, f32::from_bits(class)))
+    }
+}
+
+/// The bits of the smallest class above `margin` > 0: an f32 of three significant bits behind the first, so that exponent
+/// and bits are one integer that steps through the classes.
+fn class_of(margin: f64) -> u32 {
+    const STEP: u32 = 1 << 20;
+    let above = crate::rounding::up(margin).to_bits();
+    above.next_multiple_of(STEP)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_class_is_above_the_margin_by_an_eighth_at_most() {
+        for margin in [1.0, 1.0e-3, 0.124_999_99, 7.5, 1.0e12, 3.0e-30] {
+            let class = f64::from(f32::from_bits(class_of(margin)));
+            assert!(
+                margin < class && class <= margin * 1.1251,
+                "{margin} {class}"
+            );
+        }
+        // Subnormal margins share the lowest classes.
+        assert!(f32::from_bits(class_of(1.0e-44)) >= 1.0e-44);
+    }
+
+    #[test]
+    fn equal_classes_share_a_model_and_none_needs_none() {
+        let mut margins = Margins::default();
+        let mut made = Vec::new();
+        let mut model = |margin: f32, moved: f64| {
+            margins.model(3, 1.0, margin, moved, |shape, margin| {
+                made.push((shape, margin));
+                100 + made.len() as u32
+            })
+        };
+        assert_eq!(model(0.0, 0.0), 3);
+        assert_eq!(model(0.50, 0.0), 101);
+        assert_eq!(model(0.51, 0.0), 101);
+        assert_eq!(model(0.0, 1.0e-9), 102);
+        assert_eq!(model(0.0, 1.0e-7), 102, "below 2⁻¹² of the size");
+        assert_eq!(model(0.0, 1.0e-2), 103);
+        assert_eq!(made[0], (3, 0.5625));
+    }
+}

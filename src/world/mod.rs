@@ -1,0 +1,395 @@
+//! Long-lived worlds: bodies come and go, and every frame asks who might touch.
+//!
+//! What an engine needs around a [`Culler`]: stable ids, static and dynamic bodies, groups and masks, contact margins,
+//! translations in f64, and pairs as a list or as events. The promise is the same, margins included: at every
+//! [`World::cull`], if two meshes, each grown by its body's margin and posed at its f64 translation, meet in exact
+//! arithmetic, and one of them is dynamic, and their groups collide, the pair is reported.
+//!
+//! A change of the set of bodies costs about one more frame at the next cull, however many bodies it touches; poses,
+//! margins and groups change at the price of a copy. Lists depend on the calls alone, never on the CPU or on threads.
+//!
+//! ```
+//! use sdop::mesh;
+//! use sdop::scene::settings::CullSettings;
+//! use sdop::simd::Level;
+//! use sdop::volume::{Shape, ShapeSpec};
+//! use sdop::world::{Body, World};
+//!
+//! let cow = mesh::read("data/meshes/spot.tri", &mesh::ReadOptions::default())?;
+//! let shapes = vec![Shape::build(&cow, &ShapeSpec::default())?];
+//! let mut world = World::new(shapes, &CullSettings::default(), Level::detect())?;
+//! let still = world.insert(Body { dynamic: false, ..Body::default() })?;
+//! let moving = world.insert(Body { translation: [5.0, 0.0, 0.0], margin: 0.05, ..Body::default() })?;
+//! world.cull()?;
+//! assert_eq!(world.pairs().len(), 0);
+//! world.set_pose(moving, [0.0, 0.0, 0.0, 1.0], [0.5, 0.0, 0.0])?;
+//! world.cull()?;
+//! assert_eq!(world.events().begun, [[still, moving]]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod body;
+mod error;
+mod events;
+mod local;
+mod margins;
+
+pub use crate::broad_phase::Groups;
+pub use body::{Body, BodyId};
+pub use error::WorldError;
+pub use events::Events;
+
+use self::events::Watch;
+use self::local::Local;
+use self::margins::Margins;
+use crate::cost::{Counters, Seconds};
+use crate::crew::CrewError;
+use crate::pipeline::Culler;
+use crate::rounding::LIMIT;
+use crate::scene::bodies::Bodies;
+use crate::scene::contract::{ContractError, has_sound_size, is_invertible};
+use crate::scene::settings::{CullSettings, Interest, SettingsError};
+use crate::simd::Level;
+use crate::volume::Shape;
+
+/// Bodies in slots, and their culler.
+#[derive(Debug)]
+pub struct World {
+    shapes: Vec<Shape>,
+    /// One entry a slot; empty slots keep their last body's.
+    bodies: Bodies,
+    present: Vec<bool>,
+    generation: Vec<u32>,
+    shape: Vec<u32>,
+    translation: Vec<[f64; 3]>,
+    margin: Vec<f32>,
+    groups: Vec<Groups>,
+    /// Empty slots, and those emptied since the last cull, which its pairs still name.
+    free: Vec<u32>,
+    emptied: Vec<u32>,
+    local: Local,
+    margins: Margins,
+    interest: Vec<BodyId>,
+    culler: Culler,
+    watch: Watch,
+    /// Whether the culler must take up another set of bodies, or another pose of a static one.
+    replaced: bool,
+    regrouped: bool,
+}
+
+impl World {
+    /// A world without bodies. Bodies of interest, where the strategy looks for them, are set by [`Self::set_interest`].
+    ///
+    /// # Errors
+    /// Settings that can't be carried out, a view cone, a shape beyond the contract.
+    pub fn new(
+        shapes: Vec<Shape>,
+        settings: &CullSettings,
+        level: Level,
+    ) -> Result<Self, WorldError> {
+        if let Some(interest) = &settings.interest {
+            return Err(WorldError::Settings(SettingsError::Interest {
+                problem: format!("a world begins without bodies, {interest:?} has nothing to see"),
+                hint: "leave it out, and name bodies with `set_interest`",
+            }));
+        }
+        let settings = CullSettings {
+            interest: Some(Interest::Bodies(Vec::new())),
+            ..settings.clone()
+        };
+        let culler = Culler::new(&shapes, &Bodies::default(), &settings, level)?;
+        Ok(Self {
+            shapes,
+            bodies: Bodies::default(),
+            present: Vec::new(),
+            generation: Vec::new(),
+            shape: Vec::new(),
+            translation: Vec::new(),
+            margin: Vec::new(),
+            groups: Vec::new(),
+            free: Vec::new(),
+            emptied: Vec::new(),
+            local: Local::default(),
+            margins: Margins::default(),
+            interest: Vec::new(),
+            culler,
+            watch: Watch::default(),
+            replaced: false,
+            regrouped: false,
+        })
+    }
+
+    /// The same world culled on so many threads. Lists don't depend on their number.
+    ///
+    /// # Errors
+    /// The system refuses to start the threads.
+    pub fn with_threads(mut self, threads: usize) -> Result<Self, CrewError> {
+        self.culler = self.culler.with_threads(threads)?;
+        Ok(self)
+    }
+
+    /// Adds a body.
+    ///
+    /// # Errors
+    /// A pose, shape or margin outside of the contract.
+    pub fn insert(&mut self, body: Body) -> Result<BodyId, WorldError> {
+        let slot = self.free.last().map_or(self.present.len(), |&s| s as usize);
+        self.check(slot, &body)?;
+        if self.free.pop().is_some() {
+            self.generation[slot] += 1;
+        } else {
+            self.bodies.push(0, true, [0.0; 4], [0.0; 3]);
+            self.present.push(false);
+            self.generation.push(0);
+            self.shape.push(0);
+            self.translation.push([0.0; 3]);
+            self.margin.push(0.0);
+            self.groups.push(Groups::ALL);
+        }
+        self.bodies.dynamic[slot] = body.dynamic;
+        self.bodies.rotation[slot] = body.rotation;
+        self.present[slot] = true;
+        self.shape[slot] = body.shape;
+        self.translation[slot] = body.translation;
+        self.margin[slot] = body.margin;
+        self.regrouped |= self.groups[slot] != body.groups;
+        self.groups[slot] = body.groups;
+        self.replaced = true;
+        Ok(self.id(slot as u32))
+    }
+
+    /// Removes a body. Pairs of the last cull still name it; the next cull's don't.
+    ///
+    /// # Errors
+    /// A body that has been removed before.
+    pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
+        let slot = self.slot(id)?;
+        self.present[slot] = false;
+        self.emptied.push(id.slot);
+        self.replaced = true;
+        Ok(())
+    }
+
+    /// The body as it is now.
+    ///
+    /// # Errors
+    /// A body that has been removed.
+    pub fn body(&self, id: BodyId) -> Result<Body, WorldError> {
+        let slot = self.slot(id)?;
+        Ok(Body {
+            shape: self.shape[slot],
+            dynamic: self.bodies.dynamic[slot],
+            rotation: self.bodies.rotation[slot],
+            translation: self.translation[slot],
+            groups: self.groups[slot],
+            margin: self.margin[slot],
+        })
+    }
+
+    /// Changes a body in any of its properties. A dynamic body's pose may change by any amount: nothing is assumed of the
+    /// way between two culls.
+    ///
+    /// # Errors
+    /// A body that has been removed; a pose, shape or margin outside of the contract.
+    pub fn set(&mut self, id: BodyId, body: Body) -> Result<(), WorldError> {
+        let slot = self.slot(id)?;
+        self.check(slot, &body)?;
+        self.replaced |= !body.dynamic || !self.bodies.dynamic[slot];
+        self.regrouped |= self.groups[slot] != body.groups;
+        self.bodies.dynamic[slot] = body.dynamic;
+        self.bodies.rotation[slot] = body.rotation;
+        self.shape[slot] = body.shape;
+        self.translation[slot] = body.translation;
+        self.groups[slot] = body.groups;
+        self.margin[slot] = body.margin;
+        Ok(())
+    }
+
+    /// Moves a body: a step or a teleport.
+    ///
+    /// # Errors
+    /// A body that has been removed; a pose outside of the contract.
+    pub fn set_pose(
+        &mut self,
+        id: BodyId,
+        rotation: [f32; 4],
+        translation: [f64; 3],
+    ) -> Result<(), WorldError> {
+        let body = Body {
+            rotation,
+            translation,
+            ..self.body(id)?
+        };
+        self.set(id, body)
+    }
+
+    /// The bodies of interest from now on, for the strategies that look for them.
+    ///
+    /// # Errors
+    /// A body that has been removed.
+    pub fn set_interest(&mut self, ids: &[BodyId]) -> Result<(), WorldError> {
+        for &id in ids {
+            self.slot(id)?;
+        }
+        self.interest = ids.to_vec();
+        self.look();
+        Ok(())
+    }
+
+    /// Finds the pairs that might touch now.
+    ///
+    /// # Errors
+    /// Bodies more than 2⁶⁰ apart.
+    pub fn cull(&mut self) -> Result<(), WorldError> {
+        self.place()?;
+        if self.regrouped {
+            let all = self.groups.iter().all(|&groups| groups == Groups::ALL);
+            self.culler.set_groups((!all).then(|| self.groups.clone()));
+            self.regrouped = false;
+        }
+        if self.replaced {
+            self.culler.replace(&self.bodies, &self.present);
+            self.replaced = false;
+            if !self.interest.is_empty() {
+                self.look(); // another body may have taken the slot of one that was of interest
+            }
+        }
+        self.free.append(&mut self.emptied);
+        self.culler.cull(&self.bodies);
+        Ok(())
+    }
+
+    /// The pairs of the last cull, the lower slot first.
+    pub fn pairs(&self) -> impl ExactSizeIterator<Item = [BodyId; 2]> + '_ {
+        let pairs = self.culler.pairs().iter();
+        pairs.map(|pair| pair.map(|slot| self.id(slot)))
+    }
+
+    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    pub fn events(&mut self) -> &Events {
+        let (culler, generation) = (&self.culler, &self.generation);
+        let id = |slot: u32| BodyId {
+            slot,
+            generation: generation[slot as usize],
+        };
+        self.watch
+            .look(culler.pairs().iter().map(|pair| pair.map(id)))
+    }
+
+    /// Number of bodies.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.present.len() - self.free.len() - self.emptied.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Above every [`BodyId::slot`].
+    #[must_use]
+    pub fn slots(&self) -> usize {
+        self.present.len()
+    }
+
+    /// Counters summed over all culls.
+    #[must_use]
+    pub fn counters(&self) -> &Counters {
+        self.culler.counters()
+    }
+
+    /// Seconds summed over all culls.
+    #[must_use]
+    pub fn seconds(&self) -> &Seconds {
+        self.culler.seconds()
+    }
+
+    /// Brings all bodies near the local origin, in the model that their margin and rounding call for.
+    fn place(&mut self) -> Result<(), WorldError> {
+        let present = (0..self.present.len()).filter(|&slot| self.present[slot]);
+        let translations = present.clone().map(|slot| self.translation[slot]);
+        let local = self.local.follow(translations);
+        self.replaced |= local != self.local; // static bodies have moved, as seen from there
+        if let Some(slot) = present
+            .clone()
+            .find(|&slot| !local.reaches(self.translation[slot]))
+        {
+            return Err(WorldError::Apart(self.id(slot as u32)));
+        }
+        self.local = local;
+        let mut changed = false;
+        for slot in present {
+            let (place, moved) = local.place(self.translation[slot]);
+            let shape = self.shape[slot];
+            let (reach, margin) = (self.shapes[shape as usize].reach, self.margin[slot]);
+            let grow = |shape, margin| self.culler.grow(shape, margin);
+            let model = self.margins.model(shape, reach, margin, moved, grow);
+            changed |= self.bodies.shape[slot] != model;
+            self.bodies.shape[slot] = model;
+            self.bodies.translation[slot] = place;
+        }
+        if changed && !self.replaced {
+            self.culler.wear(&self.bodies);
+        }
+        Ok(())
+    }
+
+    /// Tells the culler of the bodies of interest that are still there.
+    fn look(&mut self) {
+        let living = |id: &BodyId| self.slot(*id).is_ok();
+        let slots = self.interest.iter().filter(|id| living(id));
+        let slots = slots.map(|id| id.slot).collect();
+        self.culler.look_at(slots);
+    }
+
+    fn id(&self, slot: u32) -> BodyId {
+        BodyId {
+            slot,
+            generation: self.generation[slot as usize],
+        }
+    }
+
+    fn slot(&self, id: BodyId) -> Result<usize, WorldError> {
+        let slot = id.slot as usize;
+        let lives = self.present.get(slot) == Some(&true) && self.generation[slot] == id.generation;
+        lives.then_some(slot).ok_or(WorldError::Gone(id))
+    }
+
+    /// Checks a body that is to take a slot.
+    fn check(&self, slot: usize, body: &Body) -> Result<(), WorldError> {
+        let refuse = |quantity, value, hint| {
+            Err(WorldError::Contract(ContractError {
+                body: slot,
+                quantity,
+                value,
+                hint,
+            }))
+        };
+        let Some(shape) = self.shapes.get(body.shape as usize) else {
+            let value = format!("{} of {}", body.shape, self.shapes.len());
+            return refuse("shape", value, "shapes are counted from 0");
+        };
+        if !has_sound_size(shape) {
+            let value = format!("{} with reach {}", shape.name, shape.reach);
+            return refuse("shape", value, "sizes are finite and at most 2^60");
+        }
+        if !is_invertible(&body.rotation) {
+            let hint = "a quaternion (x, y, z, w) has a finite norm above zero";
+            return refuse("rotation", format!("{:?}", body.rotation), hint);
+        }
+        let limit = f64::from(LIMIT);
+        if !body.translation.iter().all(|x| x.abs() <= limit) {
+            let value = format!("{:?}", body.translation);
+            let hint = "coordinates are finite and at most 2^60 in size";
+            return refuse("translation", value, hint);
+        }
+        let grown = f64::from(shape.reach) + 1.25 * f64::from(body.margin);
+        if !(body.margin >= 0.0 && grown <= limit) {
+            let hint = "a length of 0 or more; with it the shape is at most 2^60 in size";
+            return refuse("margin", format!("{}", body.margin), hint);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,434 @@
+//! Long-lived worlds: whatever has come and gone, a world reports what a culler made for the moment would.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::collections::{BTreeSet, HashMap};
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use sdop::mesh::ProceduralShape;
+use sdop::pipeline::Culler;
+use sdop::scene::bodies::Bodies;
+use sdop::scene::settings::{Budget, CullSettings, Finder, Strategy, Updates};
+use sdop::simd::Level;
+use sdop::volume::{Shape, ShapeSpec};
+use sdop::world::{Body, BodyId, Groups, World, WorldError};
+
+struct Random(ChaCha8Rng);
+
+impl Random {
+    fn below(&mut self, n: u32) -> u32 {
+        self.0.next_u32() % n
+    }
+
+    /// In [−1, 1], of 24 bits.
+    fn unit(&mut self) -> f32 {
+        (self.0.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0
+    }
+
+    fn body(&mut self, shapes: u32) -> Body {
+        Body {
+            shape: self.below(shapes),
+            dynamic: self.below(4) > 0,
+            rotation: [(); 4].map(|()| self.unit()),
+            translation: [(); 3].map(|()| f64::from(self.unit() * 6.0)),
+            groups: Groups {
+                member: 1 << self.below(3),
+                mask: 7 & !(1 << self.below(3)),
+            },
+            margin: 0.0,
+        }
+    }
+}
+
+fn shapes() -> Vec<Shape> {
+    let forms = [
+        ProceduralShape::Box {
+            x: 1.0,
+            y: 2.0,
+            z: 1.5,
+        },
+        ProceduralShape::Icosphere {
+            radius: 1.0,
+            subdivisions: 1,
+        },
+        ProceduralShape::Needle {
+            length: 4.0,
+            radius: 0.25,
+            sides: 8,
+        },
+    ];
+    let build = |form: &ProceduralShape| {
+        Shape::build(&form.build().unwrap(), &ShapeSpec::default()).unwrap()
+    };
+    forms.iter().map(build).collect()
+}
+
+/// Every way to cull; strategies that spend or look get what they need.
+fn ways() -> Vec<CullSettings> {
+    let mut ways = Vec::new();
+    for &strategy in Strategy::ALL {
+        for &pairs in Finder::ALL {
+            for &updates in Updates::ALL {
+                ways.push(CullSettings {
+                    strategy,
+                    pairs,
+                    updates,
+                    budget: (strategy == Strategy::SDopTimeCritical).then_some(Budget::Tests(5)),
+                    ..CullSettings::default()
+                });
+            }
+        }
+    }
+    ways
+}
+
+type Pairs = BTreeSet<[BodyId; 2]>;
+
+/// What a culler made for the moment reports of the same bodies.
+fn afresh(shapes: &[Shape], way: &CullSettings, bodies: &HashMap<BodyId, Body>) -> Pairs {
+    let mut order: Vec<BodyId> = bodies.keys().copied().collect();
+    order.sort();
+    let mut columns = Bodies::default();
+    for id in &order {
+        let body = bodies[id];
+        let t = body.translation.map(|x| x as f32);
+        columns.push(body.shape, body.dynamic, body.rotation, t);
+    }
+    let settings = CullSettings {
+        interest: Some(sdop::scene::settings::Interest::Bodies(Vec::new())),
+        ..way.clone()
+    };
+    let mut culler = Culler::new(shapes, &columns, &settings, Level::detect()).unwrap();
+    let pairs = culler.cull(&columns).iter();
+    pairs
+        .map(|pair| pair.map(|i| order[i as usize]))
+        .filter(|[a, b]| {
+            let [a, b] = [a, b].map(|id| bodies[id].groups);
+            a.member & b.mask > 0 && b.member & a.mask > 0
+        })
+        .collect()
+}
+
+#[test]
+fn a_world_reports_what_a_culler_made_for_the_moment_would() {
+    let shapes = shapes();
+    for way in ways() {
+        let deterministic = way.strategy != Strategy::SDopTimeCritical;
+        let mut random = Random(ChaCha8Rng::seed_from_u64(7));
+        let mut world = World::new(shapes.clone(), &way, Level::detect()).unwrap();
+        let mut crew = World::new(shapes.clone(), &way, Level::detect())
+            .unwrap()
+            .with_threads(3)
+            .unwrap();
+        let mut bodies = HashMap::new();
+        let mut before = Pairs::new();
+        let mut seen = 0;
+        for frame in 0..12 {
+            let come_and_go = frame % 3 < 2;
+            change(
+                &mut random,
+                &mut bodies,
+                [&mut world, &mut crew],
+                come_and_go,
+            );
+            world.cull().unwrap();
+            crew.cull().unwrap();
+            let now: Pairs = world.pairs().collect();
+            assert_eq!(now.len(), world.pairs().len(), "each pair once");
+            assert!(world.pairs().eq(crew.pairs()), "{way:?}: threads");
+            if deterministic {
+                let expected = afresh(&shapes, &way, &bodies);
+                assert_eq!(now, expected, "{way:?}, frame {frame}");
+            }
+            let events = world.events();
+            assert!(events.begun.iter().eq(now.difference(&before)));
+            assert!(events.persisting.iter().eq(now.intersection(&before)));
+            assert!(events.ended.iter().eq(before.difference(&now)));
+            seen += now.len();
+            before = now;
+        }
+        assert!(seen > 0 || way.strategy == Strategy::None, "{way:?}");
+        assert_eq!(world.len(), bodies.len());
+    }
+}
+
+/// Bodies teleport and change, and come and go in some frames; both worlds hear the same.
+fn change(
+    random: &mut Random,
+    bodies: &mut HashMap<BodyId, Body>,
+    worlds: [&mut World; 2],
+    come_and_go: bool,
+) {
+    let mut ids: Vec<BodyId> = bodies.keys().copied().collect();
+    ids.sort();
+    let [world, crew] = worlds;
+    for id in ids {
+        match random.below(10) {
+            0 if come_and_go => {
+                world.remove(id).unwrap();
+                crew.remove(id).unwrap();
+                assert_eq!(world.remove(id), Err(WorldError::Gone(id)));
+                bodies.remove(&id);
+            }
+            1 if come_and_go => {
+                let body = random.body(3);
+                world.set(id, body).unwrap();
+                crew.set(id, body).unwrap();
+                bodies.insert(id, body);
+            }
+            2..5 => {
+                let Body {
+                    rotation,
+                    translation,
+                    ..
+                } = random.body(3);
+                world.set_pose(id, rotation, translation).unwrap();
+                crew.set_pose(id, rotation, translation).unwrap();
+                let body = bodies.get_mut(&id).unwrap();
+                (body.rotation, body.translation) = (rotation, translation);
+                assert_eq!(world.body(id).unwrap(), *body);
+            }
+            _ => {}
+        }
+    }
+    for _ in 0..if come_and_go { random.below(30) } else { 0 } {
+        let body = random.body(3);
+        let id = world.insert(body).unwrap();
+        assert_eq!(crew.insert(body).unwrap(), id);
+        assert_eq!(bodies.insert(id, body), None, "{id} is new");
+    }
+}
+
+/// Two unit cubes, one beside the other with a gap, under every strategy.
+#[test]
+fn margins_reach_as_far_as_they_say_and_little_farther() {
+    let form = ProceduralShape::Box {
+        x: 2.0,
+        y: 2.0,
+        z: 2.0,
+    };
+    let shape = Shape::build(&form.build().unwrap(), &ShapeSpec::default()).unwrap();
+    let volumes = [
+        Strategy::OrDop,
+        Strategy::Aabb,
+        Strategy::KDop,
+        Strategy::Obb,
+        Strategy::SDopBatch,
+    ];
+    for strategy in volumes {
+        let way = CullSettings {
+            strategy,
+            ..CullSettings::default()
+        };
+        let mut world = World::new(vec![shape.clone()], &way, Level::detect()).unwrap();
+        let first = Body {
+            margin: 0.3,
+            ..Body::default()
+        };
+        world.insert(first).unwrap();
+        let second = world
+            .insert(Body {
+                margin: 0.7,
+                ..first
+            })
+            .unwrap();
+        let mut reported = |gap: f64| {
+            world
+                .set_pose(second, first.rotation, [2.0 + gap, 0.0, 0.0])
+                .unwrap();
+            world.cull().unwrap();
+            world.pairs().len() == 1
+        };
+        assert!(reported(0.0) && reported(1.0), "{strategy}");
+        assert!(
+            !reported(1.0 * 1.125 + 1e-4),
+            "{strategy}: rounded up by an eighth at most"
+        );
+    }
+}
+
+/// Spheres of f64 translations far out that touch exactly, by Pythagorean quadruples: sizes of thousands, 10⁹ away, where
+/// f32 steps by 64.
+#[test]
+fn touching_spheres_meet_wherever_f64_puts_them() {
+    let mut random = Random(ChaCha8Rng::seed_from_u64(3));
+    let form = ProceduralShape::Icosphere {
+        radius: 1.0,
+        subdivisions: 0,
+    };
+    let (mut tried, mut rounded) = (0, 0);
+    while tried < 2_000 {
+        let [m, n, p, q] = [(); 4].map(|()| i64::from(random.below(1 << 9)));
+        let way = [
+            m * m + n * n - p * p - q * q,
+            2 * (m * q + n * p),
+            2 * (n * q - m * p),
+        ];
+        let length = m * m + n * n + p * p + q * q;
+        let scale = 2.0f64.powi(-8);
+        // Both radii are the shape's own, whose ball is built to contain it: half the distance, rounded down to f32.
+        let radius = (length as f64 * scale / 2.0) as f32;
+        if length % 2 == 1 || f64::from(radius) != length as f64 * scale / 2.0 || radius < 1.0 {
+            continue;
+        }
+        tried += 1;
+        let spec = ShapeSpec {
+            radius: Some(radius),
+            ..ShapeSpec::default()
+        };
+        let shape = Shape::build(&form.build().unwrap(), &spec).unwrap();
+        let touching = f64::from(shape.ball.radius) >= f64::from(radius);
+        assert!(
+            touching,
+            "the ball contains the radius that it was built for"
+        );
+        let base = [1.0e9 + 0.375, -3.0e8 - 0.625, 77.0];
+        let away: [f64; 3] = std::array::from_fn(|i| base[i] + way[i] as f64 * scale);
+        rounded += usize::from(away.map(|x| f64::from(x as f32)) != away);
+        let settings = CullSettings {
+            strategy: Strategy::Sphere,
+            ..CullSettings::default()
+        };
+        let mut world = World::new(vec![shape], &settings, Level::detect()).unwrap();
+        world
+            .insert(Body {
+                translation: base,
+                ..Body::default()
+            })
+            .unwrap();
+        world
+            .insert(Body {
+                translation: away,
+                ..Body::default()
+            })
+            .unwrap();
+        world
+            .insert(Body {
+                translation: [0.1, 0.2, 0.3],
+                ..Body::default()
+            })
+            .unwrap();
+        world.cull().unwrap();
+        assert!(world.pairs().len() >= 1, "{way:?} / {length}");
+    }
+    assert!(rounded > tried / 2, "{rounded}: f32 alone would do");
+}
+
+#[test]
+fn what_breaks_the_contract_is_refused_and_changes_nothing() {
+    let mut world = World::new(shapes(), &CullSettings::default(), Level::detect()).unwrap();
+    let id = world.insert(Body::default()).unwrap();
+    let wrong = [
+        (
+            Body {
+                shape: 3,
+                ..Body::default()
+            },
+            "shape 3 of 3",
+        ),
+        (
+            Body {
+                rotation: [0.0; 4],
+                ..Body::default()
+            },
+            "rotation [0.0, 0.0, 0.0, 0.0]",
+        ),
+        (
+            Body {
+                translation: [0.0, f64::NAN, 0.0],
+                ..Body::default()
+            },
+            "translation [0.0, NaN, 0.0]",
+        ),
+        (
+            Body {
+                translation: [1e19, 0.0, 0.0],
+                ..Body::default()
+            },
+            "translation [1e19, 0.0, 0.0]",
+        ),
+        (
+            Body {
+                margin: -0.5,
+                ..Body::default()
+            },
+            "margin -0.5",
+        ),
+        (
+            Body {
+                margin: f32::NAN,
+                ..Body::default()
+            },
+            "margin NaN",
+        ),
+    ];
+    for (body, message) in wrong {
+        assert_eq!(
+            world.insert(body).unwrap_err().to_string(),
+            format!("body 1: {message}")
+        );
+        assert_eq!(
+            world.set(id, body).unwrap_err().to_string(),
+            format!("body 0: {message}")
+        );
+    }
+    assert_eq!((world.len(), world.body(id).unwrap()), (1, Body::default()));
+    let cone = CullSettings {
+        interest: Some("0".parse().unwrap()),
+        ..CullSettings::default()
+    };
+    assert!(World::new(shapes(), &cone, Level::detect()).is_err());
+}
+
+#[test]
+fn ids_are_never_given_again() {
+    let mut world = World::new(shapes(), &CullSettings::default(), Level::detect()).unwrap();
+    let [a, b] = [(); 2].map(|()| world.insert(Body::default()).unwrap());
+    world.cull().unwrap();
+    assert_eq!(world.events().begun, [[a, b]]);
+    world.remove(b).unwrap();
+    let c = world.insert(Body::default()).unwrap();
+    assert_eq!(
+        world.pairs().collect::<Vec<_>>(),
+        [[a, b]],
+        "as of the last cull"
+    );
+    world.cull().unwrap();
+    let events = world.events().clone();
+    assert_eq!((events.begun, events.ended), (vec![[a, c]], vec![[a, b]]));
+    let d = world.insert(Body::default()).unwrap();
+    assert_eq!(d.slot(), b.slot(), "slots are");
+    assert!(d != b && world.body(b).is_err() && world.slots() == 3);
+}
+
+#[test]
+fn interest_ends_with_its_body() {
+    let way = CullSettings {
+        strategy: Strategy::SDopObjectOfInterest,
+        ..CullSettings::default()
+    };
+    let mut world = World::new(shapes(), &way, Level::detect()).unwrap();
+    // Two needles side by side: their spheres meet, their or-DOPs don't.
+    let needle = Body {
+        shape: 2,
+        ..Body::default()
+    };
+    let id = world.insert(needle).unwrap();
+    world
+        .insert(Body {
+            translation: [0.0, 1.0, 1.0],
+            ..needle
+        })
+        .unwrap();
+    world.set_interest(&[id]).unwrap();
+    world.cull().unwrap();
+    assert_eq!(world.pairs().len(), 0);
+    world.remove(id).unwrap();
+    world.cull().unwrap();
+    let other = world.insert(needle).unwrap();
+    assert_eq!(other.slot(), id.slot());
+    world.cull().unwrap();
+    assert_eq!(world.pairs().len(), 1, "left to the spheres");
+    assert_eq!(world.set_interest(&[id]), Err(WorldError::Gone(id)));
+}
