@@ -9,7 +9,8 @@ use super::{down, exp2, up};
 /// Rows of a rotation matrix.
 pub type Rotation = [[f64; 3]; 3];
 
-/// 22·2⁻⁵³: error of one coordinate of [`transform`], as a multiple of max(|x|∞, |t|∞).
+/// 22·2⁻⁵³: error of one coordinate of [`transform`], as a multiple of max(|x|∞, |t|∞). Found: 8.99·2⁻⁵³.
+/// Proofs: `pose_entry.g`, `pose_point.g`.
 pub const COORDINATE_ERROR: f64 = 22.0 * exp2(-53);
 
 /// 2⁻⁴⁶ = 128·2⁻⁵³, the margin of a re-fitted world extent as a multiple of max(ρ, |t|∞): for a direction with

@@ -9,14 +9,16 @@
 use super::pose::norm;
 use super::{down, exp2, up};
 
-/// 2⁻¹⁷ = 128u, a slab's inflation as a multiple of ρ‖d‖. Proofs: `sat_budget_normals.g`, `sat_budget_edges.g`.
+/// 2⁻¹⁷ = 128u, a slab's inflation as a multiple of ρ‖d‖. Found: 17.2u along normals, 14.1u along edge × edge. Proofs: `sat_budget_normals.g`, `sat_budget_edges.g`.
 pub const SLAB_MARGIN: f64 = exp2(-17);
 
 /// 2⁻¹¹⁰, a slab's inflation as a multiple of ‖d‖: more than underflow and flushing take from some thirty operations.
+/// Found: 16.1·2⁻¹²⁶ of its 65536·2⁻¹²⁶.
 /// Proofs: the φ of `sat_dot.g` and `support_sum.g`, which are 2⁻³⁰ of 2⁻⁹³ = 2⁻¹¹⁰/2⁻¹⁷.
 pub const SLAB_FLOOR: f64 = exp2(-110);
 
 /// |(δ)| ≤ K·u·‖e‖: how far the computed support coefficients combine from e, for k = 6, 14, 18, 26. With k = 6 they are |e|.
+/// Found: 0, 1.00, 2.12, 1.00.
 /// Proofs: `support_14.g`, `support_18_triangle.g` and `support_18_excess.g`, `support_26.g`.
 pub const SUPPORT_ERROR: [(usize, f64); 4] = [(6, 0.0), (14, 1.74), (18, 3.5), (26, 1.42)];
 
