@@ -9,6 +9,8 @@ pub mod choice;
 pub mod cost;
 pub mod crew;
 pub mod effects;
+#[cfg(feature = "cli")]
+pub mod estimate;
 pub mod mesh;
 mod models;
 pub mod overlap;

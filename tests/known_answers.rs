@@ -106,24 +106,8 @@ fn ordops_hardly_ever_meet_outside_of_their_spheres() {
     assert!((0.25..0.45).contains(&round), "{round}");
 }
 
-/// or-DOP hits outside the sphere-hit region, per hit inside.
 fn outside(name: &str) -> f64 {
     let mut shapes = sdop::tradeoff::shapes::builtin().unwrap();
     shapes.retain(|shape| shape.name == name);
-    let ordop = ordops(&shapes, DirectionSet::K18);
-    let reach = 2.0 * f64::from(shapes[0].ball.radius);
-    let mut hits = [0, 0];
-    for crowd in crowds(&shapes, 1.3, PAIRS) {
-        let found = crowd.ordop_hits(&shapes, &ordop, Overlap::Full, Level::detect());
-        for [i, j] in found.iter() {
-            let centre = |body: u32| crowd.bodies.translation[body as usize].map(f64::from);
-            let squared: f64 = centre(i)
-                .iter()
-                .zip(centre(j))
-                .map(|(a, b)| (a - b).powi(2))
-                .sum();
-            hits[usize::from(squared > reach * reach)] += 1;
-        }
-    }
-    f64::from(hits[1]) / f64::from(hits[0])
+    sdop::tradeoff::shapes::outside(&shapes, 8 * PAIRS, Level::detect())
 }

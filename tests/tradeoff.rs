@@ -262,9 +262,9 @@ fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
     assert_eq!(again.status.code(), Some(0));
     for file in [
         "tradeoff.md",
-        "tradeoff.svg",
-        "tradeoff-pays.svg",
-        "tradeoff-budget.svg",
+        "figures/tradeoff.svg",
+        "figures/tradeoff-pays.svg",
+        "figures/tradeoff-budget.svg",
         "tradeoff.csv",
         "tradeoff.json",
     ] {

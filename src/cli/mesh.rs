@@ -6,16 +6,11 @@ use std::path::PathBuf;
 use sdop::mesh::decimate::decimate;
 use sdop::mesh::topology::Topology;
 use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};
-use sdop::volume::{
-    Axes, Basis, DirectionSet, Hull, OrDop, Origin, Shape, ShapeSpec, mean_world_aligned_volume,
-};
+use sdop::volume::{Hull, Origin, Shape, ShapeSpec, Size};
 use serde::Serialize;
 
 use super::output::{Format, emit, table};
 use super::{Outcome, one_of};
-
-/// Random rotations over which the volumes that are re-fitted each frame are averaged.
-const TURNS: u32 = 64;
 
 /// Describe a mesh and its bounding volumes, or convert it
 ///
@@ -60,16 +55,7 @@ struct Report {
     ball: [f32; 4],
     hull_vertices: usize,
     hull_volume: f64,
-    volumes: Vec<Tightness>,
-}
-
-/// The size of one bounding volume.
-#[derive(Serialize)]
-struct Tightness {
-    name: String,
-    volume: f64,
-    /// Absent for a flat mesh, whose hull has no volume.
-    over_hull: Option<f64>,
+    volumes: Vec<Size>,
 }
 
 /// Runs the command.
@@ -117,46 +103,8 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
         ball: [x, y, z, shape.ball.radius],
         hull_vertices: hull.vertices.len(),
         hull_volume: hull.volume(&shape.vertices),
-        volumes: tightness(&shape, &hull),
+        volumes: Size::of_all(&shape, &hull),
     })
-}
-
-/// Every volume's size, the sphere first.
-fn tightness(shape: &Shape, hull: &Hull) -> Vec<Tightness> {
-    let hull_volume = hull.volume(&shape.vertices);
-    let row = |name: String, volume: f64| Tightness {
-        name,
-        volume,
-        over_hull: (hull_volume > 0.0).then(|| volume / hull_volume),
-    };
-    let corners: Vec<_> = hull
-        .vertices
-        .iter()
-        .map(|&v| shape.vertices[v as usize])
-        .collect();
-    let mut rows = vec![row("sphere".to_owned(), shape.ball.volume())];
-    for &directions in DirectionSet::ALL {
-        let name = match directions {
-            DirectionSet::K6 => "aabb".to_owned(),
-            _ => format!("k-dop-{directions}"),
-        };
-        rows.push(row(
-            name,
-            mean_world_aligned_volume(&corners, directions, TURNS),
-        ));
-    }
-    rows.push(row("obb".to_owned(), shape.obb(hull).volume()));
-    for &axes in Axes::ALL {
-        let basis = match axes {
-            Axes::Principal => Basis::principal(hull, &shape.vertices),
-            Axes::Model => Basis::MODEL,
-        };
-        for &directions in DirectionSet::ALL {
-            let ordop = OrDop::build(&corners, basis, directions);
-            rows.push(row(format!("or-dop-{directions}-{axes}"), ordop.volume()));
-        }
-    }
-    rows
 }
 
 fn text(report: &Report) -> String {

@@ -3,6 +3,8 @@
 //! A new command is a file with `Args` and `run`, a module line, a variant and a line in [`Cli::run`].
 
 mod cost;
+mod files;
+mod machine;
 mod mesh;
 mod output;
 mod recording;

@@ -10,8 +10,11 @@ use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
 use sdop::tradeoff::{self, Plan, Tradeoff};
+use serde::{Deserialize, Serialize};
 
 use super::Outcome;
+use super::files::{command, write};
+use super::machine::Machine;
 use super::output::{Format, csv_text, emit, progress};
 use super::scene_args::{MachineArgs, SceneArgs};
 
@@ -37,6 +40,9 @@ pub struct Args {
     /// Write the page, the figures, JSON and CSV into this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Write the page and the figures into this directory instead
+    #[arg(long, value_name = "DIR", requires = "out")]
+    paper: Option<PathBuf>,
     /// Where exact truths are kept between runs
     #[arg(long, value_name = "DIR", default_value = "target/truth")]
     cache: PathBuf,
@@ -45,22 +51,40 @@ pub struct Args {
     format: Format,
 }
 
+/// A result with where it comes from.
+#[derive(Serialize, Deserialize)]
+struct Recorded {
+    command: String,
+    machine: Machine,
+    #[serde(flatten)]
+    result: Tradeoff,
+}
+
 /// Runs the command.
 ///
 /// # Errors
 /// A bad scene, settings that it can't have, files that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    let result = match recorded(args.scene.path()) {
+    let recorded = match recorded(args.scene.path()) {
         Some(path) => read(path)?,
-        None => compare(args)?,
+        None => Recorded {
+            command: command(),
+            machine: Machine::here(args.machine.level()),
+            result: compare(args)?,
+        },
     };
     if let Some(directory) = &args.out {
-        write(directory, &result)?;
+        write_all(
+            directory,
+            args.paper.as_ref().unwrap_or(directory),
+            &recorded,
+        )?;
     }
+    let result = &recorded.result;
     match args.format {
         // A line a variant; the rest is in the other formats.
         Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
-        format => emit(format, &result, tables::text)?,
+        format => emit(format, &recorded, |recorded| tables::text(&recorded.result))?,
     }
     let failures: Vec<&str> = result.failures().collect();
     if failures.is_empty() {
@@ -102,7 +126,7 @@ fn recorded(path: &Path) -> Option<&Path> {
         .then_some(path)
 }
 
-fn read(path: &Path) -> miette::Result<Tradeoff> {
+fn read(path: &Path) -> miette::Result<Recorded> {
     let text = fs::read_to_string(path)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))?;
@@ -111,26 +135,19 @@ fn read(path: &Path) -> miette::Result<Tradeoff> {
         .wrap_err_with(|| format!("{} is no result of sdop tradeoff", path.display()))
 }
 
-/// Writes what the page needs beside the page.
-fn write(directory: &Path, result: &Tradeoff) -> miette::Result<()> {
-    let json = serde_json::to_string_pretty(result).into_diagnostic()? + "\n";
+/// Writes the numbers to one directory, the page and its figures to another.
+fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Result<()> {
+    let result = &recorded.result;
+    let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
     let csv = csv_text(serde_json::to_value(&result.rows).into_diagnostic()?)?;
-    let files = [
-        ("tradeoff.json", json),
-        ("tradeoff.csv", csv),
-        ("tradeoff.md", page::page(result)),
-        ("tradeoff.svg", plot::precision(result)?),
-        ("tradeoff-pays.svg", plot::break_even(result)?),
-        ("tradeoff-budget.svg", plot::budget(result)?),
-    ];
-    fs::create_dir_all(directory)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot make {}", directory.display()))?;
-    for (name, text) in files {
-        let path = directory.join(name);
-        fs::write(&path, text)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot write {}", path.display()))?;
-    }
-    Ok(())
+    write(&numbers.join("tradeoff.json"), &json)?;
+    write(&numbers.join("tradeoff.csv"), &csv)?;
+    let figures = paper.join("figures");
+    write(&paper.join("tradeoff.md"), &page::page(recorded))?;
+    write(&figures.join("tradeoff.svg"), &plot::precision(result)?)?;
+    write(
+        &figures.join("tradeoff-pays.svg"),
+        &plot::break_even(result)?,
+    )?;
+    write(&figures.join("tradeoff-budget.svg"), &plot::budget(result)?)
 }

@@ -9,7 +9,6 @@
 pub mod check;
 pub mod claims;
 pub mod closed_form;
-mod estimate;
 mod experiment;
 pub mod paper;
 pub mod rates;
@@ -17,7 +16,7 @@ pub mod readings;
 pub mod study;
 pub mod terms;
 
-pub use estimate::{CONFIDENCE, Estimate, chi_squared_p};
+pub use crate::estimate::{CONFIDENCE, Estimate, chi_squared_p};
 pub use experiment::{Plan, ReproduceError, Results, Run, STRATEGIES, Shard, Survival, run_scene};
 
 use crate::scene::settings::Strategy;

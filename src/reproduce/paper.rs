@@ -2,7 +2,7 @@
 
 use crate::scene::settings::Strategy;
 
-use super::estimate::chi_squared_p;
+use crate::estimate::chi_squared_p;
 
 /// Numbers of objects in Table 1. The paper's text says 350 in the third place.
 pub const TABLE_1_BODIES: [usize; 4] = [50, 150, 300, 500];

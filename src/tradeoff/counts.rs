@@ -36,7 +36,7 @@ pub struct Quality {
     /// True pairs / reported pairs; 1 where nothing is reported.
     pub precision: f64,
     /// Reported pairs / true pairs, infinite where nothing is true.
-    #[serde(deserialize_with = "super::estimate::or_infinite")]
+    #[serde(deserialize_with = "crate::estimate::or_infinite")]
     pub per_true: f64,
     /// True pairs found / true pairs; 1 where nothing is true.
     pub recall: f64,

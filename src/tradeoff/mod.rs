@@ -8,7 +8,6 @@
 pub mod budget;
 pub mod counts;
 pub mod density;
-mod estimate;
 pub mod gjk;
 pub mod interest;
 pub mod pays;
@@ -21,8 +20,8 @@ pub mod variant;
 
 mod contender;
 
+pub use crate::estimate::{CONFIDENCE, Estimate};
 pub use contender::{Contender, HullTest};
-pub use estimate::{CONFIDENCE, Estimate};
 pub use study::{Plan, Row, Tradeoff, steps, study};
 
 use std::path::PathBuf;

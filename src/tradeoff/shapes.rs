@@ -7,9 +7,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
-use super::estimate::Estimate;
 use super::gjk::{HullGraph, PosedHull, may_touch};
 use super::truth::Judge;
+use crate::estimate::Estimate;
 use crate::mesh::shapes::ProceduralShape;
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
 use crate::pairs::PairList;
@@ -20,10 +20,12 @@ use crate::scene::random::Stream;
 use crate::scene::settings::{Axes, DirectionSet, Overlap};
 use crate::simd::Level;
 use crate::update::{OrDopRows, ShapeFrame};
-use crate::volume::{Basis, Hull, OrDop, Shape, ShapeSpec};
+use crate::volume::{Basis, Hull, OrDop, Shape, ShapeSpec, Size};
 
 /// Where the draws start; scenes count their seeds from 1.
 const SEED: u64 = 0x5a3e_7000_0000_0000;
+/// How far apart pairs whose spheres don't overlap are drawn, in sums of radii: an 18-DOP of a ball reaches 1.23 radii.
+const FAR: f32 = 1.3;
 /// Batches of pairs, each an observation of the intervals.
 const BATCHES: usize = 8;
 
@@ -45,8 +47,12 @@ pub struct Survival {
 pub struct ShapeSurvival {
     /// The mesh.
     pub shape: String,
+    /// Every volume's size.
+    pub sizes: Vec<Size>,
     /// Every k, axes and overlap test.
     pub ordops: Vec<Survival>,
+    /// Pairs of 18-DOPs (principal axes, `full`) that overlap although their spheres don't, per pair whose spheres do too.
+    pub outside: f64,
     /// Convex hulls that meet, per sphere hit.
     pub hull: Estimate,
     /// Meshes that meet, per sphere hit; exact.
@@ -203,10 +209,34 @@ pub fn survival(shape: &Shape, pairs: u32, level: Level) -> Result<ShapeSurvival
     let mut meeting = meeting.into_iter();
     Ok(ShapeSurvival {
         shape: shape[0].name.clone(),
+        sizes: Size::of_all(&shape[0], &Hull::of(&shape[0].vertices)),
         ordops,
+        outside: outside(shape, pairs, level),
         hull: share(&crowds, |crowd| crowd.hull_hits(shape)),
         mesh: share(&few, |_| meeting.next().unwrap_or_default()),
     })
+}
+
+/// 18-DOP hits outside of the spheres' hits, per hit inside, of `pairs` pairs up to [`FAR`] times as far apart.
+#[must_use]
+pub fn outside(shape: &[Shape], pairs: u32, level: Level) -> f64 {
+    let ordop = [ordop_of(&shape[0], DirectionSet::K18, Axes::Principal)];
+    let reach = 2.0 * f64::from(shape[0].ball.radius);
+    let crowd = Crowd::new(shape, FAR, pairs, BATCHES as u64);
+    let centre = |body: u32| {
+        let ball = shape[0].ball.centre.to_array();
+        let body = body as usize;
+        let offset = rotate(&rotation(crowd.bodies.rotation[body]), ball);
+        [0, 1, 2].map(|axis| f64::from(crowd.bodies.translation[body][axis]) + offset[axis])
+    };
+    let found = crowd.ordop_hits(shape, &ordop, Overlap::Full, level);
+    let far = |&[i, j]: &[u32; 2]| {
+        let (a, b) = (centre(i), centre(j));
+        let squared: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+        squared > reach * reach
+    };
+    let beyond = found.iter().filter(far).count();
+    beyond as f64 / (found.len() - beyond) as f64
 }
 
 /// The share of hits over equally large crowds.

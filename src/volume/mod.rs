@@ -10,6 +10,7 @@ mod hull;
 mod ordop;
 mod principal;
 mod shape;
+mod size;
 mod tightness;
 
 pub use ball::Ball;
@@ -19,4 +20,5 @@ pub use fingerprint::volumes_sha256;
 pub use hull::Hull;
 pub use ordop::OrDop;
 pub use shape::{Origin, Shape, ShapeSpec, VolumeError};
+pub use size::Size;
 pub use tightness::mean_world_aligned_volume;

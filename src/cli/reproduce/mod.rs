@@ -1,22 +1,22 @@
 //! `sdop reproduce`: the paper's experiments, from the runs to the written summary.
 
 mod figures;
-mod machine;
 mod rows;
 mod summary;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use miette::{IntoDiagnostic as _, miette};
 use sdop::cost::calibrate::Effort;
 use sdop::reproduce::{Plan, Results, Shard};
 use sdop::scene::settings::Strategy;
 
 use super::Outcome;
+use super::files::{command, write};
+use super::machine::Machine;
 use super::output::{Format, csv_text, emit, progress};
 use super::scene_args::MachineArgs;
-use machine::Machine;
 use rows::Tables;
 
 /// Run the paper's experiments: Table 1, Figs 12 to 14, costs, claims
@@ -168,30 +168,6 @@ fn write_tables(directory: &Path, tables: &Tables) -> miette::Result<()> {
         )?;
     }
     Ok(())
-}
-
-/// Writes a file, and its directory when there is none.
-fn write(path: &Path, text: &str) -> miette::Result<()> {
-    let write = || {
-        if let Some(directory) = path.parent() {
-            std::fs::create_dir_all(directory)?;
-        }
-        std::fs::write(path, text)
-    };
-    write()
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot write {}", path.display()))
-}
-
-/// The command that makes these results again. Absolute paths are this machine's own business.
-fn command() -> String {
-    let mut command = "cargo run --release --".to_owned();
-    for argument in std::env::args().skip(1) {
-        let absolute = Path::new(&argument).is_absolute();
-        command.push(' ');
-        command.push_str(if absolute { "DIR" } else { &argument });
-    }
-    command
 }
 
 fn shard(text: &str) -> Result<Shard, String> {

@@ -14,7 +14,7 @@ use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use super::machine::Machine;
+use crate::cli::machine::Machine;
 use crate::cli::output::csv_text;
 
 /// Everything that is written.

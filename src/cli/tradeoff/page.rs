@@ -6,31 +6,33 @@ use comfy_table::Table;
 use sdop::scene::settings::Overlap;
 use sdop::tradeoff::{Row, Tradeoff};
 
-use super::tables;
+use super::{Recorded, tables};
 
 /// P(or-DOP hit | sphere hit), two-sided, from an earlier study of 12 public meshes and 3 boxes.
 const STUDY: [(usize, f64); 4] = [(6, 0.666), (14, 0.478), (18, 0.441), (26, 0.409)];
 
 /// The whole page, as Markdown.
-pub fn page(result: &Tradeoff) -> String {
+pub(super) fn page(recorded: &Recorded) -> String {
     let mut out = String::new();
     // Writing to a String cannot fail.
-    let _ = write_page(&mut out, result);
+    let _ = write_page(&mut out, recorded);
     out
 }
 
-fn write_page(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
+fn write_page(out: &mut String, recorded: &Recorded) -> std::fmt::Result {
+    let result = &recorded.result;
     writeln!(out, "# What accuracy costs in time\n")?;
     writeln!(
         out,
-        "Made by `sdop tradeoff data/scenes/{}.toml --out DIR`. {}. Truth is the exact intersection of the meshes. \
-         Counts reproduce to the bit; seconds are one machine's. ± is a 95 % interval over seeds.\n",
-        result.scene,
-        tables::heading(result)
+        "Made by `{}`; nothing here is written by hand. {}. Truth is the exact intersection of the meshes. \
+         Counts reproduce to the bit; seconds are one machine's: {}. ± is a 95 % interval over seeds.\n",
+        recorded.command,
+        tables::heading(result),
+        recorded.machine
     )?;
     writeln!(out, "**{}**\n", result.advice)?;
     steps(out, result)?;
-    writeln!(out, "![Precision against time](tradeoff.svg)\n")?;
+    writeln!(out, "![Precision against time](figures/tradeoff.svg)\n")?;
     section(out, "Every volume and strategy", &tables::variants(result))?;
     writeln!(
         out,
@@ -40,8 +42,12 @@ fn write_page(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
     section(out, "When does an or-DOP pay?", &tables::break_even(result))?;
     pays(out, result)?;
     survival(out, result)?;
+    sizes(out, result)?;
     section(out, "Time-critical", &tables::budgets(result))?;
-    writeln!(out, "![Precision against budget](tradeoff-budget.svg)\n")?;
+    writeln!(
+        out,
+        "![Precision against budget](figures/tradeoff-budget.svg)\n"
+    )?;
     section(out, "Budgets by the clock", &tables::clock(result))?;
     section(out, "Object of interest", &tables::interest(result))?;
     section(out, "The price of safety", &tables::safety(result))?;
@@ -91,7 +97,7 @@ fn pays(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
         1e6 * result.narrow_phase.miss,
         1e6 * result.narrow_phase.hit
     )?;
-    writeln!(out, "![Break-even](tradeoff-pays.svg)\n")?;
+    writeln!(out, "![Break-even](figures/tradeoff-pays.svg)\n")?;
     writeln!(out, "Cheapest at each density, from which Cp on:\n")?;
     for density in &result.densities {
         let parts: Vec<String> = density
@@ -135,6 +141,23 @@ fn survival(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
         out,
         "\nThe means depend on which shapes are averaged, not on chance: elongated and flat shapes (needle, plate, gear) \
          fill little of their spheres and let few pairs through, compact ones (cube, sphere) many.\n"
+    )?;
+    writeln!(
+        out,
+        "\"Outside\" are pairs of 18-DOPs that overlap (`full`) although their spheres don't, per pair whose spheres do: what the \
+         sphere stage removes beyond the or-DOP. Only corners of an or-DOP that stick out of the sphere can meet there, so it is \
+         nothing to speak of unless a mesh nearly fills its sphere.\n"
+    )
+}
+
+/// Volume over hull volume, every volume and shape.
+fn sizes(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
+    section(out, "Volume over hull", &tables::sizes(result))?;
+    writeln!(
+        out,
+        "World-aligned volumes are re-fitted as a body turns: theirs is the mean over 64 rotations. The earlier study's 15 shapes \
+         are others, more of them boxy (or-6 2.01) and none as round as the icosphere or as slim as the needle, \
+         which alone moves the mean of the spheres.\n"
     )
 }
 

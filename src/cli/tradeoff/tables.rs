@@ -196,7 +196,7 @@ pub fn shapes(result: &Tradeoff) -> Table {
     for &overlap in Overlap::ALL {
         header.extend([6, 14, 18, 26].map(|k| format!("{overlap} {k}")));
     }
-    header.extend(["hull".to_owned(), "mesh".to_owned()]);
+    header.extend(["hull", "mesh", "outside"].map(str::to_owned));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let mut rows = table(&header);
     for shape in &result.shapes {
@@ -205,7 +205,8 @@ pub fn shapes(result: &Tradeoff) -> Table {
             let share = |k| survivors(shape, k, "principal", overlap);
             cells.extend([6, 14, 18, 26].map(|k| share(k).map_or("–".into(), short)));
         }
-        cells.extend([short(&shape.hull), short(&shape.mesh)]);
+        let outside = format!("{:.2} %", 100.0 * shape.outside);
+        cells.extend([short(&shape.hull), short(&shape.mesh), outside]);
         rows.add_row(cells);
     }
     rows
@@ -226,6 +227,48 @@ pub fn survivors<'a>(
 
 fn short(estimate: &Estimate) -> String {
     plus_minus(estimate, 1.0, 3)
+}
+
+/// Mean volume over hull volume in an earlier study of 15 shapes.
+const STUDY: [(&str, f64); 6] = [
+    ("sphere", 4.65),
+    ("aabb", 1.93),
+    ("or-dop-6-principal", 2.01),
+    ("or-dop-14-principal", 1.50),
+    ("or-dop-18-principal", 1.40),
+    ("or-dop-26-principal", 1.33),
+];
+
+/// A line a shape, a column a volume, the mean and the study's below.
+pub fn sizes(result: &Tradeoff) -> Table {
+    let names: Vec<&str> = match result.shapes.first() {
+        Some(shape) => shape.sizes.iter().map(|size| size.name.as_str()).collect(),
+        None => Vec::new(),
+    };
+    let mut rows = table(&[&["shape"], names.as_slice()].concat());
+    let cell = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.2}"));
+    let mut line = |name: &str, values: Vec<Option<f64>>| {
+        let values = values.into_iter().map(cell);
+        rows.add_row(std::iter::once(name.to_owned()).chain(values));
+    };
+    for shape in &result.shapes {
+        line(
+            &shape.shape,
+            shape.sizes.iter().map(|s| s.over_hull).collect(),
+        );
+    }
+    let mean = |place: usize| {
+        let column = result
+            .shapes
+            .iter()
+            .filter_map(|s| s.sizes[place].over_hull);
+        let (sum, count) = column.fold((0.0, 0), |(sum, n), x| (sum + x, n + 1));
+        (count > 0).then(|| sum / f64::from(count))
+    };
+    line("mean", (0..names.len()).map(mean).collect());
+    let study = |name: &&str| STUDY.iter().find(|(of, _)| of == name).map(|&(_, x)| x);
+    line("study", names.iter().map(study).collect());
+    rows
 }
 
 /// A line an arithmetic and tier.

@@ -1,17 +1,17 @@
 //! The machine that measured, as far as it explains times: no names, no paths.
 
 use sdop::simd::Level;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a measurement says of its machine.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Machine {
     pub cpu: String,
     pub cores: usize,
     pub os: String,
-    pub rustc: &'static str,
-    pub version: &'static str,
-    pub simd: &'static str,
+    pub rustc: String,
+    pub version: String,
+    pub simd: String,
     pub optimised: bool,
 }
 
@@ -22,10 +22,25 @@ impl Machine {
             cpu: cpu().unwrap_or_else(|| format!("unknown ({})", std::env::consts::ARCH)),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             os: format!("{} {}", os(), std::env::consts::ARCH),
-            rustc: env!("SDOP_RUSTC"),
-            version: env!("CARGO_PKG_VERSION"),
-            simd: level.name(),
+            rustc: env!("SDOP_RUSTC").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            simd: level.name().to_owned(),
             optimised: !cfg!(debug_assertions),
+        }
+    }
+}
+
+impl std::fmt::Display for Machine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "{}, {} cores, {}, {}; sdop {}, {}",
+            self.cpu, self.cores, self.os, self.simd, self.version, self.rustc
+        )?;
+        if self.optimised {
+            Ok(())
+        } else {
+            f.write_str(", a build with debug assertions")
         }
     }
 }

@@ -3,18 +3,20 @@
 //! Frames of one run are correlated: at the paper's speeds a body needs about a hundred frames to travel its own diameter.
 //! So a run counts as one observation, whatever its number of frames, and intervals are Student's over the runs' means.
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 use special::{Beta as _, Gamma as _};
 
 /// How often an interval covers the truth.
 pub const CONFIDENCE: f64 = 0.95;
 
 /// A mean over seeds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The mean.
+    #[serde(deserialize_with = "or_infinite")]
     pub mean: f64,
     /// Half the width of the [`CONFIDENCE`] interval; infinite for one seed.
+    #[serde(deserialize_with = "or_infinite")]
     pub half_width: f64,
     /// The number of seeds.
     pub seeds: usize,
@@ -77,6 +79,11 @@ impl Estimate {
             ..*self
         }
     }
+}
+
+/// JSON has no infinity and writes `null`.
+pub(crate) fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
+    Option::deserialize(number).map(|number| number.unwrap_or(f64::INFINITY))
 }
 
 /// The probability that χ² with `freedom` degrees of freedom exceeds `chi_squared`.
