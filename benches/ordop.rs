@@ -57,7 +57,6 @@ fn ordop(criterion: &mut Criterion) {
             let tables = SlabTables::new(k, scene.shapes.iter().map(|s| (s, &s.ordop)));
             let columns = OrDopColumns {
                 rows: &rows.rows,
-                shape: &places.shape,
                 tables: &tables,
                 overlap,
             };

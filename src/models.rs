@@ -63,7 +63,7 @@ impl Models {
             return frame;
         }
         let k = self.tables.directions().k();
-        let radius = up(reach(self.tables.shape(number as u32), k, frame.reach()));
+        let radius = up(reach(self.tables.shape(number), k, frame.reach()));
         frame.with_radius(radius)
     }
 }

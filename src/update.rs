@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use crate::overlap::ordop::{O, Q, T};
+use crate::overlap::ordop::{O, Q, S, SHAPE, T};
 use crate::places::Places;
 use crate::rounding::pose::{Rotation, norm, refit, rotate, rotation, transform, world_axes};
 use crate::rounding::sphere::{inflate_radius, world_ball};
@@ -192,7 +192,9 @@ impl OrDopRows {
         stamp: u32,
     ) {
         let (body, frame) = (places.body[place] as usize, frame_of(frames, places, place));
-        self.rows[place] = frame.row(bodies.rotation[body], bodies.translation[body]);
+        let row = &mut self.rows[place];
+        *row = frame.row(bodies.rotation[body], bodies.translation[body]);
+        row[S] = f32::from_bits(SHAPE + places.shape[place]);
         self.made[place] = stamp;
     }
 }

@@ -112,6 +112,30 @@ fn every_tier_reports_the_same_list() {
     }
 }
 
+/// Few shapes' slabs are looked up, those of many are loaded as rows.
+#[test]
+fn the_number_of_shapes_changes_no_list() {
+    for &k in DirectionSet::ALL {
+        let few = frame(13, k, Axes::Principal);
+        let n = few.shapes.len();
+        let twice: Vec<_> = few.shapes.iter().chain(&few.shapes).cloned().collect();
+        assert!(n <= 16 && twice.len() > 16);
+        let mut bodies = few.bodies.clone();
+        for shape in bodies.shape.iter_mut().step_by(2) {
+            *shape += n as u32;
+        }
+        let many = Frame::new(twice, bodies);
+        for overlap in [Overlap::OneSided, Overlap::TwoSided, Overlap::Full] {
+            let settings = settings(Strategy::SDopBatch, k, overlap);
+            for level in Level::available() {
+                let lists = [&few, &many].map(|frame| cull(frame, &settings, level).sorted());
+                assert_eq!(lists[0], lists[1], "{level} k={k} {overlap}");
+                assert!(!lists[0].is_empty());
+            }
+        }
+    }
+}
+
 #[test]
 fn strategies_relate_as_the_paper_says() {
     for seed in 0..4 {

@@ -190,7 +190,6 @@ fn time_hits(scene: &Scene, hits: &PairList, level: Level) -> Row<4> {
     let tables = SlabTables::new(scene.cull.k, scene.shapes.iter().map(|s| (s, &s.ordop)));
     let columns = OrDopColumns {
         rows: &rows.rows,
-        shape: &places.shape,
         tables: &tables,
         overlap: scene.cull.overlap,
     };

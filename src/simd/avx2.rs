@@ -125,6 +125,11 @@ impl Lanes for Avx2 {
         M8(unsafe { _mm256_cmp_ps::<_CMP_GT_OQ>(a.0, b.0) })
     }
     #[inline(always)]
+    fn negative(self, a: F8) -> M8 {
+        // Selections and bits look at a mask's sign alone.
+        M8(a.0)
+    }
+    #[inline(always)]
     fn select(self, m: M8, a: F8, b: F8) -> F8 {
         // SAFETY: the token proves AVX.
         F8(unsafe { _mm256_blendv_ps(b.0, a.0, m.0) })
@@ -177,6 +182,11 @@ impl Lanes for Avx2 {
             let half = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(index.0));
             _mm256_blendv_ps(low, high, half)
         })
+    }
+    #[inline(always)]
+    fn as_u32(self, a: F8) -> I8 {
+        // SAFETY: the token proves AVX.
+        I8(unsafe { _mm256_castps_si256(a.0) })
     }
     #[inline(always)]
     fn splat_u32(self, x: u32) -> I8 {
@@ -233,6 +243,17 @@ impl Lanes for Avx2 {
         }
     }
     #[inline(always)]
+    fn pack(self, keep: u32, values: F8, out: &mut [f32]) {
+        let out = &mut out[..8];
+        let order = &PACK[(keep & 0xff) as usize];
+        // SAFETY: the table row has 8 entries, room for 8 floats is there, and the token proves AVX2.
+        unsafe {
+            let order = _mm256_loadu_si256(order.as_ptr().cast());
+            let packed = _mm256_permutevar8x32_ps(values.0, order);
+            _mm256_storeu_ps(out.as_mut_ptr(), packed);
+        }
+    }
+    #[inline(always)]
     fn load_quads(self, from: &[[f32; 4]]) -> [F8; 4] {
         let from = &from[..8];
         // SAFETY: 8 quads are there, and the token proves AVX.
@@ -273,14 +294,23 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F8; ROW] {
         let pick = &pick[..8];
+        assert!(!rows.is_empty());
+        let last = rows.len() as u32 - 1;
+        let mut lanes = [0u32; 8];
         let mut out = [self.splat(0.0); ROW];
-        for half in [0, 8] {
-            let mut picked = [out[0].0; 8];
-            for (lane, row) in picked.iter_mut().enumerate() {
-                *row = self.load(&rows[pick[lane] as usize][half..]).0;
+        // SAFETY: 8 integers are there, every index is clamped to the last row; the token proves AVX2.
+        unsafe {
+            let pick = _mm256_loadu_si256(pick.as_ptr().cast());
+            let index = _mm256_min_epu32(pick, _mm256_set1_epi32(last as i32));
+            _mm256_storeu_si256(lanes.as_mut_ptr().cast(), index);
+            for half in [0, 8] {
+                let mut picked = [out[0].0; 8];
+                for (row, lane) in picked.iter_mut().zip(lanes) {
+                    let from: *const f32 = rows.as_ptr().add(lane as usize).cast();
+                    *row = _mm256_loadu_ps(from.add(half));
+                }
+                out[half..half + 8].copy_from_slice(&transpose(picked));
             }
-            // SAFETY: the token proves AVX.
-            out[half..half + 8].copy_from_slice(&unsafe { transpose(picked) });
         }
         out
     }

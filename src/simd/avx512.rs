@@ -106,6 +106,11 @@ impl Lanes for Avx512 {
         M16(unsafe { _mm512_cmp_ps_mask::<_CMP_GT_OQ>(a.0, b.0) })
     }
     #[inline(always)]
+    fn negative(self, a: F16) -> M16 {
+        // SAFETY: the token proves AVX-512 DQ.
+        M16(unsafe { _mm512_movepi32_mask(_mm512_castps_si512(a.0)) })
+    }
+    #[inline(always)]
     fn select(self, m: M16, a: F16, b: F16) -> F16 {
         // SAFETY: the token proves AVX-512 F.
         F16(unsafe { _mm512_mask_blend_ps(m.0, b.0, a.0) })
@@ -150,6 +155,11 @@ impl Lanes for Avx512 {
     fn lookup_16(self, table: &[f32; 16], index: I16) -> F16 {
         // SAFETY: 16 floats are there, and the token proves AVX-512 F; the permutation reads the low four bits.
         F16(unsafe { _mm512_permutexvar_ps(index.0, _mm512_loadu_ps(table.as_ptr())) })
+    }
+    #[inline(always)]
+    fn as_u32(self, a: F16) -> I16 {
+        // SAFETY: the token proves AVX-512 F.
+        I16(unsafe { _mm512_castps_si512(a.0) })
     }
     #[inline(always)]
     fn splat_u32(self, x: u32) -> I16 {
@@ -201,6 +211,15 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
+    fn pack(self, keep: u32, values: F16, out: &mut [f32]) {
+        let out = &mut out[..16];
+        // SAFETY: room for 16 floats is there, and the token proves AVX-512 F.
+        unsafe {
+            let packed = _mm512_maskz_compress_ps(keep as u16, values.0);
+            _mm512_storeu_ps(out.as_mut_ptr(), packed);
+        }
+    }
+    #[inline(always)]
     fn load_quads(self, from: &[[f32; 4]]) -> [F16; 4] {
         let from = &from[..16];
         // SAFETY: 16 quads are there, and the token proves AVX-512 F.
@@ -239,12 +258,20 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F16; ROW] {
         let pick = &pick[..16];
+        assert!(!rows.is_empty());
+        let last = rows.len() as u32 - 1;
+        let mut lanes = [0u32; 16];
         let mut picked = [self.splat(0.0).0; 16];
-        for (lane, row) in picked.iter_mut().enumerate() {
-            *row = self.load(&rows[pick[lane] as usize]).0;
+        // SAFETY: 16 integers are there, every index is clamped to the last row; the token proves AVX-512 F.
+        unsafe {
+            let pick = _mm512_loadu_epi32(pick.as_ptr().cast());
+            let index = _mm512_min_epu32(pick, _mm512_set1_epi32(last as i32));
+            _mm512_storeu_epi32(lanes.as_mut_ptr().cast(), index);
+            for (row, lane) in picked.iter_mut().zip(lanes) {
+                *row = _mm512_loadu_ps(rows.as_ptr().add(lane as usize).cast());
+            }
+            transpose(picked)
         }
-        // SAFETY: the token proves AVX-512 F.
-        unsafe { transpose(picked) }
     }
 }
 

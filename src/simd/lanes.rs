@@ -38,6 +38,8 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     fn flip_sign(self, a: Self::F, sign: Self::F) -> Self::F;
     /// `a > b`, false for NaN.
     fn gt(self, a: Self::F, b: Self::F) -> Self::M;
+    /// Lanes whose sign bit is set, that of −0 too.
+    fn negative(self, a: Self::F) -> Self::M;
     /// `if m { a } else { b }`.
     fn select(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F;
     /// Lanes below `n` true, the rest false.
@@ -54,6 +56,8 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     /// Entry `index` (0 to 15) of a table, lane by lane.
     fn lookup_16(self, table: &[f32; 16], index: Self::I) -> Self::F;
 
+    /// The bits of each lane.
+    fn as_u32(self, a: Self::F) -> Self::I;
     /// `x` in every lane.
     fn splat_u32(self, x: u32) -> Self::I;
     /// The first `WIDTH` elements of `from`, which must have that many.
@@ -71,6 +75,8 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     /// Writes the lanes whose bit in `keep` is set to the front of `out`, in lane order; `out` has at least `WIDTH` elements and
     /// those behind the kept ones are left in an unspecified state (that is what makes it free of branches).
     fn compress(self, keep: u32, values: Self::I, out: &mut [u32]);
+    /// As [`Self::compress`].
+    fn pack(self, keep: u32, values: Self::F, out: &mut [f32]);
 
     /// The first `WIDTH` quads of `from`, which must have that many, as columns: element c of the result holds number c of
     /// every quad.
@@ -78,8 +84,8 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     /// Quads of a non-empty table as columns: of each of the first `WIDTH` codes, of which there must be that many, the
     /// upper 28 bits are the index (see [`Self::split_u32`]). An index past the end reads the last quad.
     fn gather_quads(self, quads: &[[f32; 4]], codes: &[u32]) -> [Self::F; 4];
-    /// Rows `rows[pick[lane]]` as columns: element c of the result holds number c of every picked row.
-    /// `pick` has at least `WIDTH` elements.
+    /// Rows `rows[pick[lane]]` of a non-empty table as columns: element c of the result holds number c of every picked row;
+    /// an index past the end reads the last row. `pick` has at least `WIDTH` elements.
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW];
 }
 

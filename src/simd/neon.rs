@@ -115,6 +115,11 @@ impl Lanes for Neon {
         M4(unsafe { vcgtq_f32(a.0, b.0) })
     }
     #[inline(always)]
+    fn negative(self, a: F4) -> M4 {
+        // SAFETY: the token proves NEON.
+        M4(unsafe { vcltzq_s32(vreinterpretq_s32_f32(a.0)) })
+    }
+    #[inline(always)]
     fn select(self, m: M4, a: F4, b: F4) -> F4 {
         // SAFETY: the token proves NEON.
         F4(unsafe { vbslq_f32(m.0, a.0, b.0) })
@@ -156,6 +161,11 @@ impl Lanes for Neon {
     #[inline(always)]
     fn lookup_16(self, table: &[f32; 16], index: I4) -> F4 {
         self.load(&self.array(index).map(|entry| table[(entry & 15) as usize]))
+    }
+    #[inline(always)]
+    fn as_u32(self, a: F4) -> I4 {
+        // SAFETY: the token proves NEON.
+        I4(unsafe { vreinterpretq_u32_f32(a.0) })
     }
     #[inline(always)]
     fn splat_u32(self, x: u32) -> I4 {
@@ -207,6 +217,17 @@ impl Lanes for Neon {
         }
     }
     #[inline(always)]
+    fn pack(self, keep: u32, values: F4, out: &mut [f32]) {
+        let mut lanes = [0.0; 4];
+        self.store(values, &mut lanes);
+        let out = &mut out[..4];
+        let mut kept = 0;
+        for (lane, value) in lanes.into_iter().enumerate() {
+            out[kept] = value;
+            kept += (keep >> lane & 1) as usize;
+        }
+    }
+    #[inline(always)]
     fn load_quads(self, from: &[[f32; 4]]) -> [F4; 4] {
         let from = from[..4].as_flattened();
         // SAFETY: 16 floats are there, and the token proves NEON. The load itself takes every fourth float to one vector.
@@ -221,12 +242,12 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F4; ROW] {
-        let pick = &pick[..4];
+        let (pick, last) = (&pick[..4], rows.len() - 1);
         let mut out = [self.splat(0.0); ROW];
         for (column, lanes) in out.iter_mut().enumerate() {
             let mut gathered = [0.0; 4];
             for (lane, number) in gathered.iter_mut().enumerate() {
-                *number = rows[pick[lane] as usize][column];
+                *number = rows[(pick[lane] as usize).min(last)][column];
             }
             *lanes = self.load(&gathered);
         }

@@ -118,6 +118,10 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
         M1(a.0 > b.0)
     }
     #[inline(always)]
+    fn negative(self, a: Self::F) -> Self::M {
+        M1(a.0.is_sign_negative())
+    }
+    #[inline(always)]
     fn select(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F {
         if m.0 { a } else { b }
     }
@@ -144,6 +148,10 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
     #[inline(always)]
     fn lookup_16(self, table: &[f32; 16], index: u32) -> Self::F {
         F1::of(table[(index & 15) as usize])
+    }
+    #[inline(always)]
+    fn as_u32(self, a: Self::F) -> u32 {
+        a.0.to_bits()
     }
     #[inline(always)]
     fn splat_u32(self, x: u32) -> u32 {
@@ -180,6 +188,12 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
         }
     }
     #[inline(always)]
+    fn pack(self, keep: u32, values: Self::F, out: &mut [f32]) {
+        if keep & 1 != 0 {
+            out[0] = values.0;
+        }
+    }
+    #[inline(always)]
     fn load_quads(self, from: &[[f32; 4]]) -> [Self::F; 4] {
         from[0].map(F1::of)
     }
@@ -189,6 +203,6 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
     }
     #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW] {
-        rows[pick[0] as usize].map(F1::of)
+        rows[(pick[0] as usize).min(rows.len() - 1)].map(F1::of)
     }
 }

@@ -119,6 +119,11 @@ impl Lanes for Sse2 {
         M4(unsafe { _mm_cmpgt_ps(a.0, b.0) })
     }
     #[inline(always)]
+    fn negative(self, a: F4) -> M4 {
+        // SAFETY: the token proves SSE2.
+        M4(unsafe { _mm_castsi128_ps(_mm_srai_epi32::<31>(_mm_castps_si128(a.0))) })
+    }
+    #[inline(always)]
     fn select(self, m: M4, a: F4, b: F4) -> F4 {
         // SAFETY: the token proves SSE2.
         F4(unsafe { _mm_or_ps(_mm_and_ps(m.0, a.0), _mm_andnot_ps(m.0, b.0)) })
@@ -162,6 +167,11 @@ impl Lanes for Sse2 {
     #[inline(always)]
     fn lookup_16(self, table: &[f32; 16], index: I4) -> F4 {
         self.load(&self.array(index).map(|entry| table[(entry & 15) as usize]))
+    }
+    #[inline(always)]
+    fn as_u32(self, a: F4) -> I4 {
+        // SAFETY: the token proves SSE2.
+        I4(unsafe { _mm_castps_si128(a.0) })
     }
     #[inline(always)]
     fn splat_u32(self, x: u32) -> I4 {
@@ -216,6 +226,17 @@ impl Lanes for Sse2 {
         }
     }
     #[inline(always)]
+    fn pack(self, keep: u32, values: F4, out: &mut [f32]) {
+        let mut lanes = [0.0; 4];
+        self.store(values, &mut lanes);
+        let out = &mut out[..4];
+        let mut kept = 0;
+        for (lane, value) in lanes.into_iter().enumerate() {
+            out[kept] = value;
+            kept += (keep >> lane & 1) as usize;
+        }
+    }
+    #[inline(always)]
     fn load_quads(self, from: &[[f32; 4]]) -> [F4; 4] {
         let from = &from[..4];
         self.transposed([&from[0], &from[1], &from[2], &from[3]])
@@ -228,10 +249,10 @@ impl Lanes for Sse2 {
     }
     #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F4; ROW] {
-        let pick = &pick[..4];
+        let (pick, last) = (&pick[..4], rows.len() - 1);
         let mut out = [self.splat(0.0); ROW];
         for start in [0, 4, 8, 12] {
-            let part = |lane: usize| rows[pick[lane] as usize][start..].first_chunk();
+            let part = |lane: usize| rows[(pick[lane] as usize).min(last)][start..].first_chunk();
             if let (Some(a), Some(b), Some(c), Some(d)) = (part(0), part(1), part(2), part(3)) {
                 out[start..start + 4].copy_from_slice(&self.transposed([a, b, c, d]));
             }

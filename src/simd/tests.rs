@@ -61,6 +61,20 @@ fn arithmetic<L: Lanes>(l: L, start: usize) {
     );
     let flipped = expect(&|x, y| if y.is_sign_negative() { -x } else { x });
     assert!(same(l, l.flip_sign(x, y), &flipped));
+    let negative = (0..L::WIDTH)
+        .filter(|&i| xs[i].is_sign_negative())
+        .fold(0, |bits, i| bits | 1 << i);
+    assert_eq!(l.bits(l.negative(x)), negative);
+    let chosen = expect(&|x, y| if x.is_sign_negative() { x } else { y });
+    assert!(same(l, l.select(l.negative(x), x, y), &chosen));
+    let mut packed = [f32::NAN; MAX_WIDTH];
+    l.pack(negative, x, &mut packed);
+    let kept: Vec<f32> = xs[..L::WIDTH]
+        .iter()
+        .copied()
+        .filter(|x| x.is_sign_negative())
+        .collect();
+    assert_eq!(packed[..kept.len()], kept[..]);
     let greater = l.gt(x, y);
     let expected = (0..L::WIDTH)
         .filter(|&i| xs[i] > ys[i])
@@ -110,6 +124,8 @@ fn integers<L: Lanes>(l: L, start: usize) {
     assert_eq!(as_floats(l.min_u32(va, vb)), expect(&u32::min));
     assert_eq!(as_floats(l.max_u32(va, vb)), expect(&u32::max));
     assert_eq!(as_floats(l.add_u32(va, vb)), expect(&|a, b| a + b));
+    let bits: Vec<u32> = X[start..][..L::WIDTH].iter().map(|x| x.to_bits()).collect();
+    assert_eq!(as_floats(l.as_u32(l.load(&X[start..]))), bits);
     let any: u32 = (0..L::WIDTH)
         .filter(|&i| a[i] & b[i] != 0)
         .map(|i| 1 << i)
@@ -138,11 +154,20 @@ fn transposed<L: Lanes>(l: L) {
     let rows: Vec<[f32; ROW]> = (0..40)
         .map(|row| std::array::from_fn(|column| (row * 100 + column) as f32))
         .collect();
-    let pick: Vec<u32> = (0..16).map(|lane| (lane * 23 + 5) % 40).collect();
+    // The seventh index lies behind the table and reads its end.
+    let pick: Vec<u32> = (0..16)
+        .map(|lane| {
+            if lane == 6 {
+                1000
+            } else {
+                (lane * 23 + 5) % 40
+            }
+        })
+        .collect();
     for (column, lanes) in l.load_transposed(&rows, &pick).into_iter().enumerate() {
         let expected: Vec<f32> = pick
             .iter()
-            .map(|&row| (row * 100 + column as u32) as f32)
+            .map(|&row| (row.min(39) * 100 + column as u32) as f32)
             .collect();
         assert!(same(l, lanes, &expected), "column {column}");
     }

@@ -45,7 +45,6 @@ impl<'a> Stage<'a> {
             level: self.level,
             columns: OrDopColumns {
                 rows: &self.rows.rows,
-                shape: &self.places.shape,
                 tables: self.tables,
                 overlap: self.overlap,
             },

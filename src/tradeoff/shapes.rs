@@ -117,7 +117,6 @@ impl Crowd {
         let tables = SlabTables::new(directions, built());
         let columns = OrDopColumns {
             rows: &rows.rows,
-            shape: &places.shape,
             tables: &tables,
             overlap,
         };

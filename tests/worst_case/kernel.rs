@@ -4,9 +4,10 @@
 use glam::Vec3;
 use sdop::mesh::TriangleMesh;
 use sdop::overlap::ordop::edges;
-use sdop::overlap::ordop::support::{SlabEnds, support};
-use sdop::overlap::ordop::table::{TABLE, members_of};
-use sdop::overlap::ordop::{O, OrDopColumns, Q, SlabTables, T};
+use sdop::overlap::ordop::slabs::Slabs;
+use sdop::overlap::ordop::support::support;
+use sdop::overlap::ordop::table::members_of;
+use sdop::overlap::ordop::{O, OrDopColumns, Q, S, SHAPE, SlabTables, T};
 use sdop::pairs::PairList;
 use sdop::rounding::pose::{rotate, rotation, world_axes};
 use sdop::scene::settings::Overlap;
@@ -24,24 +25,10 @@ const SETS: [(usize, DirectionSet); 4] = [
     (26, DirectionSet::K26),
 ];
 
-/// A table for the culler's support in scalar lanes.
-#[derive(Clone, Copy)]
-struct Ends<'a>(&'a Table);
-
-impl<L: Lanes> SlabEnds<L> for Ends<'_> {
-    fn facing(&self, l: L, group: usize, octant: L::I) -> L::F {
-        l.gather(&self.0[8 * group..8 * group + 8], octant)
-    }
-    fn own(&self, l: L, group: usize, plus: usize, minus: usize, sign: L::F) -> L::F {
-        let entry = |octant: usize| l.splat(self.0[8 * group + octant]);
-        l.select(l.gt(l.splat(0.0), sign), entry(minus), entry(plus))
-    }
-}
-
 /// Whether the culler's support equals `expected`: neither is greater.
 struct Equals<'a> {
     k: usize,
-    table: &'a Table,
+    ends: &'a [[f32; 2]; 13],
     e: [f32; 3],
     expected: f32,
 }
@@ -51,7 +38,8 @@ impl Kernel for Equals<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> bool {
         let e = self.e.map(|x| l.splat(x));
-        let ends = Ends(self.table);
+        let ends = self.ends.map(|ends| ends.map(|end| l.splat(end)));
+        let ends = Slabs { ends };
         let found = match self.k {
             6 => support::<L, 6>(l, &ends, e),
             14 => support::<L, 14>(l, &ends, e),
@@ -68,7 +56,8 @@ pub fn supports_agree<const FLUSH: bool>(level: Level) {
     for step in 0..20_000 {
         let (k, _) = SETS[step % SETS.len()];
         let scale = 2.0f32.powi(-(random.below(150) as i32));
-        let table: Table = std::array::from_fn(|_| random.between(0.0, 1.0) * scale);
+        let ends = [(); 13].map(|()| [(); 2].map(|()| random.between(0.0, 1.0) * scale));
+        let table = ordop::table(26, |member| [-ends[member][1], ends[member][0]]);
         let mut e = [(); 3].map(|()| random.signed());
         if random.below(4) == 0 {
             e[random.below(3)] = e[random.below(3)]; // ties take other branches
@@ -79,7 +68,7 @@ pub fn supports_agree<const FLUSH: bool>(level: Level) {
                 level,
                 Equals {
                     k,
-                    table: &table,
+                    ends: &ends,
                     e,
                     expected
                 }
@@ -96,18 +85,16 @@ pub fn decisions_agree<const FLUSH: bool>(level: Level) {
         let tables = SlabTables::new(directions, shapes.iter().map(|shape| (shape, &shape.ordop)));
         for (overlap, count) in [(Overlap::TwoSided, 400), (Overlap::Full, 60)] {
             let apart = |a: &Body, b: &Body| {
-                let table = |body: &Body| entries(&tables, body.shape);
+                let table = |body: &Body| entries(k, &tables, body.shape);
                 let frames = Frames::<FLUSH>::new(&row(&a.row), &row(&b.row));
                 separated(k, overlap == Overlap::Full, &frames, &table(a), &table(b))
             };
             let bodies = at_the_limit(&shapes, count, apart);
             let rows: Vec<_> = bodies.iter().map(|body| body.row).collect();
-            let shape: Vec<_> = bodies.iter().map(|body| body.shape).collect();
             let first: Vec<u32> = (0..2 * count as u32).map(|pair| 2 * pair).collect();
             let second: Vec<u32> = first.iter().map(|i| i + 1).collect();
             let columns = OrDopColumns {
                 rows: &rows,
-                shape: &shape,
                 tables: &tables,
                 overlap,
             };
@@ -163,9 +150,13 @@ fn row<const FLUSH: bool>(row: &[f32; ROW]) -> Row<FLUSH> {
     Row::new([three(Q), three(Q + 3), three(Q + 6)], three(T), three(O))
 }
 
-fn entries(tables: &SlabTables, shape: u32) -> Table {
-    let start = shape as usize * TABLE;
-    std::array::from_fn(|i| tables.entries()[start + i])
+fn entries(k: usize, tables: &SlabTables, shape: u32) -> Table {
+    let [low, high] = [0, 1].map(|half| tables.rows()[2 * shape as usize + half]);
+    let ends = [low, high].concat();
+    let place = |member: usize| members_of(k).iter().position(|&m| m == member).unwrap();
+    ordop::table(k, |member| {
+        [-ends[2 * place(member) + 1], ends[2 * place(member)]]
+    })
 }
 
 /// Twelve random vertices, half of the shapes with the origin outside.
@@ -245,6 +236,7 @@ fn turned(random: &mut Random, shapes: &[Shape]) -> Body {
         row[T + i] = random.signed();
         row[O + i] = offset[i] as f32;
     }
+    row[S] = f32::from_bits(SHAPE + which as u32);
     Body {
         row,
         shape: which as u32,

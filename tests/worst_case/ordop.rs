@@ -1,12 +1,37 @@
 //! The separating-axis arithmetic once more, number by number on [`F`], so that a search can look at τ and the supports
 //! that the culler's kernel only compares. `kernel.rs` holds both against each other.
 
-use sdop::overlap::ordop::table::{COEFFICIENTS, DIAGONALS, OWN, PAIRS, TABLE, members_of};
+use sdop::overlap::ordop::table::{COEFFICIENTS, members_of};
 
 use super::machine::F;
 
 pub type V<const FLUSH: bool> = [F<FLUSH>; 3];
-pub type Table = [f32; TABLE];
+
+/// Slab ends by group and octant: the three axes, the pairs xy, xz, yz, and the cube diagonals.
+pub type Table = [f32; 56];
+/// First group of the pairs.
+const PAIRS: usize = 3;
+/// The group of the cube diagonals.
+const DIAGONALS: usize = 6;
+
+/// A direction's group, the octant of its upper end, and that of its opposite.
+fn slab(member: usize) -> (usize, usize, usize) {
+    let [x, y, z] = COEFFICIENTS[member];
+    let bits = |bit: fn(i8) -> bool| {
+        usize::from(bit(x)) | usize::from(bit(y)) << 1 | usize::from(bit(z)) << 2
+    };
+    let (plus, used) = (bits(|c| c < 0), bits(|c| c != 0));
+    let group = match used {
+        1 => 0,
+        2 => 1,
+        4 => 2,
+        3 => PAIRS,
+        5 => PAIRS + 1,
+        6 => PAIRS + 2,
+        _ => DIAGONALS,
+    };
+    (group, plus, plus ^ used)
+}
 
 /// A body's row: world directions of its basis, translation, offset of the slabs' centre.
 pub struct Row<const FLUSH: bool> {
@@ -61,8 +86,8 @@ impl<const FLUSH: bool> Frames<FLUSH> {
         let c = COEFFICIENTS[member];
         let tau = combine(c, self.gap[0]);
         let e = [0, 1, 2].map(|j| combine(c, self.turn.map(|row| row[j])));
-        let slab = OWN[member];
-        let own = a[8 * slab.group + if tau < F::ZERO { slab.minus } else { slab.plus }];
+        let (group, plus, minus) = slab(member);
+        let own = a[8 * group + if tau < F::ZERO { minus } else { plus }];
         let away = e.map(|x| x.flip(F::ZERO - tau));
         Axis {
             raw: tau,
@@ -197,15 +222,15 @@ pub fn support<const FLUSH: bool>(k: usize, table: &Table, e: V<FLUSH>) -> F<FLU
 
 /// A table from the ends of the members' slabs, [lo, hi] each.
 pub fn table(k: usize, ends: impl Fn(usize) -> [f32; 2]) -> Table {
-    let mut table = [0.0; TABLE];
+    let mut table = [0.0; 56];
     for &member in members_of(k) {
-        let ([lo, hi], slab) = (ends(member), OWN[member]);
-        let used = slab.plus ^ slab.minus;
+        let ([lo, hi], (group, plus, minus)) = (ends(member), slab(member));
+        let used = plus ^ minus;
         for octant in 0..8 {
-            if octant & used == slab.plus & used {
-                table[8 * slab.group + octant] = hi;
-            } else if octant & used == slab.minus & used {
-                table[8 * slab.group + octant] = -lo;
+            if octant & used == plus & used {
+                table[8 * group + octant] = hi;
+            } else if octant & used == minus & used {
+                table[8 * group + octant] = -lo;
             }
         }
     }

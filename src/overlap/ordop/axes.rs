@@ -1,9 +1,9 @@
 //! Separating axes of one pair a lane: both bodies' slab normals, and edge × edge.
 
 use super::edges;
-use super::support::{SlabEnds, support};
-use super::table::{OWN, members_of};
-use crate::scene::settings::Overlap;
+use super::slabs::Slabs;
+use super::support::support;
+use super::table::each_direction;
 use crate::simd::{Lanes, ROW};
 
 /// Where Q stands in a row: the world direction of basis axis j in numbers 3j to 3j + 2.
@@ -13,9 +13,18 @@ pub const T: usize = 9;
 /// Where the centre offset o stands in a row.
 pub const O: usize = 12;
 
+/// Where the number of the shape stands in a row, as the float whose bits are [`SHAPE`] + it.
+pub const S: usize = 15;
+/// The bits of 2²³, to which small integers add up as floats.
+pub const SHAPE: u32 = 0x4b00_0000;
+
 type Vector<L> = [<L as Lanes>::F; 3];
 
+/// Numbers in [`Frames`].
+pub const FRAMES: usize = 17;
+
 /// Two bodies' frames in each other's coordinates.
+#[derive(Clone, Copy)]
 pub struct Frames<L: Lanes> {
     /// `turn[i][j]` = axis i of A · axis j of B: row i is A's axis in B's coordinates, column j B's axis in A's.
     turn: [Vector<L>; 3],
@@ -23,6 +32,8 @@ pub struct Frames<L: Lanes> {
     gap_a: Vector<L>,
     /// −Δ along B's axes.
     gap_b: Vector<L>,
+    /// The shapes of A and B, as rows hold them.
+    pub shapes: [L::F; 2],
 }
 
 impl<L: Lanes> Frames<L> {
@@ -43,28 +54,47 @@ impl<L: Lanes> Frames<L> {
                 *entry = dot::<L>(axis::<L>(&a, i), axis::<L>(&b, j));
             }
         }
-        Self { turn, gap_a, gap_b }
+        Self {
+            turn,
+            gap_a,
+            gap_b,
+            shapes: [a[S], b[S]],
+        }
     }
 
-    /// Lanes that some tried axis separates.
+    /// The same as plain numbers.
     #[inline(always)]
-    pub fn separated<const K: usize>(
-        &self,
-        l: L,
-        overlap: Overlap,
-        a: &impl SlabEnds<L>,
-        b: &impl SlabEnds<L>,
-    ) -> L::M {
-        let all = l.bits(l.first(L::WIDTH));
-        let mut separated = by_normals::<L, K>(l, self.turn, self.gap_a, a, b);
-        if overlap != Overlap::OneSided && l.bits(separated) != all {
-            let back = [self.column(0), self.column(1), self.column(2)];
-            separated = separated | by_normals::<L, K>(l, back, self.gap_b, b, a);
+    pub fn numbers(&self) -> [L::F; FRAMES] {
+        let ([x, y, z], [ga, gb, gc], [ha, hb, hc]) = (self.turn, self.gap_b, self.gap_a);
+        let [one, other] = self.shapes;
+        [
+            one, other, x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2], ga, gb, gc, ha, hb,
+            hc,
+        ]
+    }
+
+    /// Back from [`Self::numbers`].
+    #[inline(always)]
+    pub fn from_numbers(n: [L::F; FRAMES]) -> Self {
+        Self {
+            shapes: [n[0], n[1]],
+            turn: [[n[2], n[3], n[4]], [n[5], n[6], n[7]], [n[8], n[9], n[10]]],
+            gap_b: [n[11], n[12], n[13]],
+            gap_a: [n[14], n[15], n[16]],
         }
-        if overlap == Overlap::Full && l.bits(separated) != all {
-            separated = separated | self.by_edges::<K>(l, a, b);
-        }
-        separated
+    }
+
+    /// Lanes that a normal of A separates.
+    #[inline(always)]
+    pub fn by_normals_of_a<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
+        by_normals::<L, K>(l, self.turn, self.gap_a, a, b)
+    }
+
+    /// Lanes that a normal of B separates.
+    #[inline(always)]
+    pub fn by_normals_of_b<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
+        let back = [self.column(0), self.column(1), self.column(2)];
+        by_normals::<L, K>(l, back, self.gap_b, b, a)
     }
 
     /// B's axis j in A's coordinates.
@@ -76,7 +106,7 @@ impl<L: Lanes> Frames<L> {
     /// Axes edge × edge. An axis shorter than ½ (nearly parallel edges) is skipped: the error bounds are relative to its
     /// length, and the normals serve such pairs.
     #[inline(always)]
-    fn by_edges<const K: usize>(&self, l: L, a: &impl SlabEnds<L>, b: &impl SlabEnds<L>) -> L::M {
+    pub fn by_edges<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
         let all = l.bits(l.first(L::WIDTH));
         let (zero, quarter) = (l.splat(0.0), l.splat(0.25));
         let mut separated = l.first(0);
@@ -114,30 +144,28 @@ fn by_normals<L: Lanes, const K: usize>(
     l: L,
     turn: [Vector<L>; 3],
     gap: Vector<L>,
-    own: &impl SlabEnds<L>,
-    other: &impl SlabEnds<L>,
+    own: &Slabs<L>,
+    other: &Slabs<L>,
 ) -> L::M {
     let all = l.bits(l.first(L::WIDTH));
-    let zero = l.splat(0.0);
     let [x, y, z] = [
         combinations::<L>(turn[0][0], turn[1][0], turn[2][0]),
         combinations::<L>(turn[0][1], turn[1][1], turn[2][1]),
         combinations::<L>(turn[0][2], turn[1][2], turn[2][2]),
     ];
     let tau = combinations::<L>(gap[0], gap[1], gap[2]);
+    // The normal turned towards the other body faces one slab end; the other body answers in the opposite direction.
+    let other = other.mirrored();
     let mut separated = l.first(0);
-    for &i in members_of(K) {
-        let slab = OWN[i];
-        // The normal turned towards the other body faces this slab end; the other body answers in the opposite direction.
-        let own = own.own(l, slab.group, slab.plus, slab.minus, tau[i]);
-        let away = flip(l, [x[i], y[i], z[i]], zero - tau[i]);
-        let reach = own + support::<L, K>(l, other, away);
+    each_direction!(K, |i, _place| {
+        let towards = flip(l, [x[i], y[i], z[i]], tau[i]);
+        let reach = own.own(l, i, tau[i]) + support::<L, K>(l, &other, towards);
         separated = separated | l.gt(l.abs(tau[i]), reach);
         // One lane alone leaves at its first separating axis; in a wide vector all lanes seldom agree so early.
         if L::WIDTH == 1 && l.bits(separated) == all {
-            break;
+            return separated;
         }
-    }
+    });
     separated
 }
 

@@ -1,20 +1,21 @@
 //! Lists of pairs through the separating-axis test, a vector of pairs at a time.
 
-use super::axes::Frames;
-use super::support::SlabEnds;
-use super::table::{SlabTables, TABLE};
+use super::axes::{FRAMES, Frames};
+use super::slabs::Slabs;
+use super::table::SlabTables;
 use crate::pairs::PairList;
 use crate::scene::settings::Overlap;
 use crate::simd::{Kernel, Lanes, Level, MAX_WIDTH, ROW, dispatch};
 use crate::volume::DirectionSet;
 
+/// Pairs that go through the first bodies' normals before the rest: their survivors' frames fit the first-level cache.
+const BLOCK: usize = 128;
+
 /// The or-DOPs of all bodies as the pair test reads them.
 #[derive(Clone, Copy)]
 pub struct OrDopColumns<'a> {
-    /// One row a body: Q, t, o, one number unused.
+    /// One row a body: Q, t, o, shape.
     pub rows: &'a [[f32; ROW]],
-    /// Each body's shape.
-    pub shape: &'a [u32],
     /// Each shape's slabs.
     pub tables: &'a SlabTables,
     /// The separating axes to try.
@@ -68,122 +69,201 @@ impl OrDopColumns<'_> {
         second: &[u32],
         out: &mut PairList,
     ) -> Tested {
-        let mut hits = 0;
-        for (first, second) in first.chunks(L::WIDTH).zip(second.chunks(L::WIDTH)) {
-            let group = Group::new(self, first, second);
-            let separated = l.bits(group.separated::<L, K>(l, self));
-            let keep = !separated & l.bits(l.first(first.len()));
-            let (out_first, out_second) = out.room(L::WIDTH);
-            l.compress(keep, l.load_u32(&group.first), out_first);
-            l.compress(keep, l.load_u32(&group.second), out_second);
-            out.advance(keep.count_ones() as usize);
-            hits += u64::from(keep.count_ones());
+        // Only a vector of 16 has a permutation for 16 shapes; with two halves each, rows are as quick.
+        let few = L::WIDTH == 16 && !self.tables.columns().is_empty();
+        match few {
+            true => self.test_blocks::<L, K, true>(l, first, second, out),
+            false => self.test_blocks::<L, K, false>(l, first, second, out),
+        }
+    }
+
+    #[inline(always)]
+    fn test_blocks<L: Lanes, const K: usize, const FEW: bool>(
+        &self,
+        l: L,
+        first: &[u32],
+        second: &[u32],
+        out: &mut PairList,
+    ) -> Tested {
+        let (mut pairs, mut alive) = (Pairs::new(), Alive::new());
+        let listed = out.len();
+        for (first, second) in first.chunks(BLOCK).zip(second.chunks(BLOCK)) {
+            pairs.fill(first, second);
+            self.by_first::<L, K, FEW>(l, &pairs, &mut alive);
+            self.by_rest::<L, K, FEW>(l, &alive, out);
         }
         Tested {
             tests: first.len() as u64,
-            hits,
+            hits: (out.len() - listed) as u64,
+        }
+    }
+
+    /// Pairs through the normals of the first bodies.
+    #[inline(always)]
+    fn by_first<L: Lanes, const K: usize, const FEW: bool>(
+        &self,
+        l: L,
+        pairs: &Pairs,
+        alive: &mut Alive,
+    ) {
+        alive.pairs.len = 0;
+        let mut start = 0;
+        while start < pairs.len {
+            let frames = Frames::new(
+                l,
+                l.load_transposed(self.rows, &pairs.first[start..]),
+                l.load_transposed(self.rows, &pairs.second[start..]),
+            );
+            let [a, b] = self.slabs::<L, K, FEW>(l, &frames);
+            let separated = l.bits(frames.by_normals_of_a::<K>(l, &a, &b));
+            let keep = !separated & l.bits(l.first(pairs.len - start));
+            alive.push(l, keep, pairs, start, &frames, self.overlap);
+            start += L::WIDTH;
+        }
+        alive.pad();
+    }
+
+    /// Pairs that are still alive through all other axes; survivors are appended to `out`.
+    #[inline(always)]
+    fn by_rest<L: Lanes, const K: usize, const FEW: bool>(
+        &self,
+        l: L,
+        alive: &Alive,
+        out: &mut PairList,
+    ) {
+        let pairs = &alive.pairs;
+        let mut start = 0;
+        while start < pairs.len {
+            let mut keep = l.bits(l.first(pairs.len - start));
+            if self.overlap != Overlap::OneSided {
+                let frames = alive.frames(l, start);
+                let [a, b] = self.slabs::<L, K, FEW>(l, &frames);
+                keep &= !l.bits(frames.by_normals_of_b::<K>(l, &a, &b));
+                if self.overlap == Overlap::Full && keep != 0 {
+                    keep &= !l.bits(frames.by_edges::<K>(l, &a, &b));
+                }
+            }
+            let (first, second) = out.room(L::WIDTH);
+            l.compress(keep, l.load_u32(&pairs.first[start..]), first);
+            l.compress(keep, l.load_u32(&pairs.second[start..]), second);
+            out.advance(keep.count_ones() as usize);
+            start += L::WIDTH;
+        }
+    }
+
+    #[inline(always)]
+    fn slabs<L: Lanes, const K: usize, const FEW: bool>(
+        &self,
+        l: L,
+        frames: &Frames<L>,
+    ) -> [Slabs<L>; 2] {
+        [
+            Slabs::load::<K, FEW>(l, self.tables, frames.shapes[0]),
+            Slabs::load::<K, FEW>(l, self.tables, frames.shapes[1]),
+        ]
+    }
+}
+
+/// A block of pairs, padded by a vector of the first one.
+struct Pairs {
+    len: usize,
+    first: [u32; BLOCK + MAX_WIDTH],
+    second: [u32; BLOCK + MAX_WIDTH],
+}
+
+impl Pairs {
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            len: 0,
+            first: [0; BLOCK + MAX_WIDTH],
+            second: [0; BLOCK + MAX_WIDTH],
+        }
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, first: &[u32], second: &[u32]) {
+        self.len = first.len();
+        self.first[..first.len()].copy_from_slice(first);
+        self.second[..second.len()].copy_from_slice(second);
+        self.pad();
+    }
+
+    #[inline(always)]
+    fn pad(&mut self) {
+        for column in [&mut self.first, &mut self.second] {
+            let one = column[0];
+            column[self.len..self.len + MAX_WIDTH].fill(one);
         }
     }
 }
 
-/// Up to a vector of pairs; padding lanes repeat the first pair.
-struct Group {
-    first: [u32; MAX_WIDTH],
-    second: [u32; MAX_WIDTH],
-    /// Where each lane's slabs begin.
-    first_table: [u32; MAX_WIDTH],
-    second_table: [u32; MAX_WIDTH],
-    /// Whether all first bodies share a shape, and all second ones.
-    uniform: bool,
+/// Pairs of a block that the first bodies' normals don't separate, with the frames already found.
+struct Alive {
+    pairs: Pairs,
+    frames: [[f32; BLOCK + MAX_WIDTH]; FRAMES],
 }
 
-impl Group {
+impl Alive {
     #[inline(always)]
-    fn new(columns: &OrDopColumns<'_>, first: &[u32], second: &[u32]) -> Self {
-        let mut group = Self {
-            first: [first[0]; MAX_WIDTH],
-            second: [second[0]; MAX_WIDTH],
-            first_table: [0; MAX_WIDTH],
-            second_table: [0; MAX_WIDTH],
-            uniform: true,
+    fn new() -> Self {
+        Self {
+            pairs: Pairs::new(),
+            frames: [[0.0; BLOCK + MAX_WIDTH]; FRAMES],
+        }
+    }
+
+    #[inline(always)]
+    fn push<L: Lanes>(
+        &mut self,
+        l: L,
+        keep: u32,
+        from: &Pairs,
+        start: usize,
+        frames: &Frames<L>,
+        overlap: Overlap,
+    ) {
+        let at = self.pairs.len..self.pairs.len + MAX_WIDTH;
+        let (first, second) = (&mut self.pairs.first, &mut self.pairs.second);
+        l.compress(
+            keep,
+            l.load_u32(&from.first[start..]),
+            &mut first[at.clone()],
+        );
+        l.compress(
+            keep,
+            l.load_u32(&from.second[start..]),
+            &mut second[at.clone()],
+        );
+        let needed = match overlap {
+            Overlap::OneSided => 0,
+            Overlap::TwoSided => FRAMES - 3,
+            Overlap::Full => FRAMES,
         };
-        group.first[..first.len()].copy_from_slice(first);
-        group.second[..second.len()].copy_from_slice(second);
-        for lane in 0..MAX_WIDTH {
-            group.first_table[lane] = columns.shape[group.first[lane] as usize] * TABLE as u32;
-            group.second_table[lane] = columns.shape[group.second[lane] as usize] * TABLE as u32;
-            group.uniform &= group.first_table[lane] == group.first_table[0]
-                && group.second_table[lane] == group.second_table[0];
+        let numbers = frames.numbers();
+        for (column, number) in self.frames.iter_mut().zip(numbers).take(needed) {
+            l.pack(keep, number, &mut column[at.clone()]);
         }
-        group
+        self.pairs.len += keep.count_ones() as usize;
     }
 
+    /// Fills the last vector up with the first pair.
     #[inline(always)]
-    fn separated<L: Lanes, const K: usize>(&self, l: L, columns: &OrDopColumns<'_>) -> L::M {
-        let frames = Frames::new(
-            l,
-            l.load_transposed(columns.rows, &self.first),
-            l.load_transposed(columns.rows, &self.second),
-        );
-        if self.uniform {
-            let one = Uniform(columns.tables.shape(self.first_table[0] / TABLE as u32));
-            let other = Uniform(columns.tables.shape(self.second_table[0] / TABLE as u32));
-            frames.separated::<K>(l, columns.overlap, &one, &other)
-        } else {
-            let entries = columns.tables.entries();
-            let one = PerLane::<L> {
-                entries,
-                start: l.load_u32(&self.first_table),
-            };
-            let other = PerLane::<L> {
-                entries,
-                start: l.load_u32(&self.second_table),
-            };
-            frames.separated::<K>(l, columns.overlap, &one, &other)
+    fn pad(&mut self) {
+        self.pairs.pad();
+        let len = self.pairs.len;
+        for column in &mut self.frames {
+            let one = column[0];
+            column[len..len + MAX_WIDTH].fill(one);
         }
     }
-}
 
-/// One shape in all lanes.
-#[derive(Clone, Copy)]
-struct Uniform<'a>(&'a [f32; TABLE]);
-
-impl<L: Lanes> SlabEnds<L> for Uniform<'_> {
     #[inline(always)]
-    fn facing(&self, l: L, group: usize, octant: L::I) -> L::F {
-        let (groups, _) = self.0.as_chunks::<8>();
-        l.lookup(&groups[group], octant)
-    }
-    #[inline(always)]
-    fn own(&self, l: L, group: usize, plus: usize, minus: usize, sign: L::F) -> L::F {
-        let (plus, minus) = (
-            l.splat(self.0[8 * group + plus]),
-            l.splat(self.0[8 * group + minus]),
-        );
-        l.select(l.gt(l.splat(0.0), sign), minus, plus)
-    }
-}
-
-/// A shape of its own in each lane.
-#[derive(Clone, Copy)]
-struct PerLane<'a, L: Lanes> {
-    entries: &'a [f32],
-    start: L::I,
-}
-
-impl<L: Lanes> SlabEnds<L> for PerLane<'_, L> {
-    #[inline(always)]
-    fn facing(&self, l: L, group: usize, octant: L::I) -> L::F {
-        let index = l.add_u32(l.add_u32(self.start, l.splat_u32(8 * group as u32)), octant);
-        l.gather(self.entries, index)
-    }
-    #[inline(always)]
-    fn own(&self, l: L, group: usize, plus: usize, minus: usize, sign: L::F) -> L::F {
-        let entry = |octant: usize| l.add_u32(self.start, l.splat_u32((8 * group + octant) as u32));
-        let (plus, minus) = (
-            l.gather(self.entries, entry(plus)),
-            l.gather(self.entries, entry(minus)),
-        );
-        l.select(l.gt(l.splat(0.0), sign), minus, plus)
+    fn frames<L: Lanes>(&self, l: L, start: usize) -> Frames<L> {
+        let mut numbers = [l.splat(0.0); FRAMES];
+        for (number, column) in numbers.iter_mut().zip(&self.frames) {
+            *number = l.load(&column[start..]);
+        }
+        Frames::from_numbers(numbers)
     }
 }

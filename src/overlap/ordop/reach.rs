@@ -12,7 +12,7 @@
 //! | 18 | √(2/3) | √(3/2) | 1.5 |
 //! | 26 | .8865 | 1.1277 | 1.272 |
 
-use super::table::{COEFFICIENTS, OWN, TABLE, members_of};
+use super::table::{COEFFICIENTS, members_of};
 
 /// More than some forty roundings, and what the once-rounded offset of the centre takes.
 const MARGIN: f64 = 1.0 / 4096.0;
@@ -20,17 +20,17 @@ const OFFSET_MARGIN: f64 = 1.0 / (1 << 20) as f64;
 
 /// The radius about the or-DOP's centre such that the test separates any two or-DOPs with |Δ| above the sum of theirs.
 /// `reach` bounds the distance of the shape's centre from the body origin.
-pub fn reach(table: &[f32; TABLE], k: usize, reach: f32) -> f64 {
+pub fn reach(table: &[f32], k: usize, reach: f32) -> f64 {
     let factor = match k {
         6 => 3.0,
         14 => 1.536,
         18 => 1.5,
         _ => 1.273,
     };
-    let widest = members_of(k).iter().fold(0.0, |widest: f64, &member| {
+    let ends = table.chunks(2).zip(members_of(k));
+    let widest = ends.fold(0.0, |widest: f64, (ends, &member)| {
         let length = COEFFICIENTS[member].iter().filter(|&&c| c != 0).count();
-        let own = OWN[member];
-        let half = table[8 * own.group + own.plus].max(table[8 * own.group + own.minus]);
+        let half = ends[0].max(ends[1]);
         widest.max(f64::from(half) / (length as f64).sqrt())
     });
     widest * factor * (1.0 + MARGIN) + f64::from(reach) * OFFSET_MARGIN
@@ -63,11 +63,17 @@ mod tests {
     fn factors_cover_every_direction() {
         for k in [6, 14, 18, 26] {
             // A table in which every half is its normal's length: w = 1, so S is the plain bound on supports.
-            let mut table = [0.0; TABLE];
-            for group in 0..7 {
-                let length: f32 = [1.0, 2.0, 3.0][usize::from(group > 2) + usize::from(group > 5)];
-                table[8 * group..8 * group + 8].fill(length.sqrt());
-            }
+            let length = |&member: &usize| {
+                COEFFICIENTS[member]
+                    .map(f32::from)
+                    .iter()
+                    .map(|c| c * c)
+                    .sum::<f32>()
+            };
+            let table: Vec<f32> = members_of(k)
+                .iter()
+                .flat_map(|m| [length(m).sqrt(); 2])
+                .collect();
             let factor = reach(&table, k, 0.0) / (1.0 + MARGIN);
             let cosine = directions().map(|e| nearest(k, e)).fold(1.0, f64::min);
             let support = directions()

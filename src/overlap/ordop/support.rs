@@ -5,85 +5,63 @@
 //! |e| = (a, b, c) and without sorting, so that lanes never diverge; a slab whose turn it is not gets λ = 0.
 //! No vertices are needed, rounding keeps λ ≥ 0, and the bound reports .9 % more pairs than the vertices would.
 
-use super::table::{DIAGONALS, PAIRS};
+use super::slabs::{Signs, Slabs};
 use crate::simd::Lanes;
-
-/// Slab ends by group and octant, one shape a lane or one for all.
-pub trait SlabEnds<L: Lanes>: Copy {
-    /// The end of `group` that each lane's octant faces.
-    fn facing(&self, l: L, group: usize, octant: L::I) -> L::F;
-    /// The end of `group` at a fixed octant: `plus` where `sign` is not negative, else `minus`.
-    fn own(&self, l: L, group: usize, plus: usize, minus: usize, sign: L::F) -> L::F;
-}
 
 /// Upper bound of the support in direction e, in the coordinates of the DOP's own basis.
 #[inline(always)]
-pub fn support<L: Lanes, const K: usize>(l: L, slabs: &impl SlabEnds<L>, e: [L::F; 3]) -> L::F {
-    let octant = l.octant(e[0], e[1], e[2]);
+pub fn support<L: Lanes, const K: usize>(l: L, slabs: &Slabs<L>, e: [L::F; 3]) -> L::F {
+    let signs = Signs::of(l, e);
     let size = [l.abs(e[0]), l.abs(e[1]), l.abs(e[2])];
     match K {
         6 => {
-            (size[0] * slabs.facing(l, 0, octant) + size[1] * slabs.facing(l, 1, octant))
-                + size[2] * slabs.facing(l, 2, octant)
+            let [x, y, z] = slabs.axes(l, signs);
+            (size[0] * x + size[1] * y) + size[2] * z
         }
-        14 => support_14(l, slabs, e, octant, size),
-        18 => support_18(l, slabs, octant, size),
-        _ => support_26(l, slabs, octant, size),
+        14 => support_14(l, slabs, signs, size),
+        18 => support_18(l, slabs, signs, size),
+        _ => support_26(l, slabs, signs, size),
     }
 }
 
 /// Axes and cube diagonals: ½(median + low) on the octant's own diagonal, the rest of the lower two on the diagonal that
 /// is bent over the lowest coordinate, and the lead of the largest on its axis.
 #[inline(always)]
-fn support_14<L: Lanes>(
-    l: L,
-    slabs: &impl SlabEnds<L>,
-    e: [L::F; 3],
-    octant: L::I,
-    size: [L::F; 3],
-) -> L::F {
+fn support_14<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, size: [L::F; 3]) -> L::F {
     let (low, [ab, ac, bc]) = minima(l, size);
-    let (half, minus) = (l.splat(0.5), l.splat(-0.0));
+    let half = l.splat(0.5);
     // The median is the largest of the pairwise minima.
     let median = l.max(l.max(ab, ac), bc);
-    let over_a = l.octant(l.flip_sign(e[0], minus), e[1], e[2]);
-    let over_b = l.octant(e[0], l.flip_sign(e[1], minus), e[2]);
-    let over_c = l.octant(e[0], e[1], l.flip_sign(e[2], minus));
-    let base = (half * (median + low)) * slabs.facing(l, DIAGONALS, octant);
-    let bent = ((half * (ab - low)) * slabs.facing(l, DIAGONALS, over_c)
-        + (half * (ac - low)) * slabs.facing(l, DIAGONALS, over_b))
-        + (half * (bc - low)) * slabs.facing(l, DIAGONALS, over_a);
-    (base + bent) + leads(l, slabs, octant, size)
+    let (straight, [over_a, over_b, over_c]) = slabs.cube(l, signs);
+    let base = (half * (median + low)) * straight;
+    let bent = ((half * (ab - low)) * over_c + (half * (ac - low)) * over_b)
+        + (half * (bc - low)) * over_a;
+    (base + bent) + leads(l, slabs, signs, size)
 }
 
 /// Axes and face diagonals: where no coordinate exceeds the sum of the others, face diagonals alone; else two of them
 /// and the excess on its axis.
 #[inline(always)]
-fn support_18<L: Lanes>(
-    l: L,
-    slabs: &impl SlabEnds<L>,
-    octant: L::I,
-    [a, b, c]: [L::F; 3],
-) -> L::F {
+fn support_18<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, [a, b, c]: [L::F; 3]) -> L::F {
     let (half, zero) = (l.splat(0.5), l.splat(0.0));
     let (ca, cb, cc) = (l.min(a, b + c), l.min(b, a + c), l.min(c, a + b));
-    let ab = l.max(half * ((ca + cb) - cc), zero) * slabs.facing(l, PAIRS, octant);
-    let ac = l.max(half * ((ca + cc) - cb), zero) * slabs.facing(l, PAIRS + 1, octant);
-    let bc = l.max(half * ((cb + cc) - ca), zero) * slabs.facing(l, PAIRS + 2, octant);
-    let axes = ((a - ca) * slabs.facing(l, 0, octant) + (b - cb) * slabs.facing(l, 1, octant))
-        + (c - cc) * slabs.facing(l, 2, octant);
+    let ([xy, xz, yz], [x, y, z]) = (slabs.pairs(l, signs), slabs.axes(l, signs));
+    let ab = l.max(half * ((ca + cb) - cc), zero) * xy;
+    let ac = l.max(half * ((ca + cc) - cb), zero) * xz;
+    let bc = l.max(half * ((cb + cc) - ca), zero) * yz;
+    let axes = ((a - ca) * x + (b - cb) * y) + (c - cc) * z;
     ((ab + ac) + bc) + axes
 }
 
 /// All groups: the lowest coordinate on the cube diagonal, the median's lead over it on a face diagonal, and the
 /// largest's lead on its axis.
 #[inline(always)]
-fn support_26<L: Lanes>(l: L, slabs: &impl SlabEnds<L>, octant: L::I, size: [L::F; 3]) -> L::F {
+fn support_26<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, size: [L::F; 3]) -> L::F {
     let (low, [ab, ac, bc]) = minima(l, size);
-    let pairs = ((ab - low) * slabs.facing(l, PAIRS, octant)
-        + (ac - low) * slabs.facing(l, PAIRS + 1, octant))
-        + (bc - low) * slabs.facing(l, PAIRS + 2, octant);
-    (low * slabs.facing(l, DIAGONALS, octant) + pairs) + leads(l, slabs, octant, size)
+    let [xy, xz, yz] = slabs.pairs(l, signs);
+    let pairs = ((ab - low) * xy + (ac - low) * xz) + (bc - low) * yz;
+    let (cube, _) = slabs.cube(l, signs);
+    (low * cube + pairs) + leads(l, slabs, signs, size)
 }
 
 /// The lowest coordinate, and the lower of each pair.
@@ -95,10 +73,10 @@ fn minima<L: Lanes>(l: L, [a, b, c]: [L::F; 3]) -> (L::F, [L::F; 3]) {
 
 /// The axes' part where diagonals take the rest: the lead of the largest coordinate over the second.
 #[inline(always)]
-fn leads<L: Lanes>(l: L, slabs: &impl SlabEnds<L>, octant: L::I, [a, b, c]: [L::F; 3]) -> L::F {
+fn leads<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, [a, b, c]: [L::F; 3]) -> L::F {
     let zero = l.splat(0.0);
     let (lead_a, lead_b) = (l.max(a - l.max(b, c), zero), l.max(b - l.max(a, c), zero));
     let lead_c = l.max(c - l.max(a, b), zero);
-    (lead_a * slabs.facing(l, 0, octant) + lead_b * slabs.facing(l, 1, octant))
-        + lead_c * slabs.facing(l, 2, octant)
+    let [x, y, z] = slabs.axes(l, signs);
+    (lead_a * x + lead_b * y) + lead_c * z
 }

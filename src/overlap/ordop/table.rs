@@ -1,33 +1,15 @@
-//! Inflated slabs as look-up tables: for each slab group, the end that an octant of directions faces.
+//! Inflated slabs of all shapes, as rows that lanes load.
 //!
-//! A group is an unsigned pattern of coordinates: the three axes, the three pairs of axes (face diagonals), and all
-//! three (cube diagonals). The signs of a direction pick one of the group's up to eight slab ends, so a support needs no
-//! branch: `h = table[8·group + octant]`. Unused groups of a smaller k hold zeros that nothing reads.
+//! A shape has two rows: for its n-th direction d (in the order of its set), number 2n is the end that d faces, hi, and
+//! number 2n + 1 the one that −d faces, −lo. Both are support values, so both are positive.
 
 use crate::rounding::pose::norm;
 use crate::rounding::slab::inflate_slab;
+use crate::simd::ROW;
 use crate::volume::{DirectionSet, OrDop, Shape};
 
-/// Floats in one shape's table.
-pub const TABLE: usize = 64;
-
-/// Groups in a table: axes x, y, z; pairs xy, xz, yz; the cube diagonals.
-pub const GROUPS: usize = 7;
-/// First group of the pairs.
-pub const PAIRS: usize = 3;
-/// The group of the cube diagonals.
-pub const DIAGONALS: usize = 6;
-
-/// Where a direction's own slab ends stand in a table.
-#[derive(Clone, Copy, Debug)]
-pub struct OwnSlab {
-    /// The group.
-    pub group: usize,
-    /// The octant of the direction itself: the upper end.
-    pub plus: usize,
-    /// The octant of its opposite: minus the lower end.
-    pub minus: usize,
-}
+/// Floats in one shape's table: its two rows.
+pub const TABLE: usize = 2 * ROW;
 
 /// All 13 directions in the order of K26, as integer coefficients over the basis.
 pub const COEFFICIENTS: [[i8; 3]; 13] = [
@@ -46,9 +28,6 @@ pub const COEFFICIENTS: [[i8; 3]; 13] = [
     [-1, -1, 1],
 ];
 
-/// The slab of each of the 13 directions.
-pub const OWN: [OwnSlab; 13] = own_slabs();
-
 /// Which of the 13 directions the set of k half-spaces has, in its order.
 #[must_use]
 pub const fn members_of(k: usize) -> &'static [usize] {
@@ -60,41 +39,37 @@ pub const fn members_of(k: usize) -> &'static [usize] {
     }
 }
 
-const fn own_slabs() -> [OwnSlab; 13] {
-    let mut own = [OwnSlab {
-        group: 0,
-        plus: 0,
-        minus: 0,
-    }; 13];
-    let mut i = 0;
-    while i < 13 {
-        let [x, y, z] = COEFFICIENTS[i];
-        let group = match (x != 0, y != 0, z != 0) {
-            (true, false, false) => 0,
-            (false, true, false) => 1,
-            (false, false, true) => 2,
-            (true, true, false) => 3,
-            (true, false, true) => 4,
-            (false, true, true) => 5,
-            _ => DIAGONALS,
-        };
-        let plus = (x < 0) as usize | ((y < 0) as usize) << 1 | ((z < 0) as usize) << 2;
-        let used = (x != 0) as usize | ((y != 0) as usize) << 1 | ((z != 0) as usize) << 2;
-        own[i] = OwnSlab {
-            group,
-            plus,
-            minus: plus ^ used,
-        };
-        i += 1;
+/// Place of a member among those of the set of k half-spaces, if it is one.
+#[must_use]
+pub const fn place_of(member: usize, k: usize) -> Option<usize> {
+    match (k, member) {
+        (_, 0..3) | (18 | 26, 0..9) | (26, 0..13) => Some(member),
+        (14, 9..13) => Some(member - 6),
+        _ => None,
     }
-    own
 }
+
+/// Writes `$body` out for every direction `$member` of the set of `$k` half-spaces, which has place `$place` in it: a loop
+/// would keep vectors in memory for the sake of its index, at twice the time.
+macro_rules! each_direction {
+    ($k:expr, |$member:ident, $place:ident| $body:block) => {
+        each_direction!(@ $k, |$member, $place| $body, 0 1 2 3 4 5 6 7 8 9 10 11 12)
+    };
+    (@ $k:expr, |$member:ident, $place:ident| $body:block, $($n:literal)*) => {
+        $(if let Some($place) = $crate::overlap::ordop::table::place_of($n, $k) {
+            let $member = $n;
+            $body
+        })*
+    };
+}
+pub(super) use each_direction;
 
 /// The tables of all shapes, one behind the other.
 #[derive(Clone, Debug)]
 pub struct SlabTables {
     directions: DirectionSet,
-    entries: Vec<f32>,
+    rows: Vec<[f32; ROW]>,
+    columns: Vec<[f32; ROW]>,
 }
 
 impl SlabTables {
@@ -103,19 +78,28 @@ impl SlabTables {
         directions: DirectionSet,
         shapes: impl IntoIterator<Item = (&'a Shape, &'a OrDop)>,
     ) -> Self {
-        let entries = shapes
-            .into_iter()
-            .flat_map(|(shape, ordop)| table(ordop, shape.ball.centre.to_array(), shape.reach))
-            .collect();
-        Self {
+        let mut tables = Self {
             directions,
-            entries,
+            rows: Vec::new(),
+            columns: vec![[0.0; ROW]; directions.k()],
+        };
+        for (shape, ordop) in shapes {
+            tables.push(ordop, shape.ball.centre.to_array(), shape.reach);
         }
+        tables
     }
 
     /// Appends a table: an or-DOP about the ball's `centre`, no point of it farther than `reach` from the body origin.
     pub(crate) fn push(&mut self, ordop: &OrDop, centre: [f32; 3], reach: f32) {
-        self.entries.extend(table(ordop, centre, reach));
+        let (shape, table) = (self.rows.len() / 2, table(ordop, centre, reach));
+        self.rows.extend_from_slice(table.as_chunks::<ROW>().0);
+        if shape < ROW {
+            for (column, end) in self.columns.iter_mut().zip(table) {
+                column[shape] = end;
+            }
+        } else {
+            self.columns.clear();
+        }
     }
 
     /// The directions that all tables have.
@@ -124,17 +108,21 @@ impl SlabTables {
         self.directions
     }
 
-    /// All entries; shape s begins at s·[`TABLE`].
+    /// All rows; shape s has numbers 2s and 2s + 1.
     #[must_use]
-    pub fn entries(&self) -> &[f32] {
-        &self.entries
+    pub fn rows(&self) -> &[[f32; ROW]] {
+        &self.rows
+    }
+
+    /// With up to [`ROW`] shapes, the same the other way: row n holds number n of every shape. Otherwise empty.
+    #[must_use]
+    pub fn columns(&self) -> &[[f32; ROW]] {
+        &self.columns
     }
 
     /// One shape's entries.
-    #[inline(always)]
-    pub(crate) fn shape(&self, shape: u32) -> &[f32; TABLE] {
-        let (tables, _) = self.entries.as_chunks::<TABLE>();
-        &tables[shape as usize]
+    pub(crate) fn shape(&self, shape: usize) -> &[f32] {
+        self.rows[2 * shape..2 * shape + 2].as_flattened()
     }
 }
 
@@ -157,16 +145,7 @@ fn table(ordop: &OrDop, centre: [f32; 3], reach: f32) -> [f32; TABLE] {
             centre,
             reach,
         );
-        let OwnSlab { group, plus, minus } = OWN[member];
-        // Octants that differ only in coordinates the group doesn't use face the same end.
-        let used = plus ^ minus;
-        for octant in 0..8 {
-            if octant & used == plus & used {
-                table[8 * group + octant] = hi;
-            } else if octant & used == minus & used {
-                table[8 * group + octant] = -lo;
-            }
-        }
+        (table[2 * slab], table[2 * slab + 1]) = (hi, -lo);
     }
     table
 }
@@ -176,22 +155,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn own_slabs_and_members_agree_with_the_coefficients() {
-        for (own, coefficients) in OWN.iter().zip(COEFFICIENTS) {
-            let sign = |octant: usize, axis: usize| if octant >> axis & 1 == 1 { -1 } else { 1 };
-            for (axis, c) in coefficients.into_iter().enumerate() {
-                assert_eq!(c, c.abs() * sign(own.plus, axis));
-                assert_eq!(-c, c.abs() * sign(own.minus, axis));
-            }
+    fn members_are_the_directions_of_each_set() {
+        for &directions in DirectionSet::ALL {
+            let members = members_of(directions.k()).iter();
+            let places = members.clone().map(|&m| place_of(m, directions.k()));
+            assert!(places.eq((0..directions.slabs()).map(Some)));
+            let among = (0..13).filter_map(|m| place_of(m, directions.k()));
+            assert_eq!(among.count(), directions.slabs());
+            let coefficients: Vec<_> = members.map(|&member| COEFFICIENTS[member]).collect();
+            assert_eq!(coefficients, directions.coefficients());
         }
-        // Every octant of a used group is the plus or minus end of exactly one member.
-        for octant in 0..8usize {
-            let facing = OWN.iter().filter(|own| {
-                own.group == DIAGONALS && (own.plus == octant || own.minus == octant)
-            });
-            assert_eq!(facing.count(), 1);
-        }
-        assert_eq!(members_of(18).len(), 9);
-        assert_eq!(members_of(14).len(), 7);
     }
 }
