@@ -5,6 +5,7 @@
 mod common;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use sdop::crew::Crew;
 use sdop::overlap::ordop::{OrDopColumns, SlabTables};
 use sdop::pairs::PairList;
 use sdop::pipeline::Culler;
@@ -53,7 +54,14 @@ fn ordop(criterion: &mut Criterion) {
                 .collect();
             let places = Places::as_given(&scene.bodies);
             let mut rows = OrDopRows::new(places.len());
-            rows.update(&frames, &scene.bodies, &places, 0..places.len(), 1);
+            rows.update(
+                &Crew::default(),
+                &frames,
+                &scene.bodies,
+                &places,
+                0..places.len(),
+                1,
+            );
             let tables = SlabTables::new(k, scene.shapes.iter().map(|s| (s, &s.ordop)));
             let columns = OrDopColumns {
                 rows: &rows.rows,

@@ -7,6 +7,9 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelI
 use rayon::slice::ParallelSliceMut;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
+/// Pieces of a column that are worth waking a thread for.
+const WORTH_SHARING: usize = 8;
+
 /// One thread, or a pool of several.
 #[derive(Debug, Default)]
 pub struct Crew(Option<ThreadPool>);
@@ -57,7 +60,8 @@ impl Crew {
         }
     }
 
-    /// Calls `work` for consecutive pieces of a column, `size` long, with the index of each one's first element.
+    /// Calls `work` for consecutive pieces of a column, `size` long, with the index of each one's first element. Less than
+    /// eight pieces are the caller's own.
     pub fn pieces<T: Send>(
         &self,
         column: &mut [T],
@@ -65,7 +69,7 @@ impl Crew {
         work: impl Fn(usize, &mut [T]) + Sync,
     ) {
         match &self.0 {
-            Some(pool) if column.len() > size => pool.install(|| {
+            Some(pool) if column.len() >= WORTH_SHARING * size => pool.install(|| {
                 let pieces = column.par_chunks_mut(size).enumerate();
                 pieces.for_each(|(index, piece)| work(index * size, piece));
             }),

@@ -259,7 +259,7 @@ impl Culler {
         if changed == Reorder::None {
             return;
         }
-        self.places.reorder(bodies, &self.order, by_place);
+        self.places.reorder(bodies, &mut self.order, by_place);
         if changed == Reorder::All {
             self.update_volumes(bodies, 0..self.places.len());
         }
@@ -269,7 +269,7 @@ impl Culler {
     fn update_volumes(&mut self, bodies: &Bodies, range: std::ops::Range<usize>) {
         let (frames, places, balls) = (&self.models.frames, &self.places, &mut self.balls);
         if self.needs.balls {
-            update_spheres(balls, frames, bodies, places, range.clone());
+            update_spheres(&self.crew, balls, frames, bodies, places, range.clone());
         }
         if self.needs.rows {
             let start = match self.settings.updates {
@@ -277,7 +277,8 @@ impl Culler {
                 Updates::Lazy => range.start.max(places.moving),
             };
             let eager = start.min(range.end)..range.end;
-            self.rows.update(frames, bodies, places, eager, self.stamp);
+            self.rows
+                .update(&self.crew, frames, bodies, places, eager, self.stamp);
         }
         if let Some(intervals) = &mut self.intervals {
             intervals.update(balls, frames, bodies, places, range);
@@ -319,7 +320,7 @@ impl Culler {
             false => &self.places.body,
         };
         self.finder
-            .arrange(self.level, &self.places, &self.balls, names);
+            .arrange(self.level, &self.crew, &self.places, &self.balls, names);
         if let Some(intervals) = &self.intervals {
             let order = &self.finder.slots().names[..self.places.len()];
             self.interval_slots.fill(order, &intervals.ends);

@@ -82,14 +82,15 @@ impl Places {
         }
     }
 
-    /// Puts the bodies in another order: `order` names the body that takes each place, by its present place or by itself.
-    pub(crate) fn reorder(&mut self, bodies: &Bodies, order: &[u32], by_place: bool) {
+    /// Puts the bodies in another order: `order` names the body that takes each place, by its present place or by itself,
+    /// and is left with the former order.
+    pub(crate) fn reorder(&mut self, bodies: &Bodies, order: &mut Vec<u32>, by_place: bool) {
         if by_place {
-            let body = |&place: &u32| self.body[place as usize];
-            self.body = order.iter().map(body).collect();
-        } else {
-            self.body.copy_from_slice(order);
+            for place in order.iter_mut() {
+                *place = self.body[*place as usize];
+            }
         }
+        std::mem::swap(&mut self.body, order);
         self.wear(bodies);
     }
 }

@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use crate::crew::Crew;
 use crate::overlap::ordop::{O, Q, S, SHAPE, T};
 use crate::places::Places;
 use crate::rounding::pose::{Rotation, norm, refit, rotate, rotation, transform, world_axes};
@@ -22,6 +23,8 @@ pub struct ShapeFrame {
     margin: f32,
     centre: [f32; 3],
     radius: f32,
+    /// R, if the ball's centre is the body's origin: no pose changes it then.
+    inflated: Option<f32>,
     reach: f32,
     basis: [[f32; 3]; 3],
 }
@@ -30,20 +33,27 @@ impl ShapeFrame {
     /// The frame of a shape whose or-DOP stands on `basis`.
     #[must_use]
     pub fn new(shape: &Shape, basis: &Basis) -> Self {
-        Self {
+        let frame = Self {
             shape: 0,
             margin: 0.0,
             centre: shape.ball.centre.to_array(),
-            radius: shape.ball.radius,
+            radius: 0.0,
+            inflated: None,
             reach: shape.reach,
             basis: basis.columns.map(|column| column.to_array()),
-        }
+        };
+        frame.with_radius(shape.ball.radius)
     }
 
     /// The same with another radius about the ball's centre.
     #[must_use]
     pub fn with_radius(self, radius: f32) -> Self {
-        Self { radius, ..self }
+        let centred = self.centre == [0.0; 3];
+        Self {
+            radius,
+            inflated: centred.then(|| inflate_radius(radius)),
+            ..self
+        }
     }
 
     /// The same as that of the shape of this number, whose hull world-aligned volumes are fitted to.
@@ -56,12 +66,12 @@ impl ShapeFrame {
     #[must_use]
     pub fn grown(&self, margin: f32) -> Self {
         let grow = |size: f32| up(f64::from(size) + f64::from(margin));
-        Self {
+        let frame = Self {
             margin,
-            radius: grow(self.radius),
             reach: grow(self.reach),
             ..*self
-        }
+        };
+        frame.with_radius(grow(self.radius))
     }
 
     /// The ball's centre, body frame.
@@ -80,12 +90,14 @@ impl ShapeFrame {
     #[inline]
     #[must_use]
     pub fn sphere(&self, q: [f32; 4], t: [f32; 3]) -> [f32; 4] {
-        let (centre, radius) = if self.centre == [0.0; 3] {
-            (t, self.radius)
-        } else {
-            world_ball(&rotation(q), t, self.centre, self.radius)
+        let (centre, inflated) = match self.inflated {
+            Some(inflated) => (t, inflated),
+            None => {
+                let (centre, radius) = world_ball(&rotation(q), t, self.centre, self.radius);
+                (centre, inflate_radius(radius))
+            }
         };
-        [centre[0], centre[1], centre[2], inflate_radius(radius)]
+        [centre[0], centre[1], centre[2], inflated]
     }
 
     /// The or-DOP row (Q, t, o) of a body in this shape.
@@ -114,22 +126,33 @@ pub struct OrDopRows {
     made: Vec<u32>,
 }
 
+/// Bodies whose spheres, and whose rows, one thread updates at a time: some ten microseconds.
+const SPHERES: usize = 4096;
+const ROWS: usize = 256;
+
 /// Updates the spheres (x, y, z, R) of the bodies in a range of places.
 pub fn update_spheres(
+    crew: &Crew,
     spheres: &mut [[f32; 4]],
     frames: &[ShapeFrame],
     bodies: &Bodies,
     places: &Places,
     range: Range<usize>,
 ) {
-    for place in range {
-        let (body, frame) = (places.body[place] as usize, frame_of(frames, places, place));
-        spheres[place] = frame.sphere(bodies.rotation[body], bodies.translation[body]);
-    }
-}
-
-fn frame_of<'a>(frames: &'a [ShapeFrame], places: &Places, place: usize) -> &'a ShapeFrame {
-    &frames[places.shape[place] as usize]
+    let first = range.start;
+    crew.pieces(&mut spheres[range], SPHERES, |start, spheres| {
+        let start = first + start;
+        let who = places.body[start..].iter().zip(&places.shape[start..]);
+        for (sphere, (&body, &shape)) in spheres.iter_mut().zip(who) {
+            let (body, frame) = (body as usize, &frames[shape as usize]);
+            let t = bodies.translation[body];
+            // The rotation lies elsewhere in memory: reading it for nothing doubles the time of a million bodies.
+            *sphere = match frame.inflated {
+                Some(inflated) => [t[0], t[1], t[2], inflated],
+                None => frame.sphere(bodies.rotation[body], t),
+            };
+        }
+    });
 }
 
 impl OrDopRows {
@@ -151,15 +174,20 @@ impl OrDopRows {
     /// Updates the rows of the bodies in a range of places; `stamp` counts frames from 1.
     pub fn update(
         &mut self,
+        crew: &Crew,
         frames: &[ShapeFrame],
         bodies: &Bodies,
         places: &Places,
         range: Range<usize>,
         stamp: u32,
     ) {
-        for place in range {
-            self.make(frames, bodies, places, place, stamp);
-        }
+        let first = range.start;
+        self.made[range.clone()].fill(stamp);
+        crew.pieces(&mut self.rows[range], ROWS, |start, rows| {
+            for (row, place) in rows.iter_mut().zip(first + start..) {
+                *row = row_of(frames, bodies, places, place);
+            }
+        });
     }
 
     /// Lazily updates the rows in the places `wanted` whose bodies move and whose rows are not yet made in this frame. Returns
@@ -176,27 +204,21 @@ impl OrDopRows {
         for &place in wanted {
             let place = place as usize;
             if place < places.moving && self.made[place] != stamp {
-                self.make(frames, bodies, places, place, stamp);
+                self.rows[place] = row_of(frames, bodies, places, place);
+                self.made[place] = stamp;
                 made += 1;
             }
         }
         made
     }
+}
 
-    fn make(
-        &mut self,
-        frames: &[ShapeFrame],
-        bodies: &Bodies,
-        places: &Places,
-        place: usize,
-        stamp: u32,
-    ) {
-        let (body, frame) = (places.body[place] as usize, frame_of(frames, places, place));
-        let row = &mut self.rows[place];
-        *row = frame.row(bodies.rotation[body], bodies.translation[body]);
-        row[S] = f32::from_bits(SHAPE + places.shape[place]);
-        self.made[place] = stamp;
-    }
+fn row_of(frames: &[ShapeFrame], bodies: &Bodies, places: &Places, place: usize) -> [f32; ROW] {
+    let (body, shape) = (places.body[place] as usize, places.shape[place]);
+    let frame = &frames[shape as usize];
+    let mut row = frame.row(bodies.rotation[body], bodies.translation[body]);
+    row[S] = f32::from_bits(SHAPE + shape);
+    row
 }
 
 /// World-aligned slabs by place, re-fitted each frame from the hull's vertices and rounded outward.
@@ -243,7 +265,8 @@ impl Intervals {
     ) {
         let coefficients = self.directions.coefficients();
         for place in range {
-            let (body, frame) = (places.body[place] as usize, frame_of(frames, places, place));
+            let body = places.body[place] as usize;
+            let frame = &frames[places.shape[place] as usize];
             let (turn, t) = (rotation(bodies.rotation[body]), bodies.translation[body]);
             let ends = &mut self.ends[place * coefficients.len()..][..coefficients.len()];
             let hull = &self.hulls[frame.shape as usize];

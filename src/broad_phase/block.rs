@@ -99,11 +99,11 @@ pub struct Pen<'a> {
 }
 
 impl Pen<'_> {
-    /// Appends the slots of `run` as candidates of `slot`, one of the sixteen.
+    /// Appends the slots of `run` as candidates of the slot in `lane`, one of the sixteen.
     #[inline(always)]
-    pub fn push(&mut self, slot: usize, run: Range<u32>) {
+    pub fn push(&mut self, lane: usize, run: Range<u32>) {
         let length = run.end.wrapping_sub(run.start) as usize;
-        let code = run.start << 4 | (slot - self.block.first) as u32;
+        let code = run.start << 4 | lane as u32;
         self.write(0, code);
         if length <= STRIDE {
             self.len += length;
@@ -111,6 +111,7 @@ impl Pen<'_> {
             self.write(STRIDE, code);
             self.len += length;
         } else {
+            let slot = self.block.first + lane;
             self.block.long[self.long_len] = (slot as u32, run.start, run.end);
             self.long_len += 1;
         }
@@ -154,7 +155,7 @@ mod tests {
         {
             assert!(!pen.is_full(1));
             let start = 1000 * lane as u32;
-            pen.push(64 + lane, start..start + length);
+            pen.push(lane, start..start + length);
             if length <= 16 {
                 short.extend((start..start + length).map(|slot| (slot << 4) | lane as u32));
             } else {

@@ -1,5 +1,7 @@
 //! The box of ball centres and the widest ball: what a finder sizes its cells by.
 
+use crate::simd::{Kernel, Lanes, Level, dispatch};
+
 /// Extremes over a set of balls. Without any, `lo` is above `hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
@@ -21,38 +23,8 @@ impl Bounds {
 
     /// Of some balls.
     #[must_use]
-    #[inline(always)]
-    pub fn of(balls: &[[f32; 4]]) -> Self {
-        // Four accumulators of four numbers each: one coordinate's chain of minima would wait for itself.
-        let mut lo = [[f32::INFINITY; 4]; 4];
-        let mut hi = [[f32::NEG_INFINITY; 4]; 4];
-        let (chunks, rest) = balls.as_chunks::<4>();
-        for chunk in chunks {
-            for k in 0..4 {
-                for c in 0..4 {
-                    lo[k][c] = lo[k][c].min(chunk[k][c]);
-                    hi[k][c] = hi[k][c].max(chunk[k][c]);
-                }
-            }
-        }
-        for ball in rest {
-            for c in 0..4 {
-                lo[0][c] = lo[0][c].min(ball[c]);
-                hi[0][c] = hi[0][c].max(ball[c]);
-            }
-        }
-        for k in 1..4 {
-            for c in 0..4 {
-                lo[0][c] = lo[0][c].min(lo[k][c]);
-                hi[0][c] = hi[0][c].max(hi[k][c]);
-            }
-        }
-        let ([x, y, z, _], [to_x, to_y, to_z, widest]) = (lo[0], hi[0]);
-        Self {
-            lo: [x, y, z],
-            hi: [to_x, to_y, to_z],
-            widest: widest.max(0.0),
-        }
+    pub fn of(level: Level, balls: &[[f32; 4]]) -> Self {
+        dispatch(level, Extremes(balls))
     }
 
     /// Of both sets.
@@ -62,6 +34,46 @@ impl Bounds {
             lo: std::array::from_fn(|i| self.lo[i].min(other.lo[i])),
             hi: std::array::from_fn(|i| self.hi[i].max(other.hi[i])),
             widest: self.widest.max(other.widest),
+        }
+    }
+}
+
+/// Four balls' numbers, which any tier's vectors divide: each of the sixteen positions has its own extremes, so every tier
+/// compares the same numbers in the same order.
+const CHUNK: usize = 16;
+
+struct Extremes<'a>(&'a [[f32; 4]]);
+
+impl Kernel for Extremes<'_> {
+    type Output = Bounds;
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> Bounds {
+        let vectors = CHUNK / L::WIDTH;
+        let mut lo = [l.splat(f32::INFINITY); CHUNK];
+        let mut hi = [l.splat(f32::NEG_INFINITY); CHUNK];
+        let (chunks, rest) = self.0.as_flattened().as_chunks::<CHUNK>();
+        for chunk in chunks {
+            for k in 0..vectors {
+                let numbers = l.load(&chunk[k * L::WIDTH..]);
+                lo[k] = l.min(numbers, lo[k]);
+                hi[k] = l.max(numbers, hi[k]);
+            }
+        }
+        let mut ends = [[f32::INFINITY; CHUNK], [f32::NEG_INFINITY; CHUNK]];
+        for k in 0..vectors {
+            l.store(lo[k], &mut ends[0][k * L::WIDTH..]);
+            l.store(hi[k], &mut ends[1][k * L::WIDTH..]);
+        }
+        let [mut lo, mut hi] = [[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]];
+        let lows = ends[0].iter().chain(rest).enumerate();
+        let highs = ends[1].iter().chain(rest).enumerate();
+        lows.for_each(|(i, x)| lo[i % 4] = lo[i % 4].min(*x));
+        highs.for_each(|(i, x)| hi[i % 4] = hi[i % 4].max(*x));
+        let ([x, y, z, _], [to_x, to_y, to_z, widest]) = (lo, hi);
+        Bounds {
+            lo: [x, y, z],
+            hi: [to_x, to_y, to_z],
+            widest: widest.max(0.0),
         }
     }
 }

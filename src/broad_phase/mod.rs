@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use crate::crew::Crew;
 use crate::places::Places;
 use crate::scene::settings::Finder;
 use crate::simd::{Lanes, Level, MAX_WIDTH};
@@ -150,10 +151,17 @@ impl PairFinder {
 
     /// Arranges the bodies for a frame. `balls` and `names` are in the order of places, and nothing that the first test
     /// reports lies outside two balls which meet.
-    pub fn arrange(&mut self, level: Level, places: &Places, balls: &[[f32; 4]], names: &[u32]) {
+    pub fn arrange(
+        &mut self,
+        level: Level,
+        crew: &Crew,
+        places: &Places,
+        balls: &[[f32; 4]],
+        names: &[u32],
+    ) {
         match self {
             Self::AllPairs(finder) => finder.arrange(places, balls, names),
-            Self::Grid(finder) => finder.arrange(level, balls, names),
+            Self::Grid(finder) => finder.arrange(level, crew, balls, names),
             Self::Sweep(finder) => finder.arrange(places, balls, names),
         }
     }

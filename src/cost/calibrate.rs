@@ -9,6 +9,7 @@ use super::VolumeCosts;
 use super::fit::{self, Row};
 use super::measure::{Trial, side_by_side, time};
 use super::predict::{Price, Prices, Volume};
+use crate::crew::Crew;
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
 use crate::pairs::PairList;
 use crate::places::Places;
@@ -186,7 +187,7 @@ fn time_hits(scene: &Scene, hits: &PairList, level: Level) -> Row<4> {
     let n = scene.bodies.len();
     let places = Places::as_given(&scene.bodies);
     let mut rows = OrDopRows::new(n);
-    rows.update(&frames, &scene.bodies, &places, 0..n, 1);
+    rows.update(&Crew::default(), &frames, &scene.bodies, &places, 0..n, 1);
     let tables = SlabTables::new(scene.cull.k, scene.shapes.iter().map(|s| (s, &s.ordop)));
     let columns = OrDopColumns {
         rows: &rows.rows,

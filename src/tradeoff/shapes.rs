@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::TradeoffError;
 use super::gjk::{HullGraph, PosedHull, may_touch};
 use super::truth::Judge;
+use crate::crew::Crew;
 use crate::estimate::Estimate;
 use crate::mesh::shapes::ProceduralShape;
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
@@ -112,7 +113,14 @@ impl Crowd {
         let frames: Vec<_> = built().map(|(s, o)| ShapeFrame::new(s, &o.basis)).collect();
         let places = Places::as_given(&self.bodies);
         let mut rows = OrDopRows::new(places.len());
-        rows.update(&frames, &self.bodies, &places, 0..places.len(), 1);
+        rows.update(
+            &Crew::default(),
+            &frames,
+            &self.bodies,
+            &places,
+            0..places.len(),
+            1,
+        );
         let directions = ordops.first().map_or(DirectionSet::K6, |o| o.directions);
         let tables = SlabTables::new(directions, built());
         let columns = OrDopColumns {

@@ -76,9 +76,9 @@ impl Grid {
                         }
                         let row = target.cells.index([lo[0], y, z]) as usize;
                         let end = row + (hi[0] - lo[0]) as usize + 1;
-                        pen.push(i, starts[row]..starts[end.min(table)]);
+                        pen.push(i - first, starts[row]..starts[end.min(table)]);
                         if end > table {
-                            pen.push(i, starts[0]..starts[end - table]);
+                            pen.push(i - first, starts[0]..starts[end - table]);
                         }
                     }
                 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::cells::{Cells, Layout};
 use crate::broad_phase::{Bounds, Slots};
+use crate::crew::Crew;
 use crate::rounding::widen;
 use crate::simd::{Kernel, Lanes, Level as Tier, dispatch};
 
@@ -37,7 +38,7 @@ impl Level {
     /// `slot_cells` are columns over all places and all slots.
     pub fn sort(
         &mut self,
-        tier: Tier,
+        (tier, crew): (Tier, &Crew),
         balls: &[[f32; 4]],
         names: &[u32],
         place_cells: &mut [u32],
@@ -45,50 +46,160 @@ impl Level {
         slot_cells: &mut [u32],
     ) {
         let range = self.range.clone();
-        let balls = &balls[range.clone()];
-        let bounds = Bounds::of(balls);
+        let (balls, names) = (&balls[range.clone()], &names[range.clone()]);
+        let bounds = bounds(tier, crew, balls);
         self.widest = f64::from(widen(bounds.widest));
         self.cells = Cells::fit(&bounds, range.len(), self.layout);
-        let place_cells = &mut place_cells[range.clone()];
-        dispatch(
-            tier,
-            Assign {
-                cells: &self.cells,
-                balls,
-                to: place_cells,
-            },
-        );
-        self.count(place_cells);
-        // Each cell's entry is moved from its start to its end, the start of the next.
-        for ((ball, name), &cell) in balls
-            .iter()
-            .zip(&names[range.clone()])
-            .zip(place_cells.iter())
-        {
-            let next = &mut self.starts[cell as usize + 1];
-            let slot = *next as usize;
-            *next += 1;
-            slots.balls[slot] = *ball;
-            slots.names[slot] = *name;
-            slot_cells[slot] = cell;
+        let (cells, place_cells) = (&self.cells, &mut place_cells[range.clone()]);
+        crew.pieces(place_cells, PIECE, |start, to| {
+            let balls = &balls[start..start + to.len()];
+            dispatch(tier, Assign { cells, balls, to });
+        });
+        let from = Columns {
+            balls,
+            names,
+            cells: place_cells,
+        };
+        let entries = self.cells.table_len() + 1;
+        if entries > self.starts.capacity() {
+            // An eighth to spare, so that a box that breathes allocates nothing and doubles nothing.
+            let spare = entries + entries / 8 - self.starts.len();
+            self.starts.reserve_exact(spare);
         }
+        self.starts.resize(entries, 0);
+        self.starts[0] = range.start as u32;
+        let to = Share {
+            first_cell: 0,
+            ends: &mut self.starts[1..],
+            first_slot: range.start as u32,
+            balls: &mut slots.balls[range.clone()],
+            names: &mut slots.names[range.clone()],
+            cells: &mut slot_cells[range],
+        };
+        to.sort(crew, &from);
+    }
+}
+
+/// Bodies whose cells one thread finds at a time.
+const PIECE: usize = 4096;
+
+/// Bodies that are worth sharing a sort for.
+const WORTH_SHARING: usize = 1 << 15;
+
+/// The bounds of some balls, found by all threads: extremes don't depend on who finds them.
+fn bounds(tier: Tier, crew: &Crew, balls: &[[f32; 4]]) -> Bounds {
+    if crew.threads() == 1 || balls.len() < WORTH_SHARING {
+        return Bounds::of(tier, balls);
+    }
+    let piece = balls.len().div_ceil(crew.threads());
+    let mut found = vec![Bounds::EMPTY; crew.threads()];
+    crew.each(&mut found, |k, found| {
+        let end = balls.len().min((k + 1) * piece);
+        *found = Bounds::of(tier, &balls[end.min(k * piece)..end]);
+    });
+    found.into_iter().fold(Bounds::EMPTY, Bounds::union)
+}
+
+/// Bodies by place.
+struct Columns<'a> {
+    balls: &'a [[f32; 4]],
+    names: &'a [u32],
+    cells: &'a [u32],
+}
+
+/// What one thread sorts: the bodies in a range of cells, whose slots are a range too.
+struct Share<'a> {
+    first_cell: u32,
+    /// The end of each cell.
+    ends: &'a mut [u32],
+    first_slot: u32,
+    balls: &'a mut [[f32; 4]],
+    names: &'a mut [u32],
+    cells: &'a mut [u32],
+}
+
+impl<'a> Share<'a> {
+    /// Sorts all cells, split among the threads: each reads all bodies and takes those of its own cells, so that the order is
+    /// that of one thread.
+    fn sort(mut self, crew: &Crew, from: &Columns<'_>) {
+        let threads = crew.threads();
+        if threads == 1 || from.cells.len() < WORTH_SHARING {
+            self.count(from.cells);
+            self.place(from);
+            return;
+        }
+        let mut shares = Vec::with_capacity(threads);
+        for k in 1..threads {
+            // Places are nearly in the order of cells, so this splits the bodies evenly.
+            let middle = from.cells[from.cells.len() * k / threads].max(self.first_cell);
+            let (ends, rest) = self.ends.split_at_mut((middle - self.first_cell) as usize);
+            shares.push((self.first_cell, ends, 0));
+            (self.first_cell, self.ends) = (middle, rest);
+        }
+        shares.push((self.first_cell, self.ends, 0));
+        crew.each(&mut shares, |_, (first_cell, ends, bodies)| {
+            *bodies = count(from.cells, *first_cell, ends);
+        });
+        let mut shares: Vec<Share<'_>> = shares
+            .into_iter()
+            .map(|(first_cell, ends, bodies)| {
+                let (balls, rest) = std::mem::take(&mut self.balls).split_at_mut(bodies);
+                self.balls = rest;
+                let (names, rest) = std::mem::take(&mut self.names).split_at_mut(bodies);
+                self.names = rest;
+                let (cells, rest) = std::mem::take(&mut self.cells).split_at_mut(bodies);
+                self.cells = rest;
+                let first_slot = self.first_slot;
+                self.first_slot += bodies as u32;
+                Share {
+                    first_cell,
+                    ends,
+                    first_slot,
+                    balls,
+                    names,
+                    cells,
+                }
+            })
+            .collect();
+        crew.each(&mut shares, |_, share| share.place(from));
     }
 
-    /// Leaves in entry c + 1 the first slot of cell c.
     fn count(&mut self, cells: &[u32]) {
-        self.starts.clear();
-        self.starts.resize(self.cells.table_len() + 1, 0);
-        for &cell in cells {
-            self.starts[cell as usize + 1] += 1;
+        count(cells, self.first_cell, self.ends);
+    }
+
+    /// Puts the counted bodies into their slots. Each cell's entry is its count, then its start, and moves to its end.
+    fn place(&mut self, from: &Columns<'_>) {
+        let mut slot = self.first_slot;
+        for end in self.ends.iter_mut() {
+            slot += std::mem::replace(end, slot);
         }
-        let mut slot = self.range.start as u32;
-        self.starts[0] = slot;
-        for start in &mut self.starts[1..] {
-            let count = *start;
-            *start = slot;
-            slot += count;
+        let bodies = self.balls.len();
+        let (names, cells) = (&mut self.names[..bodies], &mut self.cells[..bodies]);
+        for ((ball, name), &cell) in from.balls.iter().zip(from.names).zip(from.cells) {
+            let own = cell.wrapping_sub(self.first_cell) as usize;
+            if let Some(end) = self.ends.get_mut(own) {
+                let slot = (*end - self.first_slot) as usize;
+                *end += 1;
+                self.balls[slot] = *ball;
+                names[slot] = *name;
+                cells[slot] = cell;
+            }
         }
     }
+}
+
+/// Counts the bodies of each cell from `first` on; returns how many there are.
+fn count(cells: &[u32], first: u32, counts: &mut [u32]) -> usize {
+    counts.fill(0);
+    let mut counted = 0;
+    for &cell in cells {
+        if let Some(count) = counts.get_mut(cell.wrapping_sub(first) as usize) {
+            *count += 1;
+            counted += 1;
+        }
+    }
+    counted
 }
 
 /// Compiled once a tier, for wide conversions to f64 and back.

@@ -16,6 +16,7 @@ use std::ops::Range;
 use self::across::Search;
 use self::level::Level;
 use super::{Block, FirstTest, Reorder, Slots};
+use crate::crew::Crew;
 use crate::simd::{Lanes, Level as Tier};
 
 /// Frames after which places take the order of slots. Bodies that move a tenth of their radius a frame then stray by two
@@ -114,7 +115,7 @@ impl Grid {
     }
 
     /// Sorts the moving levels into their slots, and the static ones after a plan.
-    pub(super) fn arrange(&mut self, tier: Tier, balls: &[[f32; 4]], names: &[u32]) {
+    pub(super) fn arrange(&mut self, tier: Tier, crew: &Crew, balls: &[[f32; 4]], names: &[u32]) {
         self.slots.resize(balls.len());
         self.slot_cells.resize(balls.len(), 0);
         self.place_cells.resize(balls.len(), 0);
@@ -124,7 +125,7 @@ impl Grid {
         };
         for level in &mut self.levels[..changed] {
             level.sort(
-                tier,
+                (tier, crew),
                 balls,
                 names,
                 &mut self.place_cells,

@@ -26,10 +26,9 @@ impl Grid {
         while first < range.end {
             let bodies = first..range.end.min(first + BLOCK_BODIES);
             let pen = block.restart(first);
-            let rows = level.cells.forward();
-            match (level.cells.layout(), rows.first_chunk::<4>()) {
-                (Layout::Box, Some(rows)) => self.in_box(level, bodies, rows, pen),
-                (Layout::Box, None) => self.in_box(level, bodies, rows, pen),
+            match (level.cells.layout(), level.cells.forward().try_into()) {
+                (Layout::Box, Ok(rows)) => self.in_space(level, bodies, rows, pen),
+                (Layout::Box, Err(_)) => self.in_box(level, bodies, pen),
                 (Layout::Wrapped, _) => self.wrapped(level, bodies, pen),
             }
             hand_over(l, block, test);
@@ -37,23 +36,37 @@ impl Grid {
         }
     }
 
-    /// `rows` is a slice, or an array whose length the compiler knows.
+    /// In a box of more than one cell each way. `rows` are the cells' own.
     #[inline(always)]
-    fn in_box<'a>(
-        &self,
-        level: &Level,
-        bodies: Range<usize>,
-        rows: impl IntoIterator<Item = &'a u32> + Copy,
-        mut pen: Pen<'_>,
-    ) {
+    fn in_space(&self, level: &Level, bodies: Range<usize>, rows: [u32; 4], mut pen: Pen<'_>) {
+        // The table as seen from each row, all of one length: one comparison of a cell with it serves for all runs.
         let starts = level.starts.as_slice();
-        for (i, &cell) in bodies.clone().zip(&self.slot_cells[bodies]) {
-            pen.push(i, i as u32 + 1..starts[cell as usize + 2]);
-            for &row in rows {
+        let length = starts.len() - (rows[3] as usize - 1);
+        let own = &starts[..length];
+        let tables = rows.map(|row| &starts[row as usize - 1..][..length]);
+        for (lane, &cell) in self.slot_cells[bodies.clone()].iter().enumerate() {
+            let cell = cell as usize;
+            let ends = tables.map(|table| table[cell + 3]);
+            pen.push(lane, (bodies.start + lane) as u32 + 1..own[cell + 2]);
+            for (table, end) in tables.iter().zip(ends) {
+                pen.push(lane, table[cell]..end);
+            }
+        }
+        pen.done();
+    }
+
+    /// In a plane or on a line of cells.
+    #[inline(always)]
+    fn in_box(&self, level: &Level, bodies: Range<usize>, mut pen: Pen<'_>) {
+        let starts = level.starts.as_slice();
+        for (lane, &cell) in self.slot_cells[bodies.clone()].iter().enumerate() {
+            pen.push(
+                lane,
+                (bodies.start + lane) as u32 + 1..starts[cell as usize + 2],
+            );
+            for &row in level.cells.forward() {
                 let at = (cell + row) as usize;
-                if let Some(&[start, _, _, end]) = starts.get(at - 1..at + 3) {
-                    pen.push(i, start..end);
-                }
+                pen.push(lane, starts[at - 1]..starts[at + 2]);
             }
         }
         pen.done();
@@ -64,18 +77,19 @@ impl Grid {
     fn wrapped(&self, level: &Level, bodies: Range<usize>, mut pen: Pen<'_>) {
         let (starts, mask) = (level.starts.as_slice(), level.cells.mask());
         let table = mask as usize + 1;
-        for (i, &cell) in bodies.clone().zip(&self.slot_cells[bodies]) {
+        for (lane, &cell) in self.slot_cells[bodies.clone()].iter().enumerate() {
             let own_end = cell as usize + 2;
-            pen.push(i, i as u32 + 1..starts[own_end.min(table)]);
+            let next = (bodies.start + lane) as u32 + 1;
+            pen.push(lane, next..starts[own_end.min(table)]);
             if own_end > table {
-                pen.push(i, starts[0]..starts[1]);
+                pen.push(lane, starts[0]..starts[1]);
             }
             for &row in level.cells.forward() {
                 let at = (cell.wrapping_add(row).wrapping_sub(1) & mask) as usize;
                 let end = at + 3;
-                pen.push(i, starts[at]..starts[end.min(table)]);
+                pen.push(lane, starts[at]..starts[end.min(table)]);
                 if end > table {
-                    pen.push(i, starts[0]..starts[end - table]);
+                    pen.push(lane, starts[0]..starts[end - table]);
                 }
             }
         }
