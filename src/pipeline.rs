@@ -7,7 +7,7 @@
 
 use std::time::Instant;
 
-use crate::broad_phase::{Groups, PairFinder, Reorder};
+use crate::broad_phase::{Groups, PairFinder, Population, Reorder};
 use crate::cost::{Counters, Seconds};
 use crate::crew::{Crew, CrewError};
 use crate::models::Models;
@@ -62,12 +62,12 @@ struct Needs {
 }
 
 impl Needs {
-    fn of(settings: &CullSettings) -> Self {
+    fn of(settings: &CullSettings, finder: Finder) -> Self {
         let (balls, rows, intervals) = match settings.strategy {
             Strategy::None => (false, false, None),
             Strategy::Sphere => (true, false, None),
             // Binned by balls, which a finder that doesn't bin can do without.
-            Strategy::OrDop | Strategy::Obb => (settings.pairs != Finder::AllPairs, true, None),
+            Strategy::OrDop | Strategy::Obb => (finder != Finder::AllPairs, true, None),
             Strategy::Aabb => (false, false, Some(DirectionSet::K6)),
             Strategy::KDop => (false, false, Some(settings.k)),
             Strategy::SDopSequential
@@ -100,7 +100,10 @@ impl Culler {
         settings.check(bodies.shape.len())?;
         let start = Instant::now();
         let n = bodies.shape.len();
-        let needs = Needs::of(settings);
+        let (models, places) = (Models::new(shapes, settings), Places::new(bodies));
+        let population = population(settings.strategy, &models, &places);
+        let finder = PairFinder::new(settings.pairs, &population);
+        let needs = Needs::of(settings, finder.name());
         let directions = needs.intervals;
         let mut culler = Self {
             settings: settings.clone(),
@@ -108,12 +111,12 @@ impl Culler {
             level,
             crew: Crew::default(),
             workers: Vec::new(),
-            models: Models::new(shapes, settings),
-            places: Places::new(bodies),
+            models,
+            places,
             groups: None,
             numbers: (0..n as u32).collect(),
             order: Vec::new(),
-            finder: PairFinder::new(settings.pairs),
+            finder,
             balls: vec![[0.0; 4]; n],
             rows: OrDopRows::new(n),
             intervals: directions.map(|directions| Intervals::new(directions, shapes, n)),
@@ -164,7 +167,8 @@ impl Culler {
             intervals.resize(n);
         }
         self.interest.resize(bodies.len(), false);
-        self.finder = PairFinder::new(self.settings.pairs);
+        let population = population(self.settings.strategy, &self.models, &self.places);
+        self.finder = PairFinder::new(self.settings.pairs, &population);
         self.update_volumes(bodies, 0..n);
         self.reorder(bodies);
         self.arrange();
@@ -180,6 +184,18 @@ impl Culler {
     /// The bodies of interest from now on.
     pub(crate) fn look_at(&mut self, bodies: Vec<u32>) {
         self.settings.interest = Some(Interest::Bodies(bodies));
+    }
+
+    /// The pair finder at work: the one asked for, or what `auto` has picked.
+    #[must_use]
+    pub fn finder(&self) -> Finder {
+        self.finder.name()
+    }
+
+    /// Bytes that the pair finder holds.
+    #[must_use]
+    pub fn finder_bytes(&self) -> usize {
+        self.finder.bytes()
     }
 
     /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
@@ -382,5 +398,18 @@ impl Culler {
             Strategy::KDop => counters.kdop.tests,
             _ => counters.sphere.tests,
         }
+    }
+}
+
+/// What `auto` looks at.
+fn population(strategy: Strategy, models: &Models, places: &Places) -> Population {
+    let radii = places
+        .shape
+        .iter()
+        .map(|&s| models.frames[s as usize].radius());
+    Population {
+        bodies: places.len(),
+        radii: radii.fold([f32::INFINITY, 0.0], |[lo, hi], r| [r.min(lo), r.max(hi)]),
+        cheap_test: !matches!(strategy, Strategy::OrDop | Strategy::Obb),
     }
 }

@@ -14,7 +14,7 @@ use crate::pipeline::Culler;
 use crate::scene::Scene;
 use crate::scene::bodies::Bodies;
 use crate::scene::contract::ContractError;
-use crate::scene::settings::{SettingsError, Strategy};
+use crate::scene::settings::{Finder, SettingsError, Strategy};
 use crate::simd::Level;
 use crate::volume::volumes_sha256;
 
@@ -47,6 +47,8 @@ pub struct Summary {
     pub seconds: Seconds,
     /// Every effect, listed or not.
     pub effects: Vec<EffectReport>,
+    /// The pair finder at work: the one asked for, or what `auto` picked.
+    pub finder: Finder,
     /// The hash of all volumes.
     pub volumes_sha256: String,
     /// The hash of all reported pairs; `None` for the control, which reports none.
@@ -162,6 +164,7 @@ impl<'a> Simulation<'a> {
             counters: *self.counters(),
             seconds: self.seconds(),
             effects: self.effects.reports().to_vec(),
+            finder: self.culler.finder(),
             volumes_sha256: volumes_sha256(&self.scene.shapes),
             pairs_sha256: culls.then(|| hash.finish()),
         })

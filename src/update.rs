@@ -74,6 +74,12 @@ impl ShapeFrame {
         frame.with_radius(grow(self.radius))
     }
 
+    /// The ball's radius, not inflated.
+    #[must_use]
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
     /// The ball's centre, body frame.
     #[must_use]
     pub fn centre(&self) -> [f32; 3] {

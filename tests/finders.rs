@@ -7,6 +7,7 @@ mod support;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use sdop::broad_phase::Groups;
 use sdop::cost::Counters;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::pipeline::Culler;
@@ -316,6 +317,60 @@ fn trace(
         trace.push((culler.pairs().iter().collect(), *culler.counters()));
     });
     trace
+}
+
+#[test]
+fn groups_leave_of_every_list_the_pairs_that_may_collide() {
+    let scene = Scene::new("groups", &[0.5, 1.0, 4.0], 500, |_, rng| uniform(rng, 22.0));
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
+    let mut bits = || rng.random_range(0..16u32) & rng.random_range(0..16u32);
+    let groups: Vec<Groups> = (0..500)
+        .map(|_| Groups {
+            member: bits(),
+            mask: bits() | 1,
+        })
+        .collect();
+    let may = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (groups[a as usize], groups[b as usize]);
+        a.member & b.mask != 0 && b.member & a.mask != 0
+    };
+    for strategy in STRATEGIES {
+        let mut wanted = found(&scene, strategy, Finder::AllPairs, 3);
+        let all: usize = wanted.iter().map(Vec::len).sum();
+        wanted.iter_mut().for_each(|pairs| pairs.retain(may));
+        let kept: usize = wanted.iter().map(Vec::len).sum();
+        assert!(0 < kept && 4 * kept < 3 * all, "{kept} of {all} are kept");
+        for &finder in Finder::ALL {
+            for threads in [1, 3] {
+                let settings = settings(strategy, finder);
+                let culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Level::detect());
+                let mut culler = culler.unwrap().with_threads(threads).unwrap();
+                culler.set_groups(Some(groups.clone()));
+                let (mut rng, mut bodies) = (ChaCha8Rng::seed_from_u64(99), scene.bodies.clone());
+                let mut found = Vec::new();
+                for _ in 0..3 {
+                    found.push(culler.cull(&bodies).sorted());
+                    advance(&mut bodies, scene.step, &mut rng);
+                }
+                compare(&found, &wanted, &format!("{strategy}, {finder}, {threads}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn auto_is_one_of_the_others_in_list_and_count() {
+    for (n, side, wanted) in [(60, 9.0, Finder::AllPairs), (400, 16.0, Finder::Grid)] {
+        let scene = Scene::new("auto", &[1.0], n, |_, rng| uniform(rng, side));
+        let [auto, named] = [Finder::Auto, wanted].map(|finder| {
+            let settings = settings(Strategy::SDopSequential, finder);
+            run(&scene, &settings, Level::detect(), 1, 1, |culler| {
+                assert_eq!(culler.finder(), wanted);
+            });
+            trace(&scene, &settings, Level::detect(), 1)
+        });
+        assert_eq!(auto, named);
+    }
 }
 
 #[test]

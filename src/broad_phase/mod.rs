@@ -13,6 +13,7 @@ use crate::scene::settings::Finder;
 use crate::simd::{Lanes, Level, MAX_WIDTH};
 
 mod all_pairs;
+mod auto;
 mod block;
 mod bounds;
 mod grid;
@@ -20,6 +21,7 @@ mod groups;
 mod sweep;
 
 pub use all_pairs::AllPairs;
+pub use auto::Population;
 pub use block::{BLOCK_BODIES, Block, MOST_CANDIDATES, Pen};
 pub use bounds::Bounds;
 pub use grid::Grid;
@@ -50,6 +52,11 @@ impl Slots {
     fn resize(&mut self, slots: usize) {
         self.balls.resize(slots + MAX_WIDTH, [0.0; 4]);
         self.names.resize(slots + MAX_WIDTH, 0);
+    }
+
+    fn bytes(&self) -> usize {
+        let columns = self.columns.iter().map(bytes).sum::<usize>();
+        bytes(&self.balls) + columns + bytes(&self.names)
     }
 
     /// The ball in a slot.
@@ -92,6 +99,11 @@ pub(crate) fn columns<L: Lanes>(l: L, balls: &[[f32; 4]]) -> [[f32; BLOCK_BODIES
     columns
 }
 
+/// Bytes that a column has taken, used or not.
+fn bytes<T>(column: &Vec<T>) -> usize {
+    column.capacity() * size_of::<T>()
+}
+
 /// A pair finder with its bodies arranged.
 #[derive(Clone, Debug)]
 pub enum PairFinder {
@@ -115,13 +127,34 @@ pub enum Reorder {
 }
 
 impl PairFinder {
-    /// The finder of that name.
+    /// The finder of that name, or the one that suits the population.
     #[must_use]
-    pub fn new(finder: Finder) -> Self {
+    pub fn new(finder: Finder, population: &Population) -> Self {
         match finder {
             Finder::AllPairs => Self::AllPairs(AllPairs::default()),
-            Finder::Grid | Finder::Auto => Self::Grid(Grid::default()),
+            Finder::Grid => Self::Grid(Grid::default()),
             Finder::Sweep => Self::Sweep(Sweep::default()),
+            Finder::Auto => Self::new(population.finder(), population),
+        }
+    }
+
+    /// Its name; never [`Finder::Auto`].
+    #[must_use]
+    pub fn name(&self) -> Finder {
+        match self {
+            Self::AllPairs(_) => Finder::AllPairs,
+            Self::Grid(_) => Finder::Grid,
+            Self::Sweep(_) => Finder::Sweep,
+        }
+    }
+
+    /// Bytes that it holds, those of its slots included.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::AllPairs(finder) => finder.slots().bytes(),
+            Self::Grid(finder) => finder.bytes(),
+            Self::Sweep(finder) => finder.bytes(),
         }
     }
 

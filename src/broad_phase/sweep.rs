@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::{FirstTest, Reorder, Slots};
+use super::{FirstTest, Reorder, Slots, bytes};
 use crate::places::Places;
 use crate::rounding::{down, up, widen};
 use crate::simd::{Lanes, MAX_WIDTH};
@@ -104,6 +104,11 @@ impl Sweep {
                 column[slot] = number;
             }
         }
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        let sorted = self.sorter.pairs.iter().map(bytes).sum::<usize>();
+        self.slots.bytes() + bytes(&self.lo) + bytes(&self.hi) + sorted
     }
 
     pub(super) fn slots(&self) -> &Slots {

@@ -51,6 +51,7 @@ struct Report<'a> {
     frames: u32,
     strategy: &'static str,
     pairs: &'static str,
+    finder: &'static str,
     k: usize,
     axes: &'static str,
     overlap: &'static str,
@@ -127,6 +128,7 @@ fn report<'a>(
         frames: scene.frames,
         strategy: strategy.name(),
         pairs: pairs.name(),
+        finder: summary.finder.name(),
         k: k.k(),
         axes: axes.name(),
         overlap: overlap.name(),
@@ -194,6 +196,10 @@ fn write_text(
     scene: &Scene,
     summary: &Summary,
 ) -> std::fmt::Result {
+    let pairs = match report.pairs == report.finder {
+        true => report.pairs.to_owned(),
+        false => format!("{} ({})", report.pairs, report.finder),
+    };
     let dynamic = scene.bodies.dynamic.iter().filter(|&&d| d).count();
     writeln!(
         out,
@@ -204,7 +210,7 @@ fn write_text(
         out,
         "{} over {}, k = {}, {} axes, {}, {} updates; {}, threads: {}",
         report.strategy,
-        report.pairs,
+        pairs,
         report.k,
         report.axes,
         report.overlap,

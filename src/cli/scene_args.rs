@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
-use miette::{Diagnostic as _, miette};
+use miette::Diagnostic as _;
 use sdop::scene::settings::{
     Axes, Budget, CullSettings, Finder, Interest, Order, Overlap, Strategy, Updates,
 };
@@ -100,13 +100,6 @@ impl SceneArgs {
             file.spec.seed = seed;
         }
         self.cull.apply(&mut file.spec.cull);
-        if matches!(file.spec.cull.pairs, Finder::Sweep | Finder::Auto) {
-            return Err(miette!(
-                help = "use --pairs grid or --pairs all-pairs",
-                "the pair finder `{}` is not there yet",
-                file.spec.cull.pairs
-            ));
-        }
         Ok(file)
     }
 

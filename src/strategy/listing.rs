@@ -278,7 +278,8 @@ impl<T> Lister<'_, '_, T> {
         self.out.advance(found);
     }
 
-    /// Lists those hits whose bodies may collide.
+    /// Lists those hits whose bodies may collide. Apart, so that the common case stays small.
+    #[inline(never)]
     fn append_colliding(
         &mut self,
         found: usize,

@@ -26,7 +26,7 @@ fn json_is_the_documented_object() {
     let report = run(&[]);
     #[rustfmt::skip]
     assert_eq!(keys(&report), [
-        "scene", "seed", "bodies", "frames", "strategy", "pairs", "k", "axes", "overlap", "updates", "interest", "budget",
+        "scene", "seed", "bodies", "frames", "strategy", "pairs", "finder", "k", "axes", "overlap", "updates", "interest", "budget",
         "simd", "threads", "counters", "seconds", "effects", "volumes_sha256", "pairs_sha256",
     ]);
     #[rustfmt::skip]
@@ -66,13 +66,19 @@ fn counters_and_hashes_are_the_same_twice_and_in_every_simd_level() {
 #[test]
 fn threads_and_finders_leave_the_pairs_as_they_are() {
     let expected = run(&["--strategy", "sphere"]);
-    for finder in ["all-pairs", "grid"] {
+    for finder in ["all-pairs", "grid", "sweep", "auto"] {
         let one = run(&["--pairs", finder]);
         for strategy in ["sphere", "s-dop-batch"] {
             let flags = ["--pairs", finder, "--threads", "3", "--strategy", strategy];
             let report = run(&flags);
             assert_eq!(report["threads"], 3);
             assert_eq!(report["pairs"], finder);
+            let picked = if finder == "auto" {
+                "all-pairs"
+            } else {
+                finder
+            };
+            assert_eq!(report["finder"], picked);
             let same = if strategy == "sphere" {
                 &expected
             } else {
@@ -227,10 +233,6 @@ fn bad_flags_are_refused_with_what_would_do() {
             &["body 50 of a scene of 50", "counted from 0"],
         ),
         (&["--interest", "1,x"], &["body indices as in 0,5,7"]),
-        (
-            &["--pairs", "sweep"],
-            &["`sweep` is not there yet", "--pairs grid"],
-        ),
         (&["--threads", "0"], &["invalid value '0'"]),
         (&["--k", "8"], &["invalid value '8'", "6, 14, 18, 26"]),
         (

@@ -15,7 +15,7 @@ use std::ops::Range;
 
 use self::across::Search;
 use self::level::Level;
-use super::{Block, FirstTest, Reorder, Slots};
+use super::{Block, FirstTest, Reorder, Slots, bytes};
 use crate::crew::Crew;
 use crate::simd::{Lanes, Level as Tier};
 
@@ -155,6 +155,12 @@ impl Grid {
                 push_parts(&mut self.parts, seeker, size, target, Kind::Across(search));
             }
         }
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        let starts = self.levels.iter().map(|level| bytes(&level.starts));
+        let cells = bytes(&self.slot_cells) + bytes(&self.place_cells);
+        self.slots.bytes() + cells + starts.sum::<usize>() + bytes(&self.parts)
     }
 
     pub(super) fn slots(&self) -> &Slots {

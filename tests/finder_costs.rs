@@ -1,0 +1,231 @@
+//! What pair finders cost apart from time: candidates beyond the output, memory, allocations in steady state.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(unsafe_code, reason = "an allocator that counts is an allocator")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use sdop::mesh::shapes::ProceduralShape;
+use sdop::pipeline::Culler;
+use sdop::scene::bodies::Bodies;
+use sdop::scene::settings::{CullSettings, Finder, Strategy};
+use sdop::simd::Level;
+use sdop::volume::{Shape, ShapeSpec};
+
+/// The system's allocator, counting what each thread asks of it: tests run side by side.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+fn count() {
+    ALLOCATIONS.with(|count| count.set(count.get() + 1));
+}
+
+// SAFETY: the system's allocator does the work.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller vouches for the layout.
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: the caller vouches for the memory and its layout.
+        unsafe { System.dealloc(memory, layout) }
+    }
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: the caller vouches for the memory, its layout and the size.
+        unsafe { System.realloc(memory, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+struct Scene {
+    name: &'static str,
+    shapes: Vec<Shape>,
+    bodies: Bodies,
+}
+
+impl Scene {
+    fn new(
+        name: &'static str,
+        radii: &[f32],
+        n: usize,
+        mut place: impl FnMut(usize, &mut ChaCha8Rng) -> (usize, [f32; 3]),
+    ) -> Self {
+        let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
+        let shape = |&radius: &f32| {
+            let spec = ShapeSpec {
+                radius: Some(radius),
+                ..ShapeSpec::default()
+            };
+            Shape::build(&mesh, &spec).unwrap()
+        };
+        let (mut rng, mut bodies) = (ChaCha8Rng::seed_from_u64(8), Bodies::default());
+        for i in 0..n {
+            let (shape, at) = place(i, &mut rng);
+            bodies.push(shape as u32, i % 5 != 0, [0.0, 0.0, 0.0, 1.0], at);
+        }
+        Self {
+            name,
+            shapes: radii.iter().map(shape).collect(),
+            bodies,
+        }
+    }
+
+    fn culler(&self, finder: Finder, strategy: Strategy) -> Culler {
+        let settings = CullSettings {
+            strategy,
+            pairs: finder,
+            ..CullSettings::default()
+        };
+        Culler::new(&self.shapes, &self.bodies, &settings, Level::detect()).unwrap()
+    }
+
+    /// Moves every body to and fro by a tenth of the smallest radius.
+    fn sway(&self, frame: usize, bodies: &mut Bodies) {
+        let step = 0.1 * self.shapes[0].ball.radius;
+        let now = self.bodies.translation.iter().zip(&mut bodies.translation);
+        for (i, (home, t)) in now.enumerate() {
+            let by = ((i + frame) % 16) as f32 - 8.0;
+            for (axis, x) in t.iter_mut().enumerate() {
+                let sign = if i >> axis & 1 == 0 { step } else { -step };
+                *x = home[axis]
+                    + if bodies.dynamic[i] {
+                        sign * by.abs()
+                    } else {
+                        0.0
+                    };
+            }
+        }
+    }
+}
+
+const N: usize = 4000;
+
+fn cube(rng: &mut ChaCha8Rng, side: f32) -> [f32; 3] {
+    std::array::from_fn(|_| rng.random_range(0.0..side))
+}
+
+/// 1.5 sphere partners a body, in shapes of space that starve or crowd cells.
+fn scenes() -> Vec<Scene> {
+    let n = N as f32;
+    let wide: Vec<f32> = (0..=20).map(|i| 1e-3 * 2f32.powf(0.5 * i as f32)).collect();
+    vec![
+        Scene::new("cube", &[1.0], N, |_, rng| (0, cube(rng, 44.7))),
+        Scene::new("plane", &[1.0], N, |_, rng| {
+            let [x, _, z] = cube(rng, (n * 8.4).sqrt());
+            (0, [x, 5.0, z])
+        }),
+        Scene::new("slanted plane", &[1.0], N, |_, rng| {
+            let [x, y, _] = cube(rng, (n * 6.0).sqrt());
+            (0, [x, y, x + 0.3 * y])
+        }),
+        Scene::new("line", &[1.0], N, |_, rng| {
+            (0, [1.0, rng.random_range(0.0..n * 2.7), 2.0])
+        }),
+        Scene::new("diagonal", &[1.0], N, |_, rng| {
+            (0, [rng.random_range(0.0..n * 1.5); 3])
+        }),
+        Scene::new("clusters far apart", &[1.0], N, |i, rng| {
+            let by = cube(rng, 21.0);
+            let centre = [3e4, -1e4, 7e4].map(|x: f32| x * (i % 10) as f32);
+            (0, std::array::from_fn(|k| centre[k] + by[k]))
+        }),
+        Scene::new("one far away", &[1.0], N, |i, rng| match i {
+            7 => (0, [1e7; 3]),
+            _ => (0, cube(rng, 44.7)),
+        }),
+        Scene::new("a giant", &[0.05, 100.0], N, |i, rng| match i {
+            7 => (1, [1.0; 3]),
+            _ => (0, cube(rng, 2.2)),
+        }),
+        Scene::new("radii 1:1000", &wide, N, |i, rng| (i % 21, cube(rng, 8.0))),
+        Scene::new("coincident", &[1.0], N / 20, |_, _| (0, [3.0; 3])),
+    ]
+}
+
+#[test]
+fn the_grid_tests_few_candidates_beyond_its_output() {
+    for scene in scenes() {
+        let mut culler = scene.culler(Finder::Grid, Strategy::Sphere);
+        let mut bodies = scene.bodies.clone();
+        for frame in 0..24 {
+            scene.sway(frame, &mut bodies);
+            culler.cull(&bodies);
+        }
+        let before = culler.counters().sphere;
+        culler.cull(&bodies);
+        let after = culler.counters().sphere;
+        let tests = after.tests - before.tests;
+        // A cube needs 6 a body, half of them for the 27 cells around it; 1:1000 looks through levels.
+        let needed = (bodies.len() + culler.pairs().len()) as u64;
+        assert!(
+            tests <= 12 * needed,
+            "{}: {tests} tests, {} pairs",
+            scene.name,
+            culler.pairs().len()
+        );
+    }
+}
+
+#[test]
+fn no_finder_takes_a_hundred_bytes_a_body() {
+    for scene in scenes() {
+        for finder in [Finder::AllPairs, Finder::Grid, Finder::Sweep] {
+            let mut culler = scene.culler(finder, Strategy::Sphere);
+            let mut bodies = scene.bodies.clone();
+            for frame in 0..4 {
+                scene.sway(frame, &mut bodies);
+                culler.cull(&bodies);
+            }
+            // A few kilobytes are there for any scene.
+            let bytes = culler.finder_bytes();
+            let each = bytes.saturating_sub(8192) / bodies.len();
+            assert!(each <= 100, "{}, {finder}: {each} bytes a body", scene.name);
+            assert!(
+                bytes >= 16 * bodies.len(),
+                "{finder} holds its bodies' balls"
+            );
+        }
+    }
+}
+
+#[test]
+fn in_steady_state_nothing_is_allocated() {
+    for scene in scenes() {
+        for strategy in [Strategy::Sphere, Strategy::SDopSequential, Strategy::Aabb] {
+            for finder in [Finder::Grid, Finder::Sweep] {
+                let mut culler = scene.culler(finder, strategy);
+                let mut bodies = scene.bodies.clone();
+                // Places take a new order each 32 frames.
+                for frame in 0..72 {
+                    scene.sway(frame, &mut bodies);
+                    culler.cull(&bodies);
+                }
+                for frame in 72..140 {
+                    scene.sway(frame, &mut bodies);
+                    let before = ALLOCATIONS.get();
+                    culler.cull(&bodies);
+                    let more = ALLOCATIONS.get() - before;
+                    let name = scene.name;
+                    assert_eq!(more, 0, "{name}, {strategy}, {finder}: frame {frame}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_counter_counts() {
+    let before = ALLOCATIONS.get();
+    drop(std::hint::black_box(vec![1u8; 100]));
+    assert_eq!(ALLOCATIONS.get() - before, 1);
+}
