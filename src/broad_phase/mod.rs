@@ -89,7 +89,8 @@ impl Slots {
 
 /// Sixteen balls as columns.
 #[inline(always)]
-pub(crate) fn columns<L: Lanes>(l: L, balls: &[[f32; 4]]) -> [[f32; BLOCK_BODIES]; 4] {
+#[must_use]
+pub fn columns<L: Lanes>(l: L, balls: &[[f32; 4]]) -> [[f32; BLOCK_BODIES]; 4] {
     let mut columns = [[0.0; BLOCK_BODIES]; 4];
     for start in (0..BLOCK_BODIES).step_by(L::WIDTH) {
         for (column, lanes) in columns.iter_mut().zip(l.load_quads(&balls[start..])) {

@@ -4,7 +4,6 @@
 
 mod cost;
 mod files;
-mod machine;
 mod mesh;
 mod output;
 mod recording;

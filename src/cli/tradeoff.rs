@@ -9,12 +9,12 @@ use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
+use sdop::cost::machine::Machine;
 use sdop::tradeoff::{self, Plan, Tradeoff};
 use serde::{Deserialize, Serialize};
 
 use super::Outcome;
 use super::files::{command, write};
-use super::machine::Machine;
 use super::output::{Format, csv_text, emit, progress};
 use super::scene_args::{MachineArgs, SceneArgs};
 

@@ -5,6 +5,7 @@
 
 pub mod calibrate;
 mod fit;
+pub mod machine;
 pub mod measure;
 pub mod predict;
 

@@ -9,12 +9,12 @@ use std::time::Instant;
 
 use miette::{IntoDiagnostic as _, miette};
 use sdop::cost::calibrate::Effort;
+use sdop::cost::machine::Machine;
 use sdop::reproduce::{Plan, Results, Shard};
 use sdop::scene::settings::Strategy;
 
 use super::Outcome;
 use super::files::{command, write};
-use super::machine::Machine;
 use super::output::{Format, csv_text, emit, progress};
 use super::scene_args::MachineArgs;
 use rows::Tables;

@@ -3,6 +3,7 @@
 //! Of those, `counts` has what is equal on every machine, and its hash stands in the summary; `times` has what is not.
 
 use miette::IntoDiagnostic as _;
+use sdop::cost::machine::Machine;
 use sdop::cost::predict::Prices;
 use sdop::reproduce::check::{Claim, Verdict};
 use sdop::reproduce::closed_form::{probability, relative_reach};
@@ -14,7 +15,6 @@ use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::cli::machine::Machine;
 use crate::cli::output::csv_text;
 
 /// Everything that is written.

@@ -1,22 +1,31 @@
 //! The machine that measured, as far as it explains times: no names, no paths.
 
-use sdop::simd::Level;
 use serde::{Deserialize, Serialize};
+
+use crate::simd::Level;
 
 /// What a measurement says of its machine.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Machine {
+    /// The CPU's name; ids tell models of one name apart.
     pub cpu: String,
+    /// Threads that may run at once.
     pub cores: usize,
+    /// System, release and architecture.
     pub os: String,
+    /// The compiler that built this crate.
     pub rustc: String,
+    /// This crate's version.
     pub version: String,
+    /// The tier that culled.
     pub simd: String,
+    /// Whether debug assertions were off.
     pub optimised: bool,
 }
 
 impl Machine {
     /// This machine, culling in the tier `level`.
+    #[must_use]
     pub fn here(level: Level) -> Self {
         Self {
             cpu: cpu().unwrap_or_else(|| format!("unknown ({})", std::env::consts::ARCH)),
