@@ -1,0 +1,19 @@
+//! Compiles the shims of the engines that are C++ libraries of the system.
+
+fn main() {
+    println!("cargo:rerun-if-changed=native");
+    if std::env::var_os("CARGO_FEATURE_DEBIAN").is_none() {
+        return;
+    }
+    cc::Build::new()
+        .cpp(true)
+        .std("c++17")
+        .opt_level(3)
+        .define("NDEBUG", None)
+        .include("/usr/include/bullet")
+        .files(["embree", "bullet", "cgal"].map(|name| format!("native/{name}.cpp")))
+        .compile("sdop_peers");
+    for library in ["embree3", "BulletCollision", "LinearMath"] {
+        println!("cargo:rustc-link-lib={library}");
+    }
+}

@@ -1,0 +1,67 @@
+// Bullet's btDbvtBroadphase: two trees that are updated body by body, and a cache of pairs.
+//
+// No margin, no velocity prediction; the whole cache is cleaned up each frame, so that it holds the pairs that are there
+// now and not those that were.
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+
+#include <memory>
+#include <vector>
+
+#include "peer.h"
+PEER(bullet)
+
+namespace {
+
+struct Bullet {
+    btHashedOverlappingPairCache cache;
+    btDbvtBroadphase broad_phase{&cache};
+    std::vector<btBroadphaseProxy*> proxies;
+    std::vector<Pair> pairs;
+};
+
+btVector3 corner(const Box& box, int side) {
+    return btVector3(box.ends[0][side], box.ends[1][side], box.ends[2][side]);
+}
+
+}  // namespace
+
+void* bullet_new(const Box* boxes, size_t count, unsigned) {
+    gDbvtMargin = 0;
+    auto peer = std::make_unique<Bullet>();
+    peer->broad_phase.setVelocityPrediction(0);
+    peer->broad_phase.m_cupdates = 100;
+    for (size_t i = 0; i < count; i++) {
+        void* number = reinterpret_cast<void*>(i);
+        peer->proxies.push_back(
+            peer->broad_phase.createProxy(corner(boxes[i], 0), corner(boxes[i], 1), 0, number, 1, 1, nullptr));
+    }
+    return peer.release();
+}
+
+void bullet_frame(void* user, const Box* boxes) {
+    Bullet& peer = *static_cast<Bullet*>(user);
+    for (size_t i = 0; i < peer.proxies.size(); i++) {
+        peer.broad_phase.setAabb(peer.proxies[i], corner(boxes[i], 0), corner(boxes[i], 1), nullptr);
+    }
+    peer.broad_phase.calculateOverlappingPairs(nullptr);
+}
+
+const Pair* bullet_pairs(void* user, size_t* count) {
+    Bullet& peer = *static_cast<Bullet*>(user);
+    const btBroadphasePairArray& cached = peer.cache.getOverlappingPairArray();
+    peer.pairs.clear();
+    for (int at = 0; at < cached.size(); at++) {
+        const auto number = [](const btBroadphaseProxy* proxy) {
+            return static_cast<uint32_t>(reinterpret_cast<size_t>(proxy->m_clientObject));
+        };
+        peer.pairs.push_back({number(cached[at].m_pProxy0), number(cached[at].m_pProxy1)});
+    }
+    *count = peer.pairs.size();
+    return peer.pairs.data();
+}
+
+void bullet_free(void* user) {
+    Bullet* peer = static_cast<Bullet*>(user);
+    for (btBroadphaseProxy* proxy : peer->proxies) peer->broad_phase.destroyProxy(proxy, nullptr);
+    delete peer;
+}

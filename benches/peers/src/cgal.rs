@@ -1,0 +1,14 @@
+//! CGAL's box intersection: `native/cgal.cpp`.
+
+use crate::native::{new, shim};
+use crate::peer::{Entry, Work};
+
+/// One way to drive it.
+pub const ENTRIES: [Entry; 1] = [Entry {
+    name: "CGAL",
+    version: "5.5.1",
+    work: Work::Boxes,
+    threads: 1,
+    slack: 0,
+    new: |setup| new(setup, shim!(cgal_new, cgal_frame, cgal_pairs, cgal_free)),
+}];

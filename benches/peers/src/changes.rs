@@ -1,0 +1,44 @@
+//! The pairs of engines that say only what began and what ended.
+
+use std::collections::HashMap;
+
+/// All changes so far, in order.
+#[derive(Clone, Debug, Default)]
+pub struct Changes(Vec<([u32; 2], bool)>);
+
+impl Changes {
+    /// A pair begins or ends.
+    pub fn note(&mut self, mut pair: [u32; 2], begins: bool) {
+        pair.sort_unstable();
+        self.0.push((pair, begins));
+    }
+
+    /// What the changes add up to. A pair that begins twice is there twice, so that the check sees it.
+    pub fn pairs(&self) -> Vec<[u32; 2]> {
+        let mut counts: HashMap<[u32; 2], i32> = HashMap::new();
+        for &(pair, begins) in &self.0 {
+            *counts.entry(pair).or_default() += if begins { 1 } else { -1 };
+        }
+        let repeat = |(pair, count): ([u32; 2], i32)| (0..count).map(move |_| pair);
+        counts.into_iter().flat_map(repeat).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_ended_is_gone_and_what_began_twice_shows() {
+        let mut changes = Changes::default();
+        for (pair, begins) in [
+            ([2, 1], true),
+            ([3, 4], true),
+            ([1, 2], false),
+            ([3, 4], true),
+        ] {
+            changes.note(pair, begins);
+        }
+        assert_eq!(changes.pairs(), [[3, 4], [3, 4]]);
+    }
+}

@@ -1,0 +1,235 @@
+//! One scene, everyone on the same frames: checked, then timed in turns.
+//!
+//! An engine does a few frames, then it is the next one's turn, so that what the machine does meanwhile falls on all
+//! alike; who begins changes with every round. Frames are made between turns and never timed. A ratio is the median over
+//! frames of theirs over ours *on the same frame*.
+
+use std::time::Instant;
+
+use miette::miette;
+use serde::Serialize;
+
+use crate::boxes::Frame;
+use crate::check::Truth;
+use crate::memory::{self, Memory};
+use crate::peer::{Entry, OURS, Peer, Setup};
+use crate::scenes::{Course, EXPECTED, Order, Schedule, Spread};
+
+/// One scene on so many threads.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Case {
+    /// How bodies are spread.
+    pub spread: Spread,
+    /// In which order they are numbered.
+    pub order: Order,
+    /// How many there are.
+    pub bodies: usize,
+    /// Threads that each engine may use.
+    pub threads: usize,
+    /// Frames.
+    #[serde(flatten)]
+    pub schedule: Schedule,
+}
+
+/// What one engine did in a case.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The case.
+    #[serde(flatten)]
+    pub case: Case,
+    /// The engine.
+    pub engine: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// What it finds.
+    pub work: &'static str,
+    /// Pairs in the last frame.
+    pub pairs: usize,
+    /// Milliseconds a frame: the lower quartile, the median and the upper quartile.
+    pub ms_low: f64,
+    /// See above.
+    pub ms: f64,
+    /// See above.
+    pub ms_high: f64,
+    /// The median over the number of bodies.
+    pub ns_a_body: f64,
+    /// Median over frames of its time over ours for boxes.
+    pub ratio: f64,
+    /// Bytes a body that it holds.
+    pub bytes_a_body: f64,
+    /// The most bytes a body that it had at once; of C++ what it holds.
+    pub peak_bytes_a_body: f64,
+}
+
+/// Checks and times everyone.
+///
+/// # Errors
+/// An engine whose pairs are not the scene's, an engine that can't be built.
+pub fn run(case: Case, entries: &[Entry]) -> miette::Result<Vec<Row>> {
+    let able: Vec<_> = entries
+        .iter()
+        .filter(|entry| entry.threads >= case.threads)
+        .collect();
+    let memories = check(case, &able)?;
+    let mut racers = race(case, &able)?;
+    let ours = racers.iter().find(|racer| racer.entry.name == OURS);
+    let base = ours.map(|racer| racer.ms.clone());
+    let mut rows = Vec::new();
+    for (racer, memory) in racers.iter_mut().zip(memories) {
+        let ratio = base.as_ref().map(|base| {
+            let ratios = racer
+                .ms
+                .iter()
+                .zip(base)
+                .map(|(theirs, ours)| theirs / ours);
+            quantile(&mut ratios.collect::<Vec<_>>(), 0.5)
+        });
+        let [ms_low, ms, ms_high] = [0.25, 0.5, 0.75].map(|q| quantile(&mut racer.ms, q));
+        let bodies = case.bodies as f64;
+        rows.push(Row {
+            case,
+            engine: racer.entry.name,
+            version: racer.entry.version,
+            work: racer.entry.work.name(),
+            pairs: racer.pairs,
+            ms_low,
+            ms,
+            ms_high,
+            ns_a_body: 1e6 * ms / bodies,
+            ratio: ratio.unwrap_or(f64::NAN),
+            bytes_a_body: memory.held as f64 / bodies,
+            peak_bytes_a_body: memory.peak as f64 / bodies,
+        });
+    }
+    Ok(rows)
+}
+
+/// Runs every engine alone over the first frames and judges its pairs; counts its memory on the way.
+fn check(case: Case, entries: &[&Entry]) -> miette::Result<Vec<Memory>> {
+    let mut course = course(case)?;
+    let count = case.schedule.turn.max(3);
+    let mut frames = vec![Frame::default(); count];
+    for frame in &mut frames {
+        course.next_frame(frame)?;
+    }
+    let sampled = [0, 1, count - 1].map(|number| Truth::of(&frames[number], number));
+    definition_holds(case, &sampled[0])?;
+    let setup = Setup {
+        scene: &course.scene,
+        first: &frames[0],
+        threads: case.threads,
+    };
+    let mut memories = Vec::new();
+    for entry in entries {
+        let (peer, memory) = memory::measure(|| driven(entry, &setup, &frames));
+        memories.push(memory);
+        drop(peer?);
+        let mut peer = (entry.new)(&setup)?;
+        for (number, frame) in frames.iter().enumerate() {
+            peer.frame(frame);
+            peer.settle();
+            if let Some(truth) = sampled.iter().find(|truth| truth.number() == number) {
+                truth.judge(entry, peer.pairs())?;
+            }
+        }
+    }
+    Ok(memories)
+}
+
+/// The engine after these frames.
+fn driven(entry: &Entry, setup: &Setup<'_>, frames: &[Frame]) -> miette::Result<Box<dyn Peer>> {
+    let mut peer = (entry.new)(setup)?;
+    frames.iter().for_each(|frame| peer.frame(frame));
+    Ok(peer)
+}
+
+fn course(case: Case) -> miette::Result<Course> {
+    Course::new(case.spread, case.bodies, case.order, case.schedule.warm_up)
+}
+
+fn definition_holds(case: Case, first: &Truth<'_>) -> miette::Result<()> {
+    let known = EXPECTED
+        .iter()
+        .find(|(spread, bodies, _)| (*spread, *bodies) == (case.spread, case.bodies));
+    match known {
+        Some(&(_, _, pairs)) if pairs != first.boxes() => Err(miette!(
+            help = "either the scene code changed, or the definition in `scenes.rs` must",
+            "{:?} of {} has {} pairs in its first frame, its definition says {pairs}",
+            case.spread,
+            case.bodies,
+            first.boxes(),
+        )),
+        _ => Ok(()),
+    }
+}
+
+struct Racer<'a> {
+    entry: &'a Entry,
+    peer: Box<dyn Peer>,
+    ms: Vec<f64>,
+    pairs: usize,
+}
+
+/// Times everyone in turns, and judges their last pairs.
+fn race<'a>(case: Case, entries: &[&'a Entry]) -> miette::Result<Vec<Racer<'a>>> {
+    let mut course = course(case)?;
+    let Schedule {
+        warm_up,
+        timed,
+        turn,
+    } = case.schedule;
+    let mut frames = vec![Frame::default(); turn];
+    course.next_frame(&mut frames[0])?;
+    let setup = Setup {
+        scene: &course.scene,
+        first: &frames[0],
+        threads: case.threads,
+    };
+    let mut racers = Vec::new();
+    for &entry in entries {
+        racers.push(Racer {
+            entry,
+            peer: (entry.new)(&setup)?,
+            ms: Vec::with_capacity(timed),
+            pairs: 0,
+        });
+    }
+    let (mut done, mut first) = (0, 1);
+    while done < warm_up + timed {
+        let count = turn.min(warm_up + timed - done);
+        for frame in &mut frames[first..count] {
+            course.next_frame(frame)?;
+        }
+        first = 0;
+        for place in 0..racers.len() {
+            let at = (place + done / turn) % racers.len();
+            for (number, frame) in frames[..count].iter().enumerate() {
+                let start = Instant::now();
+                racers[at].peer.frame(frame);
+                let seconds = start.elapsed().as_secs_f64();
+                if done + number >= warm_up {
+                    racers[at].ms.push(1e3 * seconds);
+                }
+                racers[at].peer.settle();
+            }
+        }
+        done += count;
+        if done == warm_up + timed {
+            let truth = Truth::of(&frames[count - 1], done - 1);
+            for racer in &mut racers {
+                let (entry, pairs) = (racer.entry, racer.peer.pairs());
+                racer.pairs = truth.judge(entry, pairs)?;
+            }
+        }
+    }
+    Ok(racers)
+}
+
+/// The q-quantile; the numbers are left sorted.
+fn quantile(numbers: &mut [f64], q: f64) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    match numbers.len() {
+        0 => f64::NAN,
+        n => numbers[((n - 1) as f64 * q).round() as usize],
+    }
+}

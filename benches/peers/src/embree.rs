@@ -1,0 +1,19 @@
+//! Embree's `rtcCollide`: `native/embree.cpp`.
+
+use crate::native::{new, shim};
+use crate::peer::{Entry, Work};
+
+/// One way to drive it.
+pub const ENTRIES: [Entry; 1] = [Entry {
+    name: "Embree",
+    version: "3.13.5",
+    work: Work::Boxes,
+    threads: usize::MAX,
+    slack: 0,
+    new: |setup| {
+        new(
+            setup,
+            shim!(embree_new, embree_frame, embree_pairs, embree_free),
+        )
+    },
+}];

@@ -1,0 +1,163 @@
+//! `sdop-peers`: what users would pick instead of sdop, on the same frames, checked to find the same pairs.
+
+mod boxes;
+mod broccoli;
+#[cfg(feature = "debian")]
+mod bullet;
+mod bvh;
+#[cfg(feature = "debian")]
+mod cgal;
+mod changes;
+mod check;
+mod compare;
+#[cfg(feature = "debian")]
+mod embree;
+mod memory;
+mod narrow;
+#[cfg(feature = "debian")]
+mod native;
+mod obvhs;
+mod oracle;
+mod ours;
+mod parry;
+mod peer;
+#[cfg(feature = "physx")]
+mod physx;
+mod rapier;
+mod record;
+mod rstar;
+mod scenes;
+mod threads;
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+use compare::Case;
+use miette::miette;
+use peer::{Entry, OURS, roster};
+use record::Record;
+use scenes::{Order, Schedule, Spread};
+
+/// Finds the same pairs with sdop and with its peers, checks that they agree, and times them in turns
+///
+/// Exit codes: 0 all is well, 1 an engine's pairs differ or an engine failed, 2 bad arguments.
+#[derive(Parser)]
+#[command(
+    after_help = "Example: sdop-peers --sizes 500,10000 --scenes uniform --order random --threads 1 --out results"
+)]
+#[command(args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    other: Option<Other>,
+    /// Numbers of bodies
+    #[arg(
+        long,
+        value_delimiter = ',',
+        default_value = "500,1000,10000,100000,1000000"
+    )]
+    sizes: Vec<usize>,
+    /// How bodies are spread
+    #[arg(long, value_delimiter = ',', default_value = "uniform,mixed,clustered")]
+    scenes: Vec<Spread>,
+    /// In which order bodies are numbered
+    #[arg(long, value_delimiter = ',', default_value = "random,sorted")]
+    order: Vec<Order>,
+    /// Threads that each engine may use; engines without threads sit out above 1
+    #[arg(long, value_delimiter = ',', default_value = "1,2")]
+    threads: Vec<usize>,
+    /// Engines, by the beginning of their names; absent: all that were compiled in
+    #[arg(long, value_delimiter = ',')]
+    peers: Option<Vec<String>>,
+    /// Frames before the clock counts, instead of what the size asks for
+    #[arg(long)]
+    warm_up: Option<usize>,
+    /// Frames that are timed, instead of what the size asks for
+    #[arg(long)]
+    timed: Option<usize>,
+    /// What else runs on the machine, for the record
+    #[arg(long, default_value = "nothing said of other work")]
+    note: String,
+    /// Write peers.csv, peers.json and peers.md here
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+#[derive(Subcommand)]
+enum Other {
+    Narrow(narrow::Args),
+}
+
+fn main() -> miette::Result<()> {
+    let cli = Cli::parse();
+    threads::claim_caller()?;
+    if let Some(Other::Narrow(args)) = &cli.other {
+        return narrow::run(args);
+    }
+    let entries = chosen(cli.peers.as_deref())?;
+    let mut record = Record::new(cli.note.clone());
+    for case in cases(&cli) {
+        eprintln!(
+            "{:?}, {:?}, {} bodies, {} threads",
+            case.spread, case.order, case.bodies, case.threads
+        );
+        record.add(compare::run(case, &entries)?);
+        if let Some(directory) = &cli.out {
+            record.write(directory)?;
+        }
+    }
+    print!("{}", record.page());
+    Ok(())
+}
+
+/// Ours, and those whose names begin as wished.
+fn chosen(wished: Option<&[String]>) -> miette::Result<Vec<Entry>> {
+    let all = roster();
+    let Some(wished) = wished else {
+        return Ok(all);
+    };
+    let known = all.iter().map(|entry| entry.name).collect::<Vec<_>>();
+    for name in wished {
+        if !known.iter().any(|known| known.starts_with(name.as_str())) {
+            return Err(miette!(
+                help = format!(
+                    "compiled in: {}; others need --features physx,debian",
+                    known.join(", ")
+                ),
+                "no engine's name begins with `{name}`"
+            ));
+        }
+    }
+    let is_wished = |entry: &Entry| {
+        entry.name == OURS
+            || wished
+                .iter()
+                .any(|name| entry.name.starts_with(name.as_str()))
+    };
+    Ok(all.into_iter().filter(is_wished).collect())
+}
+
+fn cases(cli: &Cli) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for &spread in &cli.scenes {
+        for &order in &cli.order {
+            for &threads in &cli.threads {
+                for &bodies in &cli.sizes {
+                    let usual = Schedule::of(bodies);
+                    let schedule = Schedule {
+                        warm_up: cli.warm_up.unwrap_or(usual.warm_up),
+                        timed: cli.timed.unwrap_or(usual.timed).max(1),
+                        ..usual
+                    };
+                    cases.push(Case {
+                        spread,
+                        order,
+                        bodies,
+                        threads,
+                        schedule,
+                    });
+                }
+            }
+        }
+    }
+    cases
+}

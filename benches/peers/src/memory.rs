@@ -1,0 +1,107 @@
+//! What an engine keeps in memory: bytes held and the most held at once, by everything that allocates through this
+//! process's allocator, and by glibc's own books for engines in C++.
+//!
+//! The allocator counts only while asked to, in passes that aren't timed.
+
+#![allow(
+    unsafe_code,
+    reason = "an allocator and glibc's statistics are unsafe interfaces"
+)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicBool, AtomicIsize, Ordering::Relaxed};
+
+static COUNTING: AtomicBool = AtomicBool::new(false);
+static HELD: AtomicIsize = AtomicIsize::new(0);
+static PEAK: AtomicIsize = AtomicIsize::new(0);
+
+/// The system's allocator, with a count of bytes.
+pub struct Counted;
+
+#[global_allocator]
+static ALLOCATOR: Counted = Counted;
+
+fn count(bytes: isize) {
+    if COUNTING.load(Relaxed) {
+        let held = HELD.fetch_add(bytes, Relaxed) + bytes;
+        PEAK.fetch_max(held, Relaxed);
+    }
+}
+
+// SAFETY: every call is passed on to the system's allocator as it came; counting allocates nothing.
+unsafe impl GlobalAlloc for Counted {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count(layout.size() as isize);
+        // SAFETY: the caller keeps `alloc`'s contract.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count(layout.size() as isize);
+        // SAFETY: the caller keeps `alloc_zeroed`'s contract.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        count(-(layout.size() as isize));
+        // SAFETY: the caller keeps `dealloc`'s contract.
+        unsafe { System.dealloc(block, layout) }
+    }
+
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count(size as isize - layout.size() as isize);
+        // SAFETY: the caller keeps `realloc`'s contract.
+        unsafe { System.realloc(block, layout, size) }
+    }
+}
+
+/// Bytes that a piece of work left behind, and the most that it had at once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Memory {
+    /// Held at the end.
+    pub held: u64,
+    /// The most held at once; of engines in C++, what was held at the end.
+    pub peak: u64,
+}
+
+/// Does the work and counts what it allocates, C++ included.
+pub fn measure<T>(work: impl FnOnce() -> T) -> (T, Memory) {
+    HELD.store(0, Relaxed);
+    PEAK.store(0, Relaxed);
+    let before = in_use();
+    COUNTING.store(true, Relaxed);
+    let result = work();
+    COUNTING.store(false, Relaxed);
+    let counted = HELD.load(Relaxed).max(0) as u64;
+    // glibc rounds sizes up: what it has beyond the count is a few per cent, or C++.
+    let booked = in_use().saturating_sub(before);
+    let held = counted.max(booked);
+    let peak = held.max(PEAK.load(Relaxed).max(0) as u64);
+    (result, Memory { held, peak })
+}
+
+/// Bytes in use by glibc's books, over all arenas and mapped blocks.
+fn in_use() -> u64 {
+    // SAFETY: no arguments, no state but glibc's own.
+    let books = unsafe { libc::mallinfo2() };
+    (books.uordblks + books.hblkhd) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn held_and_peak_are_what_was_allocated() {
+        // Other tests allocate meanwhile, but not as much.
+        const MEGABYTE: usize = 1 << 20;
+        let (kept, memory) = measure(|| {
+            drop(vec![1_u8; 30 * MEGABYTE]);
+            vec![1_u8; 20 * MEGABYTE]
+        });
+        assert_eq!(kept.len(), 20 * MEGABYTE);
+        let megabytes = [memory.held, memory.peak].map(|bytes| bytes / MEGABYTE as u64);
+        assert!((20..22).contains(&megabytes[0]), "{memory:?}");
+        assert!((30..32).contains(&megabytes[1]), "{memory:?}");
+    }
+}

@@ -1,0 +1,35 @@
+//! The culler as a user has it: poses in, pairs out, found on the grid.
+
+use sdop::pipeline::Culler;
+use sdop::scene::settings::{CullSettings, Finder, Strategy};
+use sdop::simd::Level;
+
+use crate::boxes::Frame;
+use crate::peer::{Peer, Setup};
+
+/// A culler with one strategy.
+pub struct Culled(Culler);
+
+impl Culled {
+    /// With k = 18, two-sided, all volumes updated each frame: what [`CullSettings`] has by default.
+    pub fn new(setup: &Setup<'_>, strategy: Strategy) -> miette::Result<Self> {
+        let settings = CullSettings {
+            strategy,
+            pairs: Finder::Grid,
+            ..CullSettings::default()
+        };
+        let bodies = &setup.first.bodies;
+        let culler = Culler::new(&setup.scene.shapes, bodies, &settings, Level::detect())?;
+        Ok(Self(culler.with_threads(setup.threads)?))
+    }
+}
+
+impl Peer for Culled {
+    fn frame(&mut self, frame: &Frame) {
+        self.0.cull(&frame.bodies);
+    }
+
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        self.0.pairs().iter().collect()
+    }
+}

@@ -1,0 +1,43 @@
+//! Ourselves: boxes for the comparison on equal work, and what a user of the culler has instead of boxes.
+
+mod boxes;
+mod culler;
+
+use sdop::scene::settings::Strategy;
+
+use crate::peer::{Entry, OURS, Work};
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The grid on boxes; spheres alone; spheres, then or-DOPs.
+pub const ENTRIES: [Entry; 3] = [
+    Entry {
+        name: OURS,
+        version: VERSION,
+        work: Work::Boxes,
+        threads: usize::MAX,
+        slack: 0,
+        new: |setup| Ok(Box::new(boxes::Boxes::new(setup)?)),
+    },
+    Entry {
+        name: "sdop spheres",
+        version: VERSION,
+        work: Work::Spheres,
+        threads: usize::MAX,
+        slack: 0,
+        new: |setup| Ok(Box::new(culler::Culled::new(setup, Strategy::Sphere)?)),
+    },
+    Entry {
+        name: "sdop s-dop",
+        version: VERSION,
+        work: Work::SDop,
+        threads: usize::MAX,
+        slack: 0,
+        new: |setup| {
+            Ok(Box::new(culler::Culled::new(
+                setup,
+                Strategy::SDopSequential,
+            )?))
+        },
+    },
+];

@@ -1,0 +1,101 @@
+//! What an engine must offer to stand in the comparison, and who does.
+//!
+//! A new engine is a file with a `Peer`, and its line in [`roster`].
+
+use sdop::scene::Scene;
+
+use crate::boxes::Frame;
+#[cfg(feature = "physx")]
+use crate::physx;
+use crate::{broccoli, bvh, obvhs, ours, parry, rapier, rstar};
+#[cfg(feature = "debian")]
+use crate::{bullet, cgal, embree};
+
+/// An engine with the bodies of one scene.
+pub trait Peer {
+    /// Takes over the frame and finds its pairs. This is what is timed: from the frame's boxes to a complete answer in the
+    /// engine's own memory.
+    fn frame(&mut self, frame: &Frame);
+
+    /// Books what the frame changed, for engines that say only that. Not timed.
+    fn settle(&mut self) {}
+
+    /// The pairs of the last frame, each once, in any order. Not timed.
+    fn pairs(&self) -> Vec<[u32; 2]>;
+}
+
+/// What is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// All pairs of boxes: the same work for all.
+    Boxes,
+    /// All pairs of bounding spheres: fewer, and closer to the truth.
+    Spheres,
+    /// Pairs of spheres whose or-DOPs overlap (k = 18, two-sided): the whole S-DOP.
+    SDop,
+}
+
+impl Work {
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Boxes => "boxes",
+            Self::Spheres => "spheres",
+            Self::SDop => "s-dop",
+        }
+    }
+}
+
+/// What an engine is built for.
+#[derive(Clone, Copy)]
+pub struct Setup<'a> {
+    /// The scene, for what culls by more than boxes.
+    pub scene: &'a Scene,
+    /// The first frame.
+    pub first: &'a Frame,
+    /// Threads to use.
+    pub threads: usize,
+}
+
+/// One engine, or one way to drive it.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// Its name in tables and on the command line.
+    pub name: &'static str,
+    /// The version that is measured.
+    pub version: &'static str,
+    /// What it finds.
+    pub work: Work,
+    /// The most threads that it can use.
+    pub threads: usize,
+    /// Steps between neighbouring f32 by which it widens each end of a box before it compares: 0 but for engines that
+    /// round, each of which says why.
+    pub slack: u32,
+    /// Builds it.
+    pub new: fn(&Setup<'_>) -> miette::Result<Box<dyn Peer>>,
+}
+
+/// The name of the engine that the others are compared with.
+pub const OURS: &str = "sdop boxes";
+
+/// Everyone that was compiled in.
+pub fn roster() -> Vec<Entry> {
+    let all: &[&[Entry]] = &[
+        &ours::ENTRIES,
+        &parry::ENTRIES,
+        &rapier::ENTRIES,
+        &obvhs::ENTRIES,
+        &bvh::ENTRIES,
+        &broccoli::ENTRIES,
+        &rstar::ENTRIES,
+        #[cfg(feature = "physx")]
+        &physx::ENTRIES,
+        #[cfg(feature = "debian")]
+        &embree::ENTRIES,
+        #[cfg(feature = "debian")]
+        &bullet::ENTRIES,
+        #[cfg(feature = "debian")]
+        &cgal::ENTRIES,
+    ];
+    all.concat()
+}

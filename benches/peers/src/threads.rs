@@ -1,0 +1,41 @@
+//! Threads for engines that work on rayon's.
+
+use miette::IntoDiagnostic as _;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// Bodies whose pairs one thread finds at once.
+pub const CHUNK: usize = 1024;
+
+/// The caller's thread alone, or a pool of several.
+pub struct Threads(Option<ThreadPool>);
+
+impl Threads {
+    /// So many threads.
+    pub fn new(threads: usize) -> miette::Result<Self> {
+        if threads <= 1 {
+            return Ok(Self(None));
+        }
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        Ok(Self(Some(pool.into_diagnostic()?)))
+    }
+
+    /// Whether there are several.
+    pub fn several(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// Does the work where rayon finds these threads and no others.
+    pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &self.0 {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+}
+
+/// Makes the caller's thread all that rayon has outside of a pool: engines that ask it whatever the number of threads
+/// would else take every CPU, or hand each search to another thread.
+pub fn claim_caller() -> miette::Result<()> {
+    let alone = ThreadPoolBuilder::new().num_threads(1).use_current_thread();
+    alone.build_global().into_diagnostic()
+}
