@@ -7,11 +7,10 @@
 use std::ops::Range;
 
 use sdop::broad_phase::{
-    BLOCK_BODIES, Block, FirstTest, MOST_CANDIDATES, PairFinder, Reorder, Slots, columns,
+    BLOCK_BODIES, Block, FirstTest, Grid, MOST_CANDIDATES, PairFinder, Reorder, Slots, columns,
 };
 use sdop::crew::Crew;
 use sdop::places::Places;
-use sdop::scene::settings::Finder;
 use sdop::simd::{Kernel, LANES, Lanes, Level, MAX_WIDTH, dispatch};
 
 use crate::boxes::{Frame, Slabs, meet};
@@ -51,7 +50,7 @@ impl Boxes {
         let mut boxes = Self {
             level: Level::detect(),
             crew: Crew::new(setup.threads)?,
-            finder: PairFinder::new(Finder::Grid),
+            finder: PairFinder::Grid(Grid::default()),
             names: places.body.clone(),
             order: Vec::new(),
             cubes: vec![[0.0; 4]; places.len()],
@@ -81,7 +80,13 @@ impl Peer for Boxes {
         }
         self.update(&frame.boxes);
         let finder = &mut self.finder;
-        finder.arrange(self.level, &self.places, &self.cubes, &self.names);
+        finder.arrange(
+            self.level,
+            &self.crew,
+            &self.places,
+            &self.cubes,
+            &self.names,
+        );
         let names = &finder.slots().names;
         self.crew.pieces(&mut self.slabs, CUBES, |start, piece| {
             for (slabs, &body) in piece.iter_mut().zip(&names[start..]) {
