@@ -1,6 +1,6 @@
-//! Cv of or-DOPs after spheres: hits alone, misses alone, and as S-DOP lists them; an element a pair.
+//! Cv of or-DOPs after spheres, in every tier: hits alone, misses alone, and as S-DOP lists them; an element a pair.
 //!
-//! A miss alone may leave at its first separating axis; among hits its vector stays busy until the last one.
+//! A miss alone leaves with A's normals, or in the scalar tier at its first separating axis; a hit tries them all.
 
 mod common;
 
@@ -70,14 +70,16 @@ fn ordop(criterion: &mut Criterion) {
             };
             for (name, list) in [("hits", &hits), ("misses", &misses), ("as listed", &listed)] {
                 group.throughput(Throughput::Elements(list.len() as u64));
-                let id = BenchmarkId::new(format!("k = {k}, {overlap}"), name);
-                let mut out = PairList::default();
-                group.bench_function(id, |bencher| {
-                    bencher.iter(|| {
-                        out.clear();
-                        columns.test_pairs(Level::detect(), list.first(), list.second(), &mut out)
+                for level in Level::available() {
+                    let id = BenchmarkId::new(format!("k = {k}, {overlap}, {level}"), name);
+                    let mut out = PairList::default();
+                    group.bench_function(id, |bencher| {
+                        bencher.iter(|| {
+                            out.clear();
+                            columns.test_pairs(level, list.first(), list.second(), &mut out)
+                        });
                     });
-                });
+                }
             }
         }
     }
