@@ -285,6 +285,26 @@ fn near_touching(seed: u64, radius: f32, offset: f32) -> Scene {
     scene
 }
 
+/// Pairs of unequal balls that touch to the last bit along an axis, on either side of its origin: there the difference of
+/// centres and the sum of radii round, so that a test reports pairs whose exact ends lie apart.
+fn unequal_near_touching(seed: u64) -> Scene {
+    let mut scene = Scene::new("unequal near-touching", &[1.0, 0.37], 1200, |_, _| [0.0; 3]);
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let [a, b] = [0, 1].map(|shape: usize| f64::from(scene.shapes[shape].ball.radius));
+    for (pair, centres) in scene.bodies.translation.chunks_exact_mut(2).enumerate() {
+        let axis = pair % 3;
+        // The radii that are tested are wider by four ulps.
+        let ulps = 4.0 + rng.random_range(-1.0..1.0);
+        let distance = (a + b) * (1.0 + ulps * f64::from(f32::EPSILON));
+        let at = uniform(&mut rng, 40.0);
+        (centres[0], centres[1]) = (at, at);
+        centres[0][axis] = (-distance * rng.random_range(0.1..0.9)) as f32;
+        centres[1][axis] = (f64::from(centres[0][axis]) + distance) as f32;
+    }
+    scene.bodies.dynamic.fill(true);
+    scene
+}
+
 fn direction(rng: &mut ChaCha8Rng) -> [f64; 3] {
     let v: [f64; 3] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
     let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -298,9 +318,16 @@ fn no_finder_loses_a_near_touching_pair() {
         let scene = near_touching(seed, radius, offset);
         let wanted = found(&scene, Strategy::Sphere, Finder::AllPairs, 1);
         assert!(wanted[0].len() > 300, "about half of them touch");
+        let unequal = unequal_near_touching(seed);
         for finder in FINDERS {
-            let found = found(&scene, Strategy::Sphere, finder, 1);
-            compare(&found, &wanted, &format!("{finder}, seed {seed}"));
+            let found = |scene| found(scene, Strategy::Sphere, finder, 1);
+            compare(&found(&scene), &wanted, &format!("{finder}, seed {seed}"));
+            let wanted = self::found(&unequal, Strategy::Sphere, Finder::AllPairs, 1);
+            compare(
+                &found(&unequal),
+                &wanted,
+                &format!("{finder}, unequal, seed {seed}"),
+            );
         }
     }
 }
@@ -354,6 +381,22 @@ fn groups_leave_of_every_list_the_pairs_that_may_collide() {
                 }
                 compare(&found, &wanted, &format!("{strategy}, {finder}, {threads}"));
             }
+        }
+    }
+}
+
+/// Enough bodies for threads to share updates and sorts too, which they don't for fewer.
+#[test]
+fn many_bodies_give_the_list_of_one_thread_on_any_number() {
+    let scene = Scene::new("many", &[1.0], 40_000, |_, rng| uniform(rng, 96.0));
+    for strategy in [Strategy::Sphere, Strategy::SDopSequential] {
+        let settings = settings(strategy, Finder::Grid);
+        let wanted = trace(&scene, &settings, Level::detect(), 1);
+        assert!(wanted[2].0.len() > 10_000);
+        for threads in [2, 3] {
+            let found = trace(&scene, &settings, Level::detect(), threads);
+            // Lists of this length are not worth printing.
+            assert!(found == wanted, "{strategy}, {threads} threads");
         }
     }
 }
