@@ -17,7 +17,7 @@
 //! | step | ns |
 //! |---|---|
 //! | ends of each lane's slabs loaded once ([`slabs`]) instead of gathered, survivors of A's normals packed | 20.7 |
-//! | up to 16 shapes: ends by permutation instead of rows (many shapes: 14.6 in the end) | 20.4 |
+//! | up to 16 shapes: ends by permutation instead of rows (many shapes: 14.6 in the end) | 20.9 |
 //! | directions written out, no loop that keeps vectors in memory for its index | 12.6 |
 //! | pairs, bounds and the choice of loader once a block; no frames kept that no later axis needs | 8.7 |
 //!
