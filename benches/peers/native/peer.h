@@ -11,13 +11,6 @@ struct Box {
     float ends[3][2];
 };
 
-inline bool meet(const Box& a, const Box& b) {
-    for (int axis = 0; axis < 3; axis++) {
-        if (a.ends[axis][0] > b.ends[axis][1] || b.ends[axis][0] > a.ends[axis][1]) return false;
-    }
-    return true;
-}
-
 // The four functions of an engine: made from the first frame's boxes; a frame; the pairs of the last one; gone.
 #define PEER(name)                                                                  \
     extern "C" void* name##_new(const Box* boxes, size_t count, unsigned threads);  \

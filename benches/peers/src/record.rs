@@ -12,6 +12,14 @@ use serde::Serialize;
 use crate::compare::{Case, Row};
 use crate::scenes::{Order, Spread};
 
+/// The flag that compiles the same engines in.
+const FEATURES: &str = match (cfg!(feature = "physx"), cfg!(feature = "debian")) {
+    (true, true) => " --features physx,debian",
+    (true, false) => " --features physx",
+    (false, true) => " --features debian",
+    (false, false) => "",
+};
+
 /// A measurement.
 #[derive(Serialize)]
 pub struct Record {
@@ -31,7 +39,7 @@ impl Record {
     pub fn new(note: String) -> Self {
         let arguments = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
         Self {
-            command: format!("cargo run --release -p sdop-peers -- {arguments}"),
+            command: format!("cargo run --release -p sdop-peers{FEATURES} -- {arguments}"),
             machine: Machine::here(Level::detect()),
             compiled_for: match (
                 cfg!(target_feature = "avx512f"),
