@@ -2,8 +2,9 @@
 //! before it ends.
 //!
 //! Candidates of a ball are one contiguous run in the sorted order, so vectors are full, but there are N^(5/3) of them in a
-//! cube: good for some hundred bodies, or many on a line. Ends are widened and rounded outward; with plain fl(x ± R) a
-//! sweep loses one in eight of the pairs that touch to the last bit.
+//! cube: the grid is ahead at every number of bodies and in every shape of space that was tried, and `auto` never picks
+//! the sweep. Ends are widened and rounded outward: the sphere test rounds too, and with plain fl(x ± R) a sweep loses one
+//! in twenty of the unequal balls that touch to the last bit (`tests/finders/`).
 
 use std::ops::Range;
 

@@ -1,4 +1,8 @@
 //! One level of the grid: bodies of like size, counting-sorted by cell into their slots.
+//!
+//! Threads share a sort by cells and not by places: each reads every body's cell, which is four bytes in sequence, and counts
+//! and places those of its own range of cells. Tables and slots are then split between them without overlap, no thread needs
+//! another's counts but one sum, and the order within a cell is that of one thread.
 
 use std::ops::Range;
 
