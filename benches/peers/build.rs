@@ -2,9 +2,12 @@
 
 fn main() {
     println!("cargo:rerun-if-changed=native");
-    if std::env::var_os("CARGO_FEATURE_DEBIAN").is_none() {
-        return;
-    }
+    #[cfg(feature = "debian")]
+    compile_shims();
+}
+
+#[cfg(feature = "debian")]
+fn compile_shims() {
     cc::Build::new()
         .cpp(true)
         .std("c++17")
