@@ -13,7 +13,7 @@ use sdop::places::Places;
 use sdop::scene::Scene;
 use sdop::scene::settings::{CullSettings, Overlap, Strategy};
 use sdop::simd::Level;
-use sdop::update::{OrDopRows, ShapeFrame};
+use sdop::update::{OrDopRows, Posed, ShapeFrame};
 use sdop::volume::DirectionSet;
 
 fn pairs(scene: &Scene, strategy: Strategy) -> PairList {
@@ -54,14 +54,13 @@ fn ordop(criterion: &mut Criterion) {
                 .collect();
             let places = Places::as_given(&scene.bodies);
             let mut rows = OrDopRows::new(places.len());
-            rows.update(
-                &Crew::default(),
-                &frames,
-                &scene.bodies,
-                &places,
-                0..places.len(),
-                1,
-            );
+            let posed = Posed {
+                frames: &frames,
+                bodies: &scene.bodies,
+                places: &places,
+            };
+            let everyone = 0..places.len();
+            rows.update(Level::detect(), &Crew::default(), posed, everyone, 1);
             let tables = SlabTables::new(k, scene.shapes.iter().map(|s| (s, &s.ordop)));
             let columns = OrDopColumns {
                 rows: &rows.rows,

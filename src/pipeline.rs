@@ -20,7 +20,7 @@ use crate::scene::settings::{
 };
 use crate::simd::Level;
 use crate::strategy::{self, Memory, Stage, Worker};
-use crate::update::{Intervals, OrDopRows, update_spheres};
+use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
 use crate::volume::{DirectionSet, Shape};
 
 /// Culls the frames of one scene: a fixed set of bodies whose poses change.
@@ -287,6 +287,11 @@ impl Culler {
         if self.needs.balls {
             update_spheres(&self.crew, balls, frames, bodies, places, range.clone());
         }
+        let posed = Posed {
+            frames,
+            bodies,
+            places,
+        };
         if self.needs.rows {
             let start = match self.settings.updates {
                 Updates::Eager => range.start,
@@ -294,10 +299,10 @@ impl Culler {
             };
             let eager = start.min(range.end)..range.end;
             self.rows
-                .update(&self.crew, frames, bodies, places, eager, self.stamp);
+                .update(self.level, &self.crew, posed, eager, self.stamp);
         }
         if let Some(intervals) = &mut self.intervals {
-            intervals.update(balls, frames, bodies, places, range);
+            intervals.update(self.level, &self.crew, balls, posed, range);
         }
     }
 

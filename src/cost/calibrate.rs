@@ -20,7 +20,7 @@ use crate::scene::random::Stream;
 use crate::scene::settings::{Axes, Strategy};
 use crate::simd::Level;
 use crate::simulate::SimulationError;
-use crate::update::{OrDopRows, ShapeFrame};
+use crate::update::{OrDopRows, Posed, ShapeFrame};
 use crate::volume::{Ball, Basis, Hull, OrDop, Shape};
 
 /// Bodies of the calibration scenes, as parts of the scene's number.
@@ -187,7 +187,12 @@ fn time_hits(scene: &Scene, hits: &PairList, level: Level) -> Row<4> {
     let n = scene.bodies.len();
     let places = Places::as_given(&scene.bodies);
     let mut rows = OrDopRows::new(n);
-    rows.update(&Crew::default(), &frames, &scene.bodies, &places, 0..n, 1);
+    let posed = Posed {
+        frames: &frames,
+        bodies: &scene.bodies,
+        places: &places,
+    };
+    rows.update(level, &Crew::default(), posed, 0..n, 1);
     let tables = SlabTables::new(scene.cull.k, scene.shapes.iter().map(|s| (s, &s.ordop)));
     let columns = OrDopColumns {
         rows: &rows.rows,

@@ -4,6 +4,8 @@
 //! once: |δr_ij| ≤ (2 + 4|r_ij|)·2⁻⁵³, and 22·2⁻⁵³·max(|x|∞, |t|∞) bounds a transformed coordinate. f64 here costs one
 //! matrix a body and frame; in f32 the same bound would be larger than all margins together.
 
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
 use super::{down, exp2, up};
 
 /// Rows of a rotation matrix.
@@ -20,35 +22,73 @@ pub const REFIT_MARGIN: f64 = exp2(-46);
 /// 2⁻¹²⁰: covers subnormal vertices and translations that are read as zero.
 pub const REFIT_FLOOR: f64 = exp2(-120);
 
+/// What the formulas of a pose compute with: an f64, or several at once.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// 2.
+    fn two() -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn two() -> Self {
+        2.0
+    }
+}
+
 /// The rotation matrix of a quaternion (x, y, z, w) of any norm with 0 < |q|² < ∞ in f64.
 pub fn rotation(q: [f32; 4]) -> Rotation {
-    let [x, y, z, w] = q.map(f64::from);
+    rotation_of(q.map(f64::from))
+}
+
+/// The same of numbers that are f32 each.
+#[inline(always)]
+pub fn rotation_of<N: Real>([x, y, z, w]: [N; 4]) -> [[N; 3]; 3] {
     let (xx, yy, zz, ww) = (x * x, y * y, z * z, w * w);
     let square = xx + yy + zz + ww;
-    let twice = |a: f64, b: f64| 2.0 * (a + b) / square;
     [
         [
             ((xx - yy) + (ww - zz)) / square,
-            twice(x * y, -(w * z)),
-            twice(x * z, w * y),
+            twice(x * y, -(w * z), square),
+            twice(x * z, w * y, square),
         ],
         [
-            twice(x * y, w * z),
+            twice(x * y, w * z, square),
             ((yy - xx) + (ww - zz)) / square,
-            twice(y * z, -(w * x)),
+            twice(y * z, -(w * x), square),
         ],
         [
-            twice(x * z, -(w * y)),
-            twice(y * z, w * x),
+            twice(x * z, -(w * y), square),
+            twice(y * z, w * x, square),
             ((zz - xx) + (ww - yy)) / square,
         ],
     ]
 }
 
+#[inline(always)]
+fn twice<N: Real>(a: N, b: N, square: N) -> N {
+    N::two() * (a + b) / square
+}
+
 /// R·x, each coordinate within (22 − 3)·2⁻⁵³·|x|∞.
 pub fn rotate(r: &Rotation, x: [f32; 3]) -> [f64; 3] {
-    let [x, y, z] = x.map(f64::from);
-    r.map(|row| row[0] * x + row[1] * y + row[2] * z)
+    rotate_of(r, x.map(f64::from))
+}
+
+/// The same for numbers that are f32 each.
+#[inline(always)]
+pub fn rotate_of<N: Real>(r: &[[N; 3]; 3], [x, y, z]: [N; 3]) -> [N; 3] {
+    [
+        r[0][0] * x + r[0][1] * y + r[0][2] * z,
+        r[1][0] * x + r[1][1] * y + r[1][2] * z,
+        r[2][0] * x + r[2][1] * y + r[2][2] * z,
+    ]
 }
 
 /// R·x + t in the world frame, each coordinate within [`COORDINATE_ERROR`]·max(|x|∞, |t|∞).
@@ -65,8 +105,23 @@ pub fn transform(r: &Rotation, x: [f32; 3], t: [f32; 3]) -> [f64; 3] {
 ///
 /// Against the exactly posed orthonormal basis an entry errs by u of itself and an f64 part below 2⁻⁴⁷.
 pub fn world_axes(r: &Rotation, basis: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
-    let scale = norm(basis[0]);
-    basis.map(|column| rotate(r, column).map(|x| (x / scale) as f32))
+    let (scale, basis) = (norm(basis[0]), basis.map(|column| column.map(f64::from)));
+    axes_of(r, basis, scale).map(|axis| axis.map(|x| x as f32))
+}
+
+/// The same before rounding, for numbers that are f32 each; `scale` is ‖basis‖.
+#[inline(always)]
+pub fn axes_of<N: Real>(r: &[[N; 3]; 3], basis: [[N; 3]; 3], scale: N) -> [[N; 3]; 3] {
+    let [[a, b, c], [d, e, f], [g, h, i]] = [
+        rotate_of(r, basis[0]),
+        rotate_of(r, basis[1]),
+        rotate_of(r, basis[2]),
+    ];
+    [
+        [a / scale, b / scale, c / scale],
+        [d / scale, e / scale, f / scale],
+        [g / scale, h / scale, i / scale],
+    ]
 }
 
 /// Euclidean norm of an f32 vector, in f64.

@@ -9,6 +9,7 @@ use crate::cost::VolumeCounters;
 use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
 use crate::simd::{Level, MAX_WIDTH};
+use crate::update::Posed;
 
 /// The or-DOP test with made rows: takes pairs of places, leaves pairs of bodies.
 #[derive(Clone, Copy)]
@@ -61,10 +62,14 @@ impl<'a> Stage<'a> {
         let mut made = 0;
         for column in [self.candidates.first(), self.candidates.second()] {
             let wanted = &column[range.clone()];
-            let (frames, places) = (self.frames, self.places);
+            let posed = Posed {
+                frames: self.frames,
+                bodies: self.bodies,
+                places: self.places,
+            };
             made += self
                 .rows
-                .update_missing(frames, self.bodies, places, wanted, self.stamp);
+                .update_missing(self.level, posed, wanted, self.stamp);
         }
         self.seconds.update += begin.elapsed().as_secs_f64();
         made

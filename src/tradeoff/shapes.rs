@@ -20,7 +20,7 @@ use crate::scene::bodies::Bodies;
 use crate::scene::random::Stream;
 use crate::scene::settings::{Axes, DirectionSet, Overlap};
 use crate::simd::Level;
-use crate::update::{OrDopRows, ShapeFrame};
+use crate::update::{OrDopRows, Posed, ShapeFrame};
 use crate::volume::{Basis, Hull, OrDop, Shape, ShapeSpec, Size};
 
 /// Where the draws start; scenes count their seeds from 1.
@@ -114,10 +114,13 @@ impl Crowd {
         let places = Places::as_given(&self.bodies);
         let mut rows = OrDopRows::new(places.len());
         rows.update(
+            level,
             &Crew::default(),
-            &frames,
-            &self.bodies,
-            &places,
+            Posed {
+                frames: &frames,
+                bodies: &self.bodies,
+                places: &places,
+            },
             0..places.len(),
             1,
         );

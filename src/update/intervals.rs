@@ -1,0 +1,189 @@
+//! World-aligned updates: slabs re-fitted each frame to the hull's vertices and rounded outward.
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "a lane or axis is an index into several columns at once"
+)]
+
+use std::ops::Range;
+
+use super::Posed;
+use super::eight::{EIGHT, Eight};
+use crate::crew::Crew;
+use crate::rounding::pose::{Rotation, norm, refit, rotate_of, rotation};
+use crate::rounding::{down, up};
+use crate::simd::{Kernel, Lanes, Level, dispatch};
+use crate::volume::{DirectionSet, Hull, Shape};
+
+/// Bodies that one thread re-fits at a time.
+const BODIES: usize = 32;
+
+/// World-aligned slabs by place, re-fitted each frame from the hull's vertices and rounded outward.
+#[derive(Clone, Debug)]
+pub struct Intervals {
+    directions: DirectionSet,
+    /// Hull vertices of each shape, body frame, in eights; the last is filled up by its first.
+    hulls: Vec<Vec<[Eight; 3]>>,
+    /// `ends[place·slabs + slab]` = [lo, hi].
+    pub ends: Vec<[f32; 2]>,
+}
+
+impl Intervals {
+    /// Room for `bodies` bodies in `shapes`.
+    #[must_use]
+    pub fn new(directions: DirectionSet, shapes: &[Shape], bodies: usize) -> Self {
+        Self {
+            directions,
+            hulls: shapes.iter().map(hull_in_eights).collect(),
+            ends: vec![[0.0; 2]; bodies * directions.slabs()],
+        }
+    }
+
+    /// Room for another number of bodies.
+    pub(crate) fn resize(&mut self, bodies: usize) {
+        let slabs = self.directions.slabs();
+        self.ends.resize(bodies * slabs, [0.0; 2]);
+    }
+
+    /// Re-fits the slabs of the bodies in a range of places, and the cubes about their boxes: centre and half side.
+    pub fn update(
+        &mut self,
+        level: Level,
+        crew: &Crew,
+        cubes: &mut [[f32; 4]],
+        posed: Posed<'_>,
+        range: Range<usize>,
+    ) {
+        let coefficients = self.directions.coefficients();
+        let slabs = coefficients.len();
+        let (first, hulls) = (range.start, &self.hulls);
+        let ends = &mut self.ends[range.start * slabs..range.end * slabs];
+        crew.pieces(ends, BODIES * slabs, |start, ends| {
+            let refit = Refit {
+                posed,
+                hulls,
+                coefficients,
+                first: first + start / slabs,
+                ends,
+            };
+            dispatch(level, refit);
+        });
+        let ends = self.ends[range.start * slabs..].chunks_exact(slabs);
+        for (cube, ends) in cubes[range].iter_mut().zip(ends) {
+            *cube = cube_about(ends);
+        }
+    }
+}
+
+fn hull_in_eights(shape: &Shape) -> Vec<[Eight; 3]> {
+    let used = Hull::of(&shape.vertices).vertices;
+    let in_eights = used.chunks(EIGHT).map(|some| {
+        let mut eights = [Eight::splat(0.0); 3];
+        for lane in 0..EIGHT {
+            let vertex = shape.vertices[*some.get(lane).unwrap_or(&some[0]) as usize];
+            for axis in 0..3 {
+                eights[axis].0[lane] = f64::from(vertex[axis]);
+            }
+        }
+        eights
+    });
+    in_eights.collect()
+}
+
+/// The cube about a box, whose slabs are the first three: if two boxes meet, so do their cubes.
+fn cube_about(ends: &[[f32; 2]]) -> [f32; 4] {
+    let mut cube = [0.0; 4];
+    for (axis, &[lo, hi]) in ends[..3].iter().enumerate() {
+        let [lo, hi] = [lo, hi].map(f64::from);
+        let centre = (0.5 * (lo + hi)) as f32;
+        let half = (hi - f64::from(centre)).max(f64::from(centre) - lo);
+        cube[axis] = centre;
+        cube[3] = up(half).max(cube[3]);
+    }
+    cube
+}
+
+/// The slabs of consecutive places.
+struct Refit<'a> {
+    posed: Posed<'a>,
+    hulls: &'a [Vec<[Eight; 3]>],
+    coefficients: &'static [[i8; 3]],
+    first: usize,
+    ends: &'a mut [[f32; 2]],
+}
+
+impl Kernel for Refit<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) {
+        let slabs = self.coefficients.len();
+        let Posed {
+            frames,
+            bodies,
+            places,
+        } = self.posed;
+        for (place, ends) in (self.first..).zip(self.ends.chunks_exact_mut(slabs)) {
+            let body = places.body[place] as usize;
+            let frame = &frames[places.shape[place] as usize];
+            let (turn, t) = (rotation(bodies.rotation[body]), bodies.translation[body]);
+            let hull = &self.hulls[frame.shape as usize];
+            fit(ends, self.coefficients, hull, &turn, t, frame.reach);
+            if frame.margin > 0.0 {
+                widen(ends, self.coefficients, frame.margin);
+            }
+        }
+    }
+}
+
+/// The slabs of posed points along integer directions of the world axes.
+#[inline(always)]
+fn fit(
+    ends: &mut [[f32; 2]],
+    coefficients: &[[i8; 3]],
+    hull: &[[Eight; 3]],
+    turn: &Rotation,
+    t: [f32; 3],
+    reach: f32,
+) {
+    let mut wide = [[Eight::splat(0.0); 3]; 3];
+    let mut origin = [Eight::splat(0.0); 3];
+    for i in 0..3 {
+        origin[i] = Eight::splat(f64::from(t[i]));
+        for j in 0..3 {
+            wide[i][j] = Eight::splat(turn[i][j]);
+        }
+    }
+    let mut lo = [Eight::splat(f64::INFINITY); 13];
+    let mut hi = [Eight::splat(f64::NEG_INFINITY); 13];
+    for &vertices in hull {
+        let [x, y, z] = rotate_of(&wide, vertices);
+        let p = [x + origin[0], y + origin[1], z + origin[2]];
+        for (slab, c) in coefficients.iter().enumerate() {
+            let [x, y, z] = [
+                Eight::splat(f64::from(c[0])) * p[0],
+                Eight::splat(f64::from(c[1])) * p[1],
+                Eight::splat(f64::from(c[2])) * p[2],
+            ];
+            let along = (x + y) + z;
+            lo[slab] = lo[slab].min(along);
+            hi[slab] = hi[slab].max(along);
+        }
+    }
+    for (slab, end) in ends.iter_mut().enumerate() {
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for lane in 0..EIGHT {
+            least = least.min(lo[slab].0[lane]);
+            most = most.max(hi[slab].0[lane]);
+        }
+        let (lo, hi) = refit(least, most, reach, t);
+        *end = [lo, hi];
+    }
+}
+
+/// Moves slabs out by `margin`.
+fn widen(ends: &mut [[f32; 2]], coefficients: &[[i8; 3]], margin: f32) {
+    for ([lo, hi], c) in ends.iter_mut().zip(coefficients) {
+        let out = f64::from(margin) * norm(c.map(f32::from));
+        (*lo, *hi) = (down(f64::from(*lo) - out), up(f64::from(*hi) + out));
+    }
+}

@@ -1,0 +1,144 @@
+//! The update stage (the paper's Nu): poses in, world-space volumes out.
+//!
+//! A body's volumes move, they are never re-fitted: a sphere update is a copy of the translation (ball-centred shapes) or one
+//! transformed point, an or-DOP update turns the basis. World-aligned volumes alone are re-fitted, from hull vertices.
+
+mod eight;
+mod intervals;
+mod rows;
+
+pub use intervals::Intervals;
+pub use rows::{OrDopRows, Posed};
+
+use std::ops::Range;
+
+use crate::crew::Crew;
+use crate::places::Places;
+use crate::rounding::pose::{norm, rotation};
+use crate::rounding::sphere::{inflate_radius, world_ball};
+use crate::rounding::up;
+use crate::scene::bodies::Bodies;
+use crate::volume::{Basis, Shape};
+
+/// What updating a body needs to know of its shape.
+#[derive(Clone, Debug)]
+pub struct ShapeFrame {
+    /// The shape, and how far it is grown.
+    shape: u32,
+    margin: f32,
+    centre: [f32; 3],
+    radius: f32,
+    /// R, if the ball's centre is the body's origin: no pose changes it then.
+    inflated: Option<f32>,
+    reach: f32,
+    basis: [[f32; 3]; 3],
+    /// The length of each of its columns.
+    scale: f64,
+}
+
+impl ShapeFrame {
+    /// The frame of a shape whose or-DOP stands on `basis`.
+    #[must_use]
+    pub fn new(shape: &Shape, basis: &Basis) -> Self {
+        let frame = Self {
+            shape: 0,
+            margin: 0.0,
+            centre: shape.ball.centre.to_array(),
+            radius: 0.0,
+            inflated: None,
+            reach: shape.reach,
+            basis: basis.columns.map(|column| column.to_array()),
+            scale: norm(basis.columns[0].to_array()),
+        };
+        frame.with_radius(shape.ball.radius)
+    }
+
+    /// The same with another radius about the ball's centre.
+    #[must_use]
+    pub fn with_radius(self, radius: f32) -> Self {
+        let centred = self.centre == [0.0; 3];
+        Self {
+            radius,
+            inflated: centred.then(|| inflate_radius(radius)),
+            ..self
+        }
+    }
+
+    /// The same as that of the shape of this number, whose hull world-aligned volumes are fitted to.
+    #[must_use]
+    pub fn numbered(self, shape: u32) -> Self {
+        Self { shape, ..self }
+    }
+
+    /// The same, grown by `margin` all around.
+    #[must_use]
+    pub fn grown(&self, margin: f32) -> Self {
+        let grow = |size: f32| up(f64::from(size) + f64::from(margin));
+        let frame = Self {
+            margin,
+            reach: grow(self.reach),
+            ..*self
+        };
+        frame.with_radius(grow(self.radius))
+    }
+
+    /// The ball's radius, not inflated.
+    #[must_use]
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// The ball's centre, body frame.
+    #[must_use]
+    pub fn centre(&self) -> [f32; 3] {
+        self.centre
+    }
+
+    /// What no point of the shape is farther from the body origin than.
+    #[must_use]
+    pub fn reach(&self) -> f32 {
+        self.reach
+    }
+
+    /// Inflated world sphere (x, y, z, R) of a body in this shape.
+    #[inline]
+    #[must_use]
+    pub fn sphere(&self, q: [f32; 4], t: [f32; 3]) -> [f32; 4] {
+        let (centre, inflated) = match self.inflated {
+            Some(inflated) => (t, inflated),
+            None => {
+                let (centre, radius) = world_ball(&rotation(q), t, self.centre, self.radius);
+                (centre, inflate_radius(radius))
+            }
+        };
+        [centre[0], centre[1], centre[2], inflated]
+    }
+}
+
+/// Bodies whose spheres one thread updates at a time: some ten microseconds.
+const SPHERES: usize = 4096;
+
+/// Updates the spheres (x, y, z, R) of the bodies in a range of places.
+pub fn update_spheres(
+    crew: &Crew,
+    spheres: &mut [[f32; 4]],
+    frames: &[ShapeFrame],
+    bodies: &Bodies,
+    places: &Places,
+    range: Range<usize>,
+) {
+    let first = range.start;
+    crew.pieces(&mut spheres[range], SPHERES, |start, spheres| {
+        let start = first + start;
+        let who = places.body[start..].iter().zip(&places.shape[start..]);
+        for (sphere, (&body, &shape)) in spheres.iter_mut().zip(who) {
+            let (body, frame) = (body as usize, &frames[shape as usize]);
+            let t = bodies.translation[body];
+            // The rotation lies elsewhere in memory: reading it for nothing doubles the time of a million bodies.
+            *sphere = match frame.inflated {
+                Some(inflated) => [t[0], t[1], t[2], inflated],
+                None => frame.sphere(bodies.rotation[body], t),
+            };
+        }
+    });
+}
