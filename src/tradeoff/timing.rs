@@ -15,11 +15,16 @@ use crate::cost::measure::{median, time};
 use crate::cost::predict::{Prices, Volume};
 use crate::pairs::PairList;
 use crate::scene::Scene;
+use crate::scene::random::Stream;
 use crate::scene::settings::{CullSettings, SettingsError, Strategy, Updates};
 use crate::simd::Level;
 use crate::simulate::SimulationError;
 
-/// Median seconds a frame of each variant. Each repeats every sample `repeats` times; another variant begins each time.
+/// Where the draws of the order of turns start.
+const SEED: u64 = 0x5a3e_7100_0000_0000;
+
+/// Median seconds a frame of each variant. Each repeats every sample `repeats` times, in another order each time: whoever
+/// always followed the same one would always find the caches and clocks that it leaves.
 ///
 /// # Errors
 /// Settings that can't be carried out.
@@ -36,9 +41,10 @@ pub fn measure(
         .map(|variant| Contender::new(scene, variant, level))
         .collect::<Result<Vec<_>, _>>()?;
     let mut seconds = vec![Vec::new(); contenders.len()];
+    let mut order: Vec<usize> = (0..contenders.len()).collect();
     for (turn, sample) in samples.iter().enumerate() {
-        for place in 0..contenders.len() {
-            let at = (place + turn) % contenders.len();
+        shuffle(&mut order, turn as u64);
+        for &at in &order {
             // The first of a variant's repeats finds caches that the others left, as a frame finds those of the simulation.
             for _ in 0..repeats {
                 contenders[at].frame(&sample.bodies);
@@ -48,6 +54,13 @@ pub fn measure(
         }
     }
     Ok(seconds.into_iter().map(median).collect())
+}
+
+fn shuffle(order: &mut [usize], stream: u64) {
+    let mut draws = Stream::new(SEED, stream);
+    for last in (1..order.len()).rev() {
+        order.swap(last, draws.index(last as u32 + 1) as usize);
+    }
 }
 
 /// Counts and prices of one volume of a variant.

@@ -1,6 +1,7 @@
 //! The result as tables: what a terminal shows, and what the page quotes.
 
 use comfy_table::Table;
+use sdop::cost::measure::median;
 use sdop::scene::settings::Overlap;
 use sdop::tradeoff::shapes::ShapeSurvival;
 use sdop::tradeoff::timing::VolumeTerms;
@@ -257,15 +258,17 @@ pub fn sizes(result: &Tradeoff) -> Table {
             shape.sizes.iter().map(|s| s.over_hull).collect(),
         );
     }
-    let mean = |place: usize| {
-        let column = result
-            .shapes
-            .iter()
-            .filter_map(|s| s.sizes[place].over_hull);
-        let (sum, count) = column.fold((0.0, 0), |(sum, n), x| (sum + x, n + 1));
-        (count > 0).then(|| sum / f64::from(count))
+    let column = |place: usize| -> Vec<f64> {
+        let sizes = result.shapes.iter().map(|s| s.sizes[place].over_hull);
+        sizes.flatten().collect()
+    };
+    let mean = |place| {
+        let column = column(place);
+        (!column.is_empty()).then(|| column.iter().sum::<f64>() / column.len() as f64)
     };
     line("mean", (0..names.len()).map(mean).collect());
+    let middle = |place| (!column(place).is_empty()).then(|| median(column(place)));
+    line("median", (0..names.len()).map(middle).collect());
     let study = |name: &&str| STUDY.iter().find(|(of, _)| of == name).map(|&(_, x)| x);
     line("study", names.iter().map(study).collect());
     rows
