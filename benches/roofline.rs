@@ -1,0 +1,168 @@
+//! How far each kernel is from what the CPU can do: `cargo bench --bench roofline` prints a Markdown table.
+//!
+//! The ceilings are measured in the same run: vector operations a nanosecond with everything in registers, and bytes a
+//! nanosecond from a column that doesn't fit any cache. A kernel's work is counted from its source: f32 operations of the
+//! longest way through (no early exit, padding lanes apart), and bytes of the columns that it must touch once.
+//! Its floor is the larger of work over ceiling; the share is floor over measured time.
+
+mod common;
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use sdop::cost::measure::median;
+use sdop::cost::{Counters, Seconds};
+use sdop::pipeline::Culler;
+use sdop::scene::Scene;
+use sdop::scene::settings::{CullSettings, Finder, Strategy};
+use sdop::simd::{Kernel, Lanes, Level, dispatch};
+
+/// Samples of every measurement.
+const SAMPLES: usize = 15;
+
+/// One kernel's work an element.
+struct Work {
+    name: &'static str,
+    /// f32 operations.
+    operations: f64,
+    /// Bytes from and to memory.
+    bytes: f64,
+    strategy: Strategy,
+    pairs: Finder,
+    scene: &'static str,
+    seconds: fn(&Seconds) -> f64,
+    elements: fn(&Counters) -> u64,
+}
+
+/// Counted from `overlap/sphere.rs`, `overlap/ordop/` (relating two frames 87, one body's nine normals 456, half of the
+/// pairs going on to the second's) and `update.rs`.
+const KERNELS: [Work; 4] = [
+    Work {
+        name: "sphere test, a run of slots",
+        operations: 11.0,
+        bytes: 0.0,
+        strategy: Strategy::Sphere,
+        pairs: Finder::AllPairs,
+        scene: "paper-500",
+        seconds: |s| s.pair_finding,
+        elements: |c| c.sphere.tests,
+    },
+    Work {
+        name: "or-DOP test, k = 18, two-sided",
+        operations: 87.0 + 456.0 + 0.5 * 456.0,
+        bytes: 0.0,
+        strategy: Strategy::SDopBatch,
+        pairs: Finder::Grid,
+        scene: "paper-500",
+        seconds: |s| s.ordop,
+        elements: |c| c.ordop.tests,
+    },
+    Work {
+        name: "or-DOP test, among a million bodies",
+        operations: 87.0 + 456.0 + 0.5 * 456.0,
+        bytes: 128.0,
+        strategy: Strategy::SDopBatch,
+        pairs: Finder::Grid,
+        scene: "uniform-1m",
+        seconds: |s| s.ordop,
+        elements: |c| c.ordop.tests,
+    },
+    Work {
+        name: "spheres of a million bodies found",
+        operations: 0.0,
+        // Ball in and out of the update, in and out of the sort, in again by the pairs; name and cell each way.
+        bytes: 5.0 * 16.0 + 4.0 * 4.0,
+        strategy: Strategy::Sphere,
+        pairs: Finder::Grid,
+        scene: "uniform-1m",
+        seconds: |s| s.update + s.pair_finding,
+        elements: |c| c.sphere.updates,
+    },
+];
+
+fn main() {
+    let level = Level::detect();
+    let (operations, bytes) = (operations_a_nanosecond(level), bytes_a_nanosecond());
+    println!("{level}: {operations:.0} f32 operations and {bytes:.1} bytes a nanosecond at most\n");
+    println!("| kernel | operations | bytes | floor, ns | measured, ns | share |");
+    println!("|---|---:|---:|---:|---:|---:|");
+    let mut loaded: Option<(&str, Scene)> = None;
+    for work in KERNELS {
+        if loaded.as_ref().is_none_or(|(name, _)| *name != work.scene) {
+            loaded = Some((work.scene, common::scene(work.scene)));
+        }
+        let Some((_, scene)) = &loaded else { continue };
+        let measured = nanoseconds(&work, scene, level);
+        let floor = (work.operations / operations).max(work.bytes / bytes);
+        println!(
+            "| {} | {:.0} | {:.0} | {floor:.2} | {measured:.2} | {:.0} % |",
+            work.name,
+            work.operations,
+            work.bytes,
+            100.0 * floor / measured
+        );
+    }
+}
+
+/// The median over samples of a stage's time an element.
+fn nanoseconds(work: &Work, scene: &Scene, level: Level) -> f64 {
+    let settings = CullSettings {
+        strategy: work.strategy,
+        pairs: work.pairs,
+        ..scene.cull.clone()
+    };
+    let mut culler = match Culler::new(&scene.shapes, &scene.bodies, &settings, level) {
+        Ok(culler) => culler,
+        Err(error) => panic!("{error}"),
+    };
+    let frames = (2_000_000 / scene.bodies.len()).clamp(1, 200);
+    let read = |culler: &Culler| {
+        let (seconds, counters) = (culler.seconds(), culler.counters());
+        ((work.seconds)(seconds), (work.elements)(counters))
+    };
+    let mut sample = || {
+        let before = read(&culler);
+        for _ in 0..frames {
+            black_box(culler.cull(&scene.bodies));
+        }
+        let after = read(&culler);
+        1e9 * (after.0 - before.0) / (after.1 - before.1) as f64
+    };
+    sample(); // caches, buffers
+    median((0..SAMPLES).map(|_| sample()).collect())
+}
+
+/// Multiplications and additions in equal parts, on sixteen vectors that don't wait for one another.
+fn operations_a_nanosecond(level: Level) -> f64 {
+    struct Spin;
+    impl Kernel for Spin {
+        type Output = f64;
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> f64 {
+            const ROUNDS: usize = 1_000_000;
+            let (half, one) = (l.splat(0.5), l.splat(1.0));
+            let mut chains = [l.splat(0.0); 16];
+            let start = Instant::now();
+            for _ in 0..ROUNDS {
+                for chain in &mut chains {
+                    *chain = *chain * half + one;
+                }
+            }
+            let elapsed = start.elapsed().as_secs_f64();
+            black_box(chains.map(|chain| l.bits(l.gt(chain, one))));
+            (ROUNDS * chains.len() * 2 * L::WIDTH) as f64 / (1e9 * elapsed)
+        }
+    }
+    median((0..SAMPLES).map(|_| dispatch(level, Spin)).collect())
+}
+
+/// Reading a column of 256 MiB from end to end.
+fn bytes_a_nanosecond() -> f64 {
+    let column = vec![1u64; 32 << 20];
+    let sample = || {
+        let start = Instant::now();
+        black_box(column.iter().fold(0, |sum: u64, x| sum.wrapping_add(*x)));
+        8.0 * column.len() as f64 / (1e9 * start.elapsed().as_secs_f64())
+    };
+    median((0..SAMPLES).map(|_| sample()).collect())
+}
