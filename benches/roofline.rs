@@ -35,7 +35,7 @@ struct Work {
 }
 
 /// Counted from `overlap/sphere.rs`, `overlap/ordop/` (relating two frames 87, one body's nine normals 456, half of the
-/// pairs going on to the second's) and `update.rs`.
+/// pairs going on to the second's) and `update/`.
 const KERNELS: [Work; 4] = [
     Work {
         name: "sphere test, a run of slots",
