@@ -432,3 +432,21 @@ fn interest_ends_with_its_body() {
     assert_eq!(world.pairs().len(), 1, "left to the spheres");
     assert_eq!(world.set_interest(&[id]), Err(WorldError::Gone(id)));
 }
+
+#[test]
+fn a_body_that_collides_with_all_joins_others_that_do_not() {
+    let mut world = World::new(shapes(), &CullSettings::default(), Level::detect()).unwrap();
+    let apart = |member| Body {
+        groups: Groups {
+            member,
+            mask: !member,
+        },
+        ..Body::default()
+    };
+    let [a, b] = [(); 2].map(|()| world.insert(apart(1)).unwrap());
+    world.cull().unwrap();
+    assert_eq!(world.pairs().len(), 0);
+    let all = world.insert(Body::default()).unwrap();
+    world.cull().unwrap();
+    assert_eq!(world.events().begun, [[a, all], [b, all]]);
+}

@@ -145,6 +145,7 @@ impl World {
             self.translation.push([0.0; 3]);
             self.margin.push(0.0);
             self.groups.push(Groups::ALL);
+            self.regrouped = true; // the culler's column of groups lacks this slot
         }
         self.bodies.dynamic[slot] = body.dynamic;
         self.bodies.rotation[slot] = body.rotation;
