@@ -148,25 +148,11 @@ impl Lanes for Avx2 {
         (unsafe { _mm256_movemask_ps(m.0) }) as u32
     }
     #[inline(always)]
-    fn octant(self, x: F8, y: F8, z: F8) -> I8 {
-        // SAFETY: the token proves AVX2.
-        I8(unsafe {
-            let x = _mm256_srli_epi32::<31>(_mm256_castps_si256(x.0));
-            let y = _mm256_srli_epi32::<31>(_mm256_castps_si256(y.0));
-            let z = _mm256_srli_epi32::<31>(_mm256_castps_si256(z.0));
-            let yz = _mm256_or_si256(_mm256_slli_epi32::<1>(y), _mm256_slli_epi32::<2>(z));
-            _mm256_or_si256(x, yz)
-        })
-    }
-    #[inline(always)]
-    fn lookup(self, table: &[f32; 8], octant: I8) -> F8 {
-        // SAFETY: 8 floats are there, and the token proves AVX2; the permutation reads the low three bits.
-        F8(unsafe { _mm256_permutevar8x32_ps(_mm256_loadu_ps(table.as_ptr()), octant.0) })
-    }
-    #[inline(always)]
     fn gather(self, table: &[f32], index: I8) -> F8 {
-        let last = table.len() as u32 - 1;
-        // SAFETY: every index is clamped to the last entry; the token proves AVX2.
+        assert!(!table.is_empty(), "the table has an entry");
+        let last = table.len().min(1 << 31) as u32 - 1;
+        // SAFETY: every index is clamped to the last entry, below 2³¹ as the gather's signed ones must be; the token proves
+        // AVX2.
         F8(unsafe {
             let index = _mm256_min_epu32(index.0, _mm256_set1_epi32(last as i32));
             _mm256_i32gather_ps::<4>(table.as_ptr(), index)
@@ -203,25 +189,6 @@ impl Lanes for Avx2 {
     fn add_u32(self, a: I8, b: I8) -> I8 {
         // SAFETY: the token proves AVX2.
         I8(unsafe { _mm256_add_epi32(a.0, b.0) })
-    }
-    #[inline(always)]
-    fn min_u32(self, a: I8, b: I8) -> I8 {
-        // SAFETY: the token proves AVX2.
-        I8(unsafe { _mm256_min_epu32(a.0, b.0) })
-    }
-    #[inline(always)]
-    fn max_u32(self, a: I8, b: I8) -> I8 {
-        // SAFETY: the token proves AVX2.
-        I8(unsafe { _mm256_max_epu32(a.0, b.0) })
-    }
-    #[inline(always)]
-    fn any_bit(self, a: I8, b: I8) -> M8 {
-        // SAFETY: the token proves AVX2.
-        M8(unsafe {
-            let common = _mm256_and_si256(a.0, b.0);
-            let none = _mm256_cmpeq_epi32(common, _mm256_setzero_si256());
-            _mm256_castsi256_ps(_mm256_xor_si256(none, _mm256_set1_epi32(-1)))
-        })
     }
     #[inline(always)]
     fn split_u32(self, a: I8) -> (I8, I8) {

@@ -124,28 +124,11 @@ impl Lanes for Avx512 {
         u32::from(m.0)
     }
     #[inline(always)]
-    fn octant(self, x: F16, y: F16, z: F16) -> I16 {
-        // SAFETY: the token proves AVX-512 F.
-        I16(unsafe {
-            let x = _mm512_srli_epi32::<31>(_mm512_castps_si512(x.0));
-            let y = _mm512_srli_epi32::<31>(_mm512_castps_si512(y.0));
-            let z = _mm512_srli_epi32::<31>(_mm512_castps_si512(z.0));
-            let yz = _mm512_or_si512(_mm512_slli_epi32::<1>(y), _mm512_slli_epi32::<2>(z));
-            _mm512_or_si512(x, yz)
-        })
-    }
-    #[inline(always)]
-    fn lookup(self, table: &[f32; 8], octant: I16) -> F16 {
-        // SAFETY: 8 floats are there, and the token proves AVX-512 F; an octant below 8 picks one of them.
-        F16(unsafe {
-            let half = _mm256_loadu_ps(table.as_ptr());
-            _mm512_permutexvar_ps(octant.0, _mm512_castps256_ps512(half))
-        })
-    }
-    #[inline(always)]
     fn gather(self, table: &[f32], index: I16) -> F16 {
-        let last = table.len() as u32 - 1;
-        // SAFETY: every index is clamped to the last entry; the token proves AVX-512 F.
+        assert!(!table.is_empty(), "the table has an entry");
+        let last = table.len().min(1 << 31) as u32 - 1;
+        // SAFETY: every index is clamped to the last entry, below 2³¹ as the gather's signed ones must be; the token proves
+        // AVX-512 F.
         F16(unsafe {
             let index = _mm512_min_epu32(index.0, _mm512_set1_epi32(last as i32));
             _mm512_i32gather_ps::<4>(index, table.as_ptr())
@@ -176,21 +159,6 @@ impl Lanes for Avx512 {
     fn add_u32(self, a: I16, b: I16) -> I16 {
         // SAFETY: the token proves AVX-512 F.
         I16(unsafe { _mm512_add_epi32(a.0, b.0) })
-    }
-    #[inline(always)]
-    fn min_u32(self, a: I16, b: I16) -> I16 {
-        // SAFETY: the token proves AVX-512 F.
-        I16(unsafe { _mm512_min_epu32(a.0, b.0) })
-    }
-    #[inline(always)]
-    fn max_u32(self, a: I16, b: I16) -> I16 {
-        // SAFETY: the token proves AVX-512 F.
-        I16(unsafe { _mm512_max_epu32(a.0, b.0) })
-    }
-    #[inline(always)]
-    fn any_bit(self, a: I16, b: I16) -> M16 {
-        // SAFETY: the token proves AVX-512 F.
-        M16(unsafe { _mm512_test_epi32_mask(a.0, b.0) })
     }
     #[inline(always)]
     fn split_u32(self, a: I16) -> (I16, I16) {

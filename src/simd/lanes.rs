@@ -47,10 +47,6 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     /// Lane i as bit i.
     fn bits(self, m: Self::M) -> u32;
 
-    /// Sign bits of x, y, z as bits 0, 1, 2: which octant the vector (x, y, z) points into.
-    fn octant(self, x: Self::F, y: Self::F, z: Self::F) -> Self::I;
-    /// Entry `octant` (0 to 7) of a table, lane by lane.
-    fn lookup(self, table: &[f32; 8], octant: Self::I) -> Self::F;
     /// Entry `index` of a non-empty table, lane by lane; an index past the end reads the last entry.
     fn gather(self, table: &[f32], index: Self::I) -> Self::F;
     /// Entry `index` (0 to 15) of a table, lane by lane.
@@ -64,12 +60,6 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     fn load_u32(self, from: &[u32]) -> Self::I;
     /// Wrapping sum.
     fn add_u32(self, a: Self::I, b: Self::I) -> Self::I;
-    /// Smaller lane by lane, for values below 2³¹.
-    fn min_u32(self, a: Self::I, b: Self::I) -> Self::I;
-    /// Larger lane by lane, for values below 2³¹.
-    fn max_u32(self, a: Self::I, b: Self::I) -> Self::I;
-    /// Lanes whose bitwise and is not zero.
-    fn any_bit(self, a: Self::I, b: Self::I) -> Self::M;
     /// The upper 28 bits and the lower 4 bits.
     fn split_u32(self, a: Self::I) -> (Self::I, Self::I);
     /// Writes the lanes whose bit in `keep` is set to the front of `out`, in lane order; `out` has at least `WIDTH` elements and

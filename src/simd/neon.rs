@@ -137,20 +137,6 @@ impl Lanes for Neon {
         unsafe { vaddvq_u32(vandq_u32(m.0, weight.0)) }
     }
     #[inline(always)]
-    fn octant(self, x: F4, y: F4, z: F4) -> I4 {
-        // SAFETY: the token proves NEON.
-        I4(unsafe {
-            let x = vshrq_n_u32::<31>(vreinterpretq_u32_f32(x.0));
-            let y = vshrq_n_u32::<31>(vreinterpretq_u32_f32(y.0));
-            let z = vshrq_n_u32::<31>(vreinterpretq_u32_f32(z.0));
-            vorrq_u32(x, vorrq_u32(vshlq_n_u32::<1>(y), vshlq_n_u32::<2>(z)))
-        })
-    }
-    #[inline(always)]
-    fn lookup(self, table: &[f32; 8], octant: I4) -> F4 {
-        self.load(&self.array(octant).map(|entry| table[(entry & 7) as usize]))
-    }
-    #[inline(always)]
     fn gather(self, table: &[f32], index: I4) -> F4 {
         self.load(
             &self
@@ -182,21 +168,6 @@ impl Lanes for Neon {
     fn add_u32(self, a: I4, b: I4) -> I4 {
         // SAFETY: the token proves NEON.
         I4(unsafe { vaddq_u32(a.0, b.0) })
-    }
-    #[inline(always)]
-    fn min_u32(self, a: I4, b: I4) -> I4 {
-        // SAFETY: the token proves NEON.
-        I4(unsafe { vminq_u32(a.0, b.0) })
-    }
-    #[inline(always)]
-    fn max_u32(self, a: I4, b: I4) -> I4 {
-        // SAFETY: the token proves NEON.
-        I4(unsafe { vmaxq_u32(a.0, b.0) })
-    }
-    #[inline(always)]
-    fn any_bit(self, a: I4, b: I4) -> M4 {
-        // SAFETY: the token proves NEON.
-        M4(unsafe { vtstq_u32(a.0, b.0) })
     }
     #[inline(always)]
     fn split_u32(self, a: I4) -> (I4, I4) {

@@ -134,14 +134,6 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
         u32::from(m.0)
     }
     #[inline(always)]
-    fn octant(self, x: Self::F, y: Self::F, z: Self::F) -> u32 {
-        (x.0.to_bits() >> 31) | (y.0.to_bits() >> 31) << 1 | (z.0.to_bits() >> 31) << 2
-    }
-    #[inline(always)]
-    fn lookup(self, table: &[f32; 8], octant: u32) -> Self::F {
-        F1::of(table[(octant & 7) as usize])
-    }
-    #[inline(always)]
     fn gather(self, table: &[f32], index: u32) -> Self::F {
         F1::of(table[(index as usize).min(table.len() - 1)])
     }
@@ -164,18 +156,6 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
     #[inline(always)]
     fn add_u32(self, a: u32, b: u32) -> u32 {
         a.wrapping_add(b)
-    }
-    #[inline(always)]
-    fn min_u32(self, a: u32, b: u32) -> u32 {
-        a.min(b)
-    }
-    #[inline(always)]
-    fn max_u32(self, a: u32, b: u32) -> u32 {
-        a.max(b)
-    }
-    #[inline(always)]
-    fn any_bit(self, a: u32, b: u32) -> Self::M {
-        M1(a & b != 0)
     }
     #[inline(always)]
     fn split_u32(self, a: u32) -> (u32, u32) {

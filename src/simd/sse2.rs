@@ -56,12 +56,6 @@ impl Sse2 {
         unsafe { _MM_TRANSPOSE4_PS(&mut a, &mut b, &mut c, &mut d) };
         [F4(a), F4(b), F4(c), F4(d)]
     }
-
-    #[inline(always)]
-    fn pick(self, m: __m128i, a: I4, b: I4) -> I4 {
-        // SAFETY: the token proves SSE2.
-        I4(unsafe { _mm_or_si128(_mm_and_si128(m, a.0), _mm_andnot_si128(m, b.0)) })
-    }
 }
 
 pub(super) fn run<K: Kernel>(token: Sse2, kernel: K) -> K::Output {
@@ -142,21 +136,6 @@ impl Lanes for Sse2 {
         (unsafe { _mm_movemask_ps(m.0) }) as u32
     }
     #[inline(always)]
-    fn octant(self, x: F4, y: F4, z: F4) -> I4 {
-        // SAFETY: the token proves SSE2.
-        I4(unsafe {
-            let x = _mm_srli_epi32::<31>(_mm_castps_si128(x.0));
-            let y = _mm_srli_epi32::<31>(_mm_castps_si128(y.0));
-            let z = _mm_srli_epi32::<31>(_mm_castps_si128(z.0));
-            let yz = _mm_or_si128(_mm_slli_epi32::<1>(y), _mm_slli_epi32::<2>(z));
-            _mm_or_si128(x, yz)
-        })
-    }
-    #[inline(always)]
-    fn lookup(self, table: &[f32; 8], octant: I4) -> F4 {
-        self.load(&self.array(octant).map(|entry| table[(entry & 7) as usize]))
-    }
-    #[inline(always)]
     fn gather(self, table: &[f32], index: I4) -> F4 {
         self.load(
             &self
@@ -188,24 +167,6 @@ impl Lanes for Sse2 {
     fn add_u32(self, a: I4, b: I4) -> I4 {
         // SAFETY: the token proves SSE2.
         I4(unsafe { _mm_add_epi32(a.0, b.0) })
-    }
-    #[inline(always)]
-    fn min_u32(self, a: I4, b: I4) -> I4 {
-        // SAFETY: the token proves SSE2. Values are below 2³¹, so the signed comparison is theirs.
-        self.pick(unsafe { _mm_cmpgt_epi32(b.0, a.0) }, a, b)
-    }
-    #[inline(always)]
-    fn max_u32(self, a: I4, b: I4) -> I4 {
-        // SAFETY: the token proves SSE2. Values are below 2³¹, so the signed comparison is theirs.
-        self.pick(unsafe { _mm_cmpgt_epi32(a.0, b.0) }, a, b)
-    }
-    #[inline(always)]
-    fn any_bit(self, a: I4, b: I4) -> M4 {
-        // SAFETY: the token proves SSE2.
-        M4(unsafe {
-            let none = _mm_cmpeq_epi32(_mm_and_si128(a.0, b.0), _mm_setzero_si128());
-            _mm_castsi128_ps(_mm_xor_si128(none, _mm_set1_epi32(-1)))
-        })
     }
     #[inline(always)]
     fn split_u32(self, a: I4) -> (I4, I4) {
