@@ -58,6 +58,7 @@ fn ordop(criterion: &mut Criterion) {
                 frames: &frames,
                 bodies: &scene.bodies,
                 places: &places,
+                balls: &[],
             };
             let everyone = 0..places.len();
             rows.update(Level::detect(), &Crew::default(), posed, everyone, 1);

@@ -283,14 +283,16 @@ impl Culler {
 
     /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies wait until a pair asks for them.
     fn update_volumes(&mut self, bodies: &Bodies, range: std::ops::Range<usize>) {
-        let (frames, places, balls) = (&self.models.frames, &self.places, &mut self.balls);
+        let (frames, places) = (&self.models.frames, &self.places);
         if self.needs.balls {
+            let balls = &mut self.balls;
             update_spheres(&self.crew, balls, frames, bodies, places, range.clone());
         }
         let posed = Posed {
             frames,
             bodies,
             places,
+            balls: &[],
         };
         if self.needs.rows {
             let start = match self.settings.updates {
@@ -298,11 +300,13 @@ impl Culler {
                 Updates::Lazy => range.start.max(places.moving),
             };
             let eager = start.min(range.end)..range.end;
+            let balls = if self.needs.balls { &*self.balls } else { &[] };
+            let posed = Posed { balls, ..posed };
             self.rows
                 .update(self.level, &self.crew, posed, eager, self.stamp);
         }
         if let Some(intervals) = &mut self.intervals {
-            intervals.update(self.level, &self.crew, balls, posed, range);
+            intervals.update(self.level, &self.crew, &mut self.balls, posed, range);
         }
     }
 
@@ -373,7 +377,7 @@ impl Culler {
             groups: self.groups.as_deref(),
             bodies,
             intervals: &self.interval_slots,
-            spheres: &self.balls,
+            spheres: if self.needs.balls { &self.balls } else { &[] },
             rows: &mut self.rows,
             frames: &self.models.frames,
             tables: &self.models.tables,

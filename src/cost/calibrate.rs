@@ -191,6 +191,7 @@ fn time_hits(scene: &Scene, hits: &PairList, level: Level) -> Row<4> {
         frames: &frames,
         bodies: &scene.bodies,
         places: &places,
+        balls: &[],
     };
     rows.update(level, &Crew::default(), posed, 0..n, 1);
     let tables = SlabTables::new(scene.cull.k, scene.shapes.iter().map(|s| (s, &s.ordop)));

@@ -38,6 +38,19 @@ pub const ROW: usize = 16;
 /// The number of each lane, in any tier.
 pub const LANES: [u32; MAX_WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
+/// Asks for the cache line where `element` begins, so that it is near when it is read some hundred cycles later.
+#[inline(always)]
+pub fn prefetch<T>(element: &T) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: a hint that reads nothing and never faults; every CPU of this architecture has it.
+    unsafe {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(element).cast());
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = element;
+}
+
 /// A computation that is compiled once for every tier.
 pub trait Kernel {
     /// What it returns.

@@ -66,6 +66,7 @@ impl<'a> Stage<'a> {
                 frames: self.frames,
                 bodies: self.bodies,
                 places: self.places,
+                balls: self.spheres,
             };
             made += self
                 .rows

@@ -120,6 +120,7 @@ impl Crowd {
                 frames: &frames,
                 bodies: &self.bodies,
                 places: &places,
+                balls: &[],
             },
             0..places.len(),
             1,

@@ -25,6 +25,17 @@ impl Eight {
         Self([x; EIGHT])
     }
 
+    /// The first eight of some f32.
+    #[inline(always)]
+    pub fn of(numbers: &[f32]) -> Self {
+        let numbers = &numbers[..EIGHT];
+        let mut out = [0.0; EIGHT];
+        for lane in 0..EIGHT {
+            out[lane] = f64::from(numbers[lane]);
+        }
+        Self(out)
+    }
+
     /// Rounded to f32.
     #[inline(always)]
     pub fn rounded(self) -> [f32; EIGHT] {

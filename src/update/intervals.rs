@@ -121,6 +121,7 @@ impl Kernel for Refit<'_> {
             frames,
             bodies,
             places,
+            ..
         } = self.posed;
         for (place, ends) in (self.first..).zip(self.ends.chunks_exact_mut(slabs)) {
             let body = places.body[place] as usize;

@@ -1,25 +1,25 @@
 //! or-DOP updates: the basis is turned with the body, its slabs stay.
 //!
-//! Eight bodies at a time. A row takes eighteen divisions of f64, a vector of which costs little more than one alone.
-
-#![allow(
-    clippy::needless_range_loop,
-    reason = "a lane or axis is an index into several columns at once"
-)]
+//! Sixteen bodies at a time, in two halves: a row takes eighteen divisions of f64, a vector of which costs little more than
+//! one alone.
 
 use std::ops::Range;
 
-use super::ShapeFrame;
 use super::eight::{EIGHT, Eight};
+use super::{AHEAD, CENTRE, ShapeFrame};
+use crate::broad_phase::{BLOCK_BODIES, columns};
 use crate::crew::Crew;
 use crate::overlap::ordop::{O, Q, S, SHAPE, T};
 use crate::places::Places;
-use crate::rounding::pose::{axes_of, rotation_of};
+use crate::rounding::pose::{axes_of, rotate_of, rotation_of};
 use crate::scene::bodies::Bodies;
-use crate::simd::{Kernel, Lanes, Level, ROW, dispatch};
+use crate::simd::{Kernel, LANES, Lanes, Level, ROW, dispatch, prefetch};
 
 /// Bodies whose rows one thread makes at a time: some microseconds.
 const ROWS: usize = 512;
+
+/// Bodies whose rows are made together.
+const BODIES: usize = BLOCK_BODIES;
 
 /// or-DOP rows by place, each with the frame in which it was last made.
 #[derive(Clone, Debug, Default)]
@@ -39,6 +39,9 @@ pub struct Posed<'a> {
     pub bodies: &'a Bodies,
     /// Who stands where.
     pub places: &'a Places,
+    /// Updated spheres by place, or none: where a ball's centre is its body's origin, the translation is read here, in order,
+    /// and not again from anywhere in the user's columns.
+    pub balls: &'a [[f32; 4]],
 }
 
 impl OrDopRows {
@@ -113,17 +116,21 @@ struct InTurn<'a> {
 impl Kernel for InTurn<'_> {
     type Output = ();
     #[inline(always)]
-    fn run<L: Lanes>(self, _: L) {
-        let (mut place, mut made) = (self.first as u32, [[0.0; ROW]; EIGHT]);
-        for rows in self.rows.chunks_mut(EIGHT) {
-            let last = place + rows.len() as u32 - 1;
-            let mut places = [last; EIGHT];
-            for entry in &mut places {
-                *entry = place.min(last);
-                place += 1;
+    fn run<L: Lanes>(self, l: L) {
+        let mut first = self.first;
+        for rows in self.rows.chunks_mut(BODIES) {
+            let last = first + rows.len() - 1;
+            let places = std::array::from_fn(|lane| (first + lane).min(last) as u32);
+            self.posed.ask_for(first + AHEAD);
+            match rows.try_into() {
+                Ok(rows) => self.posed.make(l, &places, rows),
+                Err(_) => {
+                    let mut made = [[0.0; ROW]; BODIES];
+                    self.posed.make(l, &places, &mut made);
+                    rows.copy_from_slice(&made[..rows.len()]);
+                }
             }
-            self.posed.make(&places, &mut made);
-            rows.copy_from_slice(&made[..rows.len()]);
+            first += BODIES;
         }
     }
 }
@@ -138,12 +145,12 @@ struct Listed<'a> {
 impl Kernel for Listed<'_> {
     type Output = ();
     #[inline(always)]
-    fn run<L: Lanes>(self, _: L) {
-        let mut made = [[0.0; ROW]; EIGHT];
-        for some in self.places.chunks(EIGHT) {
-            let mut places = [some[0]; EIGHT];
+    fn run<L: Lanes>(self, l: L) {
+        let mut made = [[0.0; ROW]; BODIES];
+        for some in self.places.chunks(BODIES) {
+            let mut places = [some[0]; BODIES];
             places[..some.len()].copy_from_slice(some);
-            self.posed.make(&places, &mut made);
+            self.posed.make(l, &places, &mut made);
             for (&place, row) in some.iter().zip(&made) {
                 self.rows[place as usize] = *row;
             }
@@ -152,57 +159,103 @@ impl Kernel for Listed<'_> {
 }
 
 impl Posed<'_> {
-    /// The rows (Q, t, o, shape) of the bodies in eight places.
+    /// Asks for the poses of sixteen bodies from a place on.
     #[inline(always)]
-    fn make(&self, places: &[u32; EIGHT], rows: &mut [[f32; ROW]; EIGHT]) {
-        let zero = Eight::splat(0.0);
-        let (mut q, mut basis, mut scale) = ([zero; 4], [[zero; 3]; 3], zero);
-        for lane in 0..EIGHT {
-            let place = places[lane] as usize;
-            let (body, shape) = (self.places.body[place] as usize, self.places.shape[place]);
-            let frame = &self.frames[shape as usize];
-            let rotation = &self.bodies.rotation[body];
-            for i in 0..4 {
-                q[i].0[lane] = f64::from(rotation[i]);
-            }
-            for j in 0..3 {
-                for i in 0..3 {
-                    basis[j][i].0[lane] = f64::from(frame.basis[j][i]);
-                }
-            }
-            scale.0[lane] = frame.scale;
-            let row = &mut rows[lane];
-            row[T..T + 3].copy_from_slice(&self.bodies.translation[body]);
-            row[O..O + 3].fill(0.0);
-            row[S] = f32::from_bits(SHAPE + shape);
-        }
-        let turn = rotation_of(q);
-        let axes = axes_of(&turn, basis, scale);
-        for j in 0..3 {
-            for i in 0..3 {
-                let along = axes[j][i].rounded();
-                for lane in 0..EIGHT {
-                    rows[lane][Q + 3 * j + i] = along[lane];
-                }
-            }
-        }
-        for lane in 0..EIGHT {
-            let shape = self.places.shape[places[lane] as usize];
-            let centre = &self.frames[shape as usize].centre;
-            if *centre != [0.0; 3] {
-                for i in 0..3 {
-                    let [x, y, z] = [
-                        f64::from(centre[0]),
-                        f64::from(centre[1]),
-                        f64::from(centre[2]),
-                    ];
-                    let offset =
-                        turn[i][0].0[lane] * x + turn[i][1].0[lane] * y + turn[i][2].0[lane] * z;
-                    rows[lane][O + i] = offset as f32;
-                }
+    fn ask_for(&self, place: usize) {
+        let end = self.places.body.len();
+        for &body in &self.places.body[place.min(end)..end.min(place + BODIES)] {
+            prefetch(&self.bodies.rotation[body as usize]);
+            if self.balls.is_empty() {
+                prefetch(&self.bodies.translation[body as usize]);
             }
         }
     }
+
+    /// The rows (Q, t, o, shape) of the bodies in sixteen places. What is read a body at a time is turned into columns, and
+    /// these into rows again, a vector at a time: number by number it would take longer than the arithmetic.
+    #[inline(always)]
+    fn make<L: Lanes>(&self, l: L, places: &[u32; BODIES], rows: &mut [[f32; ROW]; BODIES]) {
+        let (mut rotations, mut frames) = ([[0.0; 4]; BODIES], [[0.0; ROW]; BODIES]);
+        let (mut ends, mut scales) = ([[0.0; 4]; BODIES], [[0.0; EIGHT]; BODIES / EIGHT]);
+        let mut centred = true;
+        for lane in 0..BODIES {
+            let place = places[lane] as usize;
+            let (body, shape) = (self.places.body[place] as usize, self.places.shape[place]);
+            let frame = &self.frames[shape as usize];
+            let [x, y, z] = match (frame.inflated, self.balls.get(place)) {
+                (Some(_), Some(&[x, y, z, _])) => [x, y, z],
+                _ => self.bodies.translation[body],
+            };
+            rotations[lane] = self.bodies.rotation[body];
+            ends[lane] = [x, y, z, f32::from_bits(SHAPE + shape)];
+            frames[lane] = frame.row;
+            scales[lane / EIGHT][lane % EIGHT] = frame.scale;
+            centred &= frame.inflated.is_some();
+        }
+        let (q, frames) = (columns(l, &rotations), transposed(l, &frames));
+        let [x, y, z, shape] = columns(l, &ends);
+        let mut made = [[0.0; BODIES]; ROW];
+        (made[T], made[T + 1], made[T + 2], made[S]) = (x, y, z, shape);
+        for (half, scale) in scales.into_iter().enumerate() {
+            let start = half * EIGHT;
+            let eight = |column: &[f32; BODIES]| Eight::of(&column[start..]);
+            let turn = rotation_of([eight(&q[0]), eight(&q[1]), eight(&q[2]), eight(&q[3])]);
+            let basis = [0, 3, 6].map(|j| {
+                [
+                    eight(&frames[j]),
+                    eight(&frames[j + 1]),
+                    eight(&frames[j + 2]),
+                ]
+            });
+            let axes = axes_of(&turn, basis, Eight(scale));
+            for (number, along) in axes.as_flattened().iter().enumerate() {
+                made[Q + number][start..start + EIGHT].copy_from_slice(&along.rounded());
+            }
+            if !centred {
+                offsets(&turn, &frames, start, &mut made);
+            }
+        }
+        for start in (0..BODIES).step_by(L::WIDTH) {
+            for (row, part) in rows
+                .iter_mut()
+                .zip(l.load_transposed(&made, &LANES[start..]))
+            {
+                l.store(part, &mut row[start..]);
+            }
+        }
+    }
+}
+
+/// Writes the turned centres of the eight bodies from lane `start` on: R·c, zero where c is.
+#[inline(always)]
+fn offsets(
+    turn: &[[Eight; 3]; 3],
+    frames: &[[f32; BODIES]; ROW],
+    start: usize,
+    made: &mut [[f32; BODIES]; ROW],
+) {
+    for lane in start..start + EIGHT {
+        let centre = [0, 1, 2].map(|i| f64::from(frames[CENTRE + i][lane]));
+        if centre != [0.0; 3] {
+            let turn = turn.map(|row| row.map(|entry| entry.0[lane - start]));
+            for (i, offset) in rotate_of(&turn, centre).into_iter().enumerate() {
+                made[O + i][lane] = offset as f32;
+            }
+        }
+    }
+}
+
+/// Sixteen rows as columns.
+#[inline(always)]
+fn transposed<L: Lanes>(l: L, rows: &[[f32; ROW]; BODIES]) -> [[f32; BODIES]; ROW] {
+    let mut columns = [[0.0; BODIES]; ROW];
+    for start in (0..BODIES).step_by(L::WIDTH) {
+        let parts = l.load_transposed(rows, &LANES[start..]);
+        for (column, part) in columns.iter_mut().zip(parts) {
+            l.store(part, &mut column[start..]);
+        }
+    }
+    columns
 }
 
 #[cfg(test)]
@@ -262,6 +315,7 @@ mod tests {
             frames: &frames,
             bodies: &bodies,
             places: &places,
+            balls: &[],
         };
         let expected = |body: usize| {
             let (shape, turn) = (body % 2, rotation(bodies.rotation[body]));

@@ -19,9 +19,9 @@ use super::{Block, FirstTest, Reorder, Slots, bytes};
 use crate::crew::Crew;
 use crate::simd::{Lanes, Level as Tier};
 
-/// Frames after which places take the order of slots. Bodies that move a tenth of their radius a frame then stray by two
-/// cells.
-const REORDER: u32 = 32;
+/// Frames after which places take the order of slots. Bodies that move a tenth of their radius a frame are then in their cell
+/// still, or beside it; each frame would spare the sort no more than following the order costs.
+const REORDER: u32 = 4;
 
 /// Frames between two looks at whether the levels still fit, and the growth of the candidates that calls for new ones.
 const PLAN_PAUSE: u32 = 8;

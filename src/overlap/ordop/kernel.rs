@@ -5,11 +5,15 @@ use super::slabs::Slabs;
 use super::table::SlabTables;
 use crate::pairs::PairList;
 use crate::scene::settings::Overlap;
-use crate::simd::{Kernel, Lanes, Level, MAX_WIDTH, ROW, dispatch};
+use crate::simd::{Kernel, Lanes, Level, MAX_WIDTH, ROW, dispatch, prefetch};
 use crate::volume::DirectionSet;
 
 /// Pairs that go through the first bodies' normals before the rest: their survivors' frames fit the first-level cache.
 const BLOCK: usize = 128;
+
+/// How many pairs ahead rows are asked for, and how many rows the caches hold anyway.
+const AHEAD: usize = 48;
+const NEAR: usize = 1 << 13;
 
 /// The or-DOPs of all bodies as the pair test reads them.
 #[derive(Clone, Copy)]
@@ -87,9 +91,12 @@ impl OrDopColumns<'_> {
     ) -> Tested {
         let (mut pairs, mut alive) = (Pairs::new(), Alive::new());
         let listed = out.len();
-        for (first, second) in first.chunks(BLOCK).zip(second.chunks(BLOCK)) {
-            pairs.fill(first, second);
-            self.by_first::<L, K, FEW>(l, &pairs, &mut alive);
+        for start in (0..first.len()).step_by(BLOCK) {
+            let end = first.len().min(start + BLOCK);
+            pairs.fill(&first[start..end], &second[start..end]);
+            let later = first.len().min(start + AHEAD);
+            let later = [&first[later..], &second[later..]];
+            self.by_first::<L, K, FEW>(l, &pairs, later, &mut alive);
             self.by_rest::<L, K, FEW>(l, &alive, out);
         }
         Tested {
@@ -98,17 +105,23 @@ impl OrDopColumns<'_> {
         }
     }
 
-    /// Pairs through the normals of the first bodies.
+    /// Pairs through the normals of the first bodies. `later` are the pairs from [`AHEAD`] places behind the first of these.
     #[inline(always)]
     fn by_first<L: Lanes, const K: usize, const FEW: bool>(
         &self,
         l: L,
         pairs: &Pairs,
+        later: [&[u32]; 2],
         alive: &mut Alive,
     ) {
         alive.pairs.len = 0;
         let mut start = 0;
         while start < pairs.len {
+            if self.rows.len() > NEAR {
+                for column in later {
+                    self.ask_for(column.iter().skip(start).take(L::WIDTH));
+                }
+            }
             let frames = Frames::new(
                 l,
                 l.load_transposed(self.rows, &pairs.first[start..]),
@@ -148,6 +161,15 @@ impl OrDopColumns<'_> {
             l.compress(keep, l.load_u32(&pairs.second[start..]), second);
             out.advance(keep.count_ones() as usize);
             start += L::WIDTH;
+        }
+    }
+
+    #[inline(always)]
+    fn ask_for<'a>(&self, wanted: impl Iterator<Item = &'a u32>) {
+        for &row in wanted {
+            if let Some(row) = self.rows.get(row as usize) {
+                prefetch(row);
+            }
         }
     }
 
