@@ -1,25 +1,24 @@
-//! The library's pair finder on given boxes: the grid finds candidates, cubes sift them, the boxes decide.
+//! The library's pair finder on given boxes.
 //!
-//! The culler itself takes poses and fits its own volumes with a margin for rounding. Engines are handed boxes, so its
-//! finder is put together here with a test of them. Cubes about the boxes are what the grid keeps at hand, four numbers a
-//! body; they are widened by more than f32 rounds, so no pair of boxes is lost, and the boxes are compared as they are.
+//! The culler takes poses and fits its own volumes with a margin for rounding; engines are handed boxes. What they share is
+//! the seam between [`PairFinder`] and [`FirstTest`](sdop::broad_phase::FirstTest): a finder sorts balls and hands
+//! candidates to whatever test it is given. Here the balls are cubes about the boxes, and the test is [`cubes`]'s.
 
-use std::ops::Range;
+mod cubes;
 
-use sdop::broad_phase::{
-    BLOCK_BODIES, Block, FirstTest, Grid, MOST_CANDIDATES, PairFinder, Reorder, Slots, columns,
-};
+use sdop::broad_phase::{Grid, PairFinder, Reorder};
 use sdop::crew::Crew;
 use sdop::places::Places;
-use sdop::simd::{Kernel, LANES, Lanes, Level, MAX_WIDTH, dispatch};
+use sdop::simd::{Level, dispatch};
 
-use crate::boxes::{Frame, Slabs, meet};
+use self::cubes::{Find, Found, Gap, Test, cube_about};
+use crate::boxes::{Frame, Slabs};
 use crate::peer::{Peer, Setup};
 
-/// Slots of a run that are tested at once.
-const PIECE: usize = MOST_CANDIDATES;
 /// Bodies whose cubes one thread makes at once.
 const CUBES: usize = 4096;
+/// Bodies whose boxes are copied before any is looked at: each is a cache miss, and so more of them are on their way at once.
+const TOGETHER: usize = 64;
 /// Shares of the work a thread: whoever is done early takes another's.
 const SHARES: usize = 4;
 
@@ -34,9 +33,8 @@ pub struct Boxes {
     order: Vec<u32>,
     /// Cubes about the boxes by place: centre and half side.
     cubes: Vec<[f32; 4]>,
-    /// The boxes in the grid's order.
-    slabs: Vec<Slabs>,
-    shares: Vec<Share>,
+    gap: Gap,
+    shares: Vec<Found>,
 }
 
 impl Boxes {
@@ -54,8 +52,8 @@ impl Boxes {
             names: places.body.clone(),
             order: Vec::new(),
             cubes: vec![[0.0; 4]; places.len()],
-            slabs: vec![Slabs::default(); places.len()],
-            shares: vec![Share::default(); shares],
+            gap: Gap::default(),
+            shares: vec![Found::default(); shares],
             places,
         };
         boxes.update(&setup.first.boxes);
@@ -63,11 +61,26 @@ impl Boxes {
     }
 
     fn update(&mut self, boxes: &[Slabs]) {
-        let (names, cubes) = (&self.names, &mut self.cubes);
-        self.crew.pieces(cubes, CUBES, |start, piece| {
-            for (cube, &body) in piece.iter_mut().zip(&names[start..]) {
-                *cube = cube_about(&boxes[body as usize]);
+        let names = &self.names;
+        self.gap = Gap::default();
+        let frame_gap = &self.gap;
+        self.crew.pieces(&mut self.cubes, CUBES, |start, piece| {
+            let mut most = 0.0;
+            let mut near = [Slabs::default(); TOGETHER];
+            for (cubes, names) in piece
+                .chunks_mut(TOGETHER)
+                .zip(names[start..].chunks(TOGETHER))
+            {
+                for (near, &body) in near.iter_mut().zip(names) {
+                    *near = boxes[body as usize];
+                }
+                for (cube, slabs) in cubes.iter_mut().zip(&near) {
+                    let gap;
+                    (*cube, gap) = cube_about(slabs);
+                    most = if gap > most { gap } else { most };
+                }
             }
+            frame_gap.raise(most);
         });
     }
 }
@@ -79,180 +92,26 @@ impl Peer for Boxes {
             self.names.copy_from_slice(order);
         }
         self.update(&frame.boxes);
-        let finder = &mut self.finder;
-        finder.arrange(
-            self.level,
-            &self.crew,
-            &self.places,
-            &self.cubes,
-            &self.names,
-        );
-        let names = &finder.slots().names;
-        self.crew.pieces(&mut self.slabs, CUBES, |start, piece| {
-            for (slabs, &body) in piece.iter_mut().zip(&names[start..]) {
-                *slabs = frame.boxes[body as usize];
-            }
-        });
+        let (level, crew) = (self.level, &self.crew);
+        self.finder
+            .arrange(level, crew, &self.places, &self.cubes, &self.names);
         let (finder, parts, count) = (&self.finder, self.finder.parts(), self.shares.len());
-        self.crew.each(&mut self.shares, |index, share| {
-            share.clear();
-            let test = Test {
-                slots: finder.slots(),
-                slabs: &self.slabs,
-                share,
-                hits: [0; PIECE + MAX_WIDTH],
-            };
+        let gap = self.gap.twice();
+        crew.each(&mut self.shares, |index, found| {
+            let test = Test::new(finder.slots(), &frame.boxes, gap, found);
             let parts = index * parts / count..(index + 1) * parts / count;
             let find = Find {
                 finder,
                 parts,
                 test,
             };
-            dispatch(self.level, find);
+            dispatch(level, find);
         });
-        let candidates = self.shares.iter().map(|share| share.candidates).sum();
+        let candidates = self.shares.iter().map(Found::candidates).sum();
         self.finder.observe(candidates);
     }
 
     fn pairs(&self) -> Vec<[u32; 2]> {
-        self.shares.iter().flat_map(Share::pairs).collect()
+        self.shares.iter().flat_map(Found::pairs).collect()
     }
-}
-
-/// How much wider a cube is than its box: the differences below round by 2⁻²⁴ each, those of the test by as much.
-const WIDER: f32 = 1.0 + 1.0 / (1 << 20) as f32;
-const FLOOR: f32 = 1e-30;
-
-/// A cube about a box, wider than it by more than this and comparing cubes can round.
-fn cube_about(slabs: &Slabs) -> [f32; 4] {
-    let (mut cube, mut half) = ([0.0; 4], 0.0_f32);
-    for (axis, &[lo, hi]) in slabs.iter().enumerate() {
-        cube[axis] = 0.5 * (lo + hi);
-        half = half.max(hi - cube[axis]).max(cube[axis] - lo);
-    }
-    cube[3] = half * WIDER + FLOOR;
-    cube
-}
-
-/// The pairs of one share of the work, as two columns.
-#[derive(Clone, Debug, Default)]
-struct Share {
-    first: Vec<u32>,
-    second: Vec<u32>,
-    len: usize,
-    candidates: u64,
-}
-
-impl Share {
-    fn clear(&mut self) {
-        (self.len, self.candidates) = (0, 0);
-    }
-
-    fn pairs(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
-        let columns = self.first.iter().zip(&self.second);
-        columns.take(self.len).map(|(&i, &j)| [i, j])
-    }
-
-    /// Both columns behind the last pair, with room for `more`.
-    #[inline(always)]
-    fn room(&mut self, more: usize) -> (&mut [u32], &mut [u32]) {
-        let needed = self.len + more;
-        if needed > self.first.len() {
-            let size = needed.next_power_of_two();
-            self.first.resize(size, 0);
-            self.second.resize(size, 0);
-        }
-        (&mut self.first[self.len..], &mut self.second[self.len..])
-    }
-}
-
-struct Find<'a> {
-    finder: &'a PairFinder,
-    parts: Range<usize>,
-    test: Test<'a>,
-}
-
-impl Kernel for Find<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<L: Lanes>(mut self, l: L) {
-        self.finder.find(l, self.parts, &mut self.test);
-    }
-}
-
-struct Test<'a> {
-    slots: &'a Slots,
-    slabs: &'a [Slabs],
-    share: &'a mut Share,
-    hits: [u32; PIECE + MAX_WIDTH],
-}
-
-impl FirstTest for Test<'_> {
-    #[inline(always)]
-    fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
-        self.share.candidates += run.len() as u64;
-        let one = self.slots.ball(i).map(|number| l.splat(number));
-        for first in run.clone().step_by(PIECE) {
-            let (end, mut found) = (run.end.min(first + PIECE), 0);
-            for start in (first..end).step_by(L::WIDTH) {
-                let other = self.slots.load(l, start);
-                let hit = touching(l, one, other, end - start);
-                let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
-                l.compress(hit, slot, &mut self.hits[found..]);
-                found += hit.count_ones() as usize;
-            }
-            self.list(found, |slot| (i, slot as usize));
-        }
-    }
-
-    #[inline(always)]
-    fn block<L: Lanes>(&mut self, l: L, block: &Block) {
-        let (codes, count) = (block.padded_codes(), block.codes().len());
-        self.share.candidates += count as u64;
-        let (first, mut found) = (block.first(), 0);
-        let ours = columns(l, &self.slots.balls[first..][..BLOCK_BODIES]);
-        for start in (0..count).step_by(L::WIDTH) {
-            let code = l.load_u32(&codes[start..]);
-            let (_, lane) = l.split_u32(code);
-            let [x, y, z, half] = &ours;
-            let one = [
-                l.lookup_16(x, lane),
-                l.lookup_16(y, lane),
-                l.lookup_16(z, lane),
-                l.lookup_16(half, lane),
-            ];
-            let other = l.gather_quads(&self.slots.balls, &codes[start..]);
-            let hit = touching(l, one, other, count - start);
-            l.compress(hit, code, &mut self.hits[found..]);
-            found += hit.count_ones() as usize;
-        }
-        self.list(found, |code| {
-            (first + (code & 15) as usize, (code >> 4) as usize)
-        });
-    }
-}
-
-impl Test<'_> {
-    /// Lists the first `found` hits whose boxes meet, by body.
-    #[inline(always)]
-    fn list(&mut self, found: usize, slots: impl Fn(u32) -> (usize, usize)) {
-        let (first, second) = self.share.room(found);
-        let (mut kept, names) = (0, &self.slots.names);
-        for &hit in &self.hits[..found] {
-            let (i, j) = slots(hit);
-            (first[kept], second[kept]) = (names[i], names[j]);
-            kept += usize::from(meet(&self.slabs[i], &self.slabs[j]));
-        }
-        self.share.len += kept;
-    }
-}
-
-/// Bits of the lanes below `count` whose cubes overlap.
-#[inline(always)]
-fn touching<L: Lanes>(l: L, one: [L::F; 4], other: [L::F; 4], count: usize) -> u32 {
-    let reach = one[3] + other[3];
-    let x = l.gt(l.abs(other[0] - one[0]), reach);
-    let y = l.gt(l.abs(other[1] - one[1]), reach);
-    let z = l.gt(l.abs(other[2] - one[2]), reach);
-    !l.bits(x | y | z) & l.bits(l.first(count))
 }
