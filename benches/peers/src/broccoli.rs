@@ -16,6 +16,7 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     work: Work::Boxes,
     threads: 1,
     slack: 0,
+    ages: false,
     new: |setup| Ok(Box::new(Broccoli::new(setup))),
 }];
 

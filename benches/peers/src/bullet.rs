@@ -10,6 +10,7 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     work: Work::Boxes,
     threads: 1,
     slack: 0,
+    ages: true,
     new: |setup| {
         new(
             setup,

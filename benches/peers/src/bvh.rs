@@ -4,11 +4,10 @@ use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
 use bvh::bvh::{Bvh, rayon_executor};
 use nalgebra::Point3;
-use rayon::prelude::*;
 
 use crate::boxes::{Frame, lower, upper};
 use crate::peer::{Entry, Peer, Setup, Work};
-use crate::threads::{CHUNK, Threads};
+use crate::threads::{Queries, Threads};
 
 /// One way to drive it.
 pub const ENTRIES: [Entry; 1] = [Entry {
@@ -17,6 +16,7 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     work: Work::Boxes,
     threads: usize::MAX,
     slack: 0,
+    ages: false,
     new: |setup| Ok(Box::new(Tree::new(setup)?)),
 }];
 
@@ -46,7 +46,7 @@ impl BHShape<f32, 3> for Body {
 struct Tree {
     bodies: Vec<Body>,
     threads: Threads,
-    pairs: Vec<Vec<[u32; 2]>>,
+    pairs: Queries,
 }
 
 impl Tree {
@@ -55,7 +55,7 @@ impl Tree {
         Ok(Self {
             bodies: Vec::with_capacity(bodies),
             threads: Threads::new(setup.threads)?,
-            pairs: vec![Vec::new(); bodies.div_ceil(CHUNK)],
+            pairs: Queries::new(bodies),
         })
     }
 }
@@ -72,31 +72,26 @@ impl Peer for Tree {
             }
         };
         self.bodies.extend(frame.boxes.iter().enumerate().map(body));
-        let (bodies, chunks) = (&mut self.bodies, &mut self.pairs);
+        let (bodies, pairs) = (&mut self.bodies, &mut self.pairs);
         let several = self.threads.several();
         self.threads.run(|| {
             let tree = match several {
                 true => Bvh::build_with_executor(bodies, rayon_executor),
                 false => Bvh::build(bodies),
             };
-            let chunks = chunks.par_iter_mut().enumerate();
-            chunks.for_each(|(chunk, pairs)| find(&tree, bodies, chunk, pairs));
+            pairs.ask(bodies, |_, body, pairs| find(&tree, bodies, body, pairs));
         });
     }
 
     fn pairs(&self) -> Vec<[u32; 2]> {
-        self.pairs.concat()
+        self.pairs.pairs()
     }
 }
 
-/// The pairs of a chunk's bodies with later ones. The iterator's leaves may lie beside the box that was asked for, so each is
-/// tested.
-fn find(tree: &Bvh<f32, 3>, bodies: &[Body], chunk: usize, pairs: &mut Vec<[u32; 2]>) {
-    pairs.clear();
-    for body in bodies.iter().skip(chunk * CHUNK).take(CHUNK) {
-        let found = tree.traverse_iterator(&body.slabs, bodies);
-        let later = found
-            .filter(|other| other.number > body.number && other.slabs.intersects_aabb(&body.slabs));
-        pairs.extend(later.map(|other| [body.number, other.number]));
-    }
+/// The pairs of a body with later ones. The iterator's leaves may lie beside the box that was asked for, so each is tested.
+fn find(tree: &Bvh<f32, 3>, bodies: &[Body], body: &Body, pairs: &mut Vec<[u32; 2]>) {
+    let found = tree.traverse_iterator(&body.slabs, bodies);
+    let later = found
+        .filter(|other| other.number > body.number && other.slabs.intersects_aabb(&body.slabs));
+    pairs.extend(later.map(|other| [body.number, other.number]));
 }

@@ -10,5 +10,6 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     work: Work::Boxes,
     threads: 1,
     slack: 0,
+    ages: false,
     new: |setup| new(setup, shim!(cgal_new, cgal_frame, cgal_pairs, cgal_free)),
 }];

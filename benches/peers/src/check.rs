@@ -155,6 +155,7 @@ mod tests {
             work,
             threads: 1,
             slack,
+            ages: true,
             new: |_| Err(miette::miette!("never asked for")),
         }
     }

@@ -3,6 +3,8 @@
 //! An engine does a few frames, then it is the next one's turn, so that what the machine does meanwhile falls on all
 //! alike; who begins changes with every round. Frames are made between turns and never timed. A ratio is the median over
 //! frames of theirs over ours *on the same frame*.
+//!
+//! Where a limit is given, an engine that takes longer than that for a frame is left out, and named.
 
 use std::time::Instant;
 
@@ -29,6 +31,28 @@ pub struct Case {
     /// Frames.
     #[serde(flatten)]
     pub schedule: Schedule,
+}
+
+/// An engine that took too long.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LeftOut {
+    /// The case.
+    #[serde(flatten)]
+    pub case: Case,
+    /// The engine.
+    pub engine: &'static str,
+    /// Milliseconds that it took for the frame that gave the reason.
+    pub ms: f64,
+    /// Milliseconds that it had.
+    pub limit_ms: f64,
+}
+
+/// A case with its answers.
+pub struct Compared {
+    /// In the order of engines.
+    pub rows: Vec<Row>,
+    /// Those without a row.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// What one engine did in a case.
@@ -61,29 +85,20 @@ pub struct Row {
     pub peak_bytes_a_body: f64,
 }
 
-/// Checks and times everyone.
+/// Checks and times everyone who keeps to the limit, in milliseconds a frame.
 ///
 /// # Errors
 /// An engine whose pairs are not the scene's, an engine that can't be built.
-pub fn run(case: Case, entries: &[Entry]) -> miette::Result<Vec<Row>> {
-    let able: Vec<_> = entries
-        .iter()
-        .filter(|entry| entry.threads >= case.threads)
-        .collect();
-    let memories = check(case, &able)?;
-    let mut racers = race(case, &able)?;
+pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compared> {
+    let able = entries.iter().filter(|entry| entry.threads >= case.threads);
+    let (checked, left_out) = check(case, &able.collect::<Vec<_>>(), limit_ms)?;
+    let entries: Vec<_> = checked.iter().map(|(entry, _)| *entry).collect();
+    let mut racers = race(case, &entries)?;
     let ours = racers.iter().find(|racer| racer.entry.name == OURS);
     let base = ours.map(|racer| racer.ms.clone());
     let mut rows = Vec::new();
-    for (racer, memory) in racers.iter_mut().zip(memories) {
-        let ratio = base.as_ref().map(|base| {
-            let ratios = racer
-                .ms
-                .iter()
-                .zip(base)
-                .map(|(theirs, ours)| theirs / ours);
-            quantile(&mut ratios.collect::<Vec<_>>(), 0.5)
-        });
+    for (racer, (_, memory)) in racers.iter_mut().zip(checked) {
+        let ratio = base.as_ref().map(|base| median_ratio(&racer.ms, base));
         let [ms_low, ms, ms_high] = [0.25, 0.5, 0.75].map(|q| quantile(&mut racer.ms, q));
         let bodies = case.bodies as f64;
         rows.push(Row {
@@ -101,13 +116,16 @@ pub fn run(case: Case, entries: &[Entry]) -> miette::Result<Vec<Row>> {
             peak_bytes_a_body: memory.peak as f64 / bodies,
         });
     }
-    Ok(rows)
+    Ok(Compared { rows, left_out })
 }
 
+/// Who has passed, and who has not been asked.
+type Checked<'a> = (Vec<(&'a Entry, Memory)>, Vec<LeftOut>);
+
 /// Runs every engine alone over the first frames and judges its pairs; counts its memory on the way.
-fn check(case: Case, entries: &[&Entry]) -> miette::Result<Vec<Memory>> {
+fn check<'a>(case: Case, entries: &[&'a Entry], limit_ms: f64) -> miette::Result<Checked<'a>> {
     let mut course = course(case)?;
-    let count = case.schedule.turn.max(3);
+    let count = case.schedule.checked;
     let mut frames = vec![Frame::default(); count];
     for frame in &mut frames {
         course.next_frame(frame)?;
@@ -119,11 +137,21 @@ fn check(case: Case, entries: &[&Entry]) -> miette::Result<Vec<Memory>> {
         first: &frames[0],
         threads: case.threads,
     };
-    let mut memories = Vec::new();
-    for entry in entries {
-        let (peer, memory) = memory::measure(|| driven(entry, &setup, &frames));
-        memories.push(memory);
-        drop(peer?);
+    let (mut passed, mut left_out) = (Vec::new(), Vec::new());
+    for &entry in entries {
+        let (tried, memory) = memory::measure(|| tried(entry, &setup, &frames, limit_ms));
+        let (peer, ms) = tried?;
+        drop(peer);
+        if ms > limit_ms && entry.name != OURS {
+            left_out.push(LeftOut {
+                case,
+                engine: entry.name,
+                ms,
+                limit_ms,
+            });
+            continue;
+        }
+        passed.push((entry, memory));
         let mut peer = (entry.new)(&setup)?;
         for (number, frame) in frames.iter().enumerate() {
             peer.frame(frame);
@@ -133,14 +161,31 @@ fn check(case: Case, entries: &[&Entry]) -> miette::Result<Vec<Memory>> {
             }
         }
     }
-    Ok(memories)
+    Ok((passed, left_out))
 }
 
-/// The engine after these frames.
-fn driven(entry: &Entry, setup: &Setup<'_>, frames: &[Frame]) -> miette::Result<Box<dyn Peer>> {
+/// How often the limit the first frame may take, which builds an engine's structures.
+const FIRST_FRAME: f64 = 4.0;
+
+/// The engine after these frames, and milliseconds of the last one or of the first that showed that it is too slow.
+fn tried(
+    entry: &Entry,
+    setup: &Setup<'_>,
+    frames: &[Frame],
+    limit_ms: f64,
+) -> miette::Result<(Box<dyn Peer>, f64)> {
     let mut peer = (entry.new)(setup)?;
-    frames.iter().for_each(|frame| peer.frame(frame));
-    Ok(peer)
+    let mut ms = 0.0;
+    for (number, frame) in frames.iter().enumerate() {
+        let start = Instant::now();
+        peer.frame(frame);
+        ms = 1e3 * start.elapsed().as_secs_f64();
+        let most = if number == 0 { FIRST_FRAME } else { 1.0 };
+        if ms > most * limit_ms {
+            break;
+        }
+    }
+    Ok((peer, ms))
 }
 
 fn course(case: Case) -> miette::Result<Course> {
@@ -177,6 +222,7 @@ fn race<'a>(case: Case, entries: &[&'a Entry]) -> miette::Result<Vec<Racer<'a>>>
         warm_up,
         timed,
         turn,
+        ..
     } = case.schedule;
     let mut frames = vec![Frame::default(); turn];
     course.next_frame(&mut frames[0])?;
@@ -203,6 +249,9 @@ fn race<'a>(case: Case, entries: &[&'a Entry]) -> miette::Result<Vec<Racer<'a>>>
         first = 0;
         for place in 0..racers.len() {
             let at = (place + done / turn) % racers.len();
+            if !racers[at].entry.ages && done + turn < warm_up {
+                continue;
+            }
             for (number, frame) in frames[..count].iter().enumerate() {
                 let start = Instant::now();
                 racers[at].peer.frame(frame);
@@ -225,8 +274,14 @@ fn race<'a>(case: Case, entries: &[&'a Entry]) -> miette::Result<Vec<Racer<'a>>>
     Ok(racers)
 }
 
+/// The median over frames of one time over the other on the same frame.
+pub fn median_ratio(times: &[f64], others: &[f64]) -> f64 {
+    let ratios = times.iter().zip(others).map(|(time, other)| time / other);
+    quantile(&mut ratios.collect::<Vec<_>>(), 0.5)
+}
+
 /// The q-quantile; the numbers are left sorted.
-fn quantile(numbers: &mut [f64], q: f64) -> f64 {
+pub fn quantile(numbers: &mut [f64], q: f64) -> f64 {
     numbers.sort_by(f64::total_cmp);
     match numbers.len() {
         0 => f64::NAN,

@@ -10,6 +10,7 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     work: Work::Boxes,
     threads: usize::MAX,
     slack: 0,
+    ages: false,
     new: |setup| {
         new(
             setup,

@@ -10,8 +10,11 @@ mod cgal;
 mod changes;
 mod check;
 mod compare;
+mod control;
 #[cfg(feature = "debian")]
 mod embree;
+mod facts;
+mod kernels;
 mod memory;
 mod narrow;
 #[cfg(feature = "debian")]
@@ -71,6 +74,9 @@ struct Cli {
     /// Frames before the clock counts, instead of what the size asks for
     #[arg(long)]
     warm_up: Option<usize>,
+    /// Milliseconds a frame beyond which an engine is left out, and named; ours never is
+    #[arg(long, default_value_t = f64::INFINITY)]
+    limit_ms: f64,
     /// Frames that are timed, instead of what the size asks for
     #[arg(long)]
     timed: Option<usize>,
@@ -85,13 +91,18 @@ struct Cli {
 #[derive(Subcommand)]
 enum Other {
     Narrow(narrow::Args),
+    Control(control::Args),
+    Kernels(kernels::Args),
 }
 
 fn main() -> miette::Result<()> {
     let cli = Cli::parse();
     threads::claim_caller()?;
-    if let Some(Other::Narrow(args)) = &cli.other {
-        return narrow::run(args);
+    match &cli.other {
+        Some(Other::Narrow(args)) => return narrow::run(args),
+        Some(Other::Control(args)) => return control::run(args),
+        Some(Other::Kernels(args)) => return kernels::run(args),
+        None => {}
     }
     let entries = chosen(cli.peers.as_deref())?;
     let mut record = Record::new(cli.note.clone());
@@ -100,7 +111,7 @@ fn main() -> miette::Result<()> {
             "{:?}, {:?}, {} bodies, {} threads",
             case.spread, case.order, case.bodies, case.threads
         );
-        record.add(compare::run(case, &entries)?);
+        record.add(compare::run(case, &entries, cli.limit_ms)?);
         if let Some(directory) = &cli.out {
             record.write(directory)?;
         }

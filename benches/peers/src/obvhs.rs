@@ -3,11 +3,10 @@
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
-use rayon::prelude::*;
 
 use crate::boxes::{Frame, Slabs, lower, upper};
 use crate::peer::{Entry, Peer, Setup, Work};
-use crate::threads::{CHUNK, Threads};
+use crate::threads::{Queries, Threads};
 
 /// One way to drive it.
 pub const ENTRIES: [Entry; 1] = [Entry {
@@ -16,6 +15,7 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     work: Work::Boxes,
     threads: usize::MAX,
     slack: 0,
+    ages: false,
     new: |setup| Ok(Box::new(Obvhs::new(setup)?)),
 }];
 
@@ -24,7 +24,7 @@ struct Obvhs {
     tree: Bvh2,
     boxes: Vec<Aabb>,
     threads: Threads,
-    pairs: Vec<Vec<[u32; 2]>>,
+    pairs: Queries,
 }
 
 impl Obvhs {
@@ -35,7 +35,7 @@ impl Obvhs {
             tree: Bvh2::zeroed(bodies),
             boxes: Vec::with_capacity(bodies),
             threads: Threads::new(setup.threads)?,
-            pairs: vec![Vec::new(); bodies.div_ceil(CHUNK)],
+            pairs: Queries::new(bodies),
         })
     }
 }
@@ -60,23 +60,18 @@ impl Peer for Obvhs {
                 SortPrecision::U64,
                 0,
             );
-            pairs.par_iter_mut().enumerate().for_each(|(chunk, pairs)| {
-                pairs.clear();
-                for i in chunk * CHUNK..boxes.len().min((chunk + 1) * CHUNK) {
-                    find(tree, boxes, i as u32, pairs);
-                }
-            });
+            pairs.ask(boxes, |i, one, pairs| find(tree, i, *one, pairs));
         });
     }
 
     fn pairs(&self) -> Vec<[u32; 2]> {
-        self.pairs.concat()
+        self.pairs.pairs()
     }
 }
 
 /// The pairs of body `i` with later ones.
-fn find(tree: &Bvh2, boxes: &[Aabb], i: u32, pairs: &mut Vec<[u32; 2]>) {
-    tree.aabb_traverse(boxes[i as usize], |tree, node| {
+fn find(tree: &Bvh2, i: u32, one: Aabb, pairs: &mut Vec<[u32; 2]>) {
+    tree.aabb_traverse(one, |tree, node| {
         // With one body a leaf, the leaf's box is the body's.
         let j = tree.primitive_indices[tree.nodes[node as usize].first_index as usize];
         if j > i {

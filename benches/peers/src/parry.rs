@@ -18,6 +18,7 @@ pub const ENTRIES: [Entry; 2] = [
         work: Work::Boxes,
         threads: usize::MAX,
         slack: 0,
+        ages: true,
         new: |setup| Ok(Box::new(Parry::new(setup, false)?)),
     },
     Entry {
@@ -26,6 +27,7 @@ pub const ENTRIES: [Entry; 2] = [
         work: Work::Boxes,
         threads: usize::MAX,
         slack: 0,
+        ages: true,
         new: |setup| Ok(Box::new(Parry::new(setup, true)?)),
     },
 ];

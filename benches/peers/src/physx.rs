@@ -46,6 +46,7 @@ const fn entry(
         work: Work::Boxes,
         threads: 1,
         slack,
+        ages: true,
         new,
     }
 }

@@ -23,6 +23,7 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     work: Work::Boxes,
     threads: usize::MAX,
     slack: 0,
+    ages: true,
     new: |setup| Ok(Box::new(Rapier::new(setup)?)),
 }];
 

@@ -1,84 +1,44 @@
-//! What is written: rows as CSV and JSON, and a page with a table a case, each with the machine and the command.
+//! What is written of a comparison: rows as CSV and JSON, and a page with a table a case.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::Path;
 
-use miette::{IntoDiagnostic as _, WrapErr as _};
-use sdop::cost::machine::Machine;
-use sdop::simd::Level;
+use miette::IntoDiagnostic as _;
 use serde::Serialize;
 
-use crate::compare::{Case, Row};
+use crate::compare::{Case, Compared, LeftOut, Row};
+use crate::facts::{self, Facts};
 use crate::scenes::{Order, Spread};
-
-/// The flag that compiles the same engines in.
-const FEATURES: &str = match (cfg!(feature = "physx"), cfg!(feature = "debian")) {
-    (true, true) => " --features physx,debian",
-    (true, false) => " --features physx",
-    (false, true) => " --features debian",
-    (false, false) => "",
-};
 
 /// A measurement.
 #[derive(Serialize)]
 pub struct Record {
-    command: String,
-    machine: Machine,
-    /// Features of the CPU that engines in Rust were compiled for; ours asks at run time.
-    compiled_for: &'static str,
-    /// What else ran, in the measurer's words.
-    note: String,
-    /// Processes waiting for a CPU, one minute's mean, at the beginning and by now.
-    load: [String; 2],
+    #[serde(flatten)]
+    facts: Facts,
     rows: Vec<Row>,
+    left_out: Vec<LeftOut>,
 }
 
 impl Record {
     /// An empty record of this machine.
     pub fn new(note: String) -> Self {
-        let arguments = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
         Self {
-            command: format!("cargo run --release -p sdop-peers{FEATURES} -- {arguments}"),
-            machine: Machine::here(Level::detect()),
-            compiled_for: match (
-                cfg!(target_feature = "avx512f"),
-                cfg!(target_feature = "avx2"),
-            ) {
-                (true, _) => "AVX-512",
-                (_, true) => "AVX2",
-                _ => "the architecture's baseline",
-            },
-            note,
-            load: [load(), load()],
+            facts: Facts::new(note),
             rows: Vec::new(),
+            left_out: Vec::new(),
         }
     }
 
-    /// Adds a case's rows.
-    pub fn add(&mut self, rows: Vec<Row>) {
-        self.load[1] = load();
-        self.rows.extend(rows);
+    /// Adds a case.
+    pub fn add(&mut self, compared: Compared) {
+        self.facts.look_again();
+        self.rows.extend(compared.rows);
+        self.left_out.extend(compared.left_out);
     }
 
     /// Writes `peers.csv`, `peers.json` and `peers.md`.
     pub fn write(&self, directory: &Path) -> miette::Result<()> {
-        let json = serde_json::to_string_pretty(self).into_diagnostic()?;
-        let files = [
-            ("peers.csv", self.csv()?),
-            ("peers.json", json + "\n"),
-            ("peers.md", self.page()),
-        ];
-        let blame = || format!("writing to {}", directory.display());
-        fs::create_dir_all(directory)
-            .into_diagnostic()
-            .wrap_err_with(blame)?;
-        for (name, text) in files {
-            fs::write(directory.join(name), text)
-                .into_diagnostic()
-                .wrap_err_with(blame)?;
-        }
-        Ok(())
+        facts::write(directory, "peers", self.csv()?, self, self.page())
     }
 
     fn csv(&self) -> miette::Result<String> {
@@ -134,19 +94,11 @@ impl Record {
 
     /// The tables with what must be known to read them.
     pub fn page(&self) -> String {
-        let mut out = String::from("# Side by side\n\n");
-        let facts = [
-            format!("`{}`", self.command),
-            self.machine.to_string(),
-            format!("engines in Rust are compiled for {}", self.compiled_for),
-            format!("load {} at the beginning, {} at the end; {}", self.load[0], self.load[1], self.note),
-            "milliseconds a frame, median (times ours for the same boxes); bytes a body that are held".to_owned(),
-            "what favours or harms whom: `benches/peers/BIAS.md`".to_owned(),
-        ];
-        for fact in facts {
-            // Writing to a String cannot fail.
-            let _ = writeln!(out, "- {fact}");
-        }
+        let mut out = format!("# Side by side\n\n{}", self.facts);
+        out.push_str(
+            "- milliseconds a frame, median (times ours for the same boxes); bytes a body that are held\n\
+             - what favours or harms whom: `benches/peers/BIAS.md`\n",
+        );
         let mut tables: Vec<(Spread, Order, usize)> = Vec::new();
         for row in &self.rows {
             let table = (row.case.spread, row.case.order, row.case.threads);
@@ -156,6 +108,7 @@ impl Record {
         }
         for table in tables {
             self.table(&mut out, table);
+            self.list_left_out(&mut out, table);
         }
         out
     }
@@ -178,6 +131,7 @@ impl Record {
             }
         }
         let plural = if threads == 1 { "" } else { "s" };
+        // Writing to a String cannot fail.
         let _ = write!(
             out,
             "\n## {spread:?}, {order:?} order, {threads} thread{plural}\n\n| engine | finds |"
@@ -206,16 +160,23 @@ impl Record {
             out.push('\n');
         }
     }
+
+    fn list_left_out(&self, out: &mut String, (spread, order, threads): (Spread, Order, usize)) {
+        let of_table = |left: &&LeftOut| {
+            (left.case.spread, left.case.order, left.case.threads) == (spread, order, threads)
+        };
+        for left in self.left_out.iter().filter(of_table) {
+            let _ = write!(
+                out,
+                "\nLeft out at {}: {}, {:.0} ms in one of its first frames, limit {:.0}.\n",
+                left.case.bodies, left.engine, left.ms, left.limit_ms
+            );
+        }
+    }
 }
 
 /// Three digits that count.
-fn digits(ms: f64) -> String {
+pub fn digits(ms: f64) -> String {
     let decimals = (2 - ms.log10().floor() as i32).clamp(0, 6) as usize;
     format!("{ms:.decimals$}")
-}
-
-/// The first number of the system's load average, where a file tells it.
-fn load() -> String {
-    let text = fs::read_to_string("/proc/loadavg").unwrap_or_default();
-    text.split(' ').next().unwrap_or("unknown").to_owned()
 }

@@ -15,6 +15,7 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     work: Work::Boxes,
     threads: 1,
     slack: 0,
+    ages: false,
     new: |_: &Setup<'_>| Ok(Box::<Rstar>::default()),
 }];
 

@@ -44,20 +44,23 @@ pub struct Schedule {
     pub timed: usize,
     /// Frames that one engine does before it is the next one's turn.
     pub turn: usize,
+    /// Frames by which pairs are checked and memory is counted, before.
+    pub checked: usize,
 }
 
 impl Schedule {
     /// What a scene of so many bodies gets.
     pub fn of(bodies: usize) -> Self {
-        let [warm_up, timed, turn] = match bodies {
-            0..=10_000 => [300, 200, 20],
-            10_001..=100_000 => [60, 40, 10],
-            _ => [20, 12, 4],
+        let [warm_up, timed, turn, checked] = match bodies {
+            0..=10_000 => [300, 200, 20, 20],
+            10_001..=100_000 => [60, 40, 10, 4],
+            _ => [20, 12, 4, 3],
         };
         Self {
             warm_up,
             timed,
             turn,
+            checked,
         }
     }
 }

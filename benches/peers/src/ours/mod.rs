@@ -17,6 +17,7 @@ pub const ENTRIES: [Entry; 3] = [
         work: Work::Boxes,
         threads: usize::MAX,
         slack: 0,
+        ages: true,
         new: |setup| Ok(Box::new(boxes::Boxes::new(setup)?)),
     },
     Entry {
@@ -25,6 +26,7 @@ pub const ENTRIES: [Entry; 3] = [
         work: Work::Spheres,
         threads: usize::MAX,
         slack: 0,
+        ages: true,
         new: |setup| Ok(Box::new(culler::Culled::new(setup, Strategy::Sphere)?)),
     },
     Entry {
@@ -33,6 +35,7 @@ pub const ENTRIES: [Entry; 3] = [
         work: Work::SDop,
         threads: usize::MAX,
         slack: 0,
+        ages: true,
         new: |setup| {
             Ok(Box::new(culler::Culled::new(
                 setup,
