@@ -20,63 +20,81 @@ use sdop::simd::{Kernel, Lanes, Level, dispatch};
 /// Samples of every measurement.
 const SAMPLES: usize = 15;
 
-/// One kernel's work an element.
+/// One kernel's work an element, and where it is measured.
 struct Work {
     name: &'static str,
     /// f32 operations.
     operations: f64,
     /// Bytes from and to memory.
     bytes: f64,
-    strategy: Strategy,
-    pairs: Finder,
     scene: &'static str,
-    seconds: fn(&Seconds) -> f64,
-    elements: fn(&Counters) -> u64,
+    culling: (Strategy, Finder),
+    stage: Stage,
 }
 
-/// Counted from `overlap/sphere.rs`, `overlap/ordop/` (relating two frames 87, one body's nine normals 456, half of the
-/// pairs going on to the second's) and `update/`.
+/// What of a frame is a kernel's own.
+#[derive(Clone, Copy)]
+enum Stage {
+    /// Pair finding, a sphere test.
+    Spheres,
+    /// The or-DOP test.
+    OrDops,
+    /// Update and pair finding, a body.
+    Finding,
+}
+
+impl Stage {
+    /// Seconds and elements so far.
+    fn read(self, seconds: &Seconds, counters: &Counters) -> (f64, u64) {
+        match self {
+            Self::Spheres => (seconds.pair_finding, counters.sphere.tests),
+            Self::OrDops => (seconds.ordop, counters.ordop.tests),
+            Self::Finding => (
+                seconds.update + seconds.pair_finding,
+                counters.sphere.updates,
+            ),
+        }
+    }
+}
+
+/// Relating two frames, one body's nine normals, and half of the pairs going on to the second's.
+const ORDOP_OPERATIONS: f64 = 87.0 + 1.5 * 456.0;
+const S_DOP: (Strategy, Finder) = (Strategy::SDopBatch, Finder::Grid);
+
+/// Counted from `overlap/sphere.rs`, `overlap/ordop/` and `update/`.
 const KERNELS: [Work; 4] = [
     Work {
         name: "sphere test, a run of slots",
         operations: 11.0,
         bytes: 0.0,
-        strategy: Strategy::Sphere,
-        pairs: Finder::AllPairs,
         scene: "paper-500",
-        seconds: |s| s.pair_finding,
-        elements: |c| c.sphere.tests,
+        culling: (Strategy::Sphere, Finder::AllPairs),
+        stage: Stage::Spheres,
     },
     Work {
         name: "or-DOP test, k = 18, two-sided",
-        operations: 87.0 + 456.0 + 0.5 * 456.0,
+        operations: ORDOP_OPERATIONS,
         bytes: 0.0,
-        strategy: Strategy::SDopBatch,
-        pairs: Finder::Grid,
         scene: "paper-500",
-        seconds: |s| s.ordop,
-        elements: |c| c.ordop.tests,
+        culling: S_DOP,
+        stage: Stage::OrDops,
     },
     Work {
         name: "or-DOP test, among a million bodies",
-        operations: 87.0 + 456.0 + 0.5 * 456.0,
+        operations: ORDOP_OPERATIONS,
         bytes: 128.0,
-        strategy: Strategy::SDopBatch,
-        pairs: Finder::Grid,
         scene: "uniform-1m",
-        seconds: |s| s.ordop,
-        elements: |c| c.ordop.tests,
+        culling: S_DOP,
+        stage: Stage::OrDops,
     },
     Work {
         name: "spheres of a million bodies found",
         operations: 0.0,
         // Ball in and out of the update, in and out of the sort, in again by the pairs; name and cell each way.
         bytes: 5.0 * 16.0 + 4.0 * 4.0,
-        strategy: Strategy::Sphere,
-        pairs: Finder::Grid,
         scene: "uniform-1m",
-        seconds: |s| s.update + s.pair_finding,
-        elements: |c| c.sphere.updates,
+        culling: (Strategy::Sphere, Finder::Grid),
+        stage: Stage::Finding,
     },
 ];
 
@@ -106,9 +124,10 @@ fn main() {
 
 /// The median over samples of a stage's time an element.
 fn nanoseconds(work: &Work, scene: &Scene, level: Level) -> f64 {
+    let (strategy, pairs) = work.culling;
     let settings = CullSettings {
-        strategy: work.strategy,
-        pairs: work.pairs,
+        strategy,
+        pairs,
         ..scene.cull.clone()
     };
     let mut culler = match Culler::new(&scene.shapes, &scene.bodies, &settings, level) {
@@ -116,10 +135,7 @@ fn nanoseconds(work: &Work, scene: &Scene, level: Level) -> f64 {
         Err(error) => panic!("{error}"),
     };
     let frames = (2_000_000 / scene.bodies.len()).clamp(1, 200);
-    let read = |culler: &Culler| {
-        let (seconds, counters) = (culler.seconds(), culler.counters());
-        ((work.seconds)(seconds), (work.elements)(counters))
-    };
+    let read = |culler: &Culler| work.stage.read(culler.seconds(), culler.counters());
     let mut sample = || {
         let before = read(&culler);
         for _ in 0..frames {

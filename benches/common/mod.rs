@@ -3,6 +3,8 @@
 #![allow(dead_code, reason = "each bench uses its own part")]
 #![allow(clippy::unwrap_used, reason = "a bench without its scene can't go on")]
 
+pub mod swarm;
+
 use std::path::Path;
 use std::time::Duration;
 

@@ -1,0 +1,129 @@
+//! Bodies for pair finders: 1.5 sphere partners each, which move a tenth of the smallest radius a frame.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use sdop::mesh::shapes::ProceduralShape;
+use sdop::pipeline::Culler;
+use sdop::scene::bodies::Bodies;
+use sdop::scene::settings::{CullSettings, Finder, Strategy};
+use sdop::simd::Level;
+use sdop::volume::{Shape, ShapeSpec};
+
+/// Frames before anything is timed: the order of places has settled, and buffers have grown.
+const WARM_UP: usize = 64;
+
+/// Where bodies are, and how their radii spread.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// Evenly, all of one radius.
+    Uniform,
+    /// On a plane.
+    Plane,
+    /// Ten clusters far apart.
+    Clusters,
+    /// Radii 1:16, log-uniform.
+    Mixed,
+    /// Radii 1:1000, log-uniform.
+    Wild,
+}
+
+/// Bodies that sway about their homes.
+pub struct Swarm {
+    shapes: Vec<Shape>,
+    /// Where they are by now.
+    pub bodies: Bodies,
+    step: Vec<[f32; 3]>,
+    frame: usize,
+}
+
+impl Swarm {
+    /// `n` bodies of a kind.
+    pub fn new(kind: Kind, n: usize) -> Self {
+        let octaves = match kind {
+            Kind::Mixed => 4,
+            Kind::Wild => 10,
+            _ => 0,
+        };
+        let radii: Vec<f32> = (0..=8 * octaves)
+            .map(|i| 2f32.powf(i as f32 / 8.0))
+            .collect();
+        let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
+        let shape = |&radius: &f32| {
+            let radius = Some(radius);
+            let spec = ShapeSpec {
+                radius,
+                ..ShapeSpec::default()
+            };
+            Shape::build(&mesh, &spec).unwrap()
+        };
+        let shapes: Vec<Shape> = radii.iter().map(shape).collect();
+        // The mean of (r_a + r_b)³ over pairs, from the radii's moments.
+        let moment = |p: i32| radii.iter().map(|r| r.powi(p)).sum::<f32>() / radii.len() as f32;
+        let cubes = 2.0 * moment(3) + 6.0 * moment(1) * moment(2);
+        let side = (n as f32 * 4.189 * cubes / 1.5).cbrt();
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let (mut bodies, mut step) = (Bodies::default(), Vec::new());
+        for i in 0..n {
+            let mut at: [f32; 3] = std::array::from_fn(|_| rng.random_range(0.0..side));
+            match kind {
+                Kind::Plane => {
+                    let side = (n as f32 * 12.57 / 1.5).sqrt();
+                    at = [
+                        rng.random_range(0.0..side),
+                        3.0,
+                        rng.random_range(0.0..side),
+                    ];
+                }
+                Kind::Clusters => {
+                    let centre = [3.0, 5.0, 7.0].map(|k| k * 10.0 * side * (i % 10) as f32);
+                    at = std::array::from_fn(|k| centre[k] + 0.464 * at[k]);
+                }
+                Kind::Uniform | Kind::Mixed | Kind::Wild => {}
+            }
+            bodies.push(
+                rng.random_range(0..radii.len() as u32),
+                true,
+                [0.0, 0.0, 0.0, 1.0],
+                at,
+            );
+            step.push(std::array::from_fn(|_| rng.random_range(-0.1..0.1)));
+        }
+        Self {
+            shapes,
+            bodies,
+            step,
+            frame: 0,
+        }
+    }
+
+    /// One more frame: sixteen to, sixteen fro.
+    pub fn sway(&mut self) {
+        let sign = if (self.frame / 16).is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        };
+        for (t, step) in self.bodies.translation.iter_mut().zip(&self.step) {
+            for (x, by) in t.iter_mut().zip(step) {
+                *x += sign * by;
+            }
+        }
+        self.frame += 1;
+    }
+
+    /// A culler of the bodies' spheres that is used to them.
+    pub fn culler(&mut self, finder: Finder, threads: usize) -> Culler {
+        let settings = CullSettings {
+            strategy: Strategy::Sphere,
+            pairs: finder,
+            ..CullSettings::default()
+        };
+        let culler = Culler::new(&self.shapes, &self.bodies, &settings, Level::detect()).unwrap();
+        let mut culler = culler.with_threads(threads).unwrap();
+        for _ in 0..WARM_UP {
+            self.sway();
+            culler.cull(&self.bodies);
+        }
+        culler
+    }
+}
