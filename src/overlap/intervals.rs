@@ -4,6 +4,7 @@
 
 use std::ops::Range;
 
+use super::SlotTest;
 use crate::broad_phase::Block;
 use crate::simd::{LANES, Lanes, MAX_WIDTH};
 
@@ -31,11 +32,11 @@ impl IntervalSlots {
             }
         }
     }
+}
 
-    /// Lists the slots of `run` whose slabs all overlap those of slot `i` at the front of `hits`, which has room for the run
-    /// and a vector more. Returns their number.
+impl SlotTest for IntervalSlots {
     #[inline(always)]
-    pub fn test_run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
         let mut found = 0;
         let mut start = run.start;
         while start < run.end {
@@ -58,10 +59,8 @@ impl IntervalSlots {
         found
     }
 
-    /// Lists the codes of the block's pairs whose slabs all overlap at the front of `hits`, which has room for the block and
-    /// a vector more. Returns their number.
     #[inline(always)]
-    pub fn test_block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
+    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
         let (codes, count) = (block.padded_codes(), block.codes().len());
         let (mut start, mut found) = (0, 0);
         while start < count {

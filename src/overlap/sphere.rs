@@ -6,59 +6,52 @@
 
 use std::ops::Range;
 
+use super::SlotTest;
 use crate::broad_phase::{BLOCK_BODIES, Block, Slots, columns};
 use crate::simd::{LANES, Lanes};
 
-/// Lists the slots of `run` whose spheres may touch that of slot `i` at the front of `hits`, which has room for the run and
-/// a vector more. Returns their number.
-#[inline(always)]
-pub fn test_run<L: Lanes>(
-    l: L,
-    slots: &Slots,
-    i: usize,
-    run: Range<usize>,
-    hits: &mut [u32],
-) -> usize {
-    let me = slots.ball(i).map(|number| l.splat(number));
-    let mut found = 0;
-    let mut start = run.start;
-    while start < run.end {
-        let hit = touching(l, me, slots.load(l, start), run.end - start);
-        // Seldom more than one vector in six has a hit when runs are long.
-        if hit != 0 {
-            let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
-            l.compress(hit, slot, &mut hits[found..]);
-            found += hit.count_ones() as usize;
+impl SlotTest for Slots {
+    #[inline(always)]
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        let me = self.ball(i).map(|number| l.splat(number));
+        let mut found = 0;
+        let mut start = run.start;
+        while start < run.end {
+            let hit = touching(l, me, self.load(l, start), run.end - start);
+            // Seldom more than one vector in six has a hit when runs are long.
+            if hit != 0 {
+                let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
+                l.compress(hit, slot, &mut hits[found..]);
+                found += hit.count_ones() as usize;
+            }
+            start += L::WIDTH;
         }
-        start += L::WIDTH;
+        found
     }
-    found
-}
 
-/// Lists the codes of the block's pairs whose spheres may touch at the front of `hits`, which has room for the block and a
-/// vector more. Returns their number.
-#[inline(always)]
-pub fn test_block<L: Lanes>(l: L, slots: &Slots, block: &Block, hits: &mut [u32]) -> usize {
-    let ours = columns(l, &slots.balls[block.first()..][..BLOCK_BODIES]);
-    let (codes, count) = (block.padded_codes(), block.codes().len());
-    let (mut start, mut found) = (0, 0);
-    while start < count {
-        let code = l.load_u32(&codes[start..]);
-        let (_, lane) = l.split_u32(code);
-        let [x, y, z, r] = &ours;
-        let one = [
-            l.lookup_16(x, lane),
-            l.lookup_16(y, lane),
-            l.lookup_16(z, lane),
-            l.lookup_16(r, lane),
-        ];
-        let other = l.gather_quads(&slots.balls, &codes[start..]);
-        let hit = touching(l, one, other, count - start);
-        l.compress(hit, code, &mut hits[found..]);
-        found += hit.count_ones() as usize;
-        start += L::WIDTH;
+    #[inline(always)]
+    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
+        let ours = columns(l, &self.balls[block.first()..][..BLOCK_BODIES]);
+        let (codes, count) = (block.padded_codes(), block.codes().len());
+        let (mut start, mut found) = (0, 0);
+        while start < count {
+            let code = l.load_u32(&codes[start..]);
+            let (_, lane) = l.split_u32(code);
+            let [x, y, z, r] = &ours;
+            let one = [
+                l.lookup_16(x, lane),
+                l.lookup_16(y, lane),
+                l.lookup_16(z, lane),
+                l.lookup_16(r, lane),
+            ];
+            let other = l.gather_quads(&self.balls, &codes[start..]);
+            let hit = touching(l, one, other, count - start);
+            l.compress(hit, code, &mut hits[found..]);
+            found += hit.count_ones() as usize;
+            start += L::WIDTH;
+        }
+        found
     }
-    found
 }
 
 /// Bits of the lanes below `count` that no gap separates.

@@ -1,5 +1,6 @@
-//! Which bodies are of interest in a frame: a list, or those whose sphere centres lie in a view cone.
+//! Which bodies are of interest in a frame (a list, or those whose sphere centres lie in a view cone), and which pairs.
 
+use crate::pairs::PairList;
 use crate::rounding::pose::rotation;
 use crate::scene::bodies::Bodies;
 use crate::scene::settings::{Interest, ViewCone};
@@ -22,6 +23,46 @@ pub(crate) fn mark(
             let cone = PlacedCone::new(cone, bodies);
             for (body, mark) in marks.iter_mut().enumerate() {
                 *mark = cone.sees(centre(body));
+            }
+        }
+    }
+}
+
+/// Pairs of places, some of which have a body of interest.
+pub(super) struct Chosen<'a> {
+    pub pairs: &'a PairList,
+    /// The body in each place.
+    pub body: &'a [u32],
+    pub interest: &'a [bool],
+}
+
+impl Chosen<'_> {
+    /// Every pair with its bodies, and whether one of them is of interest.
+    fn judged(&self) -> impl Iterator<Item = ([u32; 2], [u32; 2], bool)> {
+        self.pairs.iter().map(|places| {
+            let bodies = places.map(|place| self.body[place as usize]);
+            let chosen = bodies.iter().any(|&body| self.interest[body as usize]);
+            (places, bodies, chosen)
+        })
+    }
+
+    /// Lists the pairs that are to be refined.
+    pub fn select(&self, selected: &mut PairList) {
+        selected.clear();
+        for ([i, j], _, chosen) in self.judged() {
+            if chosen {
+                selected.push(i, j);
+            }
+        }
+    }
+
+    /// Appends, as bodies, the pairs that weren't to be refined and those that `passed`, in their common order: a list
+    /// must not show where blocks, and so threads, begin.
+    pub fn merge(&self, passed: &PairList, out: &mut PairList) {
+        let mut passed = passed.iter().peekable();
+        for (_, [a, b], chosen) in self.judged() {
+            if !chosen || passed.next_if_eq(&[a, b]).is_some() {
+                out.push(a, b);
             }
         }
     }

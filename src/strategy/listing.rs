@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::Stage;
 use super::workers::{Done, share};
-use crate::broad_phase::{Block, FirstTest, Groups, MOST_CANDIDATES, PairFinder, Slots};
+use crate::broad_phase::{Block, FirstTest, Groups, MOST_CANDIDATES, PairFinder};
+use crate::overlap::SlotTest;
 use crate::overlap::intervals::IntervalSlots;
-use crate::overlap::sphere;
 use crate::pairs::PairList;
 use crate::simd::{Kernel, Lanes, Level, MAX_WIDTH, dispatch};
 
@@ -135,7 +135,7 @@ impl Kernel for List<'_> {
 
 impl List<'_> {
     #[inline(always)]
-    fn with<L: Lanes>(self, l: L, test: &impl HitTest) -> u64 {
+    fn with<L: Lanes>(self, l: L, test: &impl SlotTest) -> u64 {
         let Source {
             finder,
             body,
@@ -157,39 +157,10 @@ impl List<'_> {
     }
 }
 
-/// A first test as a list of hits.
-trait HitTest {
-    /// Slots of `run` that pass against slot `i`.
-    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize;
-    /// Codes of the block that pass.
-    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize;
-}
-
-impl HitTest for Slots {
-    #[inline(always)]
-    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
-        sphere::test_run(l, self, i, run, hits)
-    }
-    #[inline(always)]
-    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
-        sphere::test_block(l, self, block, hits)
-    }
-}
-
-impl HitTest for IntervalSlots {
-    #[inline(always)]
-    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
-        self.test_run(l, i, run, hits)
-    }
-    #[inline(always)]
-    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
-        self.test_block(l, block, hits)
-    }
-}
-
+/// The test that nothing fails.
 struct Every;
 
-impl HitTest for Every {
+impl SlotTest for Every {
     #[inline(always)]
     fn run<L: Lanes>(&self, _: L, _: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
         for (hit, slot) in hits.iter_mut().zip(run.clone()) {
@@ -216,7 +187,7 @@ struct Lister<'a, 'd, T> {
     hits: [u32; PIECE + MAX_WIDTH],
 }
 
-impl<T: HitTest> FirstTest for Lister<'_, '_, T> {
+impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
     #[inline(always)]
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
         self.tests += run.len() as u64;

@@ -1,4 +1,5 @@
-//! The paper's strategies (section 4) and the homogeneous volumes they are judged against, one file each.
+//! The paper's strategies (section 4) and the homogeneous volumes they are judged against: [`cull`] says which tests each
+//! makes, and a file each how pairs flow through them.
 //!
 //! A strategy takes updated volumes and a pair finder and leaves the reported pairs. Strategies differ in false positives
 //! and time, never in misses: each reports every pair whose meshes meet, `none` excepted.
@@ -17,19 +18,18 @@ use crate::update::{OrDopRows, ShapeFrame};
 
 mod batch;
 mod interest;
-mod intervals;
 mod listing;
-mod object_of_interest;
-mod ordop;
 mod refine;
 mod sequential;
-mod sphere;
 mod time_critical;
 mod workers;
 
 pub(crate) use interest::mark;
 pub(crate) use time_critical::Memory;
 pub(crate) use workers::Worker;
+
+use listing::First;
+use workers::add;
 
 /// Pairs that flow through the or-DOP test at once where no list is kept: few enough for the first-level cache, enough to
 /// make the clock's cost vanish.
@@ -71,16 +71,28 @@ pub(crate) struct Stage<'a> {
 
 /// Runs a strategy on one frame.
 pub(crate) fn cull(strategy: Strategy, stage: &mut Stage<'_>) {
-    match strategy {
-        Strategy::None => {}
-        Strategy::Sphere => sphere::cull(stage),
-        Strategy::OrDop => stage.counters.ordop = ordop::cull(stage, stage.counters.ordop),
-        Strategy::Obb => stage.counters.obb = ordop::cull(stage, stage.counters.obb),
-        Strategy::SDopSequential => sequential::cull(stage),
-        Strategy::SDopBatch => batch::cull(stage),
-        Strategy::SDopObjectOfInterest => object_of_interest::cull(stage),
+    let (aligned, interest) = (First::Intervals(stage.intervals), Some(stage.interest));
+    let done = match strategy {
+        Strategy::None => return,
+        Strategy::Sphere => stage.list(First::Sphere),
+        Strategy::Aabb | Strategy::KDop => stage.list(aligned),
+        // The oriented box is an or-DOP of k = 6.
+        Strategy::OrDop | Strategy::Obb => sequential::flow(stage, First::Every, None),
+        Strategy::SDopSequential => sequential::flow(stage, First::Sphere, None),
+        Strategy::SDopBatch => batch::flow(stage, First::Sphere, None),
+        Strategy::SDopObjectOfInterest => sequential::flow(stage, First::Sphere, interest),
         Strategy::SDopTimeCritical => time_critical::cull(stage),
-        Strategy::Aabb => stage.counters.aabb = intervals::cull(stage, stage.counters.aabb),
-        Strategy::KDop => stage.counters.kdop = intervals::cull(stage, stage.counters.kdop),
+    };
+    let counters = &mut *stage.counters;
+    match strategy {
+        Strategy::Aabb => add(&mut counters.aabb, done.first),
+        Strategy::KDop => add(&mut counters.kdop, done.first),
+        // Nothing is tested before the or-DOPs.
+        Strategy::OrDop => add(&mut counters.ordop, done.refined),
+        Strategy::Obb => add(&mut counters.obb, done.refined),
+        _ => {
+            add(&mut counters.sphere, done.first);
+            add(&mut counters.ordop, done.refined);
+        }
     }
 }

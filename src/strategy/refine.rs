@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::time::Instant;
 
 use super::Stage;
-use super::workers::{Done, add, share};
+use super::workers::{Worker, share};
 use crate::cost::VolumeCounters;
 use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
@@ -53,14 +53,14 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// With lazy updates: makes the rows of a range of the listed candidates that this frame lacks. Returns their number.
-    pub(super) fn make_rows(&mut self, range: Range<usize>) -> u64 {
+    /// With lazy updates: makes the rows of a range of the listed pairs that this frame lacks. Returns their number.
+    pub(super) fn make_rows(&mut self, list: &PairList, range: Range<usize>) -> u64 {
         if !self.lazy {
             return 0;
         }
         let begin = Instant::now();
         let mut made = 0;
-        for column in [self.candidates.first(), self.candidates.second()] {
+        for column in [list.first(), list.second()] {
             let wanted = &column[range.clone()];
             let posed = Posed {
                 frames: self.frames,
@@ -76,40 +76,28 @@ impl<'a> Stage<'a> {
         made
     }
 
-    /// Tests all listed candidates, on all threads, and appends the survivors to the reported pairs.
-    pub(super) fn refine_candidates(&mut self) -> VolumeCounters {
-        let mut counters = VolumeCounters {
-            updates: self.make_rows(0..self.candidates.len()),
-            ..VolumeCounters::default()
-        };
-        let vectors = self.candidates.len().div_ceil(MAX_WIDTH);
-        let mut out = std::mem::take(self.out);
+    /// Tests all pairs of a list, on all threads, and appends the survivors to `out`.
+    pub(super) fn refine_list(&mut self, list: &PairList, out: &mut PairList) -> VolumeCounters {
+        let updates = self.make_rows(list, 0..list.len());
+        let vectors = list.len().div_ceil(MAX_WIDTH);
         let mut workers = std::mem::take(self.workers);
-        let (refine, candidates) = (self.refine(), &*self.candidates);
-        let Done {
-            refined, refining, ..
-        } = share(
-            self.crew,
-            &mut workers,
-            vectors,
-            &mut out,
-            |range, worker| {
-                let pairs = range.start * MAX_WIDTH..(range.end * MAX_WIDTH).min(candidates.len());
-                let pairs = [
-                    &candidates.first()[pairs.clone()],
-                    &candidates.second()[pairs],
-                ];
-                refine.test(
-                    pairs,
-                    &mut worker.refined,
-                    &mut worker.refining,
-                    &mut worker.out,
-                );
-            },
-        );
-        (*self.out, *self.workers) = (out, workers);
-        self.seconds.ordop += refining;
-        add(&mut counters, refined);
-        counters
+        let refine = self.refine();
+        let done = share(self.crew, &mut workers, vectors, out, |range, worker| {
+            let pairs = range.start * MAX_WIDTH..(range.end * MAX_WIDTH).min(list.len());
+            let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
+            let Worker {
+                out,
+                refined,
+                refining,
+                ..
+            } = worker;
+            refine.test(pairs, refined, refining, out);
+        });
+        *self.workers = workers;
+        self.seconds.ordop += done.refining;
+        VolumeCounters {
+            updates,
+            ..done.refined
+        }
     }
 }

@@ -9,105 +9,97 @@ use std::time::{Duration, Instant};
 
 use super::Stage;
 use super::listing::First;
-use super::workers::add;
+use super::workers::Done;
 use crate::cost::VolumeCounters;
+use crate::pairs::PairList;
 use crate::scene::settings::{Budget, Order};
 
 /// Tests between two looks at the clock: some microseconds.
 const SLICE: usize = 128;
 
-/// For each pair that spheres reported in the last frame, the frame in which it was last refined (0: never).
+/// What a frame leaves to the next: when pairs were refined, and buffers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
+    /// For each pair that spheres reported in the last frame, the frame in which it was last refined (0: never).
     refined: HashMap<[u32; 2], u32>,
+    before: HashMap<[u32; 2], u32>,
+    keyed: Vec<Keyed>,
 }
 
-pub(super) fn cull(stage: &mut Stage<'_>) {
+/// A pair's rank, its bodies, its places: sorted, ties go by body, so the order is the same for every pair finder.
+type Keyed = (u32, [u32; 2], [u32; 2]);
+
+pub(super) fn cull(stage: &mut Stage<'_>) -> Done {
     let start = Instant::now();
-    let listed = stage.list_candidates(First::Sphere);
-    add(&mut stage.counters.sphere, listed.first);
+    let mut done = stage.list_candidates(First::Sphere);
     arrange(stage);
     let (tests, deadline) = match stage.budget {
         Some(Budget::Tests(tests)) => (usize::try_from(tests).unwrap_or(usize::MAX), None),
         Some(Budget::Microseconds(us)) => (usize::MAX, Some(Duration::from_micros(us))),
         None => (usize::MAX, None),
     };
-    let limit = tests.min(stage.candidates.len());
-    let mut done = 0;
-    while done < limit && deadline.is_none_or(|deadline| start.elapsed() < deadline) {
-        let end = if deadline.is_some() {
-            limit.min(done + SLICE)
-        } else {
-            limit
-        };
-        refine(stage, done..end);
-        done = end;
+    let candidates = std::mem::take(stage.candidates);
+    let limit = tests.min(candidates.len());
+    let slice = if deadline.is_some() { SLICE } else { limit };
+    let mut refined = 0;
+    while refined < limit && deadline.is_none_or(|deadline| start.elapsed() < deadline) {
+        let end = limit.min(refined + slice);
+        refine(stage, &candidates, refined..end, &mut done.refined);
+        refined = end;
     }
     let body = |place: u32| stage.places.body[place as usize];
-    stage.counters.untested += (stage.candidates.len() - done) as u64;
-    for [i, j] in stage.candidates.iter().skip(done) {
+    stage.counters.untested += (candidates.len() - refined) as u64;
+    for [i, j] in candidates.iter().skip(refined) {
         stage.out.push(body(i), body(j));
     }
     if stage.order == Order::OldestAnswer {
-        let pairs = stage.candidates.iter().map(|pair| pair.map(body));
-        stage.memory.remember(pairs, done, stage.stamp);
+        let pairs = candidates.iter().map(|pair| pair.map(body));
+        stage.memory.remember(pairs, refined, stage.stamp);
     }
+    *stage.candidates = candidates;
+    done
 }
 
 /// Refines a range of the candidates.
-fn refine(stage: &mut Stage<'_>, range: Range<usize>) {
-    let mut counters = VolumeCounters {
-        updates: stage.make_rows(range.clone()),
-        ..VolumeCounters::default()
-    };
-    let mut out = std::mem::take(stage.out);
-    let mut seconds = 0.0;
+fn refine(
+    stage: &mut Stage<'_>,
+    candidates: &PairList,
+    range: Range<usize>,
+    counters: &mut VolumeCounters,
+) {
+    counters.updates += stage.make_rows(candidates, range.clone());
     let pairs = [
-        &stage.candidates.first()[range.clone()],
-        &stage.candidates.second()[range],
+        &candidates.first()[range.clone()],
+        &candidates.second()[range],
     ];
-    let refine = stage.refine();
-    refine.test(pairs, &mut counters, &mut seconds, &mut out);
+    let (mut out, mut seconds) = (std::mem::take(stage.out), 0.0);
+    stage.refine().test(pairs, counters, &mut seconds, &mut out);
     *stage.out = out;
     stage.seconds.ordop += seconds;
-    add(&mut stage.counters.ordop, counters);
 }
 
-/// Sorts the potentially colliding set into the order of refinement. Ties go by body index, so the order is the same for
-/// every pair finder.
+/// Sorts the potentially colliding set into the order of refinement.
 fn arrange(stage: &mut Stage<'_>) {
     if stage.order == Order::AsFound {
         return;
     }
-    let body = |place: u32| stage.places.body[place as usize];
-    let bodies = |&pair: &[u32; 2]| pair.map(body);
-    let mut pairs: Vec<[u32; 2]> = stage.candidates.iter().collect();
-    match stage.order {
-        Order::AsFound => {}
-        Order::InterestFirst => {
-            let dull = |body: u32| !stage.interest[body as usize];
-            pairs.sort_unstable_by_key(|pair| {
-                let [i, j] = bodies(pair);
-                (dull(i) && dull(j), i, j)
-            });
-        }
-        Order::LargestOverlap => {
-            let mut keyed: Vec<_> = pairs
-                .iter()
-                .map(|&pair| (gap(stage.spheres, pair), pair))
-                .collect();
-            keyed.sort_unstable_by(|(a, first), (b, second)| {
-                a.total_cmp(b).then(bodies(first).cmp(&bodies(second)))
-            });
-            pairs = keyed.into_iter().map(|(_, pair)| pair).collect();
-        }
-        Order::OldestAnswer => {
-            let last = |bodies: &[u32; 2]| stage.memory.refined.get(bodies).copied().unwrap_or(0);
-            pairs.sort_unstable_by_key(|pair| (last(&bodies(pair)), bodies(pair)));
-        }
-    }
+    let Memory { refined, keyed, .. } = &mut *stage.memory;
+    let dull = |&body: &u32| !stage.interest[body as usize];
+    let rank = |bodies: [u32; 2], places: [u32; 2]| match stage.order {
+        Order::AsFound => 0,
+        Order::InterestFirst => u32::from(bodies.iter().all(dull)),
+        // Of numbers that aren't negative, the bits sort as the values do.
+        Order::LargestOverlap => gap(stage.spheres, places).to_bits(),
+        Order::OldestAnswer => refined.get(&bodies).copied().unwrap_or(0),
+    };
+    keyed.clear();
+    keyed.extend(stage.candidates.iter().map(|places| {
+        let bodies = places.map(|place| stage.places.body[place as usize]);
+        (rank(bodies, places), bodies, places)
+    }));
+    keyed.sort_unstable();
     stage.candidates.clear();
-    for [i, j] in pairs {
+    for &(_, _, [i, j]) in &*keyed {
         stage.candidates.push(i, j);
     }
 }
@@ -126,13 +118,11 @@ impl Memory {
     }
 
     fn remember(&mut self, pairs: impl Iterator<Item = [u32; 2]>, done: usize, stamp: u32) {
-        let last = std::mem::take(&mut self.refined);
-        self.refined = pairs
-            .enumerate()
-            .map(|(at, pair)| {
-                let before = last.get(&pair).copied().unwrap_or(0);
-                (pair, if at < done { stamp } else { before })
-            })
-            .collect();
+        std::mem::swap(&mut self.refined, &mut self.before);
+        self.refined.clear();
+        self.refined.extend(pairs.enumerate().map(|(at, pair)| {
+            let before = self.before.get(&pair).copied().unwrap_or(0);
+            (pair, if at < done { stamp } else { before })
+        }));
     }
 }
