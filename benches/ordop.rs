@@ -5,15 +5,12 @@
 mod common;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use sdop::crew::Crew;
-use sdop::overlap::ordop::{OrDopColumns, SlabTables};
+use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
 use sdop::pipeline::Culler;
-use sdop::places::Places;
 use sdop::scene::Scene;
 use sdop::scene::settings::{CullSettings, Overlap, Strategy};
 use sdop::simd::Level;
-use sdop::update::{OrDopRows, Posed, ShapeFrame};
 use sdop::volume::DirectionSet;
 
 fn pairs(scene: &Scene, strategy: Strategy) -> PairList {
@@ -47,27 +44,9 @@ fn ordop(criterion: &mut Criterion) {
                 .iter()
                 .filter(|pair| sorted.binary_search(pair).is_err())
                 .collect();
-            let frames: Vec<_> = scene
-                .shapes
-                .iter()
-                .map(|s| ShapeFrame::new(s, &s.ordop.basis))
-                .collect();
-            let places = Places::as_given(&scene.bodies);
-            let mut rows = OrDopRows::new(places.len());
-            let posed = Posed {
-                frames: &frames,
-                bodies: &scene.bodies,
-                places: &places,
-                balls: &[],
-            };
-            let everyone = 0..places.len();
-            rows.update(Level::detect(), &Crew::default(), posed, everyone, 1);
-            let tables = SlabTables::new(k, scene.shapes.iter().map(|s| (s, &s.ordop)));
-            let columns = OrDopColumns {
-                rows: &rows.rows,
-                tables: &tables,
-                overlap,
-            };
+            let shapes = scene.shapes.iter().map(|shape| (shape, &shape.ordop));
+            let posed = PosedOrDops::new(shapes, &scene.bodies, Level::detect());
+            let columns = posed.columns(overlap);
             for (name, list) in [("hits", &hits), ("misses", &misses), ("as listed", &listed)] {
                 group.throughput(Throughput::Elements(list.len() as u64));
                 for level in Level::available() {

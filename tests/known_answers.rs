@@ -12,7 +12,7 @@ use sdop::scene::random::Stream;
 use sdop::scene::settings::{Axes, DirectionSet, Overlap};
 use sdop::simd::Level;
 use sdop::tradeoff::Estimate;
-use sdop::tradeoff::shapes::{Crowd, ordop_of, share};
+use sdop::tradeoff::shapes::{Crowd, share};
 use sdop::volume::{OrDop, Shape, ShapeSpec};
 
 const PAIRS: u32 = 40_000;
@@ -32,7 +32,7 @@ fn crowds(shapes: &[Shape], stretch: f32, pairs: u32) -> Vec<Crowd> {
 fn ordops(shapes: &[Shape], k: DirectionSet) -> Vec<OrDop> {
     shapes
         .iter()
-        .map(|s| ordop_of(s, k, Axes::Principal))
+        .map(|s| s.ordop_along(Axes::Principal, k))
         .collect()
 }
 

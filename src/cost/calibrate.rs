@@ -9,10 +9,8 @@ use super::VolumeCosts;
 use super::fit::{self, Row};
 use super::measure::{Trial, side_by_side, time};
 use super::predict::{Price, Prices, Volume};
-use crate::crew::Crew;
-use crate::overlap::ordop::{OrDopColumns, SlabTables};
+use crate::overlap::ordop::PosedOrDops;
 use crate::pairs::PairList;
-use crate::places::Places;
 use crate::scene::Scene;
 use crate::scene::bodies::Bodies;
 use crate::scene::number::Interval;
@@ -20,8 +18,7 @@ use crate::scene::random::Stream;
 use crate::scene::settings::{Axes, Strategy};
 use crate::simd::Level;
 use crate::simulate::SimulationError;
-use crate::update::{OrDopRows, Posed, ShapeFrame};
-use crate::volume::{Ball, Basis, Hull, OrDop, Shape};
+use crate::volume::{Ball, Hull, Shape};
 
 /// Bodies of the calibration scenes, as parts of the scene's number.
 const SIZES: [f64; 4] = [0.07, 0.23, 0.64, 1.3];
@@ -179,27 +176,9 @@ impl Run {
 /// Times the or-DOP test on a list of its hits. Refined pairs always have about the same share of hits, so that no
 /// choice of scenes alone could tell the price of a hit from that of a miss.
 fn time_hits(scene: &Scene, hits: &PairList, level: Level) -> Row<4> {
-    let frames: Vec<_> = scene
-        .shapes
-        .iter()
-        .map(|s| ShapeFrame::new(s, &s.ordop.basis))
-        .collect();
-    let n = scene.bodies.len();
-    let places = Places::as_given(&scene.bodies);
-    let mut rows = OrDopRows::new(n);
-    let posed = Posed {
-        frames: &frames,
-        bodies: &scene.bodies,
-        places: &places,
-        balls: &[],
-    };
-    rows.update(level, &Crew::default(), posed, 0..n, 1);
-    let tables = SlabTables::new(scene.cull.k, scene.shapes.iter().map(|s| (s, &s.ordop)));
-    let columns = OrDopColumns {
-        rows: &rows.rows,
-        tables: &tables,
-        overlap: scene.cull.overlap,
-    };
+    let shapes = scene.shapes.iter().map(|shape| (shape, &shape.ordop));
+    let posed = PosedOrDops::new(shapes, &scene.bodies, level);
+    let columns = posed.columns(scene.cull.overlap);
     let mut out = PairList::default();
     let seconds = time(9, || {
         out.clear();
@@ -275,15 +254,9 @@ pub fn construct(volume: Volume, shape: &Shape, axes: Axes) {
     match volume {
         Volume::Sphere => drop(std::hint::black_box(Ball::smallest(vertices))),
         Volume::OrDop | Volume::Refined => {
-            let basis = match axes {
-                Axes::Principal => Basis::principal(&Hull::of(vertices), vertices),
-                Axes::Model => Basis::MODEL,
-            };
-            drop(std::hint::black_box(OrDop::build(
-                vertices,
-                basis,
-                shape.ordop.directions,
-            )));
+            drop(std::hint::black_box(
+                shape.ordop_along(axes, shape.ordop.directions),
+            ));
         }
         Volume::Aabb | Volume::KDop => drop(std::hint::black_box(Hull::of(vertices))),
         Volume::Obb => drop(std::hint::black_box(shape.obb(&Hull::of(vertices)))),

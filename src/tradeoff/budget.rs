@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
-use super::counts::shared;
+use super::counts::{share, shared};
 use super::truth::{Judge, Sample};
 use crate::pipeline::Culler;
 use crate::scene::Scene;
@@ -127,13 +127,6 @@ fn row(
         let untested = (culler.counters().untested - before) as usize;
         starved.frame(sample.frame, culler.potentially_colliding(), untested);
     }
-    let share = |part: u64, whole: u64| {
-        if whole == 0 {
-            1.0
-        } else {
-            part as f64 / whole as f64
-        }
-    };
     let counters = culler.counters();
     Ok(BudgetRow {
         order: settings.order.to_string(),

@@ -76,15 +76,19 @@ impl Tally {
     /// Precision and recall.
     #[must_use]
     pub fn quality(&self) -> Quality {
-        let share = |part: u64, whole: u64| match whole {
-            0 => 1.0,
-            _ => part as f64 / whole as f64,
-        };
         Quality {
             precision: share(self.found, self.reported),
             per_true: self.reported as f64 / self.truth as f64,
             recall: share(self.found, self.truth),
         }
+    }
+}
+
+/// A part of a whole; all of nothing.
+pub(super) fn share(part: u64, whole: u64) -> f64 {
+    match whole {
+        0 => 1.0,
+        _ => part as f64 / whole as f64,
     }
 }
 

@@ -118,23 +118,15 @@ fn crowded(file: &SceneFile, factor: f32) -> Option<SceneFile> {
 
 /// Spheres first, boxes, S-DOP at each k with the scene's axes, and hulls.
 fn variants(own: &CullSettings) -> Vec<Variant> {
-    let with = |strategy| CullSettings {
-        strategy,
+    let boxes = CullSettings {
+        strategy: Strategy::Aabb,
         ..own.clone()
     };
-    let plain = |name: &str, strategy, hulls| Variant {
-        name: name.into(),
-        settings: with(strategy),
-        hulls,
-    };
-    let mut list = vec![
-        plain("sphere", Strategy::Sphere, false),
-        plain("aabb", Strategy::Aabb, false),
-    ];
+    let mut list = vec![Variant::spheres(own), Variant::of("aabb".into(), boxes)];
     list.extend(s_dops(own).into_iter().filter(|variant| {
         let CullSettings { axes, overlap, .. } = variant.settings;
         axes == own.axes && overlap != Overlap::Full
     }));
-    list.push(plain("sphere + hull", Strategy::Sphere, true));
+    list.push(Variant::hulls(own));
     list
 }

@@ -9,19 +9,16 @@ use serde::{Deserialize, Serialize};
 use super::TradeoffError;
 use super::gjk::{HullGraph, PosedHull, may_touch};
 use super::truth::Judge;
-use crate::crew::Crew;
 use crate::estimate::Estimate;
 use crate::mesh::shapes::ProceduralShape;
-use crate::overlap::ordop::{OrDopColumns, SlabTables};
+use crate::overlap::ordop::PosedOrDops;
 use crate::pairs::PairList;
-use crate::places::Places;
 use crate::rounding::pose::{rotate, rotation};
 use crate::scene::bodies::Bodies;
 use crate::scene::random::Stream;
 use crate::scene::settings::{Axes, DirectionSet, Overlap};
 use crate::simd::Level;
-use crate::update::{OrDopRows, Posed, ShapeFrame};
-use crate::volume::{Basis, Hull, OrDop, Shape, ShapeSpec, Size};
+use crate::volume::{Hull, OrDop, Shape, ShapeSpec, Size};
 
 /// Where the draws start; scenes count their seeds from 1.
 const SEED: u64 = 0x5a3e_7000_0000_0000;
@@ -84,12 +81,7 @@ impl Crowd {
                 // The ball's centre is put where it is drawn, whatever the body's origin.
                 let offset = rotate(&rotation(q), ball);
                 let t = [0, 1, 2].map(|axis| (f64::from(centre[axis]) - offset[axis]) as f32);
-                bodies.shape.push(shape);
-                bodies.dynamic.push(true);
-                bodies.rotation.push(q);
-                bodies.translation.push(t);
-                bodies.velocity.push([0.0; 3]);
-                bodies.spin.push([0.0; 3]);
+                bodies.push(shape, true, q, t);
             }
         }
         Self { bodies }
@@ -109,32 +101,12 @@ impl Crowd {
         overlap: Overlap,
         level: Level,
     ) -> PairList {
-        let built = || shapes.iter().zip(ordops);
-        let frames: Vec<_> = built().map(|(s, o)| ShapeFrame::new(s, &o.basis)).collect();
-        let places = Places::as_given(&self.bodies);
-        let mut rows = OrDopRows::new(places.len());
-        rows.update(
-            level,
-            &Crew::default(),
-            Posed {
-                frames: &frames,
-                bodies: &self.bodies,
-                places: &places,
-                balls: &[],
-            },
-            0..places.len(),
-            1,
-        );
-        let directions = ordops.first().map_or(DirectionSet::K6, |o| o.directions);
-        let tables = SlabTables::new(directions, built());
-        let columns = OrDopColumns {
-            rows: &rows.rows,
-            tables: &tables,
-            overlap,
-        };
+        let posed = PosedOrDops::new(shapes.iter().zip(ordops), &self.bodies, level);
         let (first, second): (Vec<u32>, Vec<u32>) = self.pairs().map(|[i, j]| (i, j)).unzip();
         let mut out = PairList::default();
-        columns.test_pairs(level, &first, &second, &mut out);
+        posed
+            .columns(overlap)
+            .test_pairs(level, &first, &second, &mut out);
         out
     }
 
@@ -173,16 +145,6 @@ pub fn builtin() -> Result<Vec<Shape>, TradeoffError> {
         .collect()
 }
 
-/// The or-DOP of a shape with other directions and axes.
-#[must_use]
-pub fn ordop_of(shape: &Shape, k: DirectionSet, axes: Axes) -> OrDop {
-    let basis = match axes {
-        Axes::Principal => Basis::principal(&Hull::of(&shape.vertices), &shape.vertices),
-        Axes::Model => Basis::MODEL,
-    };
-    OrDop::build(&shape.vertices, basis, k)
-}
-
 /// Measures a shape by `pairs` pairs in all; meshes are judged exactly on a tenth of them.
 ///
 /// # Errors
@@ -196,7 +158,7 @@ pub fn survival(shape: &Shape, pairs: u32, level: Level) -> Result<ShapeSurvival
     let mut ordops = Vec::new();
     for &k in DirectionSet::ALL {
         for &axes in Axes::ALL {
-            let ordop = [ordop_of(&shape[0], k, axes)];
+            let ordop = [shape[0].ordop_along(axes, k)];
             for &overlap in Overlap::ALL {
                 ordops.push(Survival {
                     k: k.k(),
@@ -231,7 +193,7 @@ pub fn survival(shape: &Shape, pairs: u32, level: Level) -> Result<ShapeSurvival
 /// 18-DOP hits outside of the spheres' hits, per hit inside, of `pairs` pairs up to [`FAR`] times as far apart.
 #[must_use]
 pub fn outside(shape: &[Shape], pairs: u32, level: Level) -> f64 {
-    let ordop = [ordop_of(&shape[0], DirectionSet::K18, Axes::Principal)];
+    let ordop = [shape[0].ordop_along(Axes::Principal, DirectionSet::K18)];
     let reach = 2.0 * f64::from(shape[0].ball.radius);
     let crowd = Crowd::new(shape, FAR, pairs, BATCHES as u64);
     let centre = |body: u32| {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::budget::{self, BudgetRow, ClockRow, Window};
-use super::counts::Tally;
+use super::counts::{Tally, share};
 use super::density::{self, Density};
 use super::interest::{self, InterestRow};
 use super::pays::{self, Line, Stretch};
@@ -16,9 +16,10 @@ use super::truth::{Judge, NarrowPhase, Sample, Truth, samples};
 use super::variant::{self, Variant};
 use super::{Estimate, TradeoffError};
 use crate::cost::calibrate::Effort;
-use crate::scene::settings::Strategy;
+use crate::pipeline::Culler;
 use crate::scene::{Scene, SceneFile};
 use crate::simd::Level;
+use crate::volume::Shape;
 
 /// How much is done.
 #[derive(Clone, Debug)]
@@ -150,7 +151,7 @@ pub fn study(
     let mut runs = Vec::new();
     for seed in 0..plan.seeds.max(1) {
         step("truth");
-        runs.push(judged_run(file, plan, file.spec.seed + seed)?);
+        runs.push(judged_run(file, plan, file.spec.seed.wrapping_add(seed))?);
     }
     let hits = sphere_hits(&runs[0], plan.level)?;
     let variants = variant::all(&runs[0].scene, hits.round() as u64);
@@ -206,13 +207,7 @@ fn judged_run(file: &SceneFile, plan: &Plan, seed: u64) -> Result<Run, TradeoffE
 
 /// Mean sphere hits a frame.
 fn sphere_hits(run: &Run, level: Level) -> Result<f64, TradeoffError> {
-    let mut settings = run.scene.cull.clone();
-    settings.strategy = Strategy::Sphere;
-    let spheres = Variant {
-        name: String::new(),
-        settings,
-        hulls: false,
-    };
+    let spheres = Variant::spheres(&run.scene.cull);
     let tally = Tally::of(&run.scene, &spheres, level, &run.samples, &run.truth)?;
     Ok(tally.reported as f64 / f64::from(tally.frames))
 }
@@ -263,10 +258,7 @@ fn row(variant: &Variant, at: usize, runs: &[Run], prices: &VariantPrices) -> Ro
         reported: over_runs(&|_, t| t.reported as f64 / f64::from(t.frames)),
         precision: over_runs(&|_, t| t.quality().precision),
         per_true: over_runs(&|_, t| t.quality().per_true),
-        recall: match total(|t| t.truth) {
-            0 => 1.0,
-            truth => total(|t| t.found) as f64 / truth as f64,
-        },
+        recall: share(total(|t| t.found), total(|t| t.truth)),
         volume_over_hull: variant.tightness(scene),
         volumes,
         predicted: recurring + construct / f64::from(scene.frames),
@@ -293,13 +285,7 @@ fn finish(
     step("narrow phase");
     let narrow_phase = narrow_phase(&judge, first, level)?;
     step("budgets");
-    let window = samples(
-        &Scene {
-            frames: plan.window.min(scene.frames),
-            ..scene.clone()
-        },
-        plan.window,
-    )?;
+    let window = first_frames(scene, plan.window)?;
     let window = Window {
         frames: &window,
         stride: plan.stride,
@@ -319,8 +305,6 @@ fn finish(
         .collect::<Result<Vec<_>, _>>()?;
     let lines: Vec<Line> = rows.iter().map(line).collect();
     let cheapest = pays::envelope(&lines);
-    let per_frame =
-        |run: &Run| run.truth.iter().map(Vec::len).sum::<usize>() as f64 / run.samples.len() as f64;
     Ok(Tradeoff {
         scene: scene.name.clone(),
         bodies: scene.bodies.len(),
@@ -328,7 +312,7 @@ fn finish(
         samples: first.samples.len(),
         seeds: runs.iter().map(|run| run.scene.seed).collect(),
         simd: level.name().to_owned(),
-        truth: Estimate::of(&runs.iter().map(per_frame).collect::<Vec<_>>()),
+        truth: true_pairs(runs),
         partners: 2.0 * hits / scene.bodies.len() as f64,
         advice: pays::advice(&cheapest, &narrow_phase),
         narrow_phase,
@@ -343,6 +327,22 @@ fn finish(
     })
 }
 
+/// Consecutive frames from the first on.
+fn first_frames(scene: &Scene, count: u32) -> Result<Vec<Sample>, TradeoffError> {
+    let scene = Scene {
+        frames: count.min(scene.frames),
+        ..scene.clone()
+    };
+    Ok(samples(&scene, count)?)
+}
+
+/// Pairs a frame whose meshes meet.
+fn true_pairs(runs: &[Run]) -> Estimate {
+    let meetings = |run: &Run| run.truth.iter().map(Vec::len).sum::<usize>() as f64;
+    let a_frame = |run: &Run| meetings(run) / run.samples.len() as f64;
+    Estimate::of(&runs.iter().map(a_frame).collect::<Vec<_>>())
+}
+
 fn line(row: &Row) -> Line {
     Line {
         name: row.name.clone(),
@@ -353,15 +353,14 @@ fn line(row: &Row) -> Line {
 
 /// Times the exact narrow phase on pairs whose spheres overlap.
 fn narrow_phase(judge: &Judge, run: &Run, level: Level) -> Result<NarrowPhase, TradeoffError> {
-    let mut settings = run.scene.cull.clone();
-    settings.strategy = Strategy::Sphere;
+    let settings = Variant::spheres(&run.scene.cull).settings;
     let bodies = &run.samples[0].bodies;
-    let mut culler = crate::pipeline::Culler::new(&run.scene.shapes, bodies, &settings, level)?;
+    let mut culler = Culler::new(&run.scene.shapes, bodies, &settings, level)?;
     Ok(judge.price(bodies, culler.cull(bodies).iter(), 2000)?)
 }
 
 /// One shape a mesh name: sizes of one mesh let the same shares through.
-fn distinct(scene: &Scene) -> impl Iterator<Item = &crate::volume::Shape> {
+fn distinct(scene: &Scene) -> impl Iterator<Item = &Shape> {
     let shapes = &scene.shapes;
     let first = |name: &str| shapes.iter().position(|shape| shape.name == name);
     shapes

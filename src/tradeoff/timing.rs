@@ -203,15 +203,7 @@ fn hull_prices(scene: &Scene, level: Level) -> Result<VolumeCosts, SettingsError
     let [mut misses, mut hits] = [(0.0, 0.0); 2];
     let mut hulls = HullTest::new(scene);
     for crowd in scenes(scene) {
-        let spheres = Variant {
-            name: String::new(),
-            settings: CullSettings {
-                strategy: Strategy::Sphere,
-                ..scene.cull.clone()
-            },
-            hulls: false,
-        };
-        let mut culler = Contender::new(&crowd, &spheres, level)?;
+        let mut culler = Contender::new(&crowd, &Variant::spheres(&scene.cull), level)?;
         let listed = culler.frame(&crowd.bodies);
         hulls.cull(&crowd.bodies, listed);
         let kept = hulls.kept.clone();

@@ -6,7 +6,7 @@ use crate::scene::Scene;
 use crate::scene::settings::{
     Axes, Budget, CullSettings, DirectionSet, Interest, Overlap, Strategy, Updates,
 };
-use crate::volume::{Basis, Hull, OrDop, Shape, mean_world_aligned_volume};
+use crate::volume::{Hull, Shape, mean_world_aligned_volume};
 
 /// Random rotations over which a world-aligned volume is averaged.
 const TURNS: u32 = 64;
@@ -23,8 +23,28 @@ pub struct Variant {
 }
 
 impl Variant {
+    /// Spheres alone, with a scene's other settings.
+    #[must_use]
+    pub fn spheres(own: &CullSettings) -> Self {
+        let settings = CullSettings {
+            strategy: Strategy::Sphere,
+            ..own.clone()
+        };
+        Self::of("sphere".into(), settings)
+    }
+
+    /// Spheres, then convex hulls.
+    #[must_use]
+    pub fn hulls(own: &CullSettings) -> Self {
+        Self {
+            name: "sphere + hull".into(),
+            hulls: true,
+            ..Self::spheres(own)
+        }
+    }
+
     /// A variant of the scene's settings.
-    fn of(name: String, settings: CullSettings) -> Self {
+    pub(super) fn of(name: String, settings: CullSettings) -> Self {
         Self {
             name,
             settings,
@@ -93,13 +113,8 @@ impl Variant {
 
 /// The shape with the or-DOP that the settings ask for.
 fn refit(shape: &Shape, settings: &CullSettings) -> Shape {
-    let vertices = &shape.vertices;
-    let basis = match settings.axes {
-        Axes::Principal => Basis::principal(&Hull::of(vertices), vertices),
-        Axes::Model => Basis::MODEL,
-    };
     Shape {
-        ordop: OrDop::build(vertices, basis, settings.k),
+        ordop: shape.ordop_along(settings.axes, settings.k),
         ..shape.clone()
     }
 }
@@ -114,7 +129,7 @@ pub fn all(scene: &Scene, hits: u64) -> Vec<Variant> {
         ..own.clone()
     };
     let mut list = vec![
-        Variant::of("sphere".into(), with(Strategy::Sphere)),
+        Variant::spheres(own),
         Variant::of("aabb".into(), with(Strategy::Aabb)),
         Variant::of("obb".into(), with(Strategy::Obb)),
     ];
@@ -134,11 +149,7 @@ pub fn all(scene: &Scene, hits: u64) -> Vec<Variant> {
     }
     list.extend(s_dops(own));
     list.extend(strategies(scene, hits));
-    list.push(Variant {
-        name: "sphere + hull".into(),
-        settings: with(Strategy::Sphere),
-        hulls: true,
-    });
+    list.push(Variant::hulls(own));
     list
 }
 

@@ -204,12 +204,8 @@ impl ContactSpec {
 
 /// Appends a body at rest.
 pub fn add(bodies: &mut Bodies, placed: &Placed, dynamic: bool) {
-    bodies.shape.push(placed.shape as u32); // shapes are few
-    bodies.dynamic.push(dynamic);
-    bodies.rotation.push(placed.rotation);
-    bodies.translation.push(placed.translation);
-    bodies.velocity.push([0.0; 3]);
-    bodies.spin.push([0.0; 3]);
+    let shape = placed.shape as u32; // shapes are few
+    bodies.push(shape, dynamic, placed.rotation, placed.translation);
 }
 
 /// One dynamic probe among static partners, each in contact with it: every tested pair is a near miss. Half of the

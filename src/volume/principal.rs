@@ -7,11 +7,22 @@
 use faer::{Mat, Side};
 use glam::{DMat3, DQuat, DVec3, Vec3};
 
-use super::{Basis, Hull};
+use super::{Axes, Basis, Hull};
 
 /// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are whatever rounding
 /// makes of them. Far above f32 rounding (2⁻²⁴), so a symmetric mesh is seen as such after any rotation.
 const TIE: f64 = 1.0 / 8192.0;
+
+impl Axes {
+    /// The basis for these vertices; only principal axes need their hull.
+    #[must_use]
+    pub fn basis(self, vertices: &[Vec3]) -> Basis {
+        match self {
+            Self::Principal => Basis::principal(&Hull::of(vertices), vertices),
+            Self::Model => Basis::MODEL,
+        }
+    }
+}
 
 impl Basis {
     /// The principal axes, longest first, snapped; the model axes when they are tied or the hull is flat.

@@ -71,15 +71,11 @@ impl Shape {
             ball,
             reach,
         } = place(mesh, spec)?;
-        let basis = match spec.axes {
-            Axes::Principal => Basis::principal(&Hull::of(&vertices), &vertices),
-            Axes::Model => Basis::MODEL,
-        };
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.clone(),
             reach,
-            ordop: OrDop::build(&vertices, basis, spec.directions),
+            ordop: OrDop::build(&vertices, spec.axes.basis(&vertices), spec.directions),
             ball,
             vertices,
         })
@@ -90,6 +86,12 @@ impl Shape {
     pub fn with_directions(mut self, directions: DirectionSet) -> Self {
         self.ordop = OrDop::build(&self.vertices, self.ordop.basis, directions);
         self
+    }
+
+    /// The or-DOP of these vertices along other axes, with other directions.
+    #[must_use]
+    pub fn ordop_along(&self, axes: Axes, directions: DirectionSet) -> OrDop {
+        OrDop::build(&self.vertices, axes.basis(&self.vertices), directions)
     }
 
     /// The oriented bounding box: an or-DOP of three slabs along the principal axes, whatever the or-DOP's own axes.

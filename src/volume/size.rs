@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Axes, Basis, DirectionSet, Hull, OrDop, Shape, mean_world_aligned_volume};
+use super::{Axes, DirectionSet, Hull, OrDop, Shape, mean_world_aligned_volume};
 
 /// Random rotations over which the volumes that are re-fitted each frame are averaged.
 const TURNS: u32 = 64;
@@ -44,10 +44,7 @@ impl Size {
         }
         sizes.push(size("obb".to_owned(), shape.obb(hull).volume()));
         for &axes in Axes::ALL {
-            let basis = match axes {
-                Axes::Principal => Basis::principal(hull, &shape.vertices),
-                Axes::Model => Basis::MODEL,
-            };
+            let basis = axes.basis(&shape.vertices);
             for &directions in DirectionSet::ALL {
                 let ordop = OrDop::build(&corners, basis, directions);
                 let name = format!("or-dop-{directions}-{axes}");

@@ -29,6 +29,7 @@
 mod axes;
 pub mod edges;
 pub mod kernel;
+mod posed;
 pub mod reach;
 pub mod slabs;
 pub mod support;
@@ -36,4 +37,5 @@ pub mod table;
 
 pub use axes::{O, Q, S, SHAPE, T};
 pub use kernel::{OrDopColumns, Tested};
+pub use posed::PosedOrDops;
 pub use table::SlabTables;

@@ -1,0 +1,57 @@
+//! The or-DOPs of one frame apart from a culler: what studies and benches test listed pairs of.
+
+use super::kernel::OrDopColumns;
+use super::table::SlabTables;
+use crate::crew::Crew;
+use crate::places::Places;
+use crate::scene::bodies::Bodies;
+use crate::scene::settings::Overlap;
+use crate::simd::Level;
+use crate::update::{OrDopRows, Posed, ShapeFrame};
+use crate::volume::{DirectionSet, OrDop, Shape};
+
+/// Rows and tables of bodies as they stand; pairs of them are pairs of bodies.
+#[derive(Debug)]
+pub struct PosedOrDops {
+    rows: OrDopRows,
+    tables: SlabTables,
+}
+
+impl PosedOrDops {
+    /// Poses the bodies. `shapes` gives each shape its or-DOP; all have the same directions.
+    #[must_use]
+    pub fn new<'a>(
+        shapes: impl Iterator<Item = (&'a Shape, &'a OrDop)> + Clone,
+        bodies: &Bodies,
+        level: Level,
+    ) -> Self {
+        let directions = shapes.clone().next().map(|(_, ordop)| ordop.directions);
+        let frames: Vec<_> = shapes
+            .clone()
+            .map(|(shape, ordop)| ShapeFrame::new(shape, &ordop.basis))
+            .collect();
+        let places = Places::as_given(bodies);
+        let mut rows = OrDopRows::new(places.len());
+        let posed = Posed {
+            frames: &frames,
+            bodies,
+            places: &places,
+            balls: &[],
+        };
+        rows.update(level, &Crew::default(), posed, 0..places.len(), 1);
+        Self {
+            rows,
+            tables: SlabTables::new(directions.unwrap_or(DirectionSet::K6), shapes),
+        }
+    }
+
+    /// As the pair test takes them.
+    #[must_use]
+    pub fn columns(&self, overlap: Overlap) -> OrDopColumns<'_> {
+        OrDopColumns {
+            rows: &self.rows.rows,
+            tables: &self.tables,
+            overlap,
+        }
+    }
+}
