@@ -48,12 +48,7 @@ impl SceneFile {
         };
         match Effects::new(&scene) {
             Ok(_) => Ok(scene),
-            Err(error) => {
-                let message = error.to_string();
-                Err(self
-                    .source
-                    .error(error.span, message, error.hint.to_owned()))
-            }
+            Err(error) => Err(self.wrong(error.span.clone(), &error.to_string(), error.hint)),
         }
     }
 
@@ -99,9 +94,7 @@ impl SceneFile {
         let Some(bounds) = &self.spec.bounds else {
             return Ok(None);
         };
-        let wrong = |span, message: &str, hint: &str| {
-            Err(self.source.error(span, message, hint.to_owned()))
-        };
+        let wrong = |span, message, hint| Err(self.wrong(span, message, hint));
         let partners = match (&bounds.get_ref().side, &bounds.get_ref().partners) {
             (Some(side), None) => return Ok(Some(side.get_ref().0)),
             (None, Some(partners)) => partners,
@@ -178,10 +171,11 @@ impl SceneFile {
         let first = bodies.translation.len();
         let count_span = group.spec.count.as_ref().map_or(0..0, Spanned::span);
         let Some(side) = side else {
-            let hint = "add [box] with side = … or partners = …".to_owned();
-            return Err(self
-                .source
-                .error(count_span, "seeded bodies need a box", hint));
+            return Err(self.wrong(
+                count_span,
+                "seeded bodies need a box",
+                "add [box] with side = … or partners = …",
+            ));
         };
         let shapes = bodies.shape[first..first + group.bodies].to_vec();
         let radius = |shape: &u32| library.get(*shape).ball.radius;
@@ -195,7 +189,7 @@ impl SceneFile {
                 "the side must be at least {}, for room to move well above",
                 2.0 * widest
             );
-            return Err(self.source.error(bounds, message, hint));
+            return Err(self.wrong(bounds, &message, &hint));
         }
         let wished = group.spec.placement.as_ref();
         let placement = wished.map_or(Placement::Uniform, |placement| *placement.get_ref());
@@ -207,8 +201,7 @@ impl SceneFile {
             group.stream(Purpose::Centre),
         );
         let mut placer = placer.map_err(|(message, hint)| {
-            self.source
-                .error(wished.map_or(count_span, Spanned::span), message, hint)
+            self.wrong(wished.map_or(count_span, Spanned::span), &message, &hint)
         })?;
         let mut turns = group.stream(Purpose::Rotation);
         for shape in &shapes {
@@ -281,7 +274,6 @@ impl SceneFile {
             }
             first += group.bodies;
         }
-        self.source
-            .error(span, error.to_string(), error.hint.to_owned())
+        self.wrong(span, &error.to_string(), error.hint)
     }
 }

@@ -10,6 +10,7 @@ use thiserror::Error;
 
 use super::bodies::Bodies;
 use crate::rounding::LIMIT;
+use crate::simd::{MAX_WIDTH, MOST_QUADS};
 use crate::volume::Shape;
 
 /// A body outside of the contract.
@@ -27,8 +28,17 @@ pub struct ContractError {
     pub hint: &'static str,
 }
 
+/// The most bodies that a culler can number: one a quad of its table of balls, and a vector of padding.
+pub const MOST_BODIES: usize = MOST_QUADS - MAX_WIDTH;
+
+/// How to mend a rotation.
+const INVERTIBLE: &str = "a quaternion (x, y, z, w) has a finite norm above zero";
+
+/// How to mend a vector.
+const WITHIN_LIMIT: &str = "coordinates are finite and at most 2^60 in size";
+
 /// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, velocity and spin likewise within 2⁶⁰, a shape
-/// that exists and is no larger than 2⁶⁰.
+/// that exists and is no larger than 2⁶⁰, no more than [`MOST_BODIES`].
 ///
 /// # Errors
 /// A body that breaks it, the first in the first column at fault; columns of unequal length.
@@ -36,24 +46,40 @@ pub fn check_bodies(bodies: &Bodies, shapes: &[Shape]) -> Result<(), ContractErr
     check_columns(bodies)?;
     let sound: Vec<bool> = shapes.iter().map(has_sound_size).collect();
     for (body, &number) in bodies.shape.iter().enumerate() {
-        match sound.get(number as usize) {
-            Some(true) => {}
-            Some(false) => {
-                let Shape {
-                    name, reach, ball, ..
-                } = &shapes[number as usize];
-                let value = format!("{name} with reach {reach} and {ball:?}");
-                return refuse(body, "shape", value, "sizes are finite and at most 2^60");
-            }
-            None => {
-                let value = format!("{number} of {}", shapes.len());
-                return refuse(body, "shape", value, "shapes are counted from 0");
-            }
+        if sound.get(number as usize) != Some(&true) {
+            return check_shape(body, number, shapes);
         }
     }
     check_poses(bodies, 0..bodies.len())?;
     for (name, column) in [("velocity", &bodies.velocity), ("spin", &bodies.spin)] {
         check_vectors(name, column, 0)?;
+    }
+    Ok(())
+}
+
+/// Checks that a body's shape exists and is no larger than 2⁶⁰.
+pub(crate) fn check_shape(body: usize, number: u32, shapes: &[Shape]) -> Result<(), ContractError> {
+    let Some(shape) = shapes.get(number as usize) else {
+        let value = format!("{number} of {}", shapes.len());
+        return refuse(body, "shape", value, "shapes are counted from 0");
+    };
+    if !has_sound_size(shape) {
+        let Shape {
+            name, reach, ball, ..
+        } = shape;
+        let value = format!("{name} with reach {reach} and {ball:?}");
+        return refuse(body, "shape", value, "sizes are finite and at most 2^60");
+    }
+    Ok(())
+}
+
+/// Checks one pose with a translation in f64.
+pub(crate) fn check_pose(body: usize, q: &[f32; 4], t: &[f64; 3]) -> Result<(), ContractError> {
+    if !is_invertible(q) {
+        return refuse(body, "rotation", format!("{q:?}"), INVERTIBLE);
+    }
+    if !t.iter().all(|x| x.abs() <= f64::from(LIMIT)) {
+        return refuse(body, "translation", format!("{t:?}"), WITHIN_LIMIT);
     }
     Ok(())
 }
@@ -66,13 +92,24 @@ pub(crate) fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), Co
     match rotations.iter().position(|q| !is_invertible(q)) {
         None => Ok(()),
         Some(at) => {
-            let hint = "a quaternion (x, y, z, w) has a finite norm above zero";
-            refuse(first + at, "rotation", format!("{:?}", rotations[at]), hint)
+            let value = format!("{:?}", rotations[at]);
+            refuse(first + at, "rotation", value, INVERTIBLE)
         }
     }
 }
 
+/// Checks that so many bodies can be numbered.
+pub(crate) fn check_number(bodies: usize) -> Result<(), ContractError> {
+    if bodies <= MOST_BODIES {
+        return Ok(());
+    }
+    let value = format!("{bodies} of {MOST_BODIES} at most");
+    let hint = "keep separate cullers for what can't meet";
+    refuse(MOST_BODIES, "number", value, hint)
+}
+
 fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
+    check_number(bodies.len())?;
     let columns = [
         ("dynamic", bodies.dynamic.len()),
         ("rotation", bodies.rotation.len()),
@@ -113,11 +150,10 @@ fn check_vectors(
         return Ok(());
     }
     let at = column.iter().position(|v| !is_within_limit(v)).unwrap_or(0);
-    let hint = "coordinates are finite and at most 2^60 in size";
-    refuse(first + at, name, format!("{:?}", column[at]), hint)
+    refuse(first + at, name, format!("{:?}", column[at]), WITHIN_LIMIT)
 }
 
-fn refuse(
+pub(crate) fn refuse(
     body: usize,
     quantity: &'static str,
     value: String,
@@ -133,7 +169,7 @@ fn refuse(
 
 // All limits are written as `x ≤ limit`, and what isn't so is refused: a NaN fails.
 
-pub(crate) fn has_sound_size(shape: &Shape) -> bool {
+fn has_sound_size(shape: &Shape) -> bool {
     // The reach bounds the ball's centre and radius; a NaN in them it does not.
     [shape.reach, shape.ball.radius, shape.ball.centre.length()]
         .iter()
@@ -144,7 +180,7 @@ fn is_within_limit(v: &[f32; 3]) -> bool {
     (v[0].abs() <= LIMIT) & (v[1].abs() <= LIMIT) & (v[2].abs() <= LIMIT)
 }
 
-pub(crate) fn is_invertible(q: &[f32; 4]) -> bool {
+fn is_invertible(q: &[f32; 4]) -> bool {
     // In f64, where the square of no f32 underflows or overflows.
     let [x, y, z, w] = q.map(f64::from);
     let norm2 = x * x + y * y + z * z + w * w;

@@ -1,5 +1,7 @@
 //! A group of alike bodies as a scene file lists it, its keys checked against each other.
 
+use std::ops::Range;
+
 use toml::Spanned;
 
 use super::error::SceneError;
@@ -48,17 +50,19 @@ impl SceneFile {
             total = total.saturating_add(group.bodies);
             if total > MOST_BODIES {
                 let span = group.spec.count.as_ref().map_or(spec.span(), Spanned::span);
+                let message = format!("{total} bodies are too many");
                 let hint = format!("a scene has up to {MOST_BODIES} bodies");
-                return Err(self
-                    .source
-                    .error(span, format!("{total} bodies are too many"), hint));
+                return Err(self.wrong(span, &message, &hint));
             }
             groups.push(group);
         }
         if total == 0 {
             let end = self.source.text.len();
-            let hint = "add [[bodies]] with a mesh or shape, and count = … or poses = …".to_owned();
-            return Err(self.source.error(end..end, "the scene has no bodies", hint));
+            return Err(self.wrong(
+                end..end,
+                "the scene has no bodies",
+                "add [[bodies]] with a mesh or shape, and count = … or poses = …",
+            ));
         }
         Ok(groups)
     }
@@ -69,82 +73,15 @@ impl SceneFile {
         spanned: &'a Spanned<GroupSpec>,
     ) -> Result<Group<'a>, SceneError> {
         let spec = spanned.get_ref();
-        let wrong = |span, message: &str, hint: &str| {
-            Err(self.source.error(span, message, hint.to_owned()))
-        };
-        let form = match (&spec.mesh, &spec.shape) {
-            (Some(mesh), None) => Form::File(mesh),
-            (None, Some(shape)) => Form::Procedural(shape, &spec.sizes),
-            (Some(_), Some(shape)) => {
-                return wrong(
-                    shape.span(),
-                    "`mesh` and `shape` exclude each other",
-                    "keep one of them",
-                );
-            }
-            (None, None) => {
-                return wrong(
-                    spanned.span(),
-                    "bodies without a form",
-                    "add mesh = \"file\" or shape = \"name\"",
-                );
-            }
-        };
-        if let (Form::File(_), Some((size, _))) = (form, spec.sizes.first_key_value()) {
-            return wrong(
-                size.span(),
-                "`sizes` belong to a `shape`",
-                "scale a mesh by its `radius`",
-            );
-        }
-        let bodies = match (&spec.count, &spec.poses) {
-            // A u32 fits into the usize of every machine that holds such a scene.
-            (Some(count), None) => count.get_ref().get() as usize,
-            (None, Some(poses)) => poses.get_ref().len(),
-            (Some(_), Some(poses)) => {
-                return wrong(
-                    poses.span(),
-                    "`count` and `poses` exclude each other",
-                    "keep one of them",
-                );
-            }
-            (None, None) => {
-                return wrong(
-                    spanned.span(),
-                    "how many bodies?",
-                    "add count = … or poses = [[qx, qy, qz, qw, tx, ty, tz]]",
-                );
-            }
-        };
-        self.check_motion(spec, bodies)?;
-        if let (Some(placement), Some(_)) = (&spec.placement, &spec.poses) {
-            return wrong(
-                placement.span(),
-                "`placement` and `poses` exclude each other",
-                "keep one of them",
-            );
-        }
+        let form = self.form_of(spanned)?;
+        let bodies = self.bodies_of(spanned)?;
         let origin = match &spec.origin {
             Some(origin) => *origin.get_ref(),
             None if spec.poses.is_some() && spec.radius.is_none() => Origin::File,
             None => Origin::Ball,
         };
-        if let Some(radius) = &spec.radius {
-            if origin == Origin::File {
-                return wrong(
-                    radius.span(),
-                    "`radius` scales, origin = \"file\" keeps the size",
-                    "keep one of them",
-                );
-            }
-            if radius.get_ref().min == 0.0 {
-                return wrong(
-                    radius.span(),
-                    "a radius of 0",
-                    "a radius is above 0; leave it out to keep the mesh's size",
-                );
-            }
-        }
+        self.check_motion(spec, bodies)?;
+        self.check_place(spec, origin)?;
         Ok(Group {
             spec,
             number,
@@ -155,23 +92,93 @@ impl SceneFile {
         })
     }
 
+    /// What the group's bodies look like: a mesh file or a procedural shape.
+    fn form_of<'a>(&self, spanned: &'a Spanned<GroupSpec>) -> Result<Form<'a>, SceneError> {
+        let spec = spanned.get_ref();
+        match (&spec.mesh, &spec.shape) {
+            (Some(mesh), None) => match spec.sizes.first_key_value() {
+                None => Ok(Form::File(mesh)),
+                Some((size, _)) => Err(self.wrong(
+                    size.span(),
+                    "`sizes` belong to a `shape`",
+                    "scale a mesh by its `radius`",
+                )),
+            },
+            (None, Some(shape)) => Ok(Form::Procedural(shape, &spec.sizes)),
+            (Some(_), Some(shape)) => Err(self.wrong(
+                shape.span(),
+                "`mesh` and `shape` exclude each other",
+                "keep one of them",
+            )),
+            (None, None) => Err(self.wrong(
+                spanned.span(),
+                "bodies without a form",
+                "add mesh = \"file\" or shape = \"name\"",
+            )),
+        }
+    }
+
+    /// How many bodies the group has.
+    fn bodies_of(&self, spanned: &Spanned<GroupSpec>) -> Result<usize, SceneError> {
+        let spec = spanned.get_ref();
+        match (&spec.count, &spec.poses) {
+            // A u32 fits into the usize of every machine that holds such a scene.
+            (Some(count), None) => Ok(count.get_ref().get() as usize),
+            (None, Some(poses)) => Ok(poses.get_ref().len()),
+            (Some(_), Some(poses)) => Err(self.wrong(
+                poses.span(),
+                "`count` and `poses` exclude each other",
+                "keep one of them",
+            )),
+            (None, None) => Err(self.wrong(
+                spanned.span(),
+                "how many bodies?",
+                "add count = … or poses = [[qx, qy, qz, qw, tx, ty, tz]]",
+            )),
+        }
+    }
+
+    /// Checks the keys that say where bodies begin and how large they are.
+    fn check_place(&self, spec: &GroupSpec, origin: Origin) -> Result<(), SceneError> {
+        if let (Some(placement), Some(_)) = (&spec.placement, &spec.poses) {
+            return Err(self.wrong(
+                placement.span(),
+                "`placement` and `poses` exclude each other",
+                "keep one of them",
+            ));
+        }
+        match &spec.radius {
+            Some(radius) if origin == Origin::File => Err(self.wrong(
+                radius.span(),
+                "`radius` scales, origin = \"file\" keeps the size",
+                "keep one of them",
+            )),
+            Some(radius) if radius.get_ref().min == 0.0 => Err(self.wrong(
+                radius.span(),
+                "a radius of 0",
+                "a radius is above 0; leave it out to keep the mesh's size",
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks the keys that say how bodies begin to move.
     fn check_motion(&self, spec: &GroupSpec, bodies: usize) -> Result<(), SceneError> {
-        let wrong = |span, message: String, hint: &str| {
-            Err(self.source.error(span, message, hint.to_owned()))
-        };
         if let Some(velocities) = &spec.velocities {
             if let Some(speed) = &spec.speed {
-                let message = "`speed` and `velocities` exclude each other".to_owned();
-                return wrong(speed.span(), message, "keep one of them");
+                return Err(self.wrong(
+                    speed.span(),
+                    "`speed` and `velocities` exclude each other",
+                    "keep one of them",
+                ));
             }
             let given = velocities.get_ref().len();
             if spec.poses.is_none() || given != bodies {
-                let message = format!("{given} velocities for {bodies} bodies");
-                return wrong(
+                return Err(self.wrong(
                     velocities.span(),
-                    message,
+                    &format!("{given} velocities for {bodies} bodies"),
                     "give one velocity a pose; seeded bodies take `speed`",
-                );
+                ));
             }
         }
         let moving = spec
@@ -180,12 +187,17 @@ impl SceneFile {
             .map(Spanned::span)
             .or(spec.velocities.as_ref().map(Spanned::span));
         match moving {
-            Some(span) if spec.fixed => wrong(
+            Some(span) if spec.fixed => Err(self.wrong(
                 span,
-                "static bodies don't move".to_owned(),
+                "static bodies don't move",
                 "leave out the velocity, or `static = true`",
-            ),
+            )),
             _ => Ok(()),
         }
+    }
+
+    /// An error at a place of the file, with its remedy.
+    pub(super) fn wrong(&self, span: Range<usize>, message: &str, hint: &str) -> SceneError {
+        self.source.error(span, message, hint.to_owned())
     }
 }

@@ -79,12 +79,25 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW];
 }
 
+/// [`Lanes::compress`] and [`Lanes::pack`] lane by lane, where the CPU has no instruction for them.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[inline(always)]
+pub(super) fn pack_lanes<T: Copy, const N: usize>(keep: u32, lanes: [T; N], out: &mut [T]) {
+    let out = &mut out[..N];
+    let mut kept = 0;
+    for (lane, value) in lanes.into_iter().enumerate() {
+        // `kept` ≤ lane, so a value that isn't kept is overwritten or lies behind the kept ones.
+        out[kept] = value;
+        kept += (keep >> lane & 1) as usize;
+    }
+}
+
 /// The greatest code that leads to a quad of a table with `len` quads, of which there is one at least.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub(super) fn last_code(len: usize) -> u32 {
     assert!(len > 0, "the table has a quad");
-    (len.min(1 << 28) as u32 - 1) << 4 | 15
+    (len.min(super::MOST_QUADS) as u32 - 1) << 4 | 15
 }
 
 /// Copies codes to `to`, none of them above `limit`.

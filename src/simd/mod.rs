@@ -32,6 +32,9 @@ pub use level::{Level, LevelError};
 /// The widest tier's lanes: columns are padded by this much so that any tier may load past their end.
 pub const MAX_WIDTH: usize = 16;
 
+/// Quads that codes can tell apart: a code is an index of 28 bits over a lane of 4.
+pub const MOST_QUADS: usize = 1 << 28;
+
 /// Floats in a row that [`Lanes::load_transposed`] turns into columns: one cache line.
 pub const ROW: usize = 16;
 

@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::{Lanes, Sealed, float_operators};
+use super::lanes::{Lanes, Sealed, float_operators, pack_lanes};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has SSE2, which is part of x86-64 itself.
@@ -178,24 +178,13 @@ impl Lanes for Sse2 {
     }
     #[inline(always)]
     fn compress(self, keep: u32, values: I4, out: &mut [u32]) {
-        let out = &mut out[..4];
-        let mut kept = 0;
-        for (lane, value) in self.array(values).into_iter().enumerate() {
-            // `kept` ≤ lane, so a value that isn't kept is overwritten or lies behind the kept ones.
-            out[kept] = value;
-            kept += (keep >> lane & 1) as usize;
-        }
+        pack_lanes(keep, self.array(values), out);
     }
     #[inline(always)]
     fn pack(self, keep: u32, values: F4, out: &mut [f32]) {
         let mut lanes = [0.0; 4];
         self.store(values, &mut lanes);
-        let out = &mut out[..4];
-        let mut kept = 0;
-        for (lane, value) in lanes.into_iter().enumerate() {
-            out[kept] = value;
-            kept += (keep >> lane & 1) as usize;
-        }
+        pack_lanes(keep, lanes, out);
     }
     #[inline(always)]
     fn load_quads(self, from: &[[f32; 4]]) -> [F4; 4] {

@@ -47,7 +47,7 @@ use crate::crew::CrewError;
 use crate::pipeline::Culler;
 use crate::rounding::LIMIT;
 use crate::scene::bodies::Bodies;
-use crate::scene::contract::{ContractError, has_sound_size, is_invertible};
+use crate::scene::contract::{ContractError, check_number, check_pose, check_shape, refuse};
 use crate::scene::settings::{CullSettings, Interest, SettingsError};
 use crate::simd::Level;
 use crate::volume::Shape;
@@ -216,12 +216,12 @@ impl World {
         rotation: [f32; 4],
         translation: [f64; 3],
     ) -> Result<(), WorldError> {
-        let body = Body {
-            rotation,
-            translation,
-            ..self.body(id)?
-        };
-        self.set(id, body)
+        let slot = self.slot(id)?;
+        check_pose(slot, &rotation, &translation)?;
+        self.replaced |= !self.bodies.dynamic[slot];
+        self.bodies.rotation[slot] = rotation;
+        self.translation[slot] = translation;
+        Ok(())
     }
 
     /// The bodies of interest from now on, for the strategies that look for them.
@@ -359,37 +359,15 @@ impl World {
     }
 
     /// Checks a body that is to take a slot.
-    fn check(&self, slot: usize, body: &Body) -> Result<(), WorldError> {
-        let refuse = |quantity, value, hint| {
-            Err(WorldError::Contract(ContractError {
-                body: slot,
-                quantity,
-                value,
-                hint,
-            }))
-        };
-        let Some(shape) = self.shapes.get(body.shape as usize) else {
-            let value = format!("{} of {}", body.shape, self.shapes.len());
-            return refuse("shape", value, "shapes are counted from 0");
-        };
-        if !has_sound_size(shape) {
-            let value = format!("{} with reach {}", shape.name, shape.reach);
-            return refuse("shape", value, "sizes are finite and at most 2^60");
-        }
-        if !is_invertible(&body.rotation) {
-            let hint = "a quaternion (x, y, z, w) has a finite norm above zero";
-            return refuse("rotation", format!("{:?}", body.rotation), hint);
-        }
-        let limit = f64::from(LIMIT);
-        if !body.translation.iter().all(|x| x.abs() <= limit) {
-            let value = format!("{:?}", body.translation);
-            let hint = "coordinates are finite and at most 2^60 in size";
-            return refuse("translation", value, hint);
-        }
-        let grown = f64::from(shape.reach) + 1.25 * f64::from(body.margin);
-        if !(body.margin >= 0.0 && grown <= limit) {
+    fn check(&self, slot: usize, body: &Body) -> Result<(), ContractError> {
+        check_number(slot + 1)?;
+        check_shape(slot, body.shape, &self.shapes)?;
+        check_pose(slot, &body.rotation, &body.translation)?;
+        let reach = f64::from(self.shapes[body.shape as usize].reach);
+        let grown = reach + 1.25 * f64::from(body.margin);
+        if !(body.margin >= 0.0 && grown <= f64::from(LIMIT)) {
             let hint = "a length of 0 or more; with it the shape is at most 2^60 in size";
-            return refuse("margin", format!("{}", body.margin), hint);
+            return refuse(slot, "margin", format!("{}", body.margin), hint);
         }
         Ok(())
     }

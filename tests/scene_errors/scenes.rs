@@ -1,0 +1,106 @@
+//! Scenes whose parts don't go together: box and bodies, meshes, effects, culling.
+
+use miette::Diagnostic;
+use sdop::scene::SceneFile;
+
+use super::{SOUND, changed, posed, refusal};
+
+#[test]
+fn boxes_that_hold_no_bodies_are_refused() {
+    assert_eq!(
+        changed("side = 20", "side = 1.5"),
+        "a.toml:3:1: a box of side 1.5 is too small for bodies of radius 1.0000001 | the side must be at least 2.0000002, for room \
+         to move well above"
+    );
+    assert_eq!(
+        changed("side = 20", "partners = 1e9"),
+        "a.toml:3:1: a box of side 0.0040619657 is too small for bodies of radius 1.0000001 | the side must be at least 2.0000002, for \
+         room to move well above"
+    );
+    assert_eq!(
+        changed("[box]\nside = 20\n", ""),
+        "a.toml:5:9: seeded bodies need a box | add [box] with side = … or partners = …"
+    );
+    assert_eq!(
+        changed(
+            "count = 3",
+            "count = 3\nplacement = { plane = { thickness = 19 } }"
+        ),
+        "a.toml:8:13: a slice of thickness 19 doesn't fit into a box of side 20 | the thickness can be up to 18"
+    );
+    assert_eq!(
+        changed(
+            "count = 3",
+            "count = 3\nplacement = { clusters = { number = 2, radius = 9.5 } }"
+        ),
+        "a.toml:8:13: clusters of radius 9.5 don't fit into a box of side 20 | the radius can be up to 9"
+    );
+    assert_eq!(
+        changed(
+            "count = 3",
+            "count = 3\nplacement = { clusters = { number = 4, radius = 1 } }"
+        ),
+        "a.toml:8:13: 4 clusters of 3 bodies | a cluster has one body at least"
+    );
+    assert_eq!(
+        changed("count = 3", "count = 4000000000"),
+        "a.toml:7:9: 4000000000 bodies are too many | a scene has up to 16777216 bodies"
+    );
+}
+
+#[test]
+fn missing_and_broken_meshes_are_pointed_at() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("cube.tri"), "1 1\nnonsense").unwrap();
+    let refusal = |mesh: &str| {
+        let text = SOUND.replace("shape = \"box\"", &format!("mesh = \"{mesh}\""));
+        let error = SceneFile::parse(&text, "a.toml", directory.path())
+            .unwrap()
+            .build()
+            .unwrap_err();
+        (
+            error.to_string(),
+            error
+                .help()
+                .map(|hint| hint.to_string())
+                .unwrap_or_default(),
+        )
+    };
+    let (message, hint) = refusal("cub.tri");
+    assert!(
+        message.starts_with("a.toml:6:8: ") && message.contains("cub.tri"),
+        "{message}"
+    );
+    assert_eq!(
+        hint,
+        "mesh paths are relative to the scene file; did you mean `cube.tri`?"
+    );
+    let (message, _) = refusal("cube.tri");
+    assert!(
+        message.starts_with("a.toml:6:8: ") && message.contains("cube.tri:1"),
+        "{message}"
+    );
+}
+
+#[test]
+fn effects_and_culling_that_the_scene_cannot_have_are_refused() {
+    let with = |table: &str| refusal(&format!("{}{table}", posed("[0, 0, 0, 1, 5, 0, 0]")));
+    assert_eq!(
+        with("[effects]\nwalls = \"specular\"\n"),
+        "a.toml:8:9: walls: the scene has no box | add [box] with side = …, or leave the walls out"
+    );
+    assert_eq!(
+        with("[effects]\nwalls = \"specular\"\n[box]\nside = 10\n"),
+        "a.toml:8:9: walls: dynamic body 1 of radius 0.86602545 at [5.0, 0.0, 0.0] starts beyond a wall of a box of side \
+         10 | the box is centred on the origin and holds whole spheres: enlarge it or move the body"
+    );
+    assert_eq!(
+        with("[effects]\ngravity = { acceleration = [0, 0, -9.81], axis = [0, 0, 1] }\n"),
+        "a.toml:8:11: gravity: an axis without a period | give the period in seconds, or leave the axis out"
+    );
+    assert_eq!(
+        with("[cull]\ninterest = [2]\n"),
+        "interest: body 2 of a scene of 2 | bodies are counted from 0"
+    );
+    assert!(with("[cull]\nstrategy = \"s-dop-time-critical\"\n").contains("needs `budget`"));
+}
