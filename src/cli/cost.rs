@@ -2,17 +2,19 @@
 
 use std::fmt::Write as _;
 
+use comfy_table::Table;
+use miette::miette;
 use sdop::cost::calibrate::{self, Effort, calibrate};
-use sdop::cost::predict::{Prices, Terms};
+use sdop::cost::predict::{Price, Prices};
 use sdop::reproduce::terms::{self, Cost};
 use sdop::reproduce::{Run, run_scene};
 use sdop::scene::Scene;
 use sdop::scene::settings::{CullSettings, Strategy};
 use serde::Serialize;
 
-use super::Outcome;
-use super::output::{Format, emit, progress, table};
+use super::output::{Format, emit, progress, rows, table};
 use super::scene_args::{MachineArgs, SceneArgs};
+use super::{Outcome, prices};
 
 /// Frames measured when neither the scene nor a flag wants fewer.
 const FRAMES: u32 = 200;
@@ -32,7 +34,7 @@ pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
     /// Runs to measure: the scene's seed and those after it
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: u64,
     #[command(flatten)]
     machine: MachineArgs,
@@ -80,12 +82,19 @@ fn measure(args: &Args) -> miette::Result<Report> {
     let level = args.machine.level();
     let frames = args.scene.frames().unwrap_or(FRAMES.min(scene.frames));
     let strategies = match args.scene.strategy() {
+        Some(Strategy::None) => {
+            return Err(miette!(
+                help = "leave --strategy out to compare all that do",
+                "the control culls nothing: the formula has no term for it"
+            ));
+        }
         Some(strategy) => vec![strategy],
         None => possible(&scene),
     };
     let bar = progress(calibrate::SCENES as u64 + args.seeds, &scene.name);
     let prices = calibrate(&scene, &strategies, level, EFFORT, |_| bar.inc(1))?;
-    let seeds: Vec<u64> = (scene.seed..).take(args.seeds as usize).collect();
+    let seed = |n| scene.seed.wrapping_add(n);
+    let seeds: Vec<u64> = (0..args.seeds).map(seed).collect();
     let mut runs = Vec::new();
     for &seed in &seeds {
         file.spec.seed = seed;
@@ -121,16 +130,12 @@ fn possible(scene: &Scene) -> Vec<Strategy> {
 }
 
 fn line(cost: Cost, frames: u32) -> Line {
-    let frames = f64::from(frames);
+    let [total_predicted, total_measured] = cost.totals(frames);
     Line {
-        total_predicted: sum(&cost, |terms| terms.construct) + frames * cost.predicted,
-        total_measured: cost.construct.mean + frames * cost.measured.mean,
         cost,
+        total_predicted,
+        total_measured,
     }
-}
-
-fn sum(cost: &Cost, term: fn(&Terms) -> f64) -> f64 {
-    cost.terms.iter().map(term).sum()
 }
 
 fn text(report: &Report) -> String {
@@ -154,37 +159,25 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
         "{scene}: {bodies} bodies, {frames} frames, {} seeds; {simd}, 1 thread",
         seeds.len()
     )?;
+    let calibrated = calibrate::SCENES;
+    let price = |price: &Price| prices::cells(price, hundredths);
     writeln!(
         out,
-        "\nPrices, calibrated on {} other scenes",
-        calibrate::SCENES
+        "\nPrices, calibrated on {calibrated} other scenes\n{}",
+        rows(&prices::COLUMNS, &report.prices.0, price)
     )?;
-    let mut rows = table(&[
-        "volume",
-        "Co, ms",
-        "Cu, ns",
-        "F, ns a frame",
-        "F, ns a body",
-        "Cv hit, ns",
-        "Cv miss, ns",
-    ]);
-    for price in &report.prices.0 {
-        let costs = price.costs;
-        let mut row = vec![
-            price.volume.to_string(),
-            format!("{:.2}", 1e3 * costs.construct),
-        ];
-        row.extend(
-            [costs.update, costs.frame, costs.body, costs.hit, costs.miss]
-                .map(|seconds| format!("{:.2}", 1e9 * seconds)),
-        );
-        rows.add_row(row);
-    }
-    writeln!(out, "{rows}")?;
     writeln!(
         out,
-        "\nµs a frame, and ms for all {frames} frames with construction"
+        "\nµs a frame, and ms for all {frames} frames with construction\n{}",
+        strategy_rows(report)
     )?;
+    writeln!(
+        out,
+        "measured: median over frames, mean over seeds ± its 95 % interval"
+    )
+}
+
+fn strategy_rows(report: &Report) -> Table {
     let mut rows = table(&[
         "strategy",
         "Nu·Cu",
@@ -199,25 +192,24 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
     ]);
     for line in &report.strategies {
         let cost = &line.cost;
-        let mut row = vec![cost.strategy.to_string()];
-        let terms = [
-            sum(cost, |t| t.update),
-            sum(cost, |t| t.finding),
-            sum(cost, |t| t.test),
+        let a_frame = [
+            cost.sum(|t| t.update),
+            cost.sum(|t| t.finding),
+            cost.sum(|t| t.test),
+            cost.predicted,
+            cost.measured.mean,
+            cost.measured.half_width,
         ];
-        row.extend(terms.map(|seconds| format!("{:.2}", 1e6 * seconds)));
-        let sides = [cost.predicted, cost.measured.mean, cost.measured.half_width];
-        row.extend(sides.map(|seconds| format!("{:.2}", 1e6 * seconds)));
+        let totals = [line.total_predicted, line.total_measured];
+        let mut row = vec![cost.strategy.to_string()];
+        row.extend(a_frame.map(|seconds| hundredths(1e6 * seconds)));
         row.push(format!("{:+.1} %", 100.0 * cost.residual));
-        row.extend(
-            [line.total_predicted, line.total_measured]
-                .map(|seconds| format!("{:.2}", 1e3 * seconds)),
-        );
+        row.extend(totals.map(|seconds| hundredths(1e3 * seconds)));
         rows.add_row(row);
     }
-    writeln!(out, "{rows}")?;
-    writeln!(
-        out,
-        "measured: median over frames, mean over seeds ± its 95 % interval"
-    )
+    rows
+}
+
+fn hundredths(value: f64) -> String {
+    format!("{value:.2}")
 }

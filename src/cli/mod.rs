@@ -6,6 +6,8 @@ mod cost;
 mod files;
 mod mesh;
 mod output;
+mod palette;
+mod prices;
 mod recording;
 mod reproduce;
 mod run;

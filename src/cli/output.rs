@@ -69,6 +69,13 @@ pub fn table(header: &[&str]) -> Table {
     table
 }
 
+/// The same with a row an item.
+pub fn rows<T>(header: &[&str], items: &[T], row: impl Fn(&T) -> Vec<String>) -> Table {
+    let mut table = table(header);
+    table.add_rows(items.iter().map(row));
+    table
+}
+
 /// A progress bar on standard error; it shows on a terminal only.
 pub fn progress(steps: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::new(steps);

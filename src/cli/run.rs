@@ -1,7 +1,6 @@
 //! `sdop run`: simulate and cull one scene, and say what it counted and cost.
 
 use std::fmt::Write as _;
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use sdop::cost::{Counters, Seconds, VolumeCounters};
@@ -38,8 +37,8 @@ pub struct Args {
     #[command(flatten)]
     machine: MachineArgs,
     /// Threads that cull; nothing but time depends on their number
-    #[arg(long, value_name = "N", default_value_t = NonZeroUsize::MIN)]
-    threads: NonZeroUsize,
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: u16,
 }
 
 /// What is printed.
@@ -86,7 +85,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         None => None,
     };
     let bar = progress(scene.frames.into(), &scene.name);
-    let simulation = Simulation::new(&scene, level)?.with_threads(args.threads.get())?;
+    let threads = usize::from(args.threads);
+    let simulation = Simulation::new(&scene, level)?.with_threads(threads)?;
     let summary = simulation.run(|frame| -> miette::Result<()> {
         if let Some(recorder) = &mut recorder {
             recorder.frame(frame)?;
@@ -98,8 +98,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(recorder) = recorder {
         recorder.finish()?;
     }
-    let machine = (level, args.threads.get());
-    emit(args.format, &report(&scene, machine, &summary), |report| {
+    let report = report(&scene, (level, threads), &summary);
+    emit(args.format, &report, |report| {
         text(report, &scene, &summary)
     })?;
     Ok(Outcome::Passed)

@@ -19,8 +19,8 @@ pub struct SceneArgs {
     /// The scene file (TOML), for example data/scenes/paper-500.toml
     scene: PathBuf,
     /// Frames to cull; the first is the scene as placed
-    #[arg(long)]
-    frames: Option<NonZeroU32>,
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    frames: Option<u32>,
     /// Where all random draws start
     #[arg(long)]
     seed: Option<u64>,
@@ -93,7 +93,7 @@ impl SceneArgs {
     /// A scene that can't be read, or settings that no scene can have.
     pub fn read(&self) -> miette::Result<SceneFile> {
         let mut file = SceneFile::read(&self.scene)?;
-        if let Some(frames) = self.frames {
+        if let Some(frames) = self.frames.and_then(NonZeroU32::new) {
             file.spec.frames = frames;
         }
         if let Some(seed) = self.seed {
@@ -105,7 +105,7 @@ impl SceneArgs {
 
     /// The frames asked for, if any.
     pub fn frames(&self) -> Option<u32> {
-        self.frames.map(NonZeroU32::get)
+        self.frames
     }
 
     /// The strategy asked for, if any.

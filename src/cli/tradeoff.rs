@@ -5,7 +5,6 @@ mod plot;
 mod tables;
 
 use std::fs;
-use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
@@ -35,8 +34,8 @@ pub struct Args {
     #[arg(long)]
     quick: bool,
     /// Runs, each with a seed of its own from the scene's on [default: 5, or 2 with --quick]
-    #[arg(long)]
-    seeds: Option<NonZeroU64>,
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    seeds: Option<u64>,
     /// Write the page, the figures, JSON and CSV into this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -109,7 +108,7 @@ fn compare(args: &Args) -> miette::Result<Tradeoff> {
 fn plan(args: &Args) -> Plan {
     let quick = |quick, thorough| if args.quick { quick } else { thorough };
     Plan {
-        seeds: args.seeds.map_or(quick(2, 5), NonZeroU64::get),
+        seeds: args.seeds.unwrap_or(quick(2, 5)),
         samples: quick(6, 20) as u32,
         pairs: quick(8_000, 80_000) as u32,
         window: quick(30, 120) as u32,

@@ -32,7 +32,7 @@ pub struct Args {
     /// Scenes to run and judge, meshes included
     scenes: Vec<PathBuf>,
     /// Seeded rounds: each judges 8,192 near and 89,400 random pairs
-    #[arg(long, value_name = "N", default_value_t = 2)]
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(..=1_000_000))]
     seeds: u64,
     /// The first seed
     #[arg(long, value_name = "SEED", default_value_t = 1)]
@@ -66,6 +66,13 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         return record(directory);
     }
     let start = Instant::now();
+    // A scene that can't be built is said before the long work.
+    let build = |path: &PathBuf| SceneFile::read(path).and_then(|file| file.build());
+    let scenes = args
+        .scenes
+        .iter()
+        .map(build)
+        .collect::<Result<Vec<_>, _>>()?;
     let levels = match args.simd {
         Some(level) => vec![level],
         None => [Level::available(), vec![Level::SCALAR_FLUSH]].concat(),
@@ -77,34 +84,25 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         failures.extend(ledger.failures);
     };
     add("hard cases".to_owned(), hard_cases(&levels)?);
-    let deadline = args.time.map(|s| start + Duration::from_secs(s));
+    // A time beyond the clock's end is none.
+    let deadline = args.time.map(Duration::from_secs);
+    let deadline = deadline.and_then(|time| start.checked_add(time));
     let [near, random] = rounds(args, &levels, deadline)?;
     add("near pairs".to_owned(), near);
     add("random pairs".to_owned(), random);
-    for path in &args.scenes {
-        let built = SceneFile::read(path)?.build()?;
+    for built in &scenes {
         let bar = progress(args.frames as u64, &built.name);
-        let ledger = scene(&built, args.frames, &levels, |n| {
-            bar.set_position(n as u64);
-        });
-        let ledger = ledger.into_diagnostic()?;
+        let ledger = scene(built, args.frames, &levels, |n| bar.set_position(n as u64))?;
         bar.finish_and_clear();
-        add(
-            format!(
-                "{}, {} bodies, {} frames",
-                built.name,
-                built.bodies.len(),
-                args.frames
-            ),
-            ledger,
-        );
+        let (name, bodies, frames) = (&built.name, built.bodies.len(), args.frames);
+        add(format!("{name}, {bodies} bodies, {frames} frames"), ledger);
     }
     report.finish(start.elapsed());
     emit(args.format, &report, Report::tables)?;
     if report.missed == 0 {
         return Ok(Outcome::Passed);
     }
-    for failure in failures.iter().take(1) {
+    if let Some(failure) = failures.first() {
         show(failure, &args.out)?;
     }
     Ok(Outcome::Failed)
@@ -142,7 +140,7 @@ fn rounds(args: &Args, levels: &[Level], deadline: Option<Instant>) -> miette::R
             if late || n >= jobs || failed.load(Ordering::Relaxed) {
                 return Ok(ledgers);
             }
-            let seed = args.first_seed + n / variants.len() as u64;
+            let seed = args.first_seed.wrapping_add(n / variants.len() as u64);
             let variant = variants[n as usize % variants.len()];
             for (source, ledger) in [Source::Near, Source::Random].into_iter().zip(&mut ledgers) {
                 let judged = round(source, seed, variant, levels)

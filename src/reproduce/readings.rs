@@ -36,6 +36,15 @@ pub const TABLE_1_STRATEGIES: [Strategy; 4] = [
 ];
 
 impl Reading {
+    /// The reading under which figures show a strategy: where a list is kept, its entries count.
+    #[must_use]
+    pub const fn shown(strategy: Strategy) -> Self {
+        match strategy {
+            Strategy::SDopBatch => Self::TestsAndList,
+            _ => Self::OwnTests,
+        }
+    }
+
     /// Hits in percent of the tests of `frames` frames with `bodies` bodies.
     #[must_use]
     pub fn percentage(self, strategy: Strategy, run: &Counters, frames: u32, bodies: usize) -> f64 {

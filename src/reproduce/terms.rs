@@ -29,6 +29,23 @@ pub struct Cost {
     pub construct: Estimate,
 }
 
+impl Cost {
+    /// A term summed over the strategy's volumes.
+    pub fn sum(&self, term: fn(&Terms) -> f64) -> f64 {
+        self.terms.iter().map(term).sum()
+    }
+
+    /// T of so many frames, construction included, in seconds: predicted and measured.
+    #[must_use]
+    pub fn totals(&self, frames: u32) -> [f64; 2] {
+        let frames = f64::from(frames);
+        [
+            self.sum(|t| t.construct) + frames * self.predicted,
+            self.construct.mean + frames * self.measured.mean,
+        ]
+    }
+}
+
 /// Costs, scene by scene, strategy by strategy; the control costs nothing that the formula has a term for.
 #[must_use]
 pub fn table(results: &Results) -> Vec<Cost> {

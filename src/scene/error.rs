@@ -102,7 +102,13 @@ impl Source {
         let end = self.text.len();
         let span = error.span().unwrap_or(end..end);
         let message = error.message().trim_end();
-        self.error(span, message, hint_of(message))
+        let hint = hint_of(message).or_else(|| {
+            let named_so = Path::new(&self.file)
+                .extension()
+                .is_some_and(|e| e == "toml");
+            (!named_so).then(|| "a scene file is written in TOML; see data/scenes".to_owned())
+        });
+        self.error(span, message, hint)
     }
 }
 

@@ -1,32 +1,31 @@
 //! A scene's run judged frame by frame, end to end: every mesh pair that meets exactly must be in every strategy's list.
 
+use miette::Diagnostic;
 use rayon::prelude::*;
 use thiserror::Error;
 
 use super::answers::{Answers, Predicate};
 use super::judged::Shapes;
 use super::rounds::{Ledger, RoundError, check, ways};
-use crate::effects::{EffectError, Effects};
+use crate::effects::Effects;
 use crate::scene::Scene;
 use crate::scene::bodies::Bodies;
-use crate::scene::contract::ContractError;
 use crate::simd::Level;
+use crate::simulate::SimulationError;
 
 /// Frames that are judged at once, to bound memory; a culler lives for one block.
 const BLOCK: usize = 10;
 
 /// Why a scene can't be judged.
-#[derive(Debug, Error)]
+#[derive(Debug, Error, Diagnostic)]
 pub enum JudgeError {
     /// Culling or the reference refuses it.
     #[error(transparent)]
     Round(#[from] RoundError),
-    /// An effect that the scene can't have.
+    /// The scene can't be run on.
     #[error(transparent)]
-    Effect(#[from] EffectError),
-    /// A body left the contract.
-    #[error(transparent)]
-    Contract(#[from] ContractError),
+    #[diagnostic(transparent)]
+    Simulation(#[from] SimulationError),
 }
 
 /// Runs `frames` frames of a scene, judges every pair by every predicate, meshes included, and culls the frames in every
@@ -42,15 +41,20 @@ pub fn scene(
 ) -> Result<Ledger, JudgeError> {
     let shapes = Shapes::new(scene.shapes.clone()).map_err(RoundError::from)?;
     let ways = ways(scene.cull.k, scene.cull.axes);
-    let mut effects = Effects::new(scene)?;
+    let mut effects = Effects::new(scene).map_err(SimulationError::from)?;
     let mut bodies = scene.bodies.clone();
     let mut ledger = Ledger::default();
     let mut behind = 0;
     while behind < frames {
         let mut block: Vec<Bodies> = Vec::new();
         while block.len() < BLOCK.min(frames - behind) {
-            if behind + block.len() > 0 {
-                effects.step(&mut bodies)?;
+            let frame = behind + block.len();
+            if frame > 0 {
+                let step = effects.step(&mut bodies);
+                step.map_err(|error| SimulationError::Contract {
+                    frame: frame as u32,
+                    error,
+                })?;
             }
             block.push(bodies.clone());
         }

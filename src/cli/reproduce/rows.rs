@@ -11,6 +11,7 @@ use sdop::reproduce::rates::{self, Rate};
 use sdop::reproduce::readings::{self, Cell};
 use sdop::reproduce::terms::{self, Cost};
 use sdop::reproduce::{Estimate, Results, Run, Shard, claims, study};
+use sdop::scene::settings::Strategy;
 use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -163,6 +164,16 @@ impl Tables {
         ])
     }
 
+    /// The scenes with costs.
+    pub fn scenes(&self) -> Vec<&str> {
+        distinct(self.costs.iter().map(|cost| cost.scene.as_str()))
+    }
+
+    /// The strategies with costs.
+    pub fn strategies(&self) -> Vec<Strategy> {
+        distinct(self.costs.iter().map(|cost| cost.strategy))
+    }
+
     fn checks(&self) -> Vec<CheckRow<'_>> {
         let mut rows = Vec::new();
         for claim in self.claims.iter().chain(&self.study) {
@@ -179,6 +190,17 @@ impl Tables {
         }
         rows
     }
+}
+
+/// Each item once, in the order of first sight.
+pub fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut seen = Vec::new();
+    for item in items {
+        if !seen.contains(&item) {
+            seen.push(item);
+        }
+    }
+    seen
 }
 
 /// SHA-256 of the counts as their CSV file has them.

@@ -9,18 +9,12 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use sdop::tradeoff::Tradeoff;
 
+use crate::cli::palette::{BLUE, GREEN, ORANGE, PALE, PURPLE, SKY, VERMILION};
+
 const SIZE: (u32, u32) = (960, 600);
 const FONT: &str = "sans-serif";
-/// Colours that stay apart for most eyes (Okabe & Ito).
-const COLOURS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(0, 0, 0),
-];
+/// A colour a curve, in this order.
+const COLOURS: [RGBColor; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK];
 
 type Points = Vec<(f64, f64)>;
 
@@ -50,7 +44,7 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
             .y_desc("precision: true pairs / reported pairs")
             .label_style((FONT, 14))
             .light_line_style(TRANSPARENT)
-            .bold_line_style(RGBColor(228, 228, 228))
+            .bold_line_style(PALE)
             .draw()?;
         let steps = front.iter().map(|(point, _)| *point);
         chart.draw_series(LineSeries::new(steps, BLACK.mix(0.4).stroke_width(2)))?;
@@ -164,7 +158,7 @@ where
             .y_desc(axes[1])
             .label_style((FONT, 14))
             .light_line_style(TRANSPARENT)
-            .bold_line_style(RGBColor(228, 228, 228))
+            .bold_line_style(PALE)
             .draw()?;
         for (place, (name, points)) in curves.iter().enumerate() {
             let colour = COLOURS[place % COLOURS.len()];

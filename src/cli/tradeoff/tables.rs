@@ -7,7 +7,7 @@ use sdop::tradeoff::shapes::ShapeSurvival;
 use sdop::tradeoff::timing::VolumeTerms;
 use sdop::tradeoff::{Estimate, Row, Tradeoff};
 
-use super::super::output::table;
+use crate::cli::output::{rows, table};
 
 /// Everything, for people.
 pub fn text(result: &Tradeoff) -> String {
@@ -58,7 +58,7 @@ pub fn plus_minus(estimate: &Estimate, scale: f64, digits: usize) -> String {
 
 /// A line a variant; the Pareto front is marked.
 pub fn variants(result: &Tradeoff) -> Table {
-    let mut rows = table(&[
+    let header = [
         "variant",
         "front",
         "precision",
@@ -72,11 +72,8 @@ pub fn variants(result: &Tradeoff) -> Table {
         "Co ms",
         "T µs",
         "µs / frame",
-    ]);
-    for row in &result.rows {
-        rows.add_row(variant(row));
-    }
-    rows
+    ];
+    rows(&header, &result.rows, variant)
 }
 
 fn variant(row: &Row) -> Vec<String> {
@@ -109,7 +106,7 @@ fn variant(row: &Row) -> Vec<String> {
 
 /// A line an order and budget.
 pub fn budgets(result: &Tradeoff) -> Table {
-    let mut rows = table(&[
+    let header = [
         "order",
         "tests / frame",
         "refined",
@@ -117,9 +114,9 @@ pub fn budgets(result: &Tradeoff) -> Table {
         "recall",
         "mean age",
         "oldest",
-    ]);
-    for row in &result.budgets {
-        rows.add_row([
+    ];
+    rows(&header, &result.budgets, |row| {
+        vec![
             row.order.clone(),
             row.tests.to_string(),
             format!("{:.3}", row.refined),
@@ -127,28 +124,26 @@ pub fn budgets(result: &Tradeoff) -> Table {
             format!("{}", row.recall),
             format!("{:.1}", row.mean_age),
             row.oldest.to_string(),
-        ]);
-    }
-    rows
+        ]
+    })
 }
 
 /// A line a clock budget.
 pub fn clock(result: &Tradeoff) -> Table {
-    let mut rows = table(&["budget µs", "refined", "overrun p50", "overrun p99"]);
-    for row in &result.clock {
-        rows.add_row([
+    let header = ["budget µs", "refined", "overrun p50", "overrun p99"];
+    rows(&header, &result.clock, |row| {
+        vec![
             row.microseconds.to_string(),
             format!("{:.3}", row.refined),
             format!("{:+.1}", row.p50),
             format!("{:+.1}", row.p99),
-        ]);
-    }
-    rows
+        ]
+    })
 }
 
 /// A line an interest set.
 pub fn interest(result: &Tradeoff) -> Table {
-    let mut rows = table(&[
+    let header = [
         "of interest",
         "or-DOP tests",
         "reported",
@@ -156,9 +151,9 @@ pub fn interest(result: &Tradeoff) -> Table {
         "recall",
         "µs / frame",
         "lazy µs",
-    ]);
-    for row in &result.interest {
-        rows.add_row([
+    ];
+    rows(&header, &result.interest, |row| {
+        vec![
             row.bodies.to_string(),
             format!("{:.1}", row.tests),
             format!("{:.1}", row.reported),
@@ -166,9 +161,8 @@ pub fn interest(result: &Tradeoff) -> Table {
             format!("{}", row.quality.recall),
             format!("{:.1}", 1e6 * row.seconds),
             format!("{:.1}", 1e6 * row.lazy_seconds),
-        ]);
-    }
-    rows
+        ]
+    })
 }
 
 /// A line a density, a column an S-DOP.
@@ -259,8 +253,8 @@ pub fn sizes(result: &Tradeoff) -> Table {
         );
     }
     let column = |place: usize| -> Vec<f64> {
-        let sizes = result.shapes.iter().map(|s| s.sizes[place].over_hull);
-        sizes.flatten().collect()
+        let size = |shape: &ShapeSurvival| shape.sizes.get(place)?.over_hull;
+        result.shapes.iter().filter_map(size).collect()
     };
     let mean = |place| {
         let column = column(place);
@@ -276,7 +270,7 @@ pub fn sizes(result: &Tradeoff) -> Table {
 
 /// A line an arithmetic and tier.
 pub fn safety(result: &Tradeoff) -> Table {
-    let mut rows = table(&[
+    let header = [
         "strategy",
         "arithmetic",
         "simd",
@@ -284,9 +278,9 @@ pub fn safety(result: &Tradeoff) -> Table {
         "extra",
         "lost",
         "µs / frame",
-    ]);
-    for row in &result.safety {
-        rows.add_row([
+    ];
+    rows(&header, &result.safety, |row| {
+        vec![
             row.strategy.clone(),
             row.arithmetic.clone(),
             row.simd.clone(),
@@ -294,7 +288,6 @@ pub fn safety(result: &Tradeoff) -> Table {
             row.extra.to_string(),
             row.lost.to_string(),
             format!("{:.1}", 1e6 * row.seconds),
-        ]);
-    }
-    rows
+        ]
+    })
 }

@@ -1,13 +1,16 @@
 //! T per strategy and N: the predicted terms stacked, the measured time as a mark.
 
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use sdop::reproduce::paper_name;
 use sdop::reproduce::terms::Cost;
 
-use super::style::{GREY, PALE, PARTS, anchored, ends, label, legend, text, titled};
+use super::style::{PARTS, anchored, ends, label, legend, quiet, text, titled};
 use super::{Area, Drawn};
 use crate::cli::reproduce::rows::Tables;
+
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// One panel a strategy, each with its own scale.
 pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {
@@ -21,92 +24,61 @@ pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {
         .map(|part| (part.name, part.colour, false))
         .collect();
     legend(&keys, (14, 12), &parts)?;
-    let mut strategies = Vec::new();
-    for cost in &tables.costs {
-        if !strategies.contains(&cost.strategy) {
-            strategies.push(cost.strategy);
-        }
-    }
     let panels = body.split_evenly((2, 3));
-    for (panel, strategy) in panels.iter().zip(strategies) {
-        let costs: Vec<&Cost> = tables
-            .costs
-            .iter()
-            .filter(|cost| cost.strategy == strategy)
-            .collect();
-        stack(panel, paper_name(strategy), &costs)?;
+    for (area, strategy) in panels.iter().zip(tables.strategies()) {
+        let of = |cost: &&Cost| cost.strategy == strategy;
+        let costs: Vec<&Cost> = tables.costs.iter().filter(of).collect();
+        panel(area, paper_name(strategy), &costs)?;
     }
     Ok(())
 }
 
-fn stack(panel: &Area<'_>, title: &str, costs: &[&Cost]) -> Drawn {
-    let top = costs
-        .iter()
-        .map(|cost| 1e6 * cost.measured.mean.max(cost.predicted))
-        .fold(0.0, f64::max);
-    let columns = costs.len() as f64;
-    let mut chart = ChartBuilder::on(panel)
+fn panel(area: &Area<'_>, title: &str, costs: &[&Cost]) -> Drawn {
+    let highest = |cost: &&Cost| 1e6 * cost.measured.mean.max(cost.predicted);
+    let top = costs.iter().map(highest).fold(0.0, f64::max);
+    let mut chart = ChartBuilder::on(area)
         .caption(title, text(15))
         .margin(10)
         .x_label_area_size(26)
         .y_label_area_size(48)
-        .build_cartesian_2d(0.0..columns, 0.0..1.2 * top)?;
-    chart
-        .configure_mesh()
+        .build_cartesian_2d(0.0..costs.len() as f64, 0.0..1.2 * top)?;
+    quiet(&mut chart.configure_mesh())
         .disable_x_mesh()
         .disable_x_axis()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(PALE)
-        .axis_style(GREY)
         .y_labels(5)
         .y_label_formatter(&|microseconds| format!("{microseconds}"))
-        .label_style(text(12))
         .draw()?;
     for (i, cost) in costs.iter().enumerate() {
-        let x = i as f64;
-        let mut base = 0.0;
-        for part in &PARTS {
-            let height = 1e6 * (part.of)(&cost.terms);
-            chart.draw_series([Rectangle::new(
-                [(x + 0.15, base), (x + 0.85, base + height)],
-                part.colour.filled(),
-            )])?;
-            base += height;
-        }
-        let [lo, hi] = ends(&cost.measured).map(|seconds| 1e6 * seconds);
-        let middle = x + 0.5;
-        chart.draw_series([PathElement::new(
-            vec![(middle, lo), (middle, hi)],
-            BLACK.stroke_width(2),
-        )])?;
-        chart.draw_series([Circle::new(
-            (middle, 1e6 * cost.measured.mean),
-            4,
-            BLACK.filled(),
-        )])?;
-        let value = match 1e6 * cost.measured.mean {
-            microseconds if microseconds < 10.0 => format!("{microseconds:.1}"),
-            microseconds => format!("{microseconds:.0}"),
-        };
-        let top = hi.max(base);
-        label(
-            chart.plotting_area(),
-            &(middle, top),
-            (0, -8),
-            value,
-            anchored(11, HPos::Center, VPos::Bottom),
-        )?;
-        let name = cost
-            .scene
-            .replace("paper-", "")
-            .replace("crowded-500", "crowded");
-        label(
-            chart.plotting_area(),
-            &(middle, 0.0),
-            (0, 8),
-            name,
-            anchored(12, HPos::Center, VPos::Top),
-        )?;
+        column(&mut chart, i as f64, cost)?;
     }
     Ok(())
+}
+
+/// One scene's stack with its mark, its value above and its name below.
+fn column(chart: &mut Chart<'_, '_>, x: f64, cost: &Cost) -> Drawn {
+    let mut base = 0.0;
+    for part in &PARTS {
+        let height = 1e6 * (part.of)(&cost.terms);
+        let corners = [(x + 0.15, base), (x + 0.85, base + height)];
+        chart.draw_series([Rectangle::new(corners, part.colour.filled())])?;
+        base += height;
+    }
+    let (middle, mean) = (x + 0.5, 1e6 * cost.measured.mean);
+    let [lo, hi] = ends(&cost.measured).map(|seconds| 1e6 * seconds);
+    let whisker = vec![(middle, lo), (middle, hi)];
+    chart.draw_series([PathElement::new(whisker, BLACK.stroke_width(2))])?;
+    chart.draw_series([Circle::new((middle, mean), 4, BLACK.filled())])?;
+    let digits = usize::from(mean < 10.0);
+    let value = format!("{mean:.digits$}");
+    let (top, above) = (
+        (middle, hi.max(base)),
+        anchored(11, HPos::Center, VPos::Bottom),
+    );
+    label(chart.plotting_area(), &top, (0, -8), value, above)?;
+    let name = cost
+        .scene
+        .replace("paper-", "")
+        .replace("crowded-500", "crowded");
+    let (foot, below) = ((middle, 0.0), anchored(12, HPos::Center, VPos::Top));
+    label(chart.plotting_area(), &foot, (0, 8), name, below)
 }

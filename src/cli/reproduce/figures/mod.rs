@@ -2,6 +2,7 @@
 
 mod costs;
 mod frame_rates;
+mod percent;
 mod residuals;
 mod sphere;
 mod style;

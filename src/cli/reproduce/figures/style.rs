@@ -1,6 +1,8 @@
-//! What the figures share: colours that the colour-blind tell apart (Okabe & Ito 2008), fonts, whiskers, legends.
+//! What the figures share: fonts, whiskers, legends, and a colour a strategy.
 
+use plotters::chart::MeshStyle;
 use plotters::coord::CoordTranslate;
+use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use sdop::cost::predict::{Terms, Volume};
@@ -8,20 +10,17 @@ use sdop::reproduce::Estimate;
 use sdop::scene::settings::Strategy;
 
 use super::Area;
-
-pub const FONT: &str = "sans-serif";
-pub const GREY: RGBColor = RGBColor(110, 110, 110);
-pub const PALE: RGBColor = RGBColor(225, 225, 225);
+use crate::cli::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};
 
 /// A strategy's colour in every figure.
 pub fn colour(strategy: Strategy) -> RGBColor {
     match strategy {
         Strategy::None => RGBColor(90, 90, 90),
-        Strategy::Sphere => RGBColor(0, 114, 178),
-        Strategy::SDopObjectOfInterest => RGBColor(86, 180, 233),
-        Strategy::SDopSequential => RGBColor(0, 158, 115),
-        Strategy::SDopBatch => RGBColor(230, 159, 0),
-        _ => RGBColor(213, 94, 0),
+        Strategy::Sphere => BLUE,
+        Strategy::SDopObjectOfInterest => SKY,
+        Strategy::SDopSequential => GREEN,
+        Strategy::SDopBatch => ORANGE,
+        _ => VERMILION,
     }
 }
 
@@ -36,12 +35,12 @@ pub struct Part {
 pub const PARTS: [Part; 5] = [
     Part {
         name: "Nu·Cu spheres",
-        colour: RGBColor(0, 114, 178),
+        colour: BLUE,
         of: |terms| of(terms, |t| t.update, true),
     },
     Part {
         name: "Nu·Cu or-DOPs",
-        colour: RGBColor(204, 121, 167),
+        colour: PURPLE,
         of: |terms| of(terms, |t| t.update, false),
     },
     Part {
@@ -51,12 +50,12 @@ pub const PARTS: [Part; 5] = [
     },
     Part {
         name: "Nv·Cv spheres",
-        colour: RGBColor(86, 180, 233),
+        colour: SKY,
         of: |terms| of(terms, |t| t.test, true),
     },
     Part {
         name: "Nv·Cv or-DOPs",
-        colour: RGBColor(230, 159, 0),
+        colour: ORANGE,
         of: |terms| of(terms, |t| t.test, false),
     },
 ];
@@ -72,12 +71,25 @@ fn of(terms: &[Terms], term: fn(&Terms) -> f64, spheres: bool) -> f64 {
 
 /// Text at a size, dark grey.
 pub fn text(size: i32) -> TextStyle<'static> {
-    (FONT, size).into_font().color(&RGBColor(40, 40, 40))
+    ("sans-serif", size)
+        .into_font()
+        .color(&RGBColor(40, 40, 40))
 }
 
 /// Text with an anchor.
 pub fn anchored(size: i32, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
     text(size).pos(Pos::new(horizontal, vertical))
+}
+
+/// Axes and lines that stay behind the data.
+pub fn quiet<'m, 'a, 'b, X: Ranged, Y: Ranged, B: DrawingBackend>(
+    mesh: &'m mut MeshStyle<'a, 'b, X, Y, B>,
+) -> &'m mut MeshStyle<'a, 'b, X, Y, B> {
+    mesh.light_line_style(TRANSPARENT)
+        .bold_line_style(PALE)
+        .axis_style(GREY)
+        .label_style(text(12))
+        .axis_desc_style(text(13))
 }
 
 /// A finite interval's ends, or the mean twice for one seed alone.

@@ -5,7 +5,6 @@ use std::fmt::{Result, Write as _};
 use sdop::reproduce::paper_name;
 use sdop::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
 use sdop::reproduce::terms::Cost;
-use sdop::scene::settings::Strategy;
 
 use super::text::{interval, number};
 use crate::cli::output::table;
@@ -31,10 +30,7 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
     )?;
     let mut rows = table(&heads);
     for strategy in TABLE_1_STRATEGIES {
-        let reading = match strategy {
-            Strategy::SDopBatch => Reading::TestsAndList,
-            _ => Reading::OwnTests,
-        };
+        let reading = Reading::shown(strategy);
         let of = |cell: &&Cell| cell.reading == reading && cell.strategy == strategy;
         let cell = |cell: &Cell| {
             let paper = cell
@@ -50,7 +46,7 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
         "{rows}\n\nCulling, µs a frame, and how far the formula's prediction is off"
     )?;
     let mut rows = table(&heads);
-    for strategy in strategies(tables) {
+    for strategy in tables.strategies() {
         let of = |cost: &&Cost| cost.strategy == strategy;
         let cell = |cost: &Cost| {
             format!(
@@ -67,15 +63,4 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
         writeln!(out, "  {:<12} {}", claim.verdict().name(), claim.claim)?;
     }
     Ok(())
-}
-
-/// The strategies with costs, each once.
-fn strategies(tables: &Tables) -> Vec<Strategy> {
-    let mut strategies = Vec::new();
-    for cost in &tables.costs {
-        if !strategies.contains(&cost.strategy) {
-            strategies.push(cost.strategy);
-        }
-    }
-    strategies
 }
