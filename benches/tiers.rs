@@ -3,8 +3,6 @@
 //! `cargo bench --bench tiers` ends with a Markdown table of the medians and their ratios to the reference.
 
 mod common;
-#[path = "../tests/support/mod.rs"]
-mod support;
 
 use std::cell::RefCell;
 use std::hint::black_box;
@@ -14,8 +12,8 @@ use criterion::Criterion;
 use sdop::cost::measure::median;
 use sdop::pipeline::Culler;
 use sdop::simd::Level;
+use sdop::verify::{Shapes, judged};
 use sdop_reference as reference;
-use support::{Frame, judged_overlap};
 
 /// Seconds an iteration, sample by sample.
 type Samples = RefCell<Vec<f64>>;
@@ -50,18 +48,12 @@ fn main() {
         });
         rows.push((level.name(), seconds));
     }
-    let overlap = judged_overlap(scene.cull.overlap);
-    let mut judged = Frame::new(scene.shapes.clone(), scene.bodies.clone());
+    let overlap = judged::overlap(scene.cull.overlap);
+    let shapes = Shapes::new(scene.shapes.clone()).unwrap_or_else(|error| panic!("{error}"));
     let plain = measure(&mut criterion, "s-dop, reference", |i| {
-        judged.bodies.clone_from(&frames[i % frames.len()]);
-        black_box(
-            reference::pairs(
-                &judged.judged_bodies(),
-                reference::Strategy::Sequential,
-                overlap,
-            )
-            .len(),
-        );
+        let bodies = shapes.bodies(&frames[i % frames.len()]);
+        let bodies = bodies.unwrap_or_else(|error| panic!("{error}"));
+        black_box(reference::pairs(&bodies, reference::Strategy::Sequential, overlap).len());
     });
     rows.push(("plain reference", plain));
     criterion.final_summary();

@@ -7,11 +7,13 @@ mod support;
 
 use sdop::pairs::PairList;
 use sdop::pipeline::Culler;
+use sdop::scene::bodies::Bodies;
 use sdop::scene::settings::{Axes, CullSettings, Interest, Overlap, Strategy, Updates};
 use sdop::simd::Level;
+use sdop::verify::{Shapes, judged};
 use sdop::volume::DirectionSet;
 use sdop_reference as reference;
-use support::{Frame, judged_directions, judged_overlap, random_bodies, shapes};
+use support::{random_bodies, shapes};
 
 const STRATEGIES: [Strategy; 8] = [
     Strategy::Sphere,
@@ -24,10 +26,18 @@ const STRATEGIES: [Strategy; 8] = [
     Strategy::Obb,
 ];
 
+/// A frame as both sides take it.
+struct Frame {
+    shapes: Shapes,
+    bodies: Bodies,
+}
+
 fn frame(seed: u64, k: DirectionSet, axes: Axes) -> Frame {
     let shapes = shapes(k, axes);
-    let bodies = random_bodies(seed, 120, 7.0, shapes.len());
-    Frame::new(shapes, bodies)
+    Frame {
+        bodies: random_bodies(seed, 120, 7.0, shapes.len()),
+        shapes: Shapes::new(shapes).unwrap(),
+    }
 }
 
 fn settings(strategy: Strategy, k: DirectionSet, overlap: Overlap) -> CullSettings {
@@ -41,12 +51,12 @@ fn settings(strategy: Strategy, k: DirectionSet, overlap: Overlap) -> CullSettin
 }
 
 fn cull(frame: &Frame, settings: &CullSettings, level: Level) -> PairList {
-    let mut culler = Culler::new(&frame.shapes, &frame.bodies, settings, level).unwrap();
+    let mut culler = Culler::new(&frame.shapes.built, &frame.bodies, settings, level).unwrap();
     culler.cull(&frame.bodies).clone()
 }
 
 fn judge(frame: &Frame, settings: &CullSettings) -> Vec<[u32; 2]> {
-    let bodies = frame.judged_bodies();
+    let bodies = frame.shapes.bodies(&frame.bodies).unwrap();
     let interest: Vec<bool> = (0..bodies.len()).map(|i| [1, 5, 8].contains(&i)).collect();
     let strategy = match settings.strategy {
         Strategy::Sphere => reference::Strategy::Sphere,
@@ -55,11 +65,11 @@ fn judge(frame: &Frame, settings: &CullSettings) -> Vec<[u32; 2]> {
         Strategy::SDopBatch => reference::Strategy::Batch,
         Strategy::SDopObjectOfInterest => reference::Strategy::ObjectOfInterest(&interest),
         Strategy::Aabb => reference::Strategy::Aabb,
-        Strategy::KDop => reference::Strategy::KDop(judged_directions(settings.k)),
+        Strategy::KDop => reference::Strategy::KDop(judged::directions(settings.k)),
         Strategy::Obb => reference::Strategy::Obb,
         Strategy::None | Strategy::SDopTimeCritical => unreachable!("not judged here"),
     };
-    let pairs = reference::pairs(&bodies, strategy, judged_overlap(settings.overlap));
+    let pairs = reference::pairs(&bodies, strategy, judged::overlap(settings.overlap));
     pairs.into_iter().map(|(i, j)| [i, j]).collect()
 }
 
@@ -117,14 +127,15 @@ fn every_tier_reports_the_same_list() {
 fn the_number_of_shapes_changes_no_list() {
     for &k in DirectionSet::ALL {
         let few = frame(13, k, Axes::Principal);
-        let n = few.shapes.len();
-        let twice: Vec<_> = few.shapes.iter().chain(&few.shapes).cloned().collect();
+        let once = &few.shapes.built;
+        let (n, twice) = (once.len(), [once.as_slice(), once].concat());
         assert!(n <= 16 && twice.len() > 16);
         let mut bodies = few.bodies.clone();
         for shape in bodies.shape.iter_mut().step_by(2) {
             *shape += n as u32;
         }
-        let many = Frame::new(twice, bodies);
+        let shapes = Shapes::new(twice).unwrap();
+        let many = Frame { shapes, bodies };
         for overlap in [Overlap::OneSided, Overlap::TwoSided, Overlap::Full] {
             let settings = settings(Strategy::SDopBatch, k, overlap);
             for level in Level::available() {
@@ -178,7 +189,13 @@ fn lazy_updates_change_the_count_of_updates_and_nothing_else() {
             ..eager.clone()
         };
         let mut cullers = [eager, lazy].map(|settings| {
-            Culler::new(&frame.shapes, &frame.bodies, &settings, Level::detect()).unwrap()
+            Culler::new(
+                &frame.shapes.built,
+                &frame.bodies,
+                &settings,
+                Level::detect(),
+            )
+            .unwrap()
         });
         for _ in 0..2 {
             let [eager, lazy] = cullers

@@ -4,9 +4,10 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::scene::bodies::Bodies;
+use sdop::verify::draw::rotation;
 use sdop::volume::{DirectionSet, Shape, ShapeSpec};
 
-use crate::support::{self, random_quaternion, shapes};
+use crate::support::{self, shapes};
 
 pub struct Scene {
     pub name: &'static str,
@@ -37,12 +38,8 @@ impl Scene {
         let mut rng = ChaCha8Rng::seed_from_u64(n as u64);
         let mut bodies = Bodies::default();
         for i in 0..n {
-            bodies.shape.push((i % radii.len()) as u32);
-            bodies.dynamic.push(i % 7 != 3);
-            bodies.rotation.push(random_quaternion(&mut rng));
-            bodies.translation.push(place(i, &mut rng));
-            bodies.velocity.push([0.0; 3]);
-            bodies.spin.push([0.0; 3]);
+            let (shape, q) = ((i % radii.len()) as u32, rotation(&mut rng));
+            bodies.push(shape, i % 7 != 3, q, place(i, &mut rng));
         }
         Self {
             name,

@@ -31,34 +31,27 @@ fn start(random: &mut Random) -> [f32; 8] {
 
 /// d²/D ÷ t/Q − 1 in u: what the stored radii must gain.
 pub fn decision(seed: u64, evaluations: u64) -> f64 {
-    climb(
-        seed,
-        evaluations,
-        start,
-        |&[ax, ay, az, bx, by, bz, ra, rb]| {
-            let (a, b) = ([ax, ay, az], [bx, by, bz]);
-            let (d2, t) = test::<false>(a, b, ra, rb);
-            let s = f64::from(ra) + f64::from(rb);
-            (d2.real() / squared_distance(a, b) * (s * s / t.real()) - 1.0) / U
-        },
-    )
-    .0
+    worst(seed, evaluations, |[d2, exact, t, s2]| {
+        d2 / exact * (s2 / t) - 1.0
+    })
 }
 
 /// √D/(R_A + R_B) − 1 in u, for d² = t: how far beyond the stored radii a pair may be and still be reported.
 pub fn reported(seed: u64, evaluations: u64) -> f64 {
-    climb(
-        seed,
-        evaluations,
-        start,
-        |&[ax, ay, az, bx, by, bz, ra, rb]| {
-            let (a, b) = ([ax, ay, az], [bx, by, bz]);
-            let (d2, t) = test::<false>(a, b, ra, rb);
-            let s = f64::from(ra) + f64::from(rb);
-            ((squared_distance(a, b) / d2.real() * (t.real() / (s * s))).sqrt() - 1.0) / U
-        },
-    )
-    .0
+    worst(seed, evaluations, |[d2, exact, t, s2]| {
+        (exact / d2 * (t / s2)).sqrt() - 1.0
+    })
+}
+
+/// The worst error in u of a comparison, given d² as computed and exact, then s².
+fn worst(seed: u64, evaluations: u64, error: impl Fn([f64; 4]) -> f64) -> f64 {
+    let of = |&[ax, ay, az, bx, by, bz, ra, rb]: &[f32; 8]| {
+        let (a, b) = ([ax, ay, az], [bx, by, bz]);
+        let (d2, t) = test::<false>(a, b, ra, rb);
+        let s = f64::from(ra) + f64::from(rb);
+        error([d2.real(), squared_distance(a, b), t.real(), s * s]) / U
+    };
+    climb(seed, evaluations, start, of).0
 }
 
 /// How near to being culled touching pairs come with radii as the culler inflates them: 1 culled, below 0 not.
