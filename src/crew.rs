@@ -3,6 +3,8 @@
 //! Work is cut into parts by the data alone; a part's results go to buffers of its own, which are joined in the order of
 //! the parts. So lists, counters and hashes are those of one thread, to the bit.
 
+use std::sync::Arc;
+
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rayon::slice::ParallelSliceMut;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
@@ -10,9 +12,9 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 /// Pieces of a column that are worth waking a thread for.
 const WORTH_SHARING: usize = 8;
 
-/// One thread, or a pool of several.
-#[derive(Debug, Default)]
-pub struct Crew(Option<ThreadPool>);
+/// One thread, or a pool of several. A clone is the same crew.
+#[derive(Clone, Debug, Default)]
+pub struct Crew(Option<Arc<ThreadPool>>);
 
 /// Threads that the system refused.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -34,7 +36,7 @@ impl Crew {
         }
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         match pool {
-            Ok(pool) => Ok(Self(Some(pool))),
+            Ok(pool) => Ok(Self(Some(Arc::new(pool)))),
             Err(source) => Err(CrewError { threads, source }),
         }
     }
@@ -42,7 +44,16 @@ impl Crew {
     /// Number of threads.
     #[must_use]
     pub fn threads(&self) -> usize {
-        self.0.as_ref().map_or(1, ThreadPool::current_num_threads)
+        self.0.as_ref().map_or(1, |pool| pool.current_num_threads())
+    }
+
+    /// Does `work` on one of the threads: what it shares then needs no hand-over from outside, which takes as long as some
+    /// thousand updates each time.
+    pub fn inside<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &self.0 {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
     }
 
     /// Calls `work` once for each item, with its index.

@@ -5,9 +5,12 @@
 //! A [`Culler`] is built once for a scene (the paper's Co) and then culls frame after frame. All buffers stay, so in steady
 //! state nothing is allocated.
 
+mod needs;
+
 use std::time::Instant;
 
-use crate::broad_phase::{Groups, PairFinder, Population, Reorder};
+use self::needs::Needs;
+use crate::broad_phase::{Groups, PairFinder, Reorder};
 use crate::cost::{Counters, Seconds};
 use crate::crew::{Crew, CrewError};
 use crate::models::Models;
@@ -21,7 +24,7 @@ use crate::scene::settings::{
 use crate::simd::Level;
 use crate::strategy::{self, Memory, Stage, Worker};
 use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
-use crate::volume::{DirectionSet, Shape};
+use crate::volume::Shape;
 
 /// Culls the frames of one scene: a fixed set of bodies whose poses change.
 #[derive(Debug)]
@@ -52,37 +55,6 @@ pub struct Culler {
     seconds: Seconds,
 }
 
-/// Which volumes a strategy looks at.
-#[derive(Clone, Copy, Debug)]
-struct Needs {
-    /// Balls by place.
-    balls: bool,
-    rows: bool,
-    intervals: Option<DirectionSet>,
-}
-
-impl Needs {
-    fn of(settings: &CullSettings, finder: Finder) -> Self {
-        let (balls, rows, intervals) = match settings.strategy {
-            Strategy::None => (false, false, None),
-            Strategy::Sphere => (true, false, None),
-            // Binned by balls, which a finder that doesn't bin can do without.
-            Strategy::OrDop | Strategy::Obb => (finder != Finder::AllPairs, true, None),
-            Strategy::Aabb => (false, false, Some(DirectionSet::K6)),
-            Strategy::KDop => (false, false, Some(settings.k)),
-            Strategy::SDopSequential
-            | Strategy::SDopBatch
-            | Strategy::SDopObjectOfInterest
-            | Strategy::SDopTimeCritical => (true, true, None),
-        };
-        Self {
-            balls,
-            rows,
-            intervals,
-        }
-    }
-}
-
 impl Culler {
     /// Prepares culling of `bodies` in the tier `level`, on the caller's thread. Static bodies' volumes are placed here, once.
     ///
@@ -101,7 +73,7 @@ impl Culler {
         let start = Instant::now();
         let n = bodies.shape.len();
         let (models, places) = (Models::new(shapes, settings), Places::new(bodies));
-        let population = population(settings.strategy, &models, &places);
+        let population = needs::population(settings.strategy, &models, &places);
         let finder = PairFinder::new(settings.pairs, &population);
         let needs = Needs::of(settings, finder.name());
         let directions = needs.intervals;
@@ -167,7 +139,7 @@ impl Culler {
             intervals.resize(n);
         }
         self.interest.resize(bodies.len(), false);
-        let population = population(self.settings.strategy, &self.models, &self.places);
+        let population = needs::population(self.settings.strategy, &self.models, &self.places);
         self.finder = PairFinder::new(self.settings.pairs, &population);
         self.update_volumes(bodies, 0..n);
         self.reorder(bodies);
@@ -202,6 +174,14 @@ impl Culler {
     /// finder and on the frames so far alone. Poses must satisfy the contract.
     pub fn cull(&mut self, bodies: &Bodies) -> &PairList {
         let start = Instant::now();
+        let crew = self.crew.clone();
+        crew.inside(|| self.frame(bodies));
+        self.seconds.total += start.elapsed().as_secs_f64();
+        &self.pairs
+    }
+
+    fn frame(&mut self, bodies: &Bodies) {
+        let start = Instant::now();
         self.stamp += 1;
         self.pairs.clear();
         self.reorder(bodies);
@@ -219,8 +199,6 @@ impl Culler {
         let refined = (self.seconds.ordop - before.0) + (self.seconds.update - before.1);
         let finding = (reordered - start) + updated.elapsed();
         self.seconds.pair_finding += finding.as_secs_f64() - refined;
-        self.seconds.total += start.elapsed().as_secs_f64();
-        &self.pairs
     }
 
     /// The pairs of the last frame.
@@ -407,18 +385,5 @@ impl Culler {
             Strategy::KDop => counters.kdop.tests,
             _ => counters.sphere.tests,
         }
-    }
-}
-
-/// What `auto` looks at.
-fn population(strategy: Strategy, models: &Models, places: &Places) -> Population {
-    let radii = places
-        .shape
-        .iter()
-        .map(|&s| models.frames[s as usize].radius());
-    Population {
-        bodies: places.len(),
-        radii: radii.fold([f32::INFINITY, 0.0], |[lo, hi], r| [r.min(lo), r.max(hi)]),
-        cheap_test: !matches!(strategy, Strategy::OrDop | Strategy::Obb),
     }
 }
