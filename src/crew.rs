@@ -2,19 +2,20 @@
 //!
 //! Work is cut into parts by the data alone; a part's results go to buffers of its own, which are joined in the order of
 //! the parts. So lists, counters and hashes are those of one thread, to the bit.
+//!
+//! The caller works too: waking a thread takes as long as finding the pairs of some thousand bodies, and until then the
+//! caller has done what it can. Whoever is free takes the next part, so a thread that comes late leaves nothing undone.
 
-use std::sync::Arc;
+use std::sync::Mutex;
 
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
-use rayon::slice::ParallelSliceMut;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 /// Pieces of a column that are worth waking a thread for.
 const WORTH_SHARING: usize = 8;
 
-/// One thread, or a pool of several. A clone is the same crew.
-#[derive(Clone, Debug, Default)]
-pub struct Crew(Option<Arc<ThreadPool>>);
+/// The caller's thread, or it and a pool of others.
+#[derive(Debug, Default)]
+pub struct Crew(Option<ThreadPool>);
 
 /// Threads that the system refused.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -34,9 +35,10 @@ impl Crew {
         if threads <= 1 {
             return Ok(Self(None));
         }
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        let others = threads - 1;
+        let pool = ThreadPoolBuilder::new().num_threads(others).build();
         match pool {
-            Ok(pool) => Ok(Self(Some(Arc::new(pool)))),
+            Ok(pool) => Ok(Self(Some(pool))),
             Err(source) => Err(CrewError { threads, source }),
         }
     }
@@ -44,30 +46,16 @@ impl Crew {
     /// Number of threads.
     #[must_use]
     pub fn threads(&self) -> usize {
-        self.0.as_ref().map_or(1, |pool| pool.current_num_threads())
-    }
-
-    /// Does `work` on one of the threads: what it shares then needs no hand-over from outside, which takes as long as some
-    /// thousand updates each time.
-    pub fn inside<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        match &self.0 {
-            Some(pool) => pool.install(work),
-            None => work(),
-        }
+        let others = self.0.as_ref().map_or(0, ThreadPool::current_num_threads);
+        others + 1
     }
 
     /// Calls `work` once for each item, with its index.
     pub fn each<T: Send>(&self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
+        let items = items.iter_mut().enumerate();
         match &self.0 {
-            Some(pool) if items.len() > 1 => pool.install(|| {
-                let items = items.par_iter_mut().enumerate();
-                items.for_each(|(index, item)| work(index, item));
-            }),
-            _ => {
-                for (index, item) in items.iter_mut().enumerate() {
-                    work(index, item);
-                }
-            }
+            Some(pool) if items.len() > 1 => share(pool, items, |(index, item)| work(index, item)),
+            _ => items.for_each(|(index, item)| work(index, item)),
         }
     }
 
@@ -79,16 +67,31 @@ impl Crew {
         size: usize,
         work: impl Fn(usize, &mut [T]) + Sync,
     ) {
+        let worth_sharing = column.len() >= WORTH_SHARING * size;
+        let pieces = column.chunks_mut(size).enumerate();
         match &self.0 {
-            Some(pool) if column.len() >= WORTH_SHARING * size => pool.install(|| {
-                let pieces = column.par_chunks_mut(size).enumerate();
-                pieces.for_each(|(index, piece)| work(index * size, piece));
-            }),
-            _ => {
-                for (index, piece) in column.chunks_mut(size).enumerate() {
-                    work(index * size, piece);
-                }
+            Some(pool) if worth_sharing => {
+                share(pool, pieces, |(index, piece)| work(index * size, piece));
             }
+            _ => pieces.for_each(|(index, piece)| work(index * size, piece)),
         }
     }
+}
+
+/// Does the work of each item, on the caller's thread and on those of the pool.
+fn share<T>(pool: &ThreadPool, items: impl Iterator<Item = T> + Send, work: impl Fn(T) + Sync) {
+    let queue = Mutex::new(items);
+    // Poisoned by a panic, which the scope passes on.
+    let next = || queue.lock().ok().and_then(|mut items| items.next());
+    let help = || {
+        while let Some(item) = next() {
+            work(item);
+        }
+    };
+    pool.in_place_scope(|scope| {
+        for _ in 0..pool.current_num_threads() {
+            scope.spawn(|_| help());
+        }
+        help();
+    });
 }

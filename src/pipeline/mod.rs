@@ -174,14 +174,6 @@ impl Culler {
     /// finder and on the frames so far alone. Poses must satisfy the contract.
     pub fn cull(&mut self, bodies: &Bodies) -> &PairList {
         let start = Instant::now();
-        let crew = self.crew.clone();
-        crew.inside(|| self.frame(bodies));
-        self.seconds.total += start.elapsed().as_secs_f64();
-        &self.pairs
-    }
-
-    fn frame(&mut self, bodies: &Bodies) {
-        let start = Instant::now();
         self.stamp += 1;
         self.pairs.clear();
         self.reorder(bodies);
@@ -199,6 +191,8 @@ impl Culler {
         let refined = (self.seconds.ordop - before.0) + (self.seconds.update - before.1);
         let finding = (reordered - start) + updated.elapsed();
         self.seconds.pair_finding += finding.as_secs_f64() - refined;
+        self.seconds.total += start.elapsed().as_secs_f64();
+        &self.pairs
     }
 
     /// The pairs of the last frame.
