@@ -8,7 +8,7 @@ use std::ops::Range;
 use crate::simd::MAX_WIDTH;
 
 /// Slots whose candidates share a block.
-pub const BLOCK_BODIES: usize = 16;
+pub const BLOCK_BODIES: usize = MAX_WIDTH;
 
 /// Candidates that are written at once; a run's surplus is overwritten by the next.
 const STRIDE: usize = 8;

@@ -87,19 +87,6 @@ impl Slots {
     }
 }
 
-/// Sixteen balls as columns.
-#[inline(always)]
-#[must_use]
-pub fn columns<L: Lanes>(l: L, balls: &[[f32; 4]]) -> [[f32; BLOCK_BODIES]; 4] {
-    let mut columns = [[0.0; BLOCK_BODIES]; 4];
-    for start in (0..BLOCK_BODIES).step_by(L::WIDTH) {
-        for (column, lanes) in columns.iter_mut().zip(l.load_quads(&balls[start..])) {
-            l.store(lanes, &mut column[start..]);
-        }
-    }
-    columns
-}
-
 /// Bytes that a column has taken, used or not.
 fn bytes<T>(column: &Vec<T>) -> usize {
     column.capacity() * size_of::<T>()

@@ -7,8 +7,8 @@
 use std::ops::Range;
 
 use super::SlotTest;
-use crate::broad_phase::{BLOCK_BODIES, Block, Slots, columns};
-use crate::simd::{LANES, Lanes};
+use crate::broad_phase::{Block, Slots};
+use crate::simd::{LANES, Lanes, quads_in_columns};
 
 impl SlotTest for Slots {
     #[inline(always)]
@@ -31,7 +31,7 @@ impl SlotTest for Slots {
 
     #[inline(always)]
     fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
-        let ours = columns(l, &self.balls[block.first()..][..BLOCK_BODIES]);
+        let ours = quads_in_columns(l, &self.balls[block.first()..]);
         let (codes, count) = (block.padded_codes(), block.codes().len());
         let (mut start, mut found) = (0, 0);
         while start < count {

@@ -13,6 +13,7 @@
     reason = "the intrinsics of std::arch are unsafe; this room alone holds them"
 )]
 
+mod columns;
 mod lanes;
 mod level;
 mod scalar;
@@ -26,6 +27,7 @@ mod neon;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 
+pub use columns::{quads_in_columns, turn_rows};
 pub use lanes::Lanes;
 pub use level::{Level, LevelError};
 

@@ -5,6 +5,7 @@
 
 mod eight;
 mod intervals;
+pub mod row;
 mod rows;
 
 pub use intervals::Intervals;

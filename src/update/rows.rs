@@ -6,20 +6,21 @@
 use std::ops::Range;
 
 use super::eight::{EIGHT, Eight};
+use super::row::{O, Q, S, SHAPE, T};
 use super::{AHEAD, CENTRE, ShapeFrame};
-use crate::broad_phase::{BLOCK_BODIES, columns};
 use crate::crew::Crew;
-use crate::overlap::ordop::{O, Q, S, SHAPE, T};
 use crate::places::Places;
 use crate::rounding::pose::{axes_of, rotate_of, rotation_of};
 use crate::scene::bodies::Bodies;
-use crate::simd::{Kernel, LANES, Lanes, Level, ROW, dispatch, prefetch};
+use crate::simd::{
+    Kernel, Lanes, Level, MAX_WIDTH, ROW, dispatch, prefetch, quads_in_columns, turn_rows,
+};
 
 /// Bodies whose rows one thread makes at a time: some microseconds.
 const ROWS: usize = 512;
 
 /// Bodies whose rows are made together.
-const BODIES: usize = BLOCK_BODIES;
+const BODIES: usize = MAX_WIDTH;
 
 /// or-DOP rows by place, each with the frame in which it was last made.
 #[derive(Clone, Debug, Default)]
@@ -192,8 +193,10 @@ impl Posed<'_> {
             scales[lane / EIGHT][lane % EIGHT] = frame.scale;
             centred &= frame.inflated.is_some();
         }
-        let (q, frames) = (columns(l, &rotations), transposed(l, &frames));
-        let [x, y, z, shape] = columns(l, &ends);
+        let q = quads_in_columns(l, &rotations);
+        let [x, y, z, shape] = quads_in_columns(l, &ends);
+        let mut shapes = [[0.0; BODIES]; ROW];
+        turn_rows(l, &frames, &mut shapes);
         let mut made = [[0.0; BODIES]; ROW];
         (made[T], made[T + 1], made[T + 2], made[S]) = (x, y, z, shape);
         for (half, scale) in scales.into_iter().enumerate() {
@@ -202,9 +205,9 @@ impl Posed<'_> {
             let turn = rotation_of([eight(&q[0]), eight(&q[1]), eight(&q[2]), eight(&q[3])]);
             let basis = [0, 3, 6].map(|j| {
                 [
-                    eight(&frames[j]),
-                    eight(&frames[j + 1]),
-                    eight(&frames[j + 2]),
+                    eight(&shapes[j]),
+                    eight(&shapes[j + 1]),
+                    eight(&shapes[j + 2]),
                 ]
             });
             let axes = axes_of(&turn, basis, Eight(scale));
@@ -212,17 +215,10 @@ impl Posed<'_> {
                 made[Q + number][start..start + EIGHT].copy_from_slice(&along.rounded());
             }
             if !centred {
-                offsets(&turn, &frames, start, &mut made);
+                offsets(&turn, &shapes, start, &mut made);
             }
         }
-        for start in (0..BODIES).step_by(L::WIDTH) {
-            for (row, part) in rows
-                .iter_mut()
-                .zip(l.load_transposed(&made, &LANES[start..]))
-            {
-                l.store(part, &mut row[start..]);
-            }
-        }
+        turn_rows(l, &made, rows);
     }
 }
 
@@ -230,12 +226,12 @@ impl Posed<'_> {
 #[inline(always)]
 fn offsets(
     turn: &[[Eight; 3]; 3],
-    frames: &[[f32; BODIES]; ROW],
+    shapes: &[[f32; BODIES]; ROW],
     start: usize,
     made: &mut [[f32; BODIES]; ROW],
 ) {
     for lane in start..start + EIGHT {
-        let centre = [0, 1, 2].map(|i| f64::from(frames[CENTRE + i][lane]));
+        let centre = [0, 1, 2].map(|i| f64::from(shapes[CENTRE + i][lane]));
         if centre != [0.0; 3] {
             let turn = turn.map(|row| row.map(|entry| entry.0[lane - start]));
             for (i, offset) in rotate_of(&turn, centre).into_iter().enumerate() {
@@ -243,19 +239,6 @@ fn offsets(
             }
         }
     }
-}
-
-/// Sixteen rows as columns.
-#[inline(always)]
-fn transposed<L: Lanes>(l: L, rows: &[[f32; ROW]; BODIES]) -> [[f32; BODIES]; ROW] {
-    let mut columns = [[0.0; BODIES]; ROW];
-    for start in (0..BODIES).step_by(L::WIDTH) {
-        let parts = l.load_transposed(rows, &LANES[start..]);
-        for (column, part) in columns.iter_mut().zip(parts) {
-            l.store(part, &mut column[start..]);
-        }
-    }
-    columns
 }
 
 #[cfg(test)]

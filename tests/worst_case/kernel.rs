@@ -7,11 +7,12 @@ use sdop::overlap::ordop::edges;
 use sdop::overlap::ordop::slabs::Slabs;
 use sdop::overlap::ordop::support::support;
 use sdop::overlap::ordop::table::members_of;
-use sdop::overlap::ordop::{O, OrDopColumns, Q, S, SHAPE, SlabTables, T};
+use sdop::overlap::ordop::{OrDopColumns, SlabTables};
 use sdop::pairs::PairList;
 use sdop::rounding::pose::{rotate, rotation, world_axes};
 use sdop::scene::settings::Overlap;
 use sdop::simd::{Kernel, Lanes, Level, ROW, dispatch};
+use sdop::update::row::{O, Q, S, SHAPE, T};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 use super::climb::Random;

@@ -11,9 +11,9 @@
 //! modulo a power of two instead, with A and B spread evenly over it: other cells may share a place in the table, which
 //! costs false candidates and loses nothing.
 
-use crate::broad_phase::{BLOCK_BODIES, Bounds, columns};
+use crate::broad_phase::{BLOCK_BODIES, Bounds};
 use crate::rounding::widen;
-use crate::simd::Lanes;
+use crate::simd::{Lanes, quads_in_columns};
 
 /// Adding it leaves an f64 below 2³¹ rounded to an integer in its low 32 bits.
 const TO_INTEGER: f64 = 1.5 * (1u64 << 52) as f64;
@@ -185,7 +185,7 @@ impl Cells {
         l: L,
         balls: &[[f32; 4]; BLOCK_BODIES],
     ) -> [u32; BLOCK_BODIES] {
-        let columns = columns(l, balls);
+        let columns = quads_in_columns(l, balls);
         let mut cells = [0u32; BLOCK_BODIES];
         for (axis, stride) in [1, self.row, self.layer].into_iter().enumerate() {
             for (cell, &x) in cells.iter_mut().zip(&columns[axis]) {

@@ -5,18 +5,7 @@ use super::slabs::Slabs;
 use super::support::support;
 use super::table::each_direction;
 use crate::simd::{Lanes, ROW};
-
-/// Where Q stands in a row: the world direction of basis axis j in numbers 3j to 3j + 2.
-pub const Q: usize = 0;
-/// Where the translation t stands in a row.
-pub const T: usize = 9;
-/// Where the centre offset o stands in a row.
-pub const O: usize = 12;
-
-/// Where the number of the shape stands in a row, as the float whose bits are [`SHAPE`] + it.
-pub const S: usize = 15;
-/// The bits of 2²³, to which small integers add up as floats.
-pub const SHAPE: u32 = 0x4b00_0000;
+use crate::update::row::{O, Q, S, T};
 
 type Vector<L> = [<L as Lanes>::F; 3];
 

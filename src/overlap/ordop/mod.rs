@@ -35,7 +35,6 @@ pub mod slabs;
 pub mod support;
 pub mod table;
 
-pub use axes::{O, Q, S, SHAPE, T};
 pub use kernel::{OrDopColumns, Tested};
 pub use posed::PosedOrDops;
 pub use table::SlabTables;

@@ -4,9 +4,9 @@
 //! vector at k = 18, which was two thirds of the test. Instead all ends of each lane's shape are loaded once, and every
 //! look-up becomes one to seven selections by the sign bits of the direction.
 
-use super::axes::SHAPE;
 use super::table::{SlabTables, each_direction};
 use crate::simd::{Lanes, MAX_WIDTH, ROW};
+use crate::update::row::SHAPE;
 
 /// The ends of each lane's slabs.
 #[derive(Clone, Copy)]

@@ -8,10 +8,8 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-use sdop::broad_phase::{
-    BLOCK_BODIES, Block, FirstTest, MOST_CANDIDATES, PairFinder, Slots, columns,
-};
-use sdop::simd::{Kernel, LANES, Lanes, MAX_WIDTH};
+use sdop::broad_phase::{Block, FirstTest, MOST_CANDIDATES, PairFinder, Slots};
+use sdop::simd::{Kernel, LANES, Lanes, MAX_WIDTH, quads_in_columns};
 
 use crate::boxes::{Slabs, meet};
 
@@ -210,7 +208,7 @@ impl FirstTest for Test<'_> {
         self.found.candidates += count as u64;
         let (first, mut found) = (block.first(), 0);
         let slots = |code: u32| (first + (code & 15) as usize, (code >> 4) as usize);
-        let ours = columns(l, &self.slots.balls[first..][..BLOCK_BODIES]);
+        let ours = quads_in_columns(l, &self.slots.balls[first..]);
         for start in (0..count).step_by(L::WIDTH) {
             let code = l.load_u32(&codes[start..]);
             let (_, lane) = l.split_u32(code);
