@@ -94,6 +94,19 @@ fn a_reader_that_leaves_early_is_no_error() {
 }
 
 #[test]
+fn bad_input_is_said_before_the_long_work() {
+    let message = refusal(&["verify", "no-such.toml", "--seeds", "1000000"]);
+    assert!(message.contains("no-such.toml"), "{message}");
+    let control = ["cost", "data/scenes/paper-50.toml", "--strategy", "none"];
+    let message = refusal(&control);
+    assert!(message.contains("the control culls nothing"), "{message}");
+    let message = refusal(&["run", "data/scenes/paper-50.toml", "--frames", "0"]);
+    assert!(message.contains("0 is not in 1..="), "{message}");
+    let message = refusal(&["run", "README.md"]);
+    assert!(message.contains("written in TOML"), "{message}");
+}
+
+#[test]
 fn an_unknown_command_is_bad_input() {
     assert!(refusal(&["rnu"]).contains("unrecognized subcommand 'rnu'"));
 }

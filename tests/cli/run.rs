@@ -233,7 +233,8 @@ fn bad_flags_are_refused_with_what_would_do() {
             &["body 50 of a scene of 50", "counted from 0"],
         ),
         (&["--interest", "1,x"], &["body indices as in 0,5,7"]),
-        (&["--threads", "0"], &["invalid value '0'"]),
+        (&["--threads", "0"], &["0 is not in 1..=1024"]),
+        (&["--threads", "100000"], &["100000 is not in 1..=1024"]),
         (&["--k", "8"], &["invalid value '8'", "6, 14, 18, 26"]),
         (
             &["--budget-tests", "5", "--budget-us", "5"],

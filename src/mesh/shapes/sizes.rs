@@ -44,79 +44,28 @@ pub enum ShapeError {
     },
 }
 
+/// Sizes by the names of their fields.
+macro_rules! sizes {
+    ($($kind:ident $size:ident),+) => { vec![$((stringify!($size), Size::$kind($size))),+] };
+}
+
 impl ProceduralShape {
+    #[rustfmt::skip]
     fn sizes(&mut self) -> Vec<(&'static str, Size<'_>)> {
-        use Size::{Count, Length};
         match self {
-            Self::Box { x, y, z } => vec![("x", Length(x)), ("y", Length(y)), ("z", Length(z))],
-            Self::Icosphere {
-                radius,
-                subdivisions,
-            } => {
-                vec![
-                    ("radius", Length(radius)),
-                    ("subdivisions", Count(subdivisions)),
-                ]
+            Self::Box { x, y, z } => sizes![Length x, Length y, Length z],
+            Self::Icosphere { radius, subdivisions } => sizes![Length radius, Count subdivisions],
+            Self::Needle { length, radius, sides } => sizes![Length length, Length radius, Count sides],
+            Self::Plate { x, y, thickness } => sizes![Length x, Length y, Length thickness],
+            Self::Torus { radius, tube, segments, sides } | Self::Knot { radius, tube, segments, sides } => {
+                sizes![Length radius, Length tube, Count segments, Count sides]
             }
-            Self::Needle {
-                length,
-                radius,
-                sides,
-            } => {
-                vec![
-                    ("length", Length(length)),
-                    ("radius", Length(radius)),
-                    ("sides", Count(sides)),
-                ]
+            Self::Gear { tip, root, bore, thickness, teeth } => {
+                sizes![Length tip, Length root, Length bore, Length thickness, Count teeth]
             }
-            Self::Plate { x, y, thickness } => {
-                vec![
-                    ("x", Length(x)),
-                    ("y", Length(y)),
-                    ("thickness", Length(thickness)),
-                ]
+            Self::LShape { x, y, arm, thickness } => {
+                sizes![Length x, Length y, Length arm, Length thickness]
             }
-            Self::Torus {
-                radius,
-                tube,
-                segments,
-                sides,
-            }
-            | Self::Knot {
-                radius,
-                tube,
-                segments,
-                sides,
-            } => vec![
-                ("radius", Length(radius)),
-                ("tube", Length(tube)),
-                ("segments", Count(segments)),
-                ("sides", Count(sides)),
-            ],
-            Self::Gear {
-                tip,
-                root,
-                bore,
-                thickness,
-                teeth,
-            } => vec![
-                ("tip", Length(tip)),
-                ("root", Length(root)),
-                ("bore", Length(bore)),
-                ("thickness", Length(thickness)),
-                ("teeth", Count(teeth)),
-            ],
-            Self::LShape {
-                x,
-                y,
-                arm,
-                thickness,
-            } => vec![
-                ("x", Length(x)),
-                ("y", Length(y)),
-                ("arm", Length(arm)),
-                ("thickness", Length(thickness)),
-            ],
         }
     }
 
