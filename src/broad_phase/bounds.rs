@@ -77,3 +77,35 @@ impl Kernel for Extremes<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_ball_counts_in_every_tier() {
+        for n in [0, 1, 3, 4, 5, 16, 37] {
+            for extreme in 0..n {
+                let mut balls = vec![[0.5, 0.25, -0.5, 1.0]; n];
+                balls[extreme] = [3.0, -4.0, 5.0, 6.0];
+                for level in Level::available() {
+                    let bounds = Bounds::of(level, &balls);
+                    let alone = Bounds::of(level, &balls[extreme..=extreme]);
+                    let [lo, hi] = match n {
+                        1 => [[3.0, -4.0, 5.0]; 2],
+                        _ => [[0.5, -4.0, -0.5], [3.0, 0.25, 5.0]],
+                    };
+                    let widest = 6.0;
+                    assert_eq!(
+                        bounds,
+                        Bounds { lo, hi, widest },
+                        "{level}, {extreme} of {n}"
+                    );
+                    assert_eq!(bounds.union(alone), bounds);
+                    assert_eq!(Bounds::EMPTY.union(bounds), bounds);
+                }
+            }
+        }
+        assert_eq!(Bounds::of(Level::SCALAR, &[]), Bounds::EMPTY);
+    }
+}

@@ -105,5 +105,9 @@ mod tests {
     fn widening_exceeds_the_factor_and_moves_zero() {
         assert!(widen(0.0) > 0.0);
         assert!(f64::from(widen(1.0)) >= FINDER_FACTOR);
+        assert!(
+            widen(0.0) < 1e-20 && widen(1.0) < 1.0 + 1e-5,
+            "and little else"
+        );
     }
 }

@@ -20,9 +20,10 @@ impl Kernel for Check {
         for start in (0..16).step_by(L::WIDTH) {
             arithmetic(l, start);
             integers(l, start);
+            transposed(l, start);
+            quads(l, start);
         }
-        transposed(l);
-        quads(l);
+        masks(l);
     }
 }
 
@@ -30,6 +31,24 @@ impl Kernel for Check {
 fn same<L: Lanes>(l: L, v: L::F, expected: &[f32]) -> bool {
     let e = l.load(expected);
     l.bits(l.gt(v, e) | l.gt(e, v)) == 0
+}
+
+/// The bits of each lane, which tell −0 from +0.
+fn bits_of<L: Lanes>(l: L, v: L::F) -> Vec<u32> {
+    let mut out = [0; MAX_WIDTH];
+    l.compress(u32::MAX, l.as_u32(v), &mut out);
+    out[..L::WIDTH].to_vec()
+}
+
+fn masks<L: Lanes>(l: L) {
+    let all = l.bits(l.first(L::WIDTH));
+    for (a, b) in [(0, 0), (0, L::WIDTH), (L::WIDTH, L::WIDTH), (1, L::WIDTH)] {
+        for (a, b) in [(a, b), (b, a)] {
+            let (x, y) = (l.first(a), l.first(b));
+            assert_eq!(l.bits(x & y), l.bits(x) & l.bits(y) & all);
+            assert_eq!(l.bits(x | y), (l.bits(x) | l.bits(y)) & all);
+        }
+    }
 }
 
 fn arithmetic<L: Lanes>(l: L, start: usize) {
@@ -52,6 +71,13 @@ fn arithmetic<L: Lanes>(l: L, start: usize) {
         &expect(&|x, y| if x > y { x } else { y })
     ));
     assert!(same(l, l.abs(x), &expect(&|x, _| x.abs())));
+    let signs = [l.min(x, y), l.max(x, y)].map(|v| bits_of(l, v));
+    let min = expect(&|x, y| if x < y { x } else { y });
+    let max = expect(&|x, y| if x > y { x } else { y });
+    for (found, expected) in signs.iter().zip([min, max]) {
+        let expected: Vec<u32> = expected.iter().map(|x| x.to_bits()).collect();
+        assert_eq!(found[..], expected[..L::WIDTH], "of equal ones the second");
+    }
     let mut stored = [f32::NAN; MAX_WIDTH + 1];
     l.store(x, &mut stored);
     assert_eq!(stored[..L::WIDTH], xs[..L::WIDTH]);
@@ -124,7 +150,10 @@ fn integers<L: Lanes>(l: L, start: usize) {
         .filter(|&i| a[i] & b[i] != 0)
         .map(|i| 1 << i)
         .sum();
-    let codes: Vec<u32> = (0..16).map(|i| (i * 77_777_777) | (i % 16)).collect();
+    let codes: Vec<u32> = (start as u32..)
+        .map(|i| (i * 77_777_777) | (i % 16))
+        .take(L::WIDTH)
+        .collect();
     let (high, low) = l.split_u32(l.load_u32(&codes));
     let expect = |f: &dyn Fn(u32) -> u32| -> Vec<u32> {
         codes[..L::WIDTH].iter().map(|&code| f(code)).collect()
@@ -143,7 +172,7 @@ fn integers<L: Lanes>(l: L, start: usize) {
     assert_eq!(out[..kept.len()], kept[..]);
 }
 
-fn transposed<L: Lanes>(l: L) {
+fn transposed<L: Lanes>(l: L, start: usize) {
     let rows: Vec<[f32; ROW]> = (0..40)
         .map(|row| std::array::from_fn(|column| (row * 100 + column) as f32))
         .collect();
@@ -156,6 +185,7 @@ fn transposed<L: Lanes>(l: L) {
                 (lane * 23 + 5) % 40
             }
         })
+        .skip(start)
         .collect();
     for (column, lanes) in l.load_transposed(&rows, &pick).into_iter().enumerate() {
         let expected: Vec<f32> = pick
@@ -166,12 +196,14 @@ fn transposed<L: Lanes>(l: L) {
     }
 }
 
-fn quads<L: Lanes>(l: L) {
+fn quads<L: Lanes>(l: L, start: usize) {
     let quads: Vec<[f32; 4]> = (0..40)
         .map(|quad| std::array::from_fn(|column| (quad * 10 + column) as f32))
         .collect();
-    // The last index lies behind the table and reads its end.
-    let pick: Vec<u32> = (0..16).map(|lane| (15 - lane) * 7).collect();
+    // Every other index lies behind the table and reads its end.
+    let pick: Vec<u32> = (start as u32..16)
+        .map(|lane| (15 - lane) * 2 + lane % 2 * 80)
+        .collect();
     let codes: Vec<u32> = pick.iter().map(|&quad| (quad << 4) | (quad % 16)).collect();
     let columns = l
         .load_quads(&quads[3..])
@@ -230,6 +262,18 @@ fn the_flushing_tier_drops_denormals() {
     }
     assert_eq!(dispatch(Level::SCALAR, Flush), [1; 3]);
     assert_eq!(dispatch(Level::SCALAR_FLUSH, Flush), [0, 1, 0]);
+}
+
+#[test]
+fn levels_are_there_and_go_by_their_names() {
+    let available = Level::available();
+    assert_eq!(available.first(), Some(&Level::SCALAR));
+    assert!(available.contains(&Level::detect()));
+    for level in available {
+        assert!(Level::NAMES.contains(&level.name()), "{level}");
+        assert_eq!(level.to_string(), level.name());
+        assert_eq!(format!("{level:?}"), format!("Level({})", level.name()));
+    }
 }
 
 #[test]

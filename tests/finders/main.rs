@@ -140,6 +140,51 @@ fn no_finder_loses_a_near_touching_pair() {
     }
 }
 
+/// A ball just this side of a border between cells, and one that touches it from as far beyond as can be: cells a
+/// hundred-thousandth too small put a whole cell between them.
+#[test]
+fn no_pair_is_lost_across_a_cell() {
+    for axis in 0..3 {
+        let mut scene = Scene::new("across a cell", &[1.0], 800, |_, _| [0.0; 3]);
+        scene.bodies.dynamic.fill(true);
+        let radius = scene.shapes[0].ball.radius;
+        for (pair, centres) in scene.bodies.translation.chunks_exact_mut(2).enumerate() {
+            // Half a cell from the lowest centre, less a few millionths of it.
+            let at = radius * (1.0 - pair as f32 / (1 << 21) as f32);
+            let place = |at: f32| {
+                let mut centre = [at, 2.5 * (pair % 20) as f32, 2.5 * (pair / 20) as f32];
+                centre.rotate_right(axis);
+                centre
+            };
+            (centres[0], centres[1]) = (place(at), place(at + 2.0 * radius));
+        }
+        // The lowest.
+        scene.bodies.translation[0] = [0.0; 3];
+        let wanted = found(&scene, Strategy::Sphere, Finder::AllPairs, 1);
+        assert_eq!(wanted[0].len(), 399);
+        for finder in FINDERS {
+            let found = found(&scene, Strategy::Sphere, finder, 1);
+            compare(&found, &wanted, &format!("across a cell, {finder}"));
+        }
+    }
+}
+
+/// Cells of far clusters share places in the table, so a giant that looked through more than three of them each way would
+/// come upon some bodies twice.
+#[test]
+fn giants_meet_the_tiny_ones_of_far_clusters_once() {
+    let mut scene = Scene::new("giants in far clusters", &[0.02, 0.5], 12_000, |i, rng| {
+        let (centre, by) = ([1e4, -3e4, 7e3], uniform(rng, 1.0));
+        std::array::from_fn(|k| centre[k] * (i % 5) as f32 + by[k])
+    });
+    scene.bodies.shape.fill(0);
+    scene.bodies.shape[..5].fill(1);
+    let wanted = found(&scene, Strategy::Sphere, Finder::AllPairs, 2);
+    assert!(wanted[0].len() > 5000, "{}", wanted[0].len());
+    let found = found(&scene, Strategy::Sphere, Finder::Grid, 2);
+    compare(&found, &wanted, scene.name);
+}
+
 /// What must not depend on tier or threads.
 fn trace(
     scene: &Scene,

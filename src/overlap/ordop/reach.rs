@@ -87,6 +87,14 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_centre_far_from_the_origin_reaches_farther() {
+        let table = [1.0; 6];
+        let gained = reach(&table, 6, 4096.0) - reach(&table, 6, 0.0);
+        assert!((0.99..1.01).contains(&(gained / (4096.0 * OFFSET_MARGIN))));
+        assert!(reach(&table, 6, 0.0) > 3.0 * (1.0 + 0.99 * MARGIN));
+    }
+
     fn support_of_unit_halves(k: usize, e: [f64; 3]) -> f64 {
         let mut s = e.map(f64::abs);
         s.sort_by(|a, b| b.total_cmp(a));
