@@ -169,6 +169,40 @@ fn no_pair_is_lost_across_a_cell() {
     }
 }
 
+/// Far clusters wrap the table of cells: rows of touching balls lie across its end in some of these scenes, and so do the
+/// tiny ones that other levels look for.
+#[test]
+fn no_pair_is_lost_at_the_end_of_the_table() {
+    for (seeds, rows, radii) in [(80, 20, vec![1.0]), (16, 70, vec![1.0, 0.1])] {
+        for seed in 0..seeds {
+            let tiny = 8 * (radii.len() - 1);
+            let n = 3 * rows * (1 + tiny);
+            let mut far = ChaCha8Rng::seed_from_u64(seed);
+            let starts: [[f32; 3]; 3] = std::array::from_fn(|_| uniform(&mut far, 1e5));
+            let mut scene = Scene::new("table's end", &radii, n, |i, rng| {
+                // Two rows side by side, half a ball apart.
+                let (k, second) = ((i / 6 % (rows / 2)) as f32, (i / 3 % 2) as f32);
+                let along = [1.9 * k + 1.2 * second, 1.5 * second];
+                let by = uniform(rng, if i < 3 * rows { 0.01 } else { 1.2 });
+                let start = starts[i % 3];
+                [
+                    start[0] + along[0] + by[0],
+                    start[1] + along[1] + by[1],
+                    start[2] + by[2],
+                ]
+            });
+            scene.bodies.dynamic.fill(true);
+            for (i, shape) in scene.bodies.shape.iter_mut().enumerate() {
+                *shape = u32::from(i >= 3 * rows);
+            }
+            let wanted = found(&scene, Strategy::Sphere, Finder::AllPairs, 2);
+            assert!(2 * wanted[0].len() > n, "{} of {n}", wanted[0].len());
+            let found = found(&scene, Strategy::Sphere, Finder::Grid, 2);
+            compare(&found, &wanted, &format!("table's end, seed {seed}"));
+        }
+    }
+}
+
 /// Cells of far clusters share places in the table, so a giant that looked through more than three of them each way would
 /// come upon some bodies twice.
 #[test]
