@@ -221,11 +221,6 @@ impl Culler {
         &self.seconds
     }
 
-    /// For time-critical culling, oldest answer first: how many frames ago each listed pair was refined.
-    pub fn answer_ages(&self) -> impl Iterator<Item = u32> + '_ {
-        self.memory.ages(self.stamp)
-    }
-
     /// Whether slots are named by place: or-DOPs and slabs are looked up by place, spheres alone need the body only.
     fn names_are_places(&self) -> bool {
         self.needs.rows || self.needs.intervals.is_some()

@@ -112,11 +112,6 @@ fn gap(spheres: &[[f32; 4]], pair: [u32; 2]) -> f32 {
 }
 
 impl Memory {
-    /// The frames since each pair of the last potentially colliding set was refined, given the current frame's stamp.
-    pub(crate) fn ages(&self, stamp: u32) -> impl Iterator<Item = u32> + '_ {
-        self.refined.values().map(move |&last| stamp - last)
-    }
-
     fn remember(&mut self, pairs: impl Iterator<Item = [u32; 2]>, done: usize, stamp: u32) {
         std::mem::swap(&mut self.refined, &mut self.before);
         self.refined.clear();
