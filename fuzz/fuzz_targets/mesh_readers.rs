@@ -19,7 +19,11 @@ fuzz_target!(|data: &[u8]| {
     let Ok(mesh) = read_bytes("fuzz", format, bytes, &ReadOptions::default()) else {
         return;
     };
-    let checked = TriangleMesh::new(mesh.name.clone(), mesh.vertices.clone(), mesh.triangles.clone());
+    let checked = TriangleMesh::new(
+        mesh.name.clone(),
+        mesh.vertices.clone(),
+        mesh.triangles.clone(),
+    );
     assert!(checked.is_ok(), "an accepted mesh is outside the contract");
     let obj = write_bytes(&mesh, MeshFormat::Obj);
     let again = read_bytes("fuzz", MeshFormat::Obj, &obj, &ReadOptions::default());

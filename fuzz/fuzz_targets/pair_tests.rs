@@ -1,17 +1,18 @@
-//! Two bodies with any poses within the contract: what the exact reference reports, every strategy reports.
+//! Two bodies with any poses within the contract, or put in touch: what the exact reference reports, every strategy
+//! reports.
 #![no_main]
 
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
+use sdop::mesh::ProceduralShape;
 use sdop::scene::bodies::Bodies;
 use sdop::scene::contract::check_bodies;
 use sdop::simd::Level;
-use sdop::verify::contact::Placed;
+use sdop::verify::contact::{Contact, Kind, Placed};
 use sdop::verify::draw::add;
 use sdop::verify::rounds::{Ledger, check, ways};
 use sdop::verify::{Answers, Predicate, Shapes};
-use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 const NAMES: [&str; 4] = ["box", "l-shape", "needle", "plate"];
@@ -49,22 +50,46 @@ fn pose(bytes: &[u8]) -> Placed {
     }
 }
 
+/// Which volumes and shapes, how the bodies touch, and two poses.
+const HEAD: usize = 7;
+const BYTES: usize = HEAD + 2 * 28;
+
+/// The translation that brings the second body in touch with the first, along the direction that its bytes say; `None`, and
+/// bodies stay where they are, for seven in sixteen values of the head's second byte.
+fn in_touch(shapes: &Shapes, head: &[u8], first: &Placed, second: &Placed) -> Option<[f32; 3]> {
+    let contact = Contact {
+        kind: *Kind::ALL.get(usize::from(head[1] % 16))?,
+        pick: [head[4], head[5]].map(u32::from),
+        direction: second.translation.map(f64::from),
+        gap: f64::from(head[6].cast_signed()) / 16.0,
+    };
+    contact.place(shapes, first, second.shape, second.rotation)
+}
+
 fuzz_target!(|data: &[u8]| {
-    if data.len() < 59 {
+    if data.len() < BYTES {
         return;
     }
-    let set = usize::from(data[0]) % SETS.len();
-    let mut bodies = Bodies::default();
-    for body in 0..2 {
-        let mut placed = pose(&data[3 + 28 * body..]);
-        placed.shape = usize::from(data[1 + body]) % NAMES.len();
-        add(&mut bodies, &placed, true);
-    }
+    let (head, poses) = data.split_at(HEAD);
+    let set = usize::from(head[0]) % SETS.len();
     let shapes = &SHAPES[set];
+    let [first, mut second] = [0, 1].map(|body| {
+        let mut placed = pose(&poses[28 * body..]);
+        placed.shape = usize::from(head[2 + body]) % NAMES.len();
+        placed
+    });
+    if let Some(translation) = in_touch(shapes, head, &first, &second) {
+        second.translation = translation;
+    }
+    let mut bodies = Bodies::default();
+    add(&mut bodies, &first, true);
+    add(&mut bodies, &second, true);
     if check_bodies(&bodies, &shapes.built).is_err() {
         return;
     }
-    let answers = [Answers::judge(shapes, &bodies, SETS[set], &Predicate::ALL).expect("within the contract")];
+    let answers = [
+        Answers::judge(shapes, &bodies, SETS[set], &Predicate::ALL).expect("within the contract")
+    ];
     let mut ledger = Ledger::default();
     for (n, way) in ways(SETS[set], Axes::Principal).iter().enumerate() {
         let levels = Level::available();
@@ -72,5 +97,10 @@ fuzz_target!(|data: &[u8]| {
         let frames = [bodies.clone()];
         check(shapes, &frames, &answers, way, level, &mut ledger).expect("settings fit");
     }
-    assert_eq!(ledger.missed(), 0, "{:?}", ledger.failures.first().map(|f| &f.settings));
+    assert_eq!(
+        ledger.missed(),
+        0,
+        "{:?}",
+        ledger.failures.first().map(|f| &f.settings)
+    );
 });
