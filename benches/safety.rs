@@ -1,41 +1,74 @@
-//! The price of safety: one frame of the paper's scene culled with margins and without, in every tier.
+//! The price of safety: frames of the paper's scene culled with margins and without, in every tier. `cargo bench --bench
+//! safety` prints a Markdown table.
 //!
-//! `sdop tradeoff` prints the extra pairs beside times like these.
+//! The two take turns frame by frame, either first every other time, and a ratio is of a round's times. `sdop tradeoff`
+//! counts the extra pairs.
 
-#![allow(missing_docs, reason = "criterion's macros make items without docs")]
-#![allow(
-    clippy::unwrap_used,
-    reason = "a bench that cannot build its input has failed"
-)]
+mod common;
 
-use std::path::Path;
+use std::hint::black_box;
+use std::time::Instant;
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use sdop::cost::measure::median;
 use sdop::pipeline::Culler;
-use sdop::scene::SceneFile;
-use sdop::scene::settings::Strategy;
+use sdop::scene::bodies::Bodies;
+use sdop::scene::settings::{CullSettings, Strategy};
 use sdop::simd::Level;
 use sdop::tradeoff::safety::without_margins;
 
-fn margins(criterion: &mut Criterion) {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes/paper-500.toml");
-    let scene = SceneFile::read(&file).unwrap().build().unwrap();
+/// Rounds over all frames.
+const ROUNDS: usize = 101;
+
+fn main() {
+    let scene = common::scene("paper-500");
+    let frames = common::frames(&scene);
     let bare: Vec<_> = scene.shapes.iter().map(without_margins).collect();
+    println!("| strategy | tier | µs a frame with margins | without | ratio | quartiles |");
+    println!("|---|---|--:|--:|--:|---|");
     for strategy in [Strategy::Sphere, Strategy::SDopSequential] {
-        let mut settings = scene.cull.clone();
-        settings.strategy = strategy;
-        let mut group = criterion.benchmark_group(format!("margins/{strategy}"));
+        let settings = CullSettings {
+            strategy,
+            ..scene.cull.clone()
+        };
         for level in Level::available() {
-            for (name, shapes) in [("on", &scene.shapes), ("off", &bare)] {
-                let mut culler = Culler::new(shapes, &scene.bodies, &settings, level).unwrap();
-                group.bench_function(BenchmarkId::new(name, level.name()), |bencher| {
-                    bencher.iter(|| culler.cull(&scene.bodies).len());
-                });
-            }
+            let cullers = [&scene.shapes, &bare].map(|shapes| {
+                Culler::new(shapes, &scene.bodies, &settings, level)
+                    .unwrap_or_else(|error| panic!("{error}"))
+            });
+            let [on, off, ratios] = compare(cullers, &frames);
+            let quartile = |q: usize| ratios[ratios.len() * q / 4];
+            println!(
+                "| {strategy} | {level} | {:.1} | {:.1} | {:.4} | {:.3} to {:.3} |",
+                1e6 * median(on),
+                1e6 * median(off),
+                quartile(2),
+                quartile(1),
+                quartile(3)
+            );
         }
-        group.finish();
     }
 }
 
-criterion_group!(benches, margins);
-criterion_main!(benches);
+/// Seconds a frame with margins, without, and their ratios in ascending order, round by round.
+fn compare(mut cullers: [Culler; 2], frames: &[Bodies]) -> [Vec<f64>; 3] {
+    let mut seconds = [vec![], vec![]];
+    for round in 0..=ROUNDS {
+        let mut sums = [0.0; 2];
+        for (i, bodies) in frames.iter().enumerate() {
+            for turn in 0..2 {
+                let who = (turn + i + round) % 2;
+                let start = Instant::now();
+                black_box(cullers[who].cull(bodies).len());
+                sums[who] += start.elapsed().as_secs_f64();
+            }
+        }
+        if round > 0 {
+            let a_frame = sums.map(|sum| sum / frames.len() as f64);
+            (seconds.iter_mut().zip(a_frame)).for_each(|(all, one)| all.push(one));
+        }
+    }
+    let [on, off] = seconds;
+    let mut ratios: Vec<f64> = on.iter().zip(&off).map(|(on, off)| on / off).collect();
+    ratios.sort_by(f64::total_cmp);
+    [on, off, ratios]
+}

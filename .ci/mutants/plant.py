@@ -1,0 +1,163 @@
+"""Rewrites Rust sources so that cargo-mutants' mutants sleep in them, each to be woken by its number.
+
+`a + b` becomes `match (a, b) { (a, b) => match awake() { 7 => a - b, 8 => a * b, _ => a + b } }`; a function's body starts
+with `if awake() == 9 { return 0; }`; a match arm gets the guard `if awake() != 10`. Constants can't ask at run time who is
+awake: their mutants, and those that don't compile beside the original, are left for a build of their own.
+"""
+
+import re
+
+import tree_sitter
+import tree_sitter_rust
+
+AWAKE = "crate::mutant::awake()"
+COMPARISONS = {"==", "!=", "<", ">", "<=", ">="}
+CONSTANT = {"const_item", "static_item", "enum_variant", "array_type", "type_arguments", "const_parameter", "match_pattern",
+            "range_pattern"}
+# `const fn` that no constant calls: as plain functions their mutants can sleep.
+CALLED_AT_RUN_TIME = {"members_of", "place_of", "inflate_radius", "up", "down", "widen", "collide"}
+
+# Read before `main` and never written again, so that asking costs a load and the optimiser may ask once for many.
+WAKER = """
+static mut AWAKE: u32 = 0;
+
+#[used]
+#[unsafe(link_section = ".init_array")]
+static INIT: extern "C" fn() = init;
+
+extern "C" fn init() {
+    let number = std::env::var("MUTANT").map_or(0, |n| n.parse().expect("MUTANT is a number"));
+    unsafe { AWAKE = number };
+}
+
+#[inline(always)]
+pub fn awake() -> u32 {
+    unsafe { AWAKE }
+}
+"""
+
+
+def offset(source, place):
+    """Where cargo-mutants' line and column (in characters, from 1) are, in bytes."""
+    lines = source.split(b"\n")
+    before = sum(len(line) + 1 for line in lines[: place["line"] - 1])
+    return before + len(lines[place["line"] - 1].decode()[: place["column"] - 1].encode())
+
+
+def applied(source, mutant):
+    """The source with this one mutant awake, as cargo-mutants would write it."""
+    start, end = (offset(source, mutant["span"][at]) for at in ("start", "end"))
+    new = mutant["replacement"] if mutant["genre"] in ("BinaryOperator", "FnValue") else ""
+    return source[:start] + new.encode() + source[end:]
+
+
+class File:
+    """One file with its mutants asleep; `text` is the result and `asleep` the numbers that are in it."""
+
+    def __init__(self, source, mutants):
+        self.source, self.asleep, self.at = source, set(), {}
+        for mutant in mutants:
+            place = offset(source, mutant["span"]["start"])
+            self.at.setdefault((mutant["genre"], place), []).append(mutant)
+        tree = tree_sitter.Parser(tree_sitter.Language(tree_sitter_rust.language())).parse(source)
+        root = tree.root_node
+        self.text = source[: root.start_byte].decode() + self.emit(root) + source[root.end_byte :].decode()
+        for name in CALLED_AT_RUN_TIME:
+            self.text = self.text.replace(f"const fn {name}(", f"fn {name}(")
+
+    def take(self, genre, place, node):
+        """The mutants at this place, unless it is part of a constant."""
+        found = self.at.get((genre, place), [])
+        if not found or is_constant(node):
+            return []
+        self.asleep.update(mutant["n"] for mutant in found)
+        return found
+
+    def between(self, start, end):
+        return self.source[start:end].decode()
+
+    def plain(self, node, instead=lambda child: None):
+        """A node's text with its children rewritten, or replaced where `instead` says so."""
+        out, done = [], node.start_byte
+        for child in node.children:
+            out += [self.between(done, child.start_byte), instead(child) or self.emit(child)]
+            done = child.end_byte
+        return "".join(out) + self.between(done, node.end_byte)
+
+    def emit(self, node):
+        rewrite = getattr(self, node.type, None)
+        return (rewrite and rewrite(node)) or self.plain(node)
+
+    def sides(self, node):
+        return (self.emit(node.child_by_field_name(side)) for side in ("left", "right"))
+
+    def binary_expression(self, node):
+        operator = node.child_by_field_name("operator")
+        mutants = self.take("BinaryOperator", operator.start_byte, node)
+        if not mutants:
+            return None
+        old = operator.text.decode()
+        left, right = self.sides(node)
+        if old in ("&&", "||"):  # the right side may not be evaluated
+            arms = "".join(f"{m['n']} => a__ {m['replacement']} ({right}), " for m in mutants)
+            return f"({{ let a__ = {left}; match {AWAKE} {{ {arms} _ => a__ {old} ({right}) }} }})"
+        arms = "".join(f"{m['n']} => a__ {m['replacement']} b__, " for m in mutants)
+        borrow = "&" if old in COMPARISONS else ""
+        return f"(match ({borrow}({left}), {borrow}({right})) {{ (a__, b__) => match {AWAKE} {{ {arms} _ => a__ {old} b__ }} }})"
+
+    def compound_assignment_expr(self, node):
+        operator = node.child_by_field_name("operator")
+        mutants = self.take("BinaryOperator", operator.start_byte, node)
+        if not mutants:
+            return None
+        left, right = self.sides(node)
+        arms = "".join(f"{m['n']} => {{ {left} {m['replacement']} b__; }} " for m in mutants)
+        return f"{{ let b__ = {right}; match {AWAKE} {{ {arms} _ => {{ {left} {operator.text.decode()} b__; }} }} }}"
+
+    def unary_expression(self, node):
+        mutants = self.take("UnaryOperator", node.start_byte, node)
+        if not mutants:
+            return None
+        operator, value = node.children[0].text.decode(), self.emit(node.children[1])
+        return f"({{ let v__ = {value}; if {AWAKE} == {mutants[0]['n']} {{ v__ }} else {{ {operator}v__ }} }})"
+
+    def match_arm(self, node):
+        pattern = node.child_by_field_name("pattern")
+        mutants = [] if pattern.child_by_field_name("condition") else self.take("MatchArm", node.start_byte, node)
+        if not mutants:
+            return None
+        guard = f"{pattern.text.decode()} if {AWAKE} != {mutants[0]['n']}"
+        return self.plain(node, lambda child: guard if child == pattern else None)
+
+    def function_item(self, node):
+        body, result = node.child_by_field_name("body"), node.child_by_field_name("return_type")
+        if body is None or (result is not None and b"impl " in result.text):  # one opaque type has one origin
+            return None
+        starts = [child.start_byte for child in body.children if child.type not in ("{", "}")] + [body.start_byte]
+        start = next((start for start in starts if ("FnValue", start) in self.at), None)
+        mutants = self.take("FnValue", start, body) if start is not None else []
+        if not mutants:
+            return None
+        head = "".join(f"if {AWAKE} == {m['n']} {{ return {m['replacement']}; }} " for m in mutants)
+        return self.plain(node, lambda child: "{ " + head + self.plain(body)[1:] if child == body else None)
+
+
+def is_constant(node):
+    """Whether the compiler must know this node's value."""
+    start = node.start_byte
+    while node := node.parent:
+        length = node.child_by_field_name("length") if node.type == "array_expression" else None
+        if node.type in CONSTANT or (length is not None and length.start_byte <= start):
+            return True
+        if node.type == "function_item":
+            const = any(child.type == "function_modifiers" and b"const" in child.text for child in node.children)
+            return const and node.child_by_field_name("name").text.decode() not in CALLED_AT_RUN_TIME
+    return False
+
+
+def culprits(text, start, end):
+    """The mutants that an error between these bytes of a rewritten file points at."""
+    before, own = text[:start].decode()[-400:], text[start:end].decode()
+    number = r"(\d+) => (?=\{? ?\S* ?)|== (\d+) \{ (?:return|v__)|awake\(\) != (\d+)"
+    found = re.findall(number, before) or re.findall(number, own)
+    return {int(next(filter(None, groups))) for groups in found[-1:]}
