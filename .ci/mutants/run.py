@@ -15,6 +15,7 @@ Goes on where FILE (target/mutants/outcomes.jsonl) ends; a line an outcome: numb
 import argparse
 import collections
 import concurrent.futures
+import csv
 import functools
 import json
 import os
@@ -259,6 +260,29 @@ def ask_alone(tree, mutant, outcomes):
     return outcomes.add(mutant, "survived")
 
 
+def place(name):
+    """A mutant's name without line and column, which move with every change."""
+    return re.sub(r":\d+:\d+:", ":", name, count=1)
+
+
+def report(mutants, outcomes):
+    """A Markdown table by room; fails on a survivor without a reason in tests/survivors.csv."""
+    hows = ["doesn't compile", "caught", "endless", "survived"]
+    rooms = collections.defaultdict(collections.Counter)
+    for mutant in mutants:
+        for room in (mutant["file"].split("/")[1], "all"):
+            rooms[room][outcomes.known[mutant["name"]]["how"]] += 1
+    print("| room | mutants | don't compile | caught | by a loop without end | survive |\n|---|--:|--:|--:|--:|--:|")
+    for room, counts in sorted(rooms.items(), key=lambda row: row[0] == "all"):
+        print(f"| `{room}` | {counts.total()} | {' | '.join(str(counts[how]) for how in hows)} |")
+    with (TOP / "tests/survivors.csv").open() as file:
+        explained = {row["mutant"] for row in csv.DictReader(file)}
+    survivors = [mutant["name"] for mutant in mutants if outcomes.known[mutant["name"]]["how"] == "survived"]
+    unexplained = [name for name in survivors if place(name) not in explained]
+    print("\n".join(f"unexplained: {name}" for name in unexplained))
+    return len(unexplained)
+
+
 def main():
     options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     options.add_argument("--only", default="", help="mutants whose name has this regular expression")
@@ -268,7 +292,8 @@ def main():
     listed = subprocess.run(["cargo", "mutants", "--list", "--json"], cwd=TOP, stdout=subprocess.PIPE, check=True).stdout
     mutants = [mutant | {"n": n} for n, mutant in enumerate(json.loads(listed), 1)]
     outcomes = Outcomes(options.outcomes)
-    wanted = outcomes.missing([mutant for mutant in mutants if re.search(options.only, mutant["name"])])
+    chosen = [mutant for mutant in mutants if re.search(options.only, mutant["name"])]
+    wanted = outcomes.missing(chosen)
     print(f"{len(mutants)} mutants, {len(wanted)} to try", flush=True)
 
     lanes = [mutant for mutant in wanted if mutant["file"].startswith("src/simd/")]
@@ -285,6 +310,7 @@ def main():
             binaries = build(tree, *test) or sys.exit(f"the tree {name} doesn't build")
             wake([mutant for mutant in own if mutant["n"] in asleep], units(tree, binaries), outcomes)
     one_by_one(outcomes.missing(wanted), outcomes)
+    sys.exit(f"{unexplained} survivors have no reason" if (unexplained := report(chosen, outcomes)) else 0)
 
 
 if __name__ == "__main__":
