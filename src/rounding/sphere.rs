@@ -79,4 +79,15 @@ mod tests {
         assert_eq!(centre, [16_777_216.0, 0.0, 0.0]);
         assert!((1.75..1.751).contains(&radius), "{radius}");
     }
+
+    #[test]
+    fn a_ball_stays_around_a_translation_that_is_read_as_zero() {
+        let turn = crate::rounding::pose::rotation([0.0, 0.0, 0.0, 1.0]);
+        let subnormal = f32::from_bits(0x007f_ffff);
+        let (_, radius) = world_ball(&turn, [subnormal; 3], [1e-45, 0.0, 0.0], 0.0);
+        assert!(
+            f64::from(radius) >= 3_f64.sqrt() * f64::from(subnormal),
+            "{radius:e}"
+        );
+    }
 }

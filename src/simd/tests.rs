@@ -24,6 +24,7 @@ impl Kernel for Check {
             quads(l, start);
         }
         masks(l);
+        columns(l);
     }
 }
 
@@ -38,6 +39,22 @@ fn bits_of<L: Lanes>(l: L, v: L::F) -> Vec<u32> {
     let mut out = [0; MAX_WIDTH];
     l.compress(u32::MAX, l.as_u32(v), &mut out);
     out[..L::WIDTH].to_vec()
+}
+
+fn columns<L: Lanes>(l: L) {
+    let quads: [[f32; 4]; MAX_WIDTH] =
+        std::array::from_fn(|i| std::array::from_fn(|c| (4 * i + c) as f32));
+    let of_quads = quads_in_columns(l, &quads);
+    let rows: [[f32; ROW]; MAX_WIDTH] =
+        std::array::from_fn(|i| std::array::from_fn(|c| (ROW * i + c) as f32));
+    let (mut turned, mut back) = ([[0.0; MAX_WIDTH]; ROW], [[0.0; MAX_WIDTH]; ROW]);
+    turn_rows(l, &rows, &mut turned);
+    turn_rows(l, &turned, &mut back);
+    for i in 0..MAX_WIDTH {
+        assert_eq!(of_quads.map(|column| column[i]), quads[i]);
+        assert_eq!(turned.map(|column| column[i]), rows[i]);
+    }
+    assert_eq!(back, rows);
 }
 
 fn masks<L: Lanes>(l: L) {
