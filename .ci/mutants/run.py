@@ -252,7 +252,7 @@ def one_by_one(mutants, outcomes):
 
 
 def ask_alone(tree, mutant, outcomes):
-    for suites in (["--test", "golden_pairs"], ["--lib"], [part for suite in SUITES[1:] for part in ("--test", suite)]):
+    for suites in (["--lib"], ["--test", "golden_pairs"], [part for suite in SUITES[1:] for part in ("--test", suite)]):
         for suite, executable in build(tree, *FEATURES, *suites).items():
             how, by = ask(tree, suite, [executable], 0, 120)
             if how != "survived":
