@@ -6,7 +6,7 @@ process wakes one by its number. What can't sleep is built by itself. A mutant i
 times its time and ten seconds more. Two tiers run in the copy, scalar and AVX-512: a lane of every other tier is tested by
 itself, as a crate of the room `simd`.
 
-    .ci/mutants/run.py [--only REGEX] [--outcomes FILE]
+    .ci/mutants/run.py [--only REGEX] [--slowest SECONDS] [--outcomes FILE]
 
 Goes on where FILE (target/mutants/outcomes.jsonl) ends; a line an outcome: number, name, how (`caught`, `endless`,
 `survived`, `doesn't compile`), by which test.
@@ -35,7 +35,6 @@ WORK = TOP / "target/mutants"
 FEATURES = ["-p", "sdop", "--no-default-features", "--features", "proptest"]
 SUITES = ["golden_pairs", "finders", "near_misses", "against_reference", "worst_case", "world", "naive_margins", "finder_costs"]
 ENVIRONMENT = os.environ | {
-    "CARGO_TARGET_DIR": str(WORK / "target"),
     "CARGO_PROFILE_TEST_OPT_LEVEL": "1",
     "CARGO_PROFILE_TEST_DEBUG": "none",
     "CARGO_PROFILE_DEV_DEBUG": "none",
@@ -53,15 +52,15 @@ thiserror = "2"
 [profile.test]
 opt-level = 1
 """
-# Seconds of CPU. A survivor is asked by every test, so the slowest are left out: those that count allocations, mostly.
-SLOWEST = 15
 ALLOWED = "#![allow(warnings, unsafe_code, arithmetic_overflow, unconditional_panic, clippy::all)]\n"
 
 
 def cargo(tree, *arguments):
     """The messages of a cargo command, and its exit code."""
     command = ["nice", "cargo", *arguments, "--message-format=json", "--quiet"]
-    done = subprocess.run(command, cwd=tree, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    # Not shared: cargo names what it builds by paths within a tree, and one tree's binaries would replace another's.
+    environment = ENVIRONMENT | {"CARGO_TARGET_DIR": str(WORK / "target" / tree.name)}
+    done = subprocess.run(command, cwd=tree, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")], done
 
 
@@ -189,8 +188,8 @@ class Unit:
         return ask(self.tree, self.name, self.command, number, int(3 * self.cost) + 10)
 
 
-def units(tree, binaries):
-    """The tests of these binaries that take up to SLOWEST seconds, cheapest first."""
+def units(tree, binaries, slowest):
+    """The tests of these binaries that take up to `slowest` seconds of CPU, cheapest first."""
     found = []
     for suite, executable in binaries.items():
         if suite == "lib":
@@ -200,8 +199,8 @@ def units(tree, binaries):
         found += [Unit(tree, suite, executable, test) for test in re.findall(r"^(\S+): test$", listed, re.M)]
     found.sort(key=lambda unit: unit.cost)
     for unit in found:
-        print(f"{unit.cost:7.2f} s{'' if unit.cost <= SLOWEST else ', left out'}: {unit.name}", flush=True)
-    return [unit for unit in found if unit.cost <= SLOWEST]
+        print(f"{unit.cost:7.2f} s{'' if unit.cost <= slowest else ', left out'}: {unit.name}", flush=True)
+    return [unit for unit in found if unit.cost <= slowest]
 
 
 class Outcomes:
@@ -253,7 +252,10 @@ def one_by_one(mutants, outcomes):
 
 def ask_alone(tree, mutant, outcomes):
     for suites in (["--lib"], ["--test", "golden_pairs"], [part for suite in SUITES[1:] for part in ("--test", suite)]):
-        for suite, executable in build(tree, *FEATURES, *suites).items():
+        binaries = build(tree, *FEATURES, *suites)
+        if not binaries:
+            return outcomes.add(mutant, "doesn't compile")
+        for suite, executable in binaries.items():
             how, by = ask(tree, suite, [executable], 0, 120)
             if how != "survived":
                 return outcomes.add(mutant, how, by)
@@ -286,6 +288,7 @@ def report(mutants, outcomes):
 def main():
     options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     options.add_argument("--only", default="", help="mutants whose name has this regular expression")
+    options.add_argument("--slowest", type=float, default=15, help="seconds of CPU: a survivor is asked by every faster test")
     options.add_argument("--outcomes", type=pathlib.Path, default=WORK / "outcomes.jsonl")
     options = options.parse_args()
     WORK.mkdir(parents=True, exist_ok=True)
@@ -308,7 +311,7 @@ def main():
             asleep = settle(tree, own, prepare, check)
             print(f"{name}: {len(asleep)} of {len(own)} sleep", flush=True)
             binaries = build(tree, *test) or sys.exit(f"the tree {name} doesn't build")
-            wake([mutant for mutant in own if mutant["n"] in asleep], units(tree, binaries), outcomes)
+            wake([mutant for mutant in own if mutant["n"] in asleep], units(tree, binaries, options.slowest), outcomes)
     one_by_one(outcomes.missing(wanted), outcomes)
     sys.exit(f"{unexplained} survivors have no reason" if (unexplained := report(chosen, outcomes)) else 0)
 
