@@ -120,22 +120,20 @@ def settle(tree, mutants, prepare, check):
         print(f"{len(bad)} don't compile asleep", flush=True)
 
 
-def with_waker(tree):
-    lib = tree / "src/lib.rs"
-    head, rest = re.match(r"((?://!.*\n|\n)*)((?s:.*))", (TOP / "src/lib.rs").read_text()).groups()
-    lib.write_text(f"{head}{ALLOWED}{rest}\n#[doc(hidden)]\npub mod mutant;\n")
+def with_waker(tree, lib):
+    (tree / "src/lib.rs").write_text(f"{lib}\n#[doc(hidden)]\npub mod mutant;\n")
     (tree / "src/mutant.rs").write_text(plant.WAKER)
 
 
 def main_tree(tree):
-    with_waker(tree)
+    head, rest = re.match(r"((?://!.*\n|\n)*)((?s:.*))", (TOP / "src/lib.rs").read_text()).groups()
+    with_waker(tree, f"{head}{ALLOWED}{rest}")
     two_tiers(tree)
 
 
 def lanes_tree(tree):
     (tree / "Cargo.toml").write_text(LANES_ALONE)
-    (tree / "src/lib.rs").write_text(f"{ALLOWED}pub mod simd;\npub mod mutant;\n")
-    (tree / "src/mutant.rs").write_text(plant.WAKER)
+    with_waker(tree, f"{ALLOWED}pub mod simd;")
 
 
 def build(tree, *arguments):
