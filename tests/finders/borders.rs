@@ -6,13 +6,10 @@
 //! centre, which is the grid's origin, is a number so small that moving it by its own last place moves a quotient by about
 //! one of its own.
 
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use sdop::bodies::Bodies;
 use sdop::mesh::TriangleMesh;
-use sdop::rounding::{sphere::inflate_radius, widen};
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::{Finder, Strategy};
-use sdop::simd::Level;
+use sdop::settings::{Finder, Strategy};
+use sdop::simd::Tier;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 
 use super::scenes::Scene;
@@ -53,7 +50,7 @@ fn scene(reaches: &[f32], bodies: impl IntoIterator<Item = (u32, bool, [f32; 3])
 }
 
 /// The sorted pairs of one frame.
-fn pairs(scene: &Scene, strategy: Strategy, finder: Finder, tier: Level) -> Vec<[u32; 2]> {
+fn pairs(scene: &Scene, strategy: Strategy, finder: Finder, tier: Tier) -> Vec<[u32; 2]> {
     let mut found = Vec::new();
     run(scene, &settings(strategy, finder), tier, 1, 1, |culler| {
         found = culler.pairs().sorted();
@@ -64,9 +61,9 @@ fn pairs(scene: &Scene, strategy: Strategy, finder: Finder, tier: Level) -> Vec<
 /// Every finder in every tier and strategy against all pairs.
 fn judge(scene: &Scene, strategies: &[Strategy], what: &str) {
     for &strategy in strategies {
-        let wanted = [pairs(scene, strategy, Finder::AllPairs, Level::SCALAR)];
+        let wanted = [pairs(scene, strategy, Finder::AllPairs, Tier::SCALAR)];
         for &finder in Finder::ALL {
-            for tier in Level::available() {
+            for tier in Tier::available() {
                 let found = [pairs(scene, strategy, finder, tier)];
                 compare(
                     &found,
@@ -99,7 +96,7 @@ fn a_moving_bar_meets_the_farthest_static_one() {
     let bars = fixed.map(|x| (0, false, [x, 0.0, 0.0]));
     let moving = (0, true, [11.494_775_772_094_727, 0.0, 0.0]);
     let scene = scene(&[REACH], bars.chain([moving]));
-    let wanted = pairs(&scene, Strategy::Sphere, Finder::AllPairs, Level::SCALAR);
+    let wanted = pairs(&scene, Strategy::Sphere, Finder::AllPairs, Tier::SCALAR);
     assert!(wanted.contains(&[1, 102]));
     judge(&scene, Strategy::ALL, "static bars");
 }
@@ -111,7 +108,7 @@ fn a_giant_bar_meets_the_farthest_small_one() {
     let bars = small.map(|(x, i)| (0, true, [x, 2.0 * (i / 2 % 4) as f32, (i / 8 % 5) as f32]));
     let giant = (1, true, [ENDS[1] + 8.0 + 0.95, 0.0, 0.0]);
     let scene = scene(&[REACH, 8.0], bars.chain([giant]));
-    let wanted = pairs(&scene, Strategy::Sphere, Finder::AllPairs, Level::SCALAR);
+    let wanted = pairs(&scene, Strategy::Sphere, Finder::AllPairs, Tier::SCALAR);
     assert!(wanted.contains(&[1, 2000]));
     judge(&scene, &[Strategy::Sphere], "a giant bar");
 }

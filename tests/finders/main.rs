@@ -10,12 +10,12 @@ mod support;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sdop::broad_phase::Groups;
-use sdop::cost::Counters;
-use sdop::pipeline::Culler;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::{Budget, CullSettings, Finder, Interest, Strategy, ViewCone};
-use sdop::simd::Level;
+use sdop::bodies::Bodies;
+use sdop::bodies::Groups;
+use sdop::counters::Counters;
+use sdop::culler::Culler;
+use sdop::settings::{Budget, CullSettings, Finder, Interest, Strategy, ViewCone};
+use sdop::simd::Tier;
 
 use scenes::{Scene, hard_scenes, near_touching, unequal_near_touching, uniform};
 
@@ -42,14 +42,14 @@ fn settings(strategy: Strategy, pairs: Finder) -> CullSettings {
 fn run(
     scene: &Scene,
     settings: &CullSettings,
-    level: Level,
+    tier: Tier,
     threads: usize,
     frames: usize,
     mut take: impl FnMut(&Culler),
 ) {
     let mut rng = ChaCha8Rng::seed_from_u64(99);
     let mut bodies = scene.bodies.clone();
-    let culler = Culler::new(&scene.shapes, &bodies, settings, level).unwrap();
+    let culler = Culler::new(&scene.shapes, &bodies, settings, tier).unwrap();
     let mut culler = culler.with_threads(threads).unwrap();
     for _ in 0..frames {
         culler.cull(&bodies);
@@ -74,7 +74,7 @@ fn found(scene: &Scene, strategy: Strategy, finder: Finder, frames: usize) -> Ve
     run(
         scene,
         &settings(strategy, finder),
-        Level::detect(),
+        Tier::detect(),
         1,
         frames,
         |culler| {
@@ -223,11 +223,11 @@ fn giants_meet_the_tiny_ones_of_far_clusters_once() {
 fn trace(
     scene: &Scene,
     settings: &CullSettings,
-    level: Level,
+    tier: Tier,
     threads: usize,
 ) -> Vec<(Vec<[u32; 2]>, Counters)> {
     let mut trace = Vec::new();
-    run(scene, settings, level, threads, 3, |culler| {
+    run(scene, settings, tier, threads, 3, |culler| {
         trace.push((culler.pairs().iter().collect(), *culler.counters()));
     });
     trace
@@ -260,7 +260,7 @@ fn groups_leave_of_every_list_the_pairs_that_may_collide() {
         for &finder in Finder::ALL {
             for threads in [1, 3] {
                 let settings = settings(strategy, finder);
-                let culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Level::detect());
+                let culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect());
                 let mut culler = culler.unwrap().with_threads(threads).unwrap();
                 culler.set_groups(Some(groups.clone()));
                 let (mut rng, mut bodies) = (ChaCha8Rng::seed_from_u64(99), scene.bodies.clone());
@@ -281,10 +281,10 @@ fn many_bodies_give_the_list_of_one_thread_on_any_number() {
     let scene = Scene::new("many", &[1.0], 40_000, |_, rng| uniform(rng, 96.0));
     for strategy in [Strategy::Sphere, Strategy::SDopSequential] {
         let settings = settings(strategy, Finder::Grid);
-        let wanted = trace(&scene, &settings, Level::detect(), 1);
+        let wanted = trace(&scene, &settings, Tier::detect(), 1);
         assert!(wanted[2].0.len() > 10_000);
         for threads in [2, 3] {
-            let found = trace(&scene, &settings, Level::detect(), threads);
+            let found = trace(&scene, &settings, Tier::detect(), threads);
             // Lists of this length are not worth printing.
             assert!(found == wanted, "{strategy}, {threads} threads");
         }
@@ -297,10 +297,10 @@ fn auto_is_one_of_the_others_in_list_and_count() {
         let scene = Scene::new("auto", &[1.0], n, |_, rng| uniform(rng, side));
         let [auto, named] = [Finder::Auto, wanted].map(|finder| {
             let settings = settings(Strategy::SDopSequential, finder);
-            run(&scene, &settings, Level::detect(), 1, 1, |culler| {
+            run(&scene, &settings, Tier::detect(), 1, 1, |culler| {
                 assert_eq!(culler.finder(), wanted);
             });
-            trace(&scene, &settings, Level::detect(), 1)
+            trace(&scene, &settings, Tier::detect(), 1)
         });
         assert_eq!(auto, named);
     }
@@ -315,16 +315,16 @@ fn lists_and_counts_are_the_same_in_every_tier_and_on_every_number_of_threads() 
         for &finder in Finder::ALL {
             for &strategy in Strategy::ALL {
                 let settings = settings(strategy, finder);
-                let wanted = trace(scene, &settings, Level::SCALAR, 1);
-                for level in Level::available() {
-                    let found = trace(scene, &settings, level, 1);
+                let wanted = trace(scene, &settings, Tier::SCALAR, 1);
+                for tier in Tier::available() {
+                    let found = trace(scene, &settings, tier, 1);
                     assert!(
                         found == wanted,
-                        "{}, {finder}, {strategy}, {level}",
+                        "{}, {finder}, {strategy}, {tier}",
                         scene.name
                     );
                 }
-                let found = trace(scene, &settings, Level::detect(), 3);
+                let found = trace(scene, &settings, Tier::detect(), 3);
                 assert!(
                     found == wanted,
                     "{}, {finder}, {strategy}, threads",
@@ -346,7 +346,7 @@ fn bodies_may_gather_and_part_over_many_frames() {
     let start = scene.bodies.translation.clone();
     let cullers = [Finder::AllPairs].iter().chain(Finder::ALL).map(|&finder| {
         let settings = settings(Strategy::SDopSequential, finder);
-        Culler::new(&scene.shapes, &scene.bodies, &settings, Level::detect()).unwrap()
+        Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect()).unwrap()
     });
     let mut cullers: Vec<Culler> = cullers.collect();
     for frame in 0..120 {
