@@ -161,7 +161,7 @@ on_tiers! {
 #[test]
 fn the_suite_is_stamped_on_every_tier() {
     let stamped = ["scalar", "sse2", "avx2", "avx512", "neon"];
-    assert_eq!(stamped, Tier::NAMES);
+    assert_eq!(stamped, Tier::NAMES, "a new tier: stamp it in on_tiers!");
     let names: Vec<_> = Tier::available().iter().map(|tier| tier.name()).collect();
     assert!(names.iter().all(|name| stamped.contains(name)), "{names:?}");
 }

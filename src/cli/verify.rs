@@ -17,6 +17,7 @@ use sdop::lab::verify::ways::{Rotation, variants};
 use sdop::simd::Tier;
 
 use super::Outcome;
+use super::files::{self, ReadArgs};
 use super::output::{Format, emit, print, progress};
 use report::Report;
 
@@ -55,6 +56,8 @@ pub struct Args {
     /// Write the hard cases' exact answers and their page into this directory, and judge nothing
     #[arg(long, value_name = "DIR")]
     record_hard_cases: Option<PathBuf>,
+    #[command(flatten)]
+    files: ReadArgs,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -70,7 +73,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     let start = Instant::now();
     // A scene that can't be built is said before the long work.
-    let build = |path: &PathBuf| SceneFile::read(path).and_then(|file| file.build());
+    let most = args.files.max_bytes();
+    let build = |path: &PathBuf| SceneFile::read_within(path, most).and_then(|file| file.build());
     let scenes = args
         .scenes
         .iter()
@@ -221,18 +225,12 @@ fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
 
 /// Recomputes the answers of the groups in a directory, and their page.
 fn record(directory: &Path) -> miette::Result<Outcome> {
-    let failed = |what: &str, path: &Path| format!("cannot {what} {}", path.display());
-    let write = |name: &str, text: &str| {
-        let path = directory.join(name);
-        let written = std::fs::write(&path, text).into_diagnostic();
-        written.wrap_err_with(|| failed("write", &path))
-    };
+    let write = |name: &str, text: &str| files::write(&directory.join(name), text);
     let bar = progress(FILES.len() as u64, "exact answers");
     let mut texts = Vec::new();
     for (name, _) in FILES {
         let path = directory.join(format!("{name}.toml"));
-        let text = std::fs::read_to_string(&path).into_diagnostic();
-        let text = text.wrap_err_with(|| failed("read", &path))?;
+        let text = files::read(&path)?;
         let mut group = Group::parse(&text).into_diagnostic()?;
         group.record().into_diagnostic()?;
         let head = text.split("\n[answers").next().unwrap_or(&text).trim_end();

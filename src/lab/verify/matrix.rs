@@ -84,24 +84,30 @@ impl Matrix {
         Cell::all(rotation).filter(is_empty).collect()
     }
 
-    /// The cells that fall together under a name: how many, how many of them are filled, and the fewest lists in one.
+    /// The cells that fall together under a name: how many, how many of them are filled, and the fewest lists in one. In the
+    /// order of [`Cell::all`].
     #[must_use]
-    pub fn fold<K: Ord>(
+    pub fn fold<K: PartialEq>(
         &self,
         rotation: &Rotation,
         name: impl Fn(&Cell) -> K,
-    ) -> BTreeMap<K, Filled> {
-        let mut folded = BTreeMap::new();
+    ) -> Vec<(K, Filled)> {
+        let mut folded: Vec<(K, Filled)> = Vec::new();
         for cell in Cell::all(rotation) {
-            let lists = self.lists(&cell);
-            let filled: &mut Filled = folded.entry(name(&cell)).or_default();
-            filled.fewest = if filled.cells == 0 {
-                lists
+            let (name, lists) = (name(&cell), self.lists(&cell));
+            let known = folded.iter_mut().find(|(known, _)| *known == name);
+            if let Some((_, filled)) = known {
+                filled.cells += 1;
+                filled.filled += u64::from(lists > 0);
+                filled.fewest = filled.fewest.min(lists);
             } else {
-                filled.fewest.min(lists)
-            };
-            filled.cells += 1;
-            filled.filled += u64::from(lists > 0);
+                let filled = Filled {
+                    cells: 1,
+                    filled: u64::from(lists > 0),
+                    fewest: lists,
+                };
+                folded.push((name, filled));
+            }
         }
         folded
     }
@@ -142,9 +148,12 @@ mod tests {
         let cell = empty[0];
         assert_eq!((cell.strategy, cell.finder), (Strategy::Obb, Finder::Sweep));
         let by_finder = matrix.fold(&rotation, |cell| cell.finder);
-        let sweep = by_finder[&Finder::Sweep];
-        assert_eq!((sweep.filled, sweep.fewest), (sweep.cells - 1, 0));
-        assert_eq!(by_finder[&Finder::Grid].fewest, 1);
-        assert_eq!(by_finder.len(), Finder::ALL.len());
+        let finders: Vec<Finder> = by_finder.iter().map(|row| row.0).collect();
+        assert_eq!(finders, Finder::ALL);
+        for (finder, filled) in by_finder {
+            let lacks = u64::from(finder == Finder::Sweep);
+            assert_eq!(filled.filled, filled.cells - lacks);
+            assert_eq!(filled.fewest, 1 - lacks);
+        }
     }
 }

@@ -10,6 +10,7 @@ use super::judged::Shapes;
 use super::rounds::Failure;
 use super::ways::Mode;
 use crate::bodies::Bodies;
+use crate::files;
 use crate::lab::scene::SceneFile;
 use crate::mesh::{self, TriangleMesh};
 use crate::settings::{CullSettings, Finder, Interest};
@@ -100,7 +101,7 @@ impl Smallest {
     pub fn write(&self, directory: &Path) -> io::Result<(PathBuf, bool)> {
         let path = directory.join("missed-pair.toml");
         for origin in ["ball", "file"] {
-            std::fs::write(&path, self.toml(directory, origin)?)?;
+            files::write(&path, self.toml(directory, origin)?)?;
             if self.shown_by(&path) {
                 return Ok((path, true));
             }

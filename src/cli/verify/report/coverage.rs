@@ -1,11 +1,9 @@
 //! The matrix of what was judged, in two projections: thousands of cells are too many to read, and a tier, a mode or a
 //! finder that was left out shows in one of them.
 
-use std::collections::BTreeMap;
-
 use sdop::lab::verify::matrix::{Cell, Filled, Matrix};
 use sdop::lab::verify::ways::{Rotation, refines};
-use sdop::settings::{Finder, Strategy};
+use sdop::settings::Strategy;
 use serde::Serialize;
 
 use crate::cli::output::table;
@@ -22,19 +20,31 @@ pub struct Coverage {
     /// What can't exist, and so has no cell.
     impossible: String,
     /// By strategy and overlap test against finder: over k, axes, updates, tiers and threads.
-    by_strategy: BTreeMap<String, BTreeMap<&'static str, Filled>>,
+    by_strategy: Vec<Row>,
     /// By tier, updates and threads against k and axes: over strategies, overlap tests and finders.
-    by_mode: BTreeMap<String, BTreeMap<String, Filled>>,
+    by_mode: Vec<Row>,
     /// The cells without a list, by name.
     empty: Vec<String>,
 }
 
+/// One row of a projection.
+#[derive(Serialize)]
+struct Row {
+    name: String,
+    parts: Vec<Part>,
+}
+
+#[derive(Serialize)]
+struct Part {
+    name: String,
+    #[serde(flatten)]
+    filled: Filled,
+}
+
 impl Coverage {
     pub fn of(matrix: &Matrix, rotation: &Rotation) -> Self {
-        let all = matrix
-            .fold(rotation, |_| ())
-            .remove(&())
-            .unwrap_or_default();
+        let all = matrix.fold(rotation, |_| ());
+        let all = all.first().map_or_else(Filled::default, |(_, all)| *all);
         let unrefined = Strategy::ALL.iter().filter(|strategy| !refines(**strategy));
         let unrefined: Vec<&str> = unrefined.map(|strategy| strategy.name()).collect();
         Self {
@@ -45,8 +55,10 @@ impl Coverage {
                 "{} have no overlap test: one row instead of three",
                 unrefined.join(", ")
             ),
-            by_strategy: nest(matrix.fold(rotation, |cell| (strategy(cell), cell.finder.name()))),
-            by_mode: nest(matrix.fold(rotation, |cell| (mode(cell), variant(cell)))),
+            by_strategy: rows(
+                matrix.fold(rotation, |cell| (strategy(cell), cell.finder.to_string())),
+            ),
+            by_mode: rows(matrix.fold(rotation, |cell| (mode(cell), variant(cell)))),
             empty: matrix.empty(rotation).iter().map(name).collect(),
         }
     }
@@ -57,10 +69,7 @@ impl Coverage {
 
     /// Both projections, and the empty cells.
     pub fn tables(&self) -> String {
-        let finders = projection("cells with lists", Finder::NAMES, &self.by_strategy);
-        let variants = self.by_mode.values().next();
-        let variants: Vec<&String> = variants.map_or_else(Vec::new, |row| row.keys().collect());
-        let modes = projection("cells with lists", &variants, &self.by_mode);
+        let [finders, modes] = [&self.by_strategy, &self.by_mode].map(|rows| projection(rows));
         let mut text = format!(
             "What was judged: {} of {} cells, each by {} lists or more ({})\n{finders}\n{modes}",
             self.filled, self.cells, self.fewest, self.impossible
@@ -73,29 +82,34 @@ impl Coverage {
 }
 
 /// One table: filled cells of all, and the fewest lists in one.
-fn projection<K: Ord + std::borrow::Borrow<str>>(
-    corner: &str,
-    columns: &[impl AsRef<str>],
-    rows: &BTreeMap<String, BTreeMap<K, Filled>>,
-) -> comfy_table::Table {
-    let columns: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
-    let mut printed = table(&[&[corner], &columns[..]].concat());
-    for (name, row) in rows {
-        let entry = |column: &&str| {
-            let filled = row.get(*column).copied().unwrap_or_default();
+fn projection(rows: &[Row]) -> comfy_table::Table {
+    let columns = rows.iter().take(1).flat_map(|row| &row.parts);
+    let columns = columns.map(|part| part.name.as_str());
+    let header: Vec<&str> = ["cells with lists"].into_iter().chain(columns).collect();
+    let mut printed = table(&header);
+    for row in rows {
+        let parts = row.parts.iter().map(|Part { filled, .. }| {
             format!("{}/{} ≥{}", filled.filled, filled.cells, filled.fewest)
-        };
-        printed.add_row([name.clone()].into_iter().chain(columns.iter().map(entry)));
+        });
+        printed.add_row([row.name.clone()].into_iter().chain(parts));
     }
     printed
 }
 
-fn nest<K: Ord>(folded: BTreeMap<(String, K), Filled>) -> BTreeMap<String, BTreeMap<K, Filled>> {
-    let mut nested: BTreeMap<String, BTreeMap<K, Filled>> = BTreeMap::new();
-    for ((row, column), filled) in folded {
-        nested.entry(row).or_default().insert(column, filled);
+/// Rows and their parts in the order of their first cells.
+fn rows(folded: Vec<((String, String), Filled)>) -> Vec<Row> {
+    let mut rows: Vec<Row> = Vec::new();
+    for ((name, part), filled) in folded {
+        let part = Part { name: part, filled };
+        match rows.iter_mut().find(|row| row.name == name) {
+            Some(row) => row.parts.push(part),
+            None => rows.push(Row {
+                name,
+                parts: vec![part],
+            }),
+        }
     }
-    nested
+    rows
 }
 
 fn strategy(cell: &Cell) -> String {
