@@ -8,7 +8,7 @@
 
 use std::sync::Mutex;
 
-use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// The fewest pieces of a column for which waking a thread pays.
 const FEWEST_PIECES: usize = 8;
@@ -18,12 +18,12 @@ const FEWEST_PIECES: usize = 8;
 pub struct Threads(Option<ThreadPool>);
 
 /// Threads that the system refused.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-#[error("cannot start {threads} threads: {source}")]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, miette::Diagnostic)]
+#[error("cannot start {threads} threads: {reason}")]
 #[diagnostic(help("ask for fewer threads"))]
 pub struct ThreadsError {
     threads: usize,
-    source: ThreadPoolBuildError,
+    reason: String,
 }
 
 impl Threads {
@@ -39,7 +39,10 @@ impl Threads {
         let pool = ThreadPoolBuilder::new().num_threads(others).build();
         match pool {
             Ok(pool) => Ok(Self(Some(pool))),
-            Err(source) => Err(ThreadsError { threads, source }),
+            Err(error) => Err(ThreadsError {
+                threads,
+                reason: error.to_string(),
+            }),
         }
     }
 

@@ -89,7 +89,7 @@ fn lists(
     let mut culler = culler(&cases.shapes.built, &frames[0], &settings, mode).unwrap();
     let lists = frames
         .iter()
-        .map(|frame| culler.cull(frame).iter().collect())
+        .map(|frame| culler.cull(frame).unwrap().iter().collect())
         .collect();
     (lists, *culler.counters())
 }

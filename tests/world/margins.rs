@@ -1,9 +1,9 @@
 //! Margins: bodies that touch to the ulp once they are grown, along faces, edges and corners, and margins that change.
 
+use sdop::culler::Culler;
 use sdop::lab::verify::ways::{variants, ways};
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Strategy};
-use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet, Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, World};
 
@@ -21,11 +21,8 @@ fn cube(directions: DirectionSet, axes: Axes) -> Shape {
 
 /// Two bodies in a world that culls in this way; what a strategy looks at or spends is given.
 fn two(way: &CullSettings, shape: &Shape, bodies: [Body; 2]) -> (World, [BodyId; 2]) {
-    let settings = CullSettings {
-        budget: Some(Budget::Tests(1)),
-        ..way.clone()
-    };
-    let mut world = World::new(vec![shape.clone()], &settings, Tier::detect()).unwrap();
+    let culler = Culler::builder().settings(way).budget(Budget::Tests(1));
+    let mut world = World::with(vec![shape.clone()], &culler).unwrap();
     let ids = bodies.map(|body| world.insert(body).unwrap());
     world.set_interest(&ids).unwrap();
     (world, ids)

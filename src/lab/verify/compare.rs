@@ -3,9 +3,8 @@
 use super::answers::{Answers, Predicate};
 use super::ways::Mode;
 use crate::bodies::Bodies;
-use crate::culler::Culler;
-use crate::settings::{Budget, CullSettings, Interest, SettingsError, Strategy};
-use crate::threads::ThreadsError;
+use crate::culler::{CullError, Culler};
+use crate::settings::{Budget, CullSettings, Interest, Strategy};
 use crate::volume::Shape;
 
 /// What a comparison counted.
@@ -58,17 +57,6 @@ pub fn settings(strategy: Strategy, base: &CullSettings, bodies: usize) -> CullS
     }
 }
 
-/// Why a list can't be had.
-#[derive(Debug, thiserror::Error)]
-pub enum CullError {
-    /// Settings that the bodies can't have.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    /// Threads that the system refuses.
-    #[error(transparent)]
-    Threads(#[from] ThreadsError),
-}
-
 /// A culler of these settings in this mode.
 ///
 /// # Errors
@@ -79,12 +67,12 @@ pub fn culler(
     settings: &CullSettings,
     mode: Mode,
 ) -> Result<Culler, CullError> {
-    let settings = CullSettings {
-        updates: mode.updates,
-        ..settings.clone()
-    };
-    let culler = Culler::new(shapes, bodies, &settings, mode.tier)?;
-    Ok(culler.with_threads(mode.threads)?)
+    let mode = Culler::builder()
+        .settings(settings)
+        .updates(mode.updates)
+        .tier(mode.tier)
+        .threads(mode.threads);
+    mode.build(shapes, bodies)
 }
 
 /// What the finder led to in the culler's last frame, sorted: the list, which every finder must give. What a budget leaves
@@ -164,7 +152,7 @@ mod tests {
     #[test]
     fn lists_differ_in_what_one_has_more_often() {
         let (a, b, c) = ([0, 1], [0, 2], [3, 4]);
-        assert_eq!(difference(&[a, b, c], &[a, b, c]), vec![]);
+        assert!(difference(&[a, b, c], &[a, b, c]).is_empty());
         assert_eq!(difference(&[a, b, b], &[a, b]), vec![b]);
         assert_eq!(difference(&[b], &[a, c]), vec![a, b, c]);
         assert_eq!(difference(&[], &[a]), vec![a]);
@@ -178,7 +166,7 @@ mod tests {
         };
         let none = CullSettings {
             strategy: Strategy::None,
-            ..CullSettings::default()
+            ..CullSettings::all_pairs()
         };
         for (list, missed) in [
             (vec![], 0),

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use sdop_reference::exact::Tally;
 
 use super::answers::{Answers, Predicate, explained_by_margins};
-use super::compare::{Count, CullError, compare, culler, difference, found, settings};
+use super::compare::{Count, compare, culler, difference, found, settings};
 use super::draw::{ContactSpec, crowd, probe};
 use super::forms::{self, Form, FormError};
 use super::hard::{Group, GroupError};
@@ -17,6 +17,7 @@ use super::judged::{InvalidInput, Shapes};
 use super::matrix::Matrix;
 use super::ways::{Mode, Rotation, refines, rows};
 use crate::bodies::Bodies;
+use crate::culler::CullError;
 use crate::mesh::ProceduralShape;
 use crate::settings::{CullSettings, Finder, Overlap, Strategy};
 use crate::simd::Tier;
@@ -25,7 +26,7 @@ use crate::volume::{Axes, DirectionSet, Shape};
 /// Why a round can't be run.
 #[derive(Debug, thiserror::Error)]
 pub enum RoundError {
-    /// A list that can't be had.
+    /// A culler that can't be made, or bodies that it refuses.
     #[error(transparent)]
     Cull(#[from] CullError),
     /// Numbers that the reference refuses.
@@ -192,7 +193,7 @@ impl Run<'_> {
         let mut culler = culler(&self.shapes.built, &self.frames[0], way, mode)?;
         ledger.matrix.count(way, mode, self.frames.len() as u64);
         for (n, (frame, answers)) in self.frames.iter().zip(self.answers).enumerate() {
-            let list = culler.cull(frame).sorted();
+            let list = culler.cull(frame)?.sorted();
             let (mut count, missed, extra) = compare(answers, way, &list);
             if way.strategy != Strategy::SDopTimeCritical {
                 for pair in extra {
@@ -252,10 +253,10 @@ impl<'a> Expected<'a> {
                 let (shapes, frames) = (&self.run.shapes.built, self.run.frames);
                 let mut culler = culler(shapes, &frames[0], self.row, Mode::plain(tier))?;
                 let lists = frames.iter().map(|frame| {
-                    culler.cull(frame);
-                    found(&culler, self.row)
+                    culler.cull(frame)?;
+                    Ok(found(&culler, self.row))
                 });
-                entry.insert(lists.collect())
+                entry.insert(lists.collect::<Result<_, CullError>>()?)
             }
         };
         Ok(&lists[frame])

@@ -5,11 +5,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::answers::{Answers, Predicate};
-use super::compare::{CullError, compare, culler, difference, found};
+use super::compare::{compare, culler, difference, found};
 use super::judged::Shapes;
 use super::rounds::Failure;
 use super::ways::Mode;
 use crate::bodies::Bodies;
+use crate::culler::CullError;
 use crate::files;
 use crate::lab::scene::SceneFile;
 use crate::mesh::{self, TriangleMesh};
@@ -155,7 +156,7 @@ fn wrong(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings, mode: Mode)
     };
     let lists = |settings, mode| -> Result<_, CullError> {
         let mut culler = culler(shapes, bodies, settings, mode)?;
-        let list = culler.cull(bodies).sorted();
+        let list = culler.cull(bodies)?.sorted();
         Ok((list, found(&culler, settings)))
     };
     let (list, found) = lists(settings, mode).ok()?;

@@ -44,7 +44,7 @@ pub fn rows((k, axes): (DirectionSet, Axes)) -> Vec<CullSettings> {
         pairs: Finder::AllPairs,
         k,
         axes,
-        ..CullSettings::default()
+        ..CullSettings::all_pairs()
     };
     let rows = Strategy::ALL.iter().flat_map(|&strategy| {
         let overlaps = match refines(strategy) {
