@@ -10,12 +10,23 @@ use std::sync::Mutex;
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
+use crate::simd::Tier;
+
 /// The fewest pieces of a column for which waking a thread pays.
 const FEWEST_PIECES: usize = 8;
 
 /// The caller's thread, or it and a pool of others.
 #[derive(Debug, Default)]
 pub struct Threads(Option<ThreadPool>);
+
+/// What work runs on: the CPU tier that kernels are compiled for, and the threads.
+#[derive(Clone, Copy, Debug)]
+pub struct Executor<'a> {
+    /// Of the kernels.
+    pub tier: Tier,
+    /// The calling thread, or it and a pool of others.
+    pub pool: &'a Threads,
+}
 
 /// Threads that the system refused.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
