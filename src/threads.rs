@@ -8,7 +8,7 @@
 
 use std::sync::Mutex;
 
-use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::simd::Tier;
 
@@ -29,12 +29,12 @@ pub struct Executor<'a> {
 }
 
 /// Threads that the system refused.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-#[error("cannot start {threads} threads: {source}")]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, miette::Diagnostic)]
+#[error("cannot start {threads} threads: {reason}")]
 #[diagnostic(help("ask for fewer threads"))]
 pub struct ThreadsError {
     threads: usize,
-    source: ThreadPoolBuildError,
+    reason: String,
 }
 
 impl Threads {
@@ -50,8 +50,17 @@ impl Threads {
         let pool = ThreadPoolBuilder::new().num_threads(others).build();
         match pool {
             Ok(pool) => Ok(Self(Some(pool))),
-            Err(source) => Err(ThreadsError { threads, source }),
+            Err(error) => Err(ThreadsError {
+                threads,
+                reason: error.to_string(),
+            }),
         }
+    }
+
+    /// These threads with kernels of a tier.
+    #[must_use]
+    pub fn executor(&self, tier: Tier) -> Executor<'_> {
+        Executor { tier, pool: self }
     }
 
     /// Number of threads.

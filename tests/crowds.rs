@@ -4,12 +4,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use sdop::bodies::Bodies;
-use sdop::culler::{Culler, TooManyPairs};
+use sdop::culler::{CullError, Culler};
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{
     Budget, CullSettings, Finder, Flow, Interest, Order, Overlap, Strategy, Updates,
 };
-use sdop::simd::Tier;
 use sdop::volume::{Shape, ShapeSpec};
 
 /// The bytes that all lists may take when pairs are taken in portions on two threads: eight tasks with a portion each, and
@@ -65,8 +64,8 @@ fn ways() -> impl Iterator<Item = CullSettings> {
 }
 
 fn culler(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings, threads: usize) -> Culler {
-    let culler = Culler::new(shapes, bodies, settings, Tier::detect()).unwrap();
-    culler.with_threads(threads).unwrap()
+    let culler = Culler::builder().settings(settings).threads(threads);
+    culler.build(shapes, bodies).unwrap()
 }
 
 /// Culls three frames in both ways, in which the crowd spreads.
@@ -75,12 +74,13 @@ fn assert_same(settings: &CullSettings, threads: usize) {
     let mut whole = culler(&shapes, &bodies, settings, 1);
     let mut taken = culler(&shapes, &bodies, settings, threads);
     for frame in 0..3 {
-        let expected: Vec<_> = whole.cull(&bodies).iter().collect();
+        let expected: Vec<_> = whole.cull(&bodies).unwrap().iter().collect();
         let (mut pairs, mut portions) = (Vec::new(), 0);
         let reported = taken.cull_in_portions(&bodies, |portion| {
             pairs.extend(portion.iter());
             portions += 1;
         });
+        let reported = reported.unwrap();
         let way = format!("{settings:?}, {threads} threads, frame {frame}");
         assert!(pairs == expected, "{way}");
         assert_eq!(reported, expected.len() as u64, "{way}");
@@ -128,7 +128,7 @@ fn memory_is_bounded_whatever_the_number_of_pairs() {
             ..settings
         };
         let mut culler = culler(&shapes, &bodies, &settings, 2);
-        let pairs = culler.cull_in_portions(&bodies, |_| {});
+        let pairs = culler.cull_in_portions(&bodies, |_| {}).unwrap();
         let reports = settings.strategy != Strategy::None;
         let static_bodies = 5000_u64.div_ceil(7);
         let all = 5000 * 4999 / 2 - static_bodies * (static_bodies - 1) / 2;
@@ -143,7 +143,7 @@ fn a_limit_is_kept_and_an_error_says_how_many_pairs_there_are() {
     let (shapes, bodies) = (shapes(), crowd(640));
     let settings = settings(Strategy::SDopSequential, Finder::Grid);
     let mut culler = culler(&shapes, &bodies, &settings, 1);
-    let expected: Vec<_> = culler.cull(&bodies).iter().collect();
+    let expected: Vec<_> = culler.cull(&bodies).unwrap().iter().collect();
     let crowded = culler.pair_bytes();
     assert!(crowded > 8 * expected.len());
     culler.shrink_to_fit();
@@ -156,7 +156,7 @@ fn a_limit_is_kept_and_an_error_says_how_many_pairs_there_are() {
     for limit in [0, 1, limit - 1] {
         let pairs = expected.len() as u64;
         let error = culler.cull_up_to(&bodies, limit).unwrap_err();
-        assert_eq!(error, TooManyPairs { pairs, limit });
+        assert_eq!(error, CullError::TooManyPairs { pairs, limit });
         assert!(culler.pairs().is_empty());
         assert!(error.to_string().contains(&pairs.to_string()));
     }
@@ -175,5 +175,5 @@ fn a_sink_that_panics_hangs_nobody() {
     let (shapes, bodies) = (shapes(), crowd(640));
     let settings = settings(Strategy::Sphere, Finder::Grid);
     let mut culler = culler(&shapes, &bodies, &settings, 3);
-    culler.cull_in_portions(&bodies, |_| panic!("the sink gives up"));
+    let _ = culler.cull_in_portions(&bodies, |_| panic!("the sink gives up"));
 }

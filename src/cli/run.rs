@@ -86,7 +86,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     };
     let bar = progress(scene.frames.into(), &scene.name);
     let threads = usize::from(args.threads);
-    let simulation = Simulation::new(&scene, tier)?.with_threads(threads)?;
+    let simulation = Simulation::with_threads(&scene, tier, threads)?;
     let summary = simulation.run(|frame| -> miette::Result<()> {
         if let Some(recorder) = &mut recorder {
             recorder.frame(frame)?;

@@ -5,27 +5,31 @@
 //! A [`Culler`] is built once for a scene (the paper's Co) and then culls frame after frame. All buffers stay, so in steady
 //! state nothing is allocated.
 
+mod builder;
+mod error;
 pub(crate) mod models;
 mod needs;
 mod portions;
 
-pub use portions::TooManyPairs;
+pub use builder::CullerBuilder;
+pub use error::CullError;
 
 use std::time::Instant;
 
 use self::models::Models;
 use self::needs::Needs;
-use crate::bodies::Bodies;
-use crate::bodies::Groups;
-use crate::bodies::Places;
+use crate::bodies::contract::{
+    check_bodies, check_column, check_columns, check_numbers, check_poses,
+};
+use crate::bodies::{Bodies, Groups, Places};
 use crate::broad_phase::{PairFinder, Reorder};
 use crate::counters::{Counters, Seconds};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
-use crate::settings::{CullSettings, Finder, Flow, Interest, Scheme, SettingsError, Updates};
+use crate::settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates};
 use crate::simd::Tier;
 use crate::strategy::{self, Inputs, Output, Scratch, Totals};
-use crate::threads::{Executor, Threads, ThreadsError};
+use crate::threads::Threads;
 use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
 use crate::volume::Shape;
 
@@ -58,20 +62,29 @@ pub struct Culler {
 }
 
 impl Culler {
-    /// Prepares culling of `bodies` in the tier `tier`, on the caller's thread. Static bodies' volumes are placed here, once.
-    ///
-    /// `bodies` must satisfy the contract (see [`check_bodies`](crate::bodies::contract::check_bodies)); shapes are in the
-    /// order that `bodies.shape` counts in. For [`Strategy::Obb`](crate::settings::Strategy::Obb) each shape's own box replaces its or-DOP.
+    /// The culler of these bodies with every default: sequential S-DOP with the two-sided test, the finder that `auto`
+    /// picks, the fastest tier of this CPU, the caller's thread.
     ///
     /// # Errors
-    /// Settings that can't be carried out: a missing interest or budget, a body that doesn't exist.
-    pub fn new(
+    /// As [`CullerBuilder::build`].
+    pub fn new(shapes: &[Shape], bodies: &Bodies) -> Result<Self, CullError> {
+        Self::builder().build(shapes, bodies)
+    }
+
+    /// The choices that [`Self::new`] makes, to be made otherwise.
+    pub fn builder() -> CullerBuilder {
+        CullerBuilder::default()
+    }
+
+    fn build(
         shapes: &[Shape],
         bodies: &Bodies,
         settings: &CullSettings,
         tier: Tier,
-    ) -> Result<Self, SettingsError> {
-        settings.check(bodies.shape.len())?;
+        pool: Threads,
+    ) -> Result<Self, CullError> {
+        check_bodies(bodies, shapes)?;
+        settings.check(bodies.len())?;
         let start = Instant::now();
         let n = bodies.shape.len();
         let (models, places) = (Models::new(shapes, settings), Places::new(bodies));
@@ -85,7 +98,7 @@ impl Culler {
             scheme,
             needs,
             tier,
-            pool: Threads::default(),
+            pool,
             models,
             places,
             groups: None,
@@ -110,15 +123,6 @@ impl Culler {
         Ok(culler)
     }
 
-    /// The same culler working on so many threads. Lists, counters and hashes don't depend on their number.
-    ///
-    /// # Errors
-    /// The system refuses to start the threads.
-    pub fn with_threads(mut self, threads: usize) -> Result<Self, ThreadsError> {
-        self.pool = Threads::new(threads)?;
-        Ok(self)
-    }
-
     /// Adds a model: the shape grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the returned number.
     pub(crate) fn grow(&mut self, shape: u32, margin: f32) -> u32 {
         self.models.grow(shape, margin)
@@ -127,6 +131,23 @@ impl Culler {
     /// Re-reads `bodies.shape` after a change of margin class.
     pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
         self.places.reread_shapes(bodies);
+    }
+
+    /// Re-reads what [`Self::cull`] takes as fixed: the number of bodies, their shapes, which of them may move, and where those
+    /// stand that may not. Costs about one more frame. Groups are forgotten when the number of bodies changes.
+    ///
+    /// # Errors
+    /// Bodies outside of the contract, an interest in a body that is no longer there; the culler stays as it was.
+    pub fn refresh(&mut self, bodies: &Bodies) -> Result<(), CullError> {
+        check_columns(bodies)?;
+        check_numbers(&bodies.shape, self.models.frames.len())?;
+        check_poses(bodies, 0..bodies.len())?;
+        self.settings.check(bodies.len())?;
+        if bodies.len() != self.interest.len() {
+            self.groups = None;
+        }
+        self.replace(bodies, &vec![true; bodies.len()]);
+        Ok(())
     }
 
     /// Replaces the set of bodies by those that are `present`. Volumes, static ones too, are placed anew; bodies that were
@@ -148,11 +169,18 @@ impl Culler {
         self.arrange();
     }
 
-    /// From now on, only pairs of bodies that may collide are listed; `None`: all may.
+    /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a body.
     ///
     /// Pairs are filtered behind the first test, whose hits are few, and before anything else is done with them.
-    pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) {
+    ///
+    /// # Errors
+    /// A column that is shorter or longer than there are bodies; the groups stay as they were.
+    pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) -> Result<(), CullError> {
+        if let Some(groups) = &groups {
+            check_column("groups", groups.len(), self.interest.len())?;
+        }
         self.groups = groups;
+        Ok(())
     }
 
     /// From now on, these are the bodies of interest.
@@ -174,18 +202,22 @@ impl Culler {
 
     /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
     /// finder and on the frames so far alone. Poses must satisfy the contract.
-    pub fn cull(&mut self, bodies: &Bodies) -> &PairList {
+    ///
+    /// # Errors
+    /// Fewer or more bodies than the culler was made for.
+    pub fn cull(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
+        let start = Instant::now();
+        self.check_set(bodies)?;
         let mut pairs = std::mem::take(&mut self.pairs);
         pairs.clear();
-        self.cull_into(bodies, Output::List(&mut pairs));
+        self.cull_into(bodies, Output::List(&mut pairs), start);
         self.counters.reported += pairs.len() as u64;
         self.pairs = pairs;
-        &self.pairs
+        Ok(&self.pairs)
     }
 
-    /// Culls one frame and hands its pairs to `output`.
-    fn cull_into(&mut self, bodies: &Bodies, output: Output<'_>) {
-        let start = Instant::now();
+    /// Culls one frame, which began at `start`, and hands its pairs to `output`.
+    fn cull_into(&mut self, bodies: &Bodies, output: Output<'_>, start: Instant) {
         self.stamp += 1;
         self.reorder(bodies);
         let reordered = Instant::now();
@@ -201,6 +233,17 @@ impl Culler {
         self.seconds.ordop += totals.refining_seconds;
         self.seconds.pair_finding += finding.as_secs_f64() - refining;
         self.seconds.total += start.elapsed().as_secs_f64();
+    }
+
+    /// Checks that there are as many bodies as there were.
+    fn check_set(&self, bodies: &Bodies) -> Result<(), CullError> {
+        check_columns(bodies)?;
+        let (made_for, given) = (self.interest.len(), bodies.len());
+        if given == made_for {
+            return Ok(());
+        }
+        let what = format!("{given} bodies in place of {made_for}");
+        Err(CullError::Changed { what })
     }
 
     /// The pairs of the last frame.
@@ -261,10 +304,7 @@ impl Culler {
     /// needs them.
     fn update_volumes(&mut self, bodies: &Bodies, range: std::ops::Range<usize>) {
         let (frames, places) = (&self.models.frames, &self.places);
-        let executor = Executor {
-            tier: self.tier,
-            pool: &self.pool,
-        };
+        let executor = self.pool.executor(self.tier);
         if self.needs.balls {
             let balls = &mut self.balls;
             update_spheres(&self.pool, balls, frames, bodies, places, range.clone());
@@ -312,10 +352,7 @@ impl Culler {
         } else {
             &self.places.body
         };
-        let executor = Executor {
-            tier: self.tier,
-            pool: &self.pool,
-        };
+        let executor = self.pool.executor(self.tier);
         self.finder
             .arrange(executor, &self.places, &self.balls, names);
         if let Some(intervals) = &self.intervals {
@@ -336,10 +373,7 @@ impl Culler {
             strategy::mark(interest, bodies, centre, &mut self.interest);
         }
         let inputs = Inputs {
-            executor: Executor {
-                tier: self.tier,
-                pool: &self.pool,
-            },
+            executor: self.pool.executor(self.tier),
             settings: &self.settings,
             finder: &self.finder,
             names_are_places: self.names_are_places(),

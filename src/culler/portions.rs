@@ -5,24 +5,10 @@
 
 use std::time::{Duration, Instant};
 
-use miette::Diagnostic;
-use thiserror::Error;
-
-use super::Culler;
+use super::{CullError, Culler};
 use crate::bodies::Bodies;
 use crate::pairs::PairList;
 use crate::strategy::Output;
-
-/// More pairs than there may be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error, Diagnostic)]
-#[error("{pairs} pairs, and at most {limit} are allowed")]
-#[diagnostic(help("raise the limit, or take the pairs in portions with `cull_in_portions`"))]
-pub struct TooManyPairs {
-    /// How many pairs the frame has.
-    pub pairs: u64,
-    /// How many it may have.
-    pub limit: usize,
-}
 
 impl Culler {
     /// Culls one frame as [`Self::cull`] does and hands its pairs to `take`, some 65,000 at a time, in the order of that
@@ -32,11 +18,16 @@ impl Culler {
     /// colliding set, eight bytes per pair: `s-dop-time-critical` in another order than `as-found` sorts it, and
     /// [`Self::potentially_colliding`], empty otherwise, shows it. With several threads, `take` is called from any of them,
     /// one call at a time; its time is not counted in [`Self::seconds`], but does count against a budget of time.
+    ///
+    /// # Errors
+    /// As [`Self::cull`].
     pub fn cull_in_portions(
         &mut self,
         bodies: &Bodies,
         mut take: impl FnMut(&PairList) + Send,
-    ) -> u64 {
+    ) -> Result<u64, CullError> {
+        let start = Instant::now();
+        self.check_set(bodies)?;
         let (mut reported, mut taking) = (0, Duration::ZERO);
         let mut sink = |portion: &mut PairList| {
             let start = Instant::now();
@@ -45,32 +36,34 @@ impl Culler {
             taking += start.elapsed();
         };
         self.pairs.clear();
-        self.cull_into(bodies, Output::Portions(&mut sink));
+        self.cull_into(bodies, Output::Portions(&mut sink), start);
         self.counters.reported += reported;
         self.seconds.pair_finding -= taking.as_secs_f64();
         self.seconds.total -= taking.as_secs_f64();
-        reported
+        Ok(reported)
     }
 
     /// Culls one frame as [`Self::cull`] does, if it has at most `limit` pairs. Memory for more is never taken.
     ///
     /// # Errors
-    /// More pairs than that, with their number; [`Self::pairs`] is empty then. The frame counts as culled.
-    pub fn cull_up_to(&mut self, bodies: &Bodies, limit: usize) -> Result<&PairList, TooManyPairs> {
+    /// More pairs than that, with their number: [`Self::pairs`] is empty then, and the frame counts as culled. Otherwise as
+    /// [`Self::cull`].
+    pub fn cull_up_to(&mut self, bodies: &Bodies, limit: usize) -> Result<&PairList, CullError> {
         let mut kept = std::mem::take(&mut self.pairs);
         kept.clear();
-        let pairs = self.cull_in_portions(bodies, |portion| {
+        let outcome = self.cull_in_portions(bodies, |portion| {
             if kept.len() + portion.len() <= limit {
                 kept.append(portion);
             }
         });
+        let pairs = outcome?;
         let is_whole = kept.len() as u64 == pairs;
         self.pairs = kept;
         if is_whole {
             return Ok(&self.pairs);
         }
         self.pairs.clear();
-        Err(TooManyPairs { pairs, limit })
+        Err(CullError::TooManyPairs { pairs, limit })
     }
 
     /// Bytes that lists of pairs hold: the reported ones, and those on the way to them.

@@ -316,8 +316,8 @@ mod tests {
         };
         for tier in Tier::available() {
             let (mut eager, mut lazy) = (OrDopRows::new(61), OrDopRows::new(61));
-            let pool = &Threads::default();
-            eager.update(Executor { tier, pool }, posed, 0..61, 1);
+            let pool = Threads::default();
+            eager.update(pool.executor(tier), posed, 0..61, 1);
             let wanted: Vec<u32> = (0..61).chain(0..30).collect();
             assert_eq!(lazy.update_missing(tier, posed, &wanted, 1), 61);
             for body in 0..61 {

@@ -6,7 +6,7 @@ use crate::bodies::Bodies;
 use crate::bodies::Places;
 use crate::settings::Overlap;
 use crate::simd::Tier;
-use crate::threads::{Executor, Threads};
+use crate::threads::Threads;
 use crate::update::{OrDopRows, Posed, ShapeFrame};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
@@ -38,8 +38,8 @@ impl PosedOrDops {
             places: &places,
             balls: &[],
         };
-        let pool = &Threads::default();
-        rows.update(Executor { tier, pool }, posed, 0..places.len(), 1);
+        let pool = Threads::default();
+        rows.update(pool.executor(tier), posed, 0..places.len(), 1);
         Self {
             rows,
             tables: SlabTables::new(directions.unwrap_or(DirectionSet::K6), shapes),

@@ -9,7 +9,7 @@ mod cubes;
 use sdop::bodies::Places;
 use sdop::broad_phase::{Grid, PairFinder, Reorder};
 use sdop::simd::{Tier, dispatch};
-use sdop::threads::{Executor, Threads};
+use sdop::threads::Threads;
 
 use self::cubes::{Find, Found, Gap, Test, cube_about};
 use crate::boxes::{Frame, Slabs};
@@ -93,9 +93,8 @@ impl Peer for Boxes {
         }
         self.update(&frame.boxes);
         let (tier, pool) = (self.tier, &self.pool);
-        let executor = Executor { tier, pool };
         self.finder
-            .arrange(executor, &self.places, &self.cubes, &self.names);
+            .arrange(pool.executor(tier), &self.places, &self.cubes, &self.names);
         let (finder, parts, count) = (&self.finder, self.finder.parts(), self.shares.len());
         let gap = self.gap.twice();
         pool.each(&mut self.shares, |index, found| {
