@@ -10,23 +10,14 @@ use rand::SeedableRng as _;
 use rand::seq::SliceRandom as _;
 use rand_chacha::ChaCha8Rng;
 
-use crate::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
+use crate::settings::{CullSettings, Finder, Overlap, Strategy, TestedVolume, Updates};
 use crate::simd::Tier;
 use crate::volume::{Axes, DirectionSet};
 
 /// Whether the overlap test matters to a strategy.
 #[must_use]
 pub fn refines(strategy: Strategy) -> bool {
-    match strategy {
-        Strategy::None | Strategy::Sphere | Strategy::Aabb | Strategy::KDop | Strategy::Obb => {
-            false
-        }
-        Strategy::OrDop
-        | Strategy::SDopSequential
-        | Strategy::SDopBatch
-        | Strategy::SDopObjectOfInterest
-        | Strategy::SDopTimeCritical => true,
-    }
+    strategy.scheme().refining == Some(TestedVolume::OrDop)
 }
 
 /// Every or-DOP that a shape can have.
