@@ -21,6 +21,9 @@ pub mod update;
 pub mod volume;
 pub mod world;
 
+#[cfg(feature = "lab")]
+pub use lab::judge::{self, judge};
+
 /// The README's example compiles and runs.
 #[cfg(all(doctest, feature = "lab"))]
 #[doc = include_str!("../README.md")]
