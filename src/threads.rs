@@ -8,7 +8,9 @@
 
 use std::sync::Mutex;
 
-use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::simd::Tier;
 
 /// The fewest pieces of a column for which waking a thread pays.
 const FEWEST_PIECES: usize = 8;
@@ -17,13 +19,22 @@ const FEWEST_PIECES: usize = 8;
 #[derive(Debug, Default)]
 pub struct Threads(Option<ThreadPool>);
 
+/// What work runs on: the CPU tier that kernels are compiled for, and the threads.
+#[derive(Clone, Copy, Debug)]
+pub struct Executor<'a> {
+    /// Of the kernels.
+    pub tier: Tier,
+    /// The calling thread, or it and a pool of others.
+    pub pool: &'a Threads,
+}
+
 /// Threads that the system refused.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-#[error("cannot start {threads} threads: {source}")]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, miette::Diagnostic)]
+#[error("cannot start {threads} threads: {reason}")]
 #[diagnostic(help("ask for fewer threads"))]
 pub struct ThreadsError {
     threads: usize,
-    source: ThreadPoolBuildError,
+    reason: String,
 }
 
 impl Threads {
@@ -39,8 +50,17 @@ impl Threads {
         let pool = ThreadPoolBuilder::new().num_threads(others).build();
         match pool {
             Ok(pool) => Ok(Self(Some(pool))),
-            Err(source) => Err(ThreadsError { threads, source }),
+            Err(error) => Err(ThreadsError {
+                threads,
+                reason: error.to_string(),
+            }),
         }
+    }
+
+    /// These threads with kernels of a tier.
+    #[must_use]
+    pub fn executor(&self, tier: Tier) -> Executor<'_> {
+        Executor { tier, pool: self }
     }
 
     /// Number of threads.

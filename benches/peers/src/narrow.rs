@@ -17,7 +17,6 @@ use sdop::lab::scene::{Scene, SceneFile};
 use sdop::lab::tradeoff::gjk::{HullGraph, PosedHull, may_touch};
 use sdop::lab::tradeoff::truth::samples;
 use sdop::settings::{CullSettings, Finder, Strategy};
-use sdop::simd::Tier;
 use sdop::volume::Shape;
 use sdop_reference::exact::{meeting, mesh::Mesh};
 use serde::Serialize;
@@ -84,12 +83,14 @@ fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<M
         pairs: Finder::Grid,
         ..scene.cull.clone()
     };
-    let mut culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect())?;
+    let mut culler = Culler::builder()
+        .settings(&settings)
+        .build(&scene.shapes, &scene.bodies)?;
     let samples = samples(scene, frames)?;
     let survivors: Vec<_> = samples
         .iter()
-        .map(|sample| culler.cull(&sample.bodies).sorted())
-        .collect();
+        .map(|sample| Ok(culler.cull(&sample.bodies)?.sorted()))
+        .collect::<miette::Result<_>>()?;
     let bodies = || samples.iter().map(|sample| &sample.bodies);
     let ask = |judge: &Judge<'_>| -> miette::Result<Vec<Vec<bool>>> {
         let frames = bodies().zip(&survivors);
