@@ -23,6 +23,8 @@ pub mod world;
 
 pub use bodies::{Bodies, Groups};
 pub use culler::{CullError, Culler, CullerBuilder};
+#[cfg(feature = "lab")]
+pub use lab::judge::{self, judge};
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
 pub use pairs::PairList;
 pub use settings::{
@@ -32,8 +34,6 @@ pub use settings::{
 pub use simd::Tier;
 pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
 pub use world::{Body, BodyId, World, WorldError};
-#[cfg(feature = "lab")]
-pub use lab::judge::{self, judge};
 
 /// The README's example compiles and runs.
 #[cfg(all(doctest, feature = "lab"))]

@@ -4,8 +4,7 @@ use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::judge::{Contestant, PairTest, Scene};
 use sdop::rounding::pose::{rotation, transform};
-use sdop::settings::{CullSettings, Strategy};
-use sdop::simd::Tier;
+use sdop::settings::Strategy;
 use sdop::volume::Shape;
 
 /// Our own culler.
@@ -16,11 +15,9 @@ pub struct Ours {
 
 impl Ours {
     pub fn new(scene: &Scene<'_>, strategy: Strategy) -> Self {
-        let settings = CullSettings {
-            strategy,
-            ..CullSettings::default()
-        };
-        let culler = Culler::new(scene.shapes, scene.bodies, &settings, Tier::detect());
+        let culler = Culler::builder()
+            .strategy(strategy)
+            .build(scene.shapes, scene.bodies);
         Self {
             culler: culler.unwrap(),
             pairs: Vec::new(),
@@ -30,7 +27,7 @@ impl Ours {
 
 impl Contestant for Ours {
     fn frame(&mut self, bodies: &Bodies) {
-        self.pairs = self.culler.cull(bodies).sorted();
+        self.pairs = self.culler.cull(bodies).unwrap().sorted();
     }
     fn pairs(&self) -> Vec<[u32; 2]> {
         self.pairs.clone()

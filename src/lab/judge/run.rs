@@ -204,24 +204,52 @@ pub fn examine(
     };
     let ran: Vec<Option<(Case, CaseVerdict)>> =
         jobs.par_iter().map(run).collect::<Result<_, _>>()?;
+    Ok(conclude(subject, options, ran))
+}
+
+/// Runs cases that are given, such as a counter-example from a file; their names don't matter.
+///
+/// # Errors
+/// A case that the reference refuses.
+pub fn examine_given(
+    subject: &dyn Subject,
+    options: &Options,
+    cases: Vec<Case>,
+) -> Result<Verdict, JudgeError> {
+    let run = |case: Case| -> Result<Option<(Case, CaseVerdict)>, JudgeError> {
+        let judged = judge_case(subject, &case, options.claim, true)?;
+        let verdict = line(&case, &judged, &options.known);
+        Ok(Some((case, verdict)))
+    };
+    let ran = cases.into_iter().map(run).collect::<Result<_, _>>()?;
+    Ok(conclude(subject, options, ran))
+}
+
+/// Makes the verdict, and the smallest scene of a miss.
+fn conclude(
+    subject: &dyn Subject,
+    options: &Options,
+    ran: Vec<Option<(Case, CaseVerdict)>>,
+) -> Verdict {
     let not_run = ran.iter().filter(|one| one.is_none()).count();
     let ran: Vec<(Case, CaseVerdict)> = ran.into_iter().flatten().collect();
-    // The case with the fewest bodies has the shortest way to a small one.
+    // The case with the fewest pairs has the shortest way to a small one.
     let missed = ran
         .iter()
         .filter(|(_, verdict)| verdict.miss.is_some() && !verdict.known);
     let first = missed.min_by_key(|(case, _)| case.pairs());
-    let smallest = first.and_then(|(case, _)| shrink(subject, case, claim, options.shrink_time));
+    let smallest =
+        first.and_then(|(case, _)| shrink(subject, case, options.claim, options.shrink_time));
     let cases: Vec<CaseVerdict> = ran.into_iter().map(|(_, verdict)| verdict).collect();
-    Ok(Verdict {
-        claim,
+    Verdict {
+        claim: options.claim,
         seed: options.seed,
         stale: stale(options, &cases, not_run),
         cases,
         not_run,
         extra_limit: options.extra_limit,
         smallest,
-    })
+    }
 }
 
 fn line(case: &Case, judged: &Judged, known: &BTreeSet<String>) -> CaseVerdict {

@@ -22,10 +22,10 @@ pub enum Kind {
     Range,
 }
 
-/// Boxes of a kind, in one frame.
-pub fn boxes(kind: Kind, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
+/// So many boxes of a kind, in one frame.
+pub fn boxes(kind: Kind, count: usize, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
     let mut boxes: Vec<WorldBox> = Vec::new();
-    for n in 0..48 {
+    for n in 0..count {
         let drawn = match kind {
             Kind::Grid => from_ends(|_| {
                 let lo = rng.random_range(-3..3);

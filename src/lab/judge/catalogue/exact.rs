@@ -77,6 +77,7 @@ const TURNS: [[f32; 4]; 5] = [
 /// A dynamic body at a lattice point with partners that touch it; every third one is an ulp further out or in.
 pub fn touching(
     touch: Touch,
+    number: u32,
     partners: usize,
     rng: &mut impl Rng,
 ) -> Result<Drawn, CatalogueError> {
@@ -96,7 +97,7 @@ pub fn touching(
         }
         let (offset, axis) = offset(touch, rng);
         let mut t: [f32; 3] = std::array::from_fn(|i| (at[i] + offset[i]) * size);
-        if n % 3 == 2 {
+        if (n + number as usize) % 3 == 2 {
             t[axis] = if rng.random_range(0..2) == 0 {
                 t[axis].next_up()
             } else {

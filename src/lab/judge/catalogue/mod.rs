@@ -208,14 +208,39 @@ impl Group {
         let mut rng = ChaCha8Rng::seed_from_u64(key(self.name) ^ seed.unwrap_or(0).rotate_left(17));
         rng.set_stream(u64::from(number) + (u64::from(seed.is_some()) << 32));
         let drawn = self.drawn(number, seed, &mut rng)?;
-        Ok(Case {
-            name: self.case_name(number, seed),
+        Ok(self.named(self.case_name(number, seed), drawn))
+    }
+
+    /// A case of two bodies, for groups that have such.
+    ///
+    /// # Errors
+    /// As [`Self::case`].
+    pub fn pair_case(&self, number: u32) -> Result<Option<Case>, CatalogueError> {
+        let mut rng = ChaCha8Rng::seed_from_u64(key(self.name));
+        rng.set_stream(u64::from(number) + (2 << 32));
+        let drawn = match self.draw {
+            Draw::Contact(kind, turn) => {
+                contacts::around_a_probe(kind, turn, None, number, 1, &mut rng)?
+            }
+            Draw::Far(kind) => {
+                contacts::around_a_probe(kind, Turn::Any, Some([8.0, 20.0]), number, 1, &mut rng)?
+            }
+            Draw::Exact(touch) => exact::touching(touch, number, 1, &mut rng)?,
+            Draw::Boxes(kind) => boxes::boxes(kind, 2, &mut rng)?,
+            Draw::CellBorder | Draw::Crowd(_) | Draw::Hard(_) => return Ok(None),
+        };
+        Ok(Some(self.named(self.case_name(number, None), drawn)))
+    }
+
+    fn named(&self, name: String, drawn: Drawn) -> Case {
+        Case {
+            name,
             flag: self.flag.to_owned(),
             source: self.source.to_owned(),
             claims: self.claims().to_vec(),
             shapes: drawn.shapes,
             frames: drawn.frames,
-        })
+        }
     }
 
     fn drawn(
@@ -236,10 +261,10 @@ impl Group {
                 8,
                 rng,
             )?),
-            Draw::Exact(touch) => exact::touching(touch, 8, rng),
+            Draw::Exact(touch) => exact::touching(touch, number, 8, rng),
             Draw::CellBorder => grid::tips_across_borders(rng),
             Draw::Crowd(kind) => Ok(crowds::crowd(kind, rng)?),
-            Draw::Boxes(kind) => boxes::boxes(kind, rng),
+            Draw::Boxes(kind) => boxes::boxes(kind, 48, rng),
             Draw::Hard(text) => hard_case(text, number, seed),
         }
     }
