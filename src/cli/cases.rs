@@ -1,9 +1,11 @@
 //! `sdop cases`: the cases as files, for programs that are judged later or elsewhere.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic as _, miette};
 use sdop::judge::Claim;
+use sdop::judge::broadmark::{self, RecordingError};
 use sdop::judge::catalogue::select;
 use sdop::judge::vectors;
 use sdop::judge::wire::Wire;
@@ -35,6 +37,9 @@ pub struct Args {
     /// Fresh cases of this seed in place of the published ones
     #[arg(long, value_name = "SEED")]
     fresh: Option<u64>,
+    /// Write Broadmark's recordings (.aabbs) in place of text; for the claim aabb, without cases whose bodies change
+    #[arg(long, conflicts_with = "wire")]
+    aabbs: bool,
     /// How they are written
     #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES))]
     wire: Wire,
@@ -51,7 +56,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let Some(out) = &args.out else {
         return Err(miette!("no directory: give --out DIR"));
     };
-    let jobs = select(args.claims, &args.case, args.fresh).into_diagnostic()?;
+    let claim = if args.aabbs { Claim::Aabb } else { args.claims };
+    let jobs = select(claim, &args.case, args.fresh).into_diagnostic()?;
     let to_stdout = out.as_os_str() == "-";
     if jobs.is_empty() || (to_stdout && jobs.len() > 1) {
         let help = "`sdop cases --out DIR` writes them all: their names are the files'";
@@ -59,32 +65,39 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
             help = help,
             "{} cases of the claim {} match `{}`",
             jobs.len(),
-            args.claims,
+            claim,
             args.case
         ));
     }
     let extension = match args.wire {
+        _ if args.aabbs => "aabbs",
         Wire::Ndjson => "ndjson",
         Wire::Text => "txt",
     };
+    let mut written = 0;
     let bar = progress(jobs.len() as u64, "cases");
     for (group, number) in &jobs {
         let case = group.case(*number, args.fresh).into_diagnostic()?;
-        let bytes = args.wire.encode(&case, args.claims).into_diagnostic()?;
-        let text = String::from_utf8_lossy(&bytes);
+        let bytes = match broadmark::write(&case) {
+            _ if !args.aabbs => args.wire.encode(&case, args.claims).into_diagnostic()?,
+            Ok(bytes) => bytes,
+            Err(RecordingError::Changes) => continue,
+            Err(error) => return Err(error).into_diagnostic(),
+        };
         if to_stdout {
-            print(text.trim_end())?;
+            std::io::stdout().write_all(&bytes).into_diagnostic()?;
         } else {
-            files::write(&out.join(format!("{}.{extension}", case.name)), &text)?;
+            files::write(&out.join(format!("{}.{extension}", case.name)), &bytes)?;
         }
+        written += 1;
         bar.inc(1);
     }
     bar.finish_and_clear();
     if !to_stdout {
         print(&format!(
             "{} cases of the claim {} in {}",
-            jobs.len(),
-            args.claims,
+            written,
+            claim,
             out.display()
         ))?;
     }
@@ -94,7 +107,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 fn vectors(directory: &Path) -> miette::Result<Outcome> {
     let made = vectors::files().into_diagnostic()?;
     for (name, bytes) in &made {
-        files::write(&directory.join(name), &String::from_utf8_lossy(bytes))?;
+        files::write(&directory.join(name), bytes)?;
     }
     print(&format!("{} files in {}", made.len(), directory.display()))?;
     Ok(Outcome::Passed)

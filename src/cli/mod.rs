@@ -2,6 +2,7 @@
 //!
 //! A new command is a file with `Args` and `run`, a module line, a variant and a line in [`Cli::run`].
 
+mod bench;
 mod cases;
 mod check;
 mod cost;
@@ -42,6 +43,7 @@ enum Command {
     Verify(verify::Args),
     Cases(cases::Args),
     Check(check::Args),
+    Bench(bench::Args),
 }
 
 /// How a command ended when its input was good.
@@ -68,6 +70,7 @@ impl Cli {
             Command::Verify(args) => verify::run(&args),
             Command::Cases(args) => cases::run(&args),
             Command::Check(args) => check::run(&args),
+            Command::Bench(args) => bench::run(&args),
         }
     }
 }

@@ -5,3 +5,4 @@
 mod cullers;
 mod programs;
 mod rust;
+mod vectors;

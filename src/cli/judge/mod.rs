@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop::judge::broadmark;
 use sdop::judge::process::Program;
 use sdop::judge::report::{STEM, counter_example};
 use sdop::judge::run::examine_given;
@@ -157,11 +158,22 @@ impl Args {
     }
 }
 
-/// Reads a case or a record from a file.
+/// Reads a case, a record or one of Broadmark's recordings (`.aabbs`) from a file.
 ///
 /// # Errors
 /// A file that can't be read or is none.
 pub fn read_case(path: &Path) -> miette::Result<ndjson::Read> {
+    if path
+        .extension()
+        .is_some_and(|extension| extension == "aabbs")
+    {
+        let bytes = std::fs::read(path)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot read {}", path.display()))?;
+        let case = broadmark::read(&bytes).into_diagnostic()?;
+        let pairs = vec![None; case.frames.len()];
+        return Ok(ndjson::Read { case, pairs });
+    }
     let file = File::open(path)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))?;
@@ -205,7 +217,7 @@ fn save(
     let mut lines = Vec::new();
     if let Some(smallest) = &verdict.smallest {
         for (name, bytes) in counter_example(smallest, args.claims).into_diagnostic()? {
-            files::write(&out.join(name), &String::from_utf8_lossy(&bytes))?;
+            files::write(&out.join(name), &bytes)?;
         }
         let stem = out.join(STEM);
         lines.push(format!(

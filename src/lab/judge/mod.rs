@@ -28,6 +28,7 @@
 //! ```
 
 pub mod answer;
+pub mod broadmark;
 pub mod case;
 pub mod catalogue;
 pub mod claim;
@@ -38,6 +39,7 @@ pub mod score;
 pub mod shrink;
 pub mod stamp;
 pub mod subject;
+pub mod timing;
 pub mod truth;
 pub mod vectors;
 pub mod verdict;
