@@ -57,7 +57,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t)]
     format: ReportFormat,
     #[command(flatten)]
-    outside: judge::Args,
+    outside: judge::Outside,
 }
 
 /// Runs the command.

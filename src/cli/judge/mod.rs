@@ -22,7 +22,7 @@ pub use print::{ReportFormat, emit as emit_verdict};
 
 /// The choices for judging a program.
 #[derive(clap::Args)]
-pub struct Args {
+pub struct Outside {
     /// Judge this program in place of the own culler: a line for the shell that reads cases and answers with pairs
     #[arg(long, value_name = "CMD", help_heading = "Judging a program")]
     pub exec: Option<String>,
@@ -97,7 +97,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 /// # Errors
 /// A file that can't be read, no case of that name.
 pub fn run(
-    args: &Args,
+    args: &Outside,
     command: &str,
     time: Option<u64>,
     out: &Path,
@@ -145,7 +145,7 @@ pub fn run(
     })
 }
 
-impl Args {
+impl Outside {
     /// The seed of the fresh cases: nobody can prepare for the clock's.
     fn seed(&self) -> Option<u64> {
         if self.no_fresh || self.replay.is_some() {
@@ -202,7 +202,7 @@ fn known(path: &Path) -> miette::Result<BTreeSet<String>> {
 
 /// Writes the counter-example and says how to see the failure again.
 fn save(
-    args: &Args,
+    args: &Outside,
     command: &str,
     verdict: &Verdict,
     out: &Path,

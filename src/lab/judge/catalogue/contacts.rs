@@ -58,11 +58,19 @@ pub fn around_a_probe(
     rng: &mut impl Rng,
 ) -> Result<Drawn, FormError> {
     let (k, axes) = volumes(number);
-    let shapes = forms::build(&forms(rng, 3), 1, k, axes, rng)?;
+    let mut forms = forms(rng, 3);
+    if number % 4 == 3 {
+        // Balls whose centres turn with their bodies.
+        for form in &mut forms {
+            form.radius = None;
+            form.offset = Some([0.7, -0.3, 0.4]);
+        }
+    }
+    let shapes = forms::build(&forms, 1, k, axes, rng)?;
     let spec = ContactSpec {
         kinds: vec![kind],
         turn,
-        gap: [0.0, 0.5, 2.0, 8.0][number as usize / 2 % 4],
+        gap: [0.0, 0.25, 1.0, 4.0][number as usize / 2 % 4],
         origin,
         ..ContactSpec::default()
     };

@@ -251,14 +251,14 @@ impl Group {
     ) -> Result<Drawn, CatalogueError> {
         match self.draw {
             Draw::Contact(kind, turn) => {
-                Ok(contacts::around_a_probe(kind, turn, None, number, 8, rng)?)
+                Ok(contacts::around_a_probe(kind, turn, None, number, 12, rng)?)
             }
             Draw::Far(kind) => Ok(contacts::around_a_probe(
                 kind,
                 Turn::Any,
                 Some([8.0, 20.0]),
                 number,
-                8,
+                12,
                 rng,
             )?),
             Draw::Exact(touch) => exact::touching(touch, number, 8, rng),
