@@ -5,4 +5,3 @@
 mod cullers;
 mod programs;
 mod rust;
-mod vectors;
