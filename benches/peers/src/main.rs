@@ -32,7 +32,6 @@ mod roster;
 mod rstar;
 mod scenes;
 mod threads;
-mod verdicts;
 
 use std::path::PathBuf;
 
@@ -95,8 +94,6 @@ enum Other {
     Narrow(narrow::Args),
     Control(control::Args),
     Kernels(kernels::Args),
-    Verdicts(verdicts::Args),
-    Answer(verdicts::AnswerArgs),
 }
 
 fn main() -> miette::Result<()> {
@@ -106,8 +103,6 @@ fn main() -> miette::Result<()> {
         Some(Other::Narrow(args)) => return narrow::run(args),
         Some(Other::Control(args)) => return control::run(args),
         Some(Other::Kernels(args)) => return kernels::run(args),
-        Some(Other::Verdicts(args)) => return verdicts::run(args),
-        Some(Other::Answer(args)) => return verdicts::answer(args),
         None => {}
     }
     let entries = chosen(cli.peers.as_deref())?;
