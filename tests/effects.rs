@@ -218,7 +218,8 @@ fn bounding_spheres_stay_inside_and_speeds_stay() {
             }
         }
         assert!(report(&effects, "walls").changed > 100);
-        for (v, start) in bodies.velocity.iter().zip(&scene.bodies.velocity) {
+        let velocities = effects.velocities().linear.iter();
+        for (v, start) in velocities.zip(&scene.velocities.linear) {
             assert_eq!(v.map(f32::abs), start.map(f32::abs));
         }
     }

@@ -23,12 +23,12 @@ impl ReadArgs {
 ///
 /// # Errors
 /// The system refuses.
-pub fn write(path: &Path, text: &str) -> miette::Result<()> {
+pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> miette::Result<()> {
     let write = || {
         if let Some(directory) = path.parent() {
             std::fs::create_dir_all(directory)?;
         }
-        sdop::files::write(path, text)
+        sdop::files::write(path, &bytes)
     };
     write()
         .into_diagnostic()

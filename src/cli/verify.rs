@@ -18,7 +18,8 @@ use sdop::simd::Tier;
 
 use super::Outcome;
 use super::files::{self, ReadArgs};
-use super::output::{Format, emit, print, progress};
+use super::judge::{self, ReportFormat};
+use super::output::{emit, print, progress};
 use report::Report;
 
 /// Judge the optimised culler by the exact reference
@@ -60,7 +61,9 @@ pub struct Args {
     files: ReadArgs,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: ReportFormat,
+    #[command(flatten)]
+    outside: judge::Outside,
 }
 
 /// Runs the command.
@@ -71,6 +74,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(directory) = &args.record_hard_cases {
         return record(directory);
     }
+    if let Some(command) = &args.outside.exec {
+        return judge::run(&args.outside, command, args.time, &args.out, args.format);
+    }
+    let format = args.format.plain()?;
     let start = Instant::now();
     // A scene that can't be built is said before the long work.
     let most = args.files.max_bytes();
@@ -108,7 +115,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         add(format!("{name}, {bodies} bodies, {frames} frames"), ledger);
     }
     report.finish(start.elapsed(), &rotation);
-    emit(args.format, &report, Report::tables)?;
+    emit(format, &report, Report::tables)?;
     if report.passed() {
         return Ok(Outcome::Passed);
     }

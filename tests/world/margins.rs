@@ -119,7 +119,7 @@ fn a_margin_that_changes_counts_from_the_next_cull_on() {
             };
             let (mut world, [a, b]) = two(&way, &shape, [first, away]);
             let culled = way.strategy != Strategy::None;
-            for (margin, reported) in [(0.0, false), (0.8, culled), (0.3, false), (1.6, culled)] {
+            for (margin, reported) in [(0.0, false), (0.8, culled), (0.0, false), (1.6, culled)] {
                 for (id, body) in [(a, first), (b, away)] {
                     world.set(id, Body { margin, ..body }).unwrap();
                 }
