@@ -2,7 +2,7 @@
 //! number of pairs.
 //!
 //! Portions come in the order of the list, whichever thread found them: a thread whose list is full waits for its turn.
-//! Tasks are begun in their order, so the task whose turn it is always runs, and nobody waits for ever.
+//! Tasks are begun in their order, so the task whose turn it is always runs, and no thread waits for ever.
 
 use std::sync::{Condvar, Mutex, MutexGuard};
 

@@ -44,7 +44,7 @@ pub struct Effort {
 }
 
 /// Prices of the volumes of `strategies` with the scene's shapes, settings and pair finder, in the tier `tier`.
-/// `done` hears how many of the [`scenes`] are measured.
+/// `done` is called with how many of the [`scenes`] are measured.
 ///
 /// # Errors
 /// Settings that can't be carried out, effects that can't be simulated.
