@@ -94,7 +94,7 @@ fn text(path: &PathBuf) -> miette::Result<Vec<u8>> {
     let read = if path.as_os_str() == "-" {
         std::io::stdin().read_to_end(&mut bytes).map(drop)
     } else {
-        std::fs::read(path).map(|read| bytes = read)
+        sdop::files::read(path, sdop::files::MAX_BYTES).map(|read| bytes = read)
     };
     read.into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))?;

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop::files::MAX_BYTES;
 use sdop::judge::broadmark;
 use sdop::judge::process::Program;
 use sdop::judge::report::{STEM, counter_example};
@@ -167,7 +168,7 @@ pub fn read_case(path: &Path) -> miette::Result<ndjson::Read> {
         .extension()
         .is_some_and(|extension| extension == "aabbs")
     {
-        let bytes = std::fs::read(path)
+        let bytes = sdop::files::read(path, MAX_BYTES)
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot read {}", path.display()))?;
         let case = broadmark::read(&bytes).into_diagnostic()?;
@@ -189,7 +190,7 @@ pub fn read_case(path: &Path) -> miette::Result<ndjson::Read> {
 
 /// The names of a list, without comments.
 fn known(path: &Path) -> miette::Result<BTreeSet<String>> {
-    let text = std::fs::read_to_string(path)
+    let text = sdop::files::read_text(path, MAX_BYTES)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))?;
     let name = |line: &str| line.split('#').next().unwrap_or("").trim().to_owned();
