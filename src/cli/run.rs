@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use sdop::counters::{Counters, Seconds, VolumeCounters};
 use sdop::lab::effects::EffectReport;
+use sdop::lab::record::{FrameLine, Header, Recorder};
 use sdop::lab::scene::Scene;
 use sdop::lab::simulate::{Simulation, Summary};
 use sdop::settings::{Budget, CullSettings, Interest, Strategy};
@@ -15,7 +16,6 @@ use serde_json::{Map, Value};
 use super::Outcome;
 use super::output::{Format, emit, progress, table};
 use super::scene_args::{MachineArgs, SceneArgs};
-use sdop::lab::record::Recorder;
 
 /// Simulate and cull one scene
 ///
@@ -81,7 +81,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let scene = args.scene.build()?;
     let tier = args.machine.tier();
     let mut recorder = match &args.record {
-        Some(path) => Some(Recorder::create(path, &scene)?),
+        Some(path) => Some(Recorder::create(path, &Header::of(&scene))?),
         None => None,
     };
     let bar = progress(scene.frames.into(), &scene.name);
@@ -89,7 +89,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let simulation = Simulation::new(&scene, tier)?.with_threads(threads)?;
     let summary = simulation.run(|frame| -> miette::Result<()> {
         if let Some(recorder) = &mut recorder {
-            recorder.frame(frame)?;
+            recorder.frame(&FrameLine::of(frame, scene.cull.strategy))?;
         }
         bar.inc(1);
         Ok(())

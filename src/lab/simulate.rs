@@ -37,6 +37,8 @@ pub struct Frame<'a> {
     pub bodies: &'a Bodies,
     /// The reported pairs, in the finder's order.
     pub pairs: &'a PairList,
+    /// What this frame's culling counted.
+    pub counters: Counters,
 }
 
 /// What a finished run says of itself. Counters and hashes are equal on every CPU, tier and thread count.
@@ -123,10 +125,13 @@ impl<'a> Simulation<'a> {
             })?;
         }
         self.frame += 1;
+        let before = *self.culler.counters();
+        self.culler.cull(&self.bodies);
         Ok(Some(Frame {
             number,
-            pairs: self.culler.cull(&self.bodies),
+            pairs: self.culler.pairs(),
             bodies: &self.bodies,
+            counters: self.culler.counters().since(&before),
         }))
     }
 

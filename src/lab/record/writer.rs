@@ -1,0 +1,122 @@
+//! Writes a record.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::{
+    BodyLine, EffectLine, FORMAT, FrameLine, Header, MINOR, RecordError, ShapeLine, VERSION,
+    VolumeLine,
+};
+use crate::counters::Counters;
+use crate::lab::cost::predict::Volume;
+use crate::lab::scene::Scene;
+use crate::lab::simulate::Frame;
+use crate::lab::unfinished::Unfinished;
+use crate::settings::Strategy;
+
+impl Header {
+    /// The first line of a scene's record.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let effects = scene.effects.lists().into_iter();
+        let effects = effects.map(|(name, on)| EffectLine {
+            name: name.to_owned(),
+            on,
+        });
+        let bodies = scene.bodies.shape.iter().zip(&scene.bodies.dynamic);
+        Self {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            minor: MINOR,
+            program: Some(concat!("sdop ", env!("CARGO_PKG_VERSION")).to_owned()),
+            scene: scene.name.clone(),
+            seed: scene.seed,
+            dt: Some(scene.dt),
+            side: scene.side,
+            effects: Some(effects.collect()),
+            cull: Some(scene.cull.clone()),
+            shapes: scene.shapes.iter().map(ShapeLine::of).collect(),
+            bodies: bodies
+                .map(|(&shape, &dynamic)| BodyLine {
+                    shape,
+                    fixed: !dynamic,
+                })
+                .collect(),
+        }
+    }
+}
+
+impl FrameLine {
+    /// The line of a culled frame.
+    #[must_use]
+    pub fn of(frame: &Frame<'_>, strategy: Strategy) -> Self {
+        Self {
+            frame: frame.number,
+            poses: Self::poses(frame.bodies),
+            pairs: frame.pairs.sorted(),
+            counters: Some(VolumeLine::of(strategy, &frame.counters)),
+            meets: None,
+        }
+    }
+}
+
+impl VolumeLine {
+    /// A strategy's counters, in the order of its tests.
+    #[must_use]
+    pub fn of(strategy: Strategy, counters: &Counters) -> Vec<Self> {
+        let line = |volume: &Volume| Self {
+            volume: volume.to_string(),
+            counters: volume.counters(counters),
+        };
+        Volume::of(strategy).iter().map(line).collect()
+    }
+}
+
+/// A record being written: under its name when it is whole.
+#[derive(Debug)]
+pub struct Recorder {
+    path: PathBuf,
+    file: Unfinished,
+}
+
+impl Recorder {
+    /// Creates the file and writes the first line.
+    ///
+    /// # Errors
+    /// A file that can't be written.
+    pub fn create(path: &Path, header: &Header) -> Result<Self, RecordError> {
+        let file = Unfinished::create(path);
+        let mut recorder = Self {
+            path: path.to_owned(),
+            file: file.map_err(|cause| RecordError::unwritable(path, cause))?,
+        };
+        recorder.line(header)?;
+        Ok(recorder)
+    }
+
+    /// Writes a frame's line.
+    ///
+    /// # Errors
+    /// A file that can't be written.
+    pub fn frame(&mut self, frame: &FrameLine) -> Result<(), RecordError> {
+        self.line(frame)
+    }
+
+    /// Writes what is still in memory, and gives the file its name.
+    ///
+    /// # Errors
+    /// A file that can't be written.
+    pub fn finish(self) -> Result<(), RecordError> {
+        let written = self.file.finish();
+        written.map_err(|cause| RecordError::unwritable(&self.path, cause))
+    }
+
+    fn line(&mut self, value: &impl Serialize) -> Result<(), RecordError> {
+        serde_json::to_writer(&mut self.file, value)
+            .map_err(std::io::Error::from)
+            .and_then(|()| self.file.write_all(b"\n"))
+            .map_err(|cause| RecordError::unwritable(&self.path, cause))
+    }
+}
