@@ -66,11 +66,11 @@ impl VolumeLine {
     /// A strategy's counters, in the order of its tests.
     #[must_use]
     pub fn of(strategy: Strategy, counters: &Counters) -> Vec<Self> {
-        let line = |volume: &Volume| Self {
+        let line = |volume: Volume| Self {
             volume: volume.to_string(),
             counters: volume.counters(counters),
         };
-        Volume::of(strategy).iter().map(line).collect()
+        Volume::of(strategy).into_iter().map(line).collect()
     }
 }
 
