@@ -37,8 +37,8 @@ const INVERTIBLE: &str = "a quaternion (x, y, z, w) has a finite norm above zero
 /// How to mend a vector.
 const WITHIN_LIMIT: &str = "coordinates are finite and at most 2^60 in size";
 
-/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, velocity and spin likewise within 2⁶⁰, a shape
-/// that exists and is no larger than 2⁶⁰, no more than [`MOST_BODIES`].
+/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, a shape that exists and is no larger than 2⁶⁰, no
+/// more than [`MOST_BODIES`].
 ///
 /// # Errors
 /// A body that breaks it, the first in the first column at fault; columns of unequal length.
@@ -50,11 +50,7 @@ pub fn check_bodies(bodies: &Bodies, shapes: &[Shape]) -> Result<(), ContractErr
             return check_shape(body, number, shapes);
         }
     }
-    check_poses(bodies, 0..bodies.len())?;
-    for (name, column) in [("velocity", &bodies.velocity), ("spin", &bodies.spin)] {
-        check_vectors(name, column, 0)?;
-    }
-    Ok(())
+    check_poses(bodies, 0..bodies.len())
 }
 
 /// Checks that the shape of every body is one of so many.
@@ -127,8 +123,6 @@ pub(crate) fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
         ("dynamic", bodies.dynamic.len()),
         ("rotation", bodies.rotation.len()),
         ("translation", bodies.translation.len()),
-        ("velocity", bodies.velocity.len()),
-        ("spin", bodies.spin.len()),
     ] {
         check_column(name, length, bodies.len())?;
     }
@@ -149,7 +143,8 @@ pub(crate) fn check_column(
     refuse(length.min(bodies), name, value, hint)
 }
 
-fn check_vectors(
+/// Checks that the coordinates of a column are at most 2⁶⁰ in size; its first entry is that of the body `first`.
+pub(crate) fn check_vectors(
     name: &'static str,
     column: &[[f32; 3]],
     first: usize,

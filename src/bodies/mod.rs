@@ -18,10 +18,6 @@ pub struct Bodies {
     pub rotation: Vec<[f32; 4]>,
     /// Translation of the body origin, world frame.
     pub translation: Vec<[f32; 3]>,
-    /// Linear velocity, world frame, length units a second.
-    pub velocity: Vec<[f32; 3]>,
-    /// Angular velocity ω, world frame, radians a second.
-    pub spin: Vec<[f32; 3]>,
 }
 
 impl Bodies {
@@ -38,8 +34,6 @@ impl Bodies {
         self.dynamic.push(dynamic);
         self.rotation.push(rotation.into());
         self.translation.push(translation.into());
-        self.velocity.push([0.0; 3]);
-        self.spin.push([0.0; 3]);
     }
 
     /// The number of bodies.

@@ -110,7 +110,7 @@ impl Course {
             for _ in 0..=timed_from {
                 ahead.next_frame(&mut frame)?;
             }
-            permute(&mut scene.bodies, &along_curve(&frame.bodies.translation));
+            permute(&mut scene, &along_curve(&frame.bodies.translation));
         }
         Self::start(scene)
     }
@@ -169,16 +169,19 @@ fn along_curve(places: &[[f32; 3]]) -> Vec<usize> {
     order
 }
 
-fn permute(bodies: &mut Bodies, order: &[usize]) {
+fn permute(scene: &mut Scene, order: &[usize]) {
     fn column<T: Copy>(column: &mut Vec<T>, order: &[usize]) {
         *column = order.iter().map(|&body| column[body]).collect();
     }
+    let Scene {
+        bodies, velocities, ..
+    } = scene;
     column(&mut bodies.shape, order);
     column(&mut bodies.dynamic, order);
     column(&mut bodies.rotation, order);
     column(&mut bodies.translation, order);
-    column(&mut bodies.velocity, order);
-    column(&mut bodies.spin, order);
+    column(&mut velocities.linear, order);
+    column(&mut velocities.angular, order);
 }
 
 #[cfg(test)]

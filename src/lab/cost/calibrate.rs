@@ -9,6 +9,7 @@ use super::VolumeCosts;
 use super::fit::{self, Measurement};
 use super::predict::{Price, Prices, Volume};
 use crate::bodies::Bodies;
+use crate::lab::effects::Velocities;
 use crate::lab::measure::turns::{Trial, side_by_side, time};
 use crate::lab::number::Interval;
 use crate::lab::random::Stream;
@@ -97,7 +98,7 @@ fn resample(scene: &Scene, n: usize, stretch: f32, stream: u64) -> Scene {
         .map(|shape| shape.ball.radius)
         .fold(0.0, f32::max);
     let side = side.max(2.0 * widest);
-    let mut bodies = Bodies::default();
+    let (mut bodies, mut velocities) = (Bodies::default(), Velocities::default());
     for i in 0..n {
         let body = i * original.len() / n;
         let limit = 0.5 * side - scene.shapes[original.shape[body] as usize].ball.radius;
@@ -108,8 +109,8 @@ fn resample(scene: &Scene, n: usize, stretch: f32, stream: u64) -> Scene {
             .translation
             .push([(); 3].map(|()| draws.between(-limit, limit)));
         for (from, to) in [
-            (&original.velocity, &mut bodies.velocity),
-            (&original.spin, &mut bodies.spin),
+            (&scene.velocities.linear, &mut velocities.linear),
+            (&scene.velocities.angular, &mut velocities.angular),
         ] {
             let [x, y, z] = from[body];
             let length = libm::sqrtf(x * x + y * y + z * z);
@@ -121,6 +122,7 @@ fn resample(scene: &Scene, n: usize, stretch: f32, stream: u64) -> Scene {
     }
     Scene {
         bodies,
+        velocities,
         side: Some(side),
         seed: SEED,
         ..scene.clone()
