@@ -13,6 +13,7 @@ mod run;
 mod scene_args;
 mod tradeoff;
 mod verify;
+mod view;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
@@ -37,6 +38,7 @@ enum Command {
     Mesh(mesh::Args),
     Tradeoff(tradeoff::Args),
     Verify(verify::Args),
+    View(view::Args),
 }
 
 /// How a command ended when its input was good.
@@ -61,6 +63,7 @@ impl Cli {
             Command::Mesh(args) => mesh::run(&args),
             Command::Tradeoff(args) => tradeoff::run(&args),
             Command::Verify(args) => verify::run(&args),
+            Command::View(args) => view::run(&args),
         }
     }
 }

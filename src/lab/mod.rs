@@ -14,3 +14,4 @@ pub mod tightness;
 pub mod tradeoff;
 pub mod unfinished;
 pub mod verify;
+pub mod view;

@@ -124,18 +124,31 @@ impl Prices {
         frames: u32,
         bodies: usize,
     ) -> Vec<Terms> {
-        let (frames, bodies) = (f64::from(frames), bodies as f64);
         let terms = |&volume: &Volume| {
-            let (costs, counters) = (self.get(volume), volume.counters(run));
-            Terms {
-                volume,
-                construct: costs.construct,
-                update: costs.update(&counters),
-                finding: frames * (costs.frame + bodies * costs.body),
-                test: costs.test(&counters),
-            }
+            let counters = volume.counters(run);
+            self.terms(volume, &counters, frames, bodies)
         };
         Volume::of(strategy).iter().map(terms).collect()
+    }
+
+    /// Predicts one volume's terms in `frames` frames of `bodies` bodies.
+    #[must_use]
+    pub fn terms(
+        &self,
+        volume: Volume,
+        counters: &VolumeCounters,
+        frames: u32,
+        bodies: usize,
+    ) -> Terms {
+        let costs = self.get(volume);
+        let (frames, bodies) = (f64::from(frames), bodies as f64);
+        Terms {
+            volume,
+            construct: costs.construct,
+            update: costs.update(counters),
+            finding: frames * (costs.frame + bodies * costs.body),
+            test: costs.test(counters),
+        }
     }
 }
 

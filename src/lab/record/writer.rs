@@ -9,14 +9,39 @@ use super::{
     BodyLine, EffectLine, FORMAT, FrameLine, Header, MINOR, RecordError, ShapeLine, VERSION,
     VolumeLine,
 };
+use crate::bodies::Bodies;
 use crate::counters::Counters;
 use crate::lab::cost::predict::Volume;
 use crate::lab::scene::Scene;
 use crate::lab::simulate::Frame;
 use crate::lab::unfinished::Unfinished;
 use crate::settings::Strategy;
+use crate::volume::Shape;
 
 impl Header {
+    /// The first line for these bodies, with what every record has.
+    #[must_use]
+    pub fn new(scene: &str, seed: u64, shapes: &[Shape], bodies: &Bodies) -> Self {
+        let line = |(&shape, &dynamic): (&u32, &bool)| BodyLine {
+            shape,
+            fixed: !dynamic,
+        };
+        Self {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            minor: MINOR,
+            program: Some(concat!("sdop ", env!("CARGO_PKG_VERSION")).to_owned()),
+            scene: scene.to_owned(),
+            seed,
+            dt: None,
+            side: None,
+            effects: None,
+            cull: None,
+            shapes: shapes.iter().map(ShapeLine::of).collect(),
+            bodies: bodies.shape.iter().zip(&bodies.dynamic).map(line).collect(),
+        }
+    }
+
     /// The first line of a scene's record.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
@@ -25,25 +50,12 @@ impl Header {
             name: name.to_owned(),
             on,
         });
-        let bodies = scene.bodies.shape.iter().zip(&scene.bodies.dynamic);
         Self {
-            format: FORMAT.to_owned(),
-            version: VERSION,
-            minor: MINOR,
-            program: Some(concat!("sdop ", env!("CARGO_PKG_VERSION")).to_owned()),
-            scene: scene.name.clone(),
-            seed: scene.seed,
             dt: Some(scene.dt),
             side: scene.side,
             effects: Some(effects.collect()),
             cull: Some(scene.cull.clone()),
-            shapes: scene.shapes.iter().map(ShapeLine::of).collect(),
-            bodies: bodies
-                .map(|(&shape, &dynamic)| BodyLine {
-                    shape,
-                    fixed: !dynamic,
-                })
-                .collect(),
+            ..Self::new(&scene.name, scene.seed, &scene.shapes, &scene.bodies)
         }
     }
 }
