@@ -4,6 +4,7 @@ mod input;
 mod still;
 
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use miette::{IntoDiagnostic as _, Report, WrapErr as _, miette};
 use sdop::lab::unfinished::Unfinished;
@@ -175,11 +176,30 @@ fn write(args: &Args, page: &Page, name: &str) -> miette::Result<PathBuf> {
         }
     }
     if args.open {
-        open::that_detached(&written)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot open {}", written.display()))?;
+        open(&written)?;
     }
     Ok(written)
+}
+
+/// Has the desktop open a file, and doesn't wait for it.
+fn open(path: &Path) -> miette::Result<()> {
+    let opener = match std::env::consts::OS {
+        "macos" => "open",
+        "windows" => "explorer",
+        _ => "xdg-open",
+    };
+    let started = Command::new(opener)
+        .arg(path)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn();
+    started.map(drop).map_err(|cause| {
+        miette!(
+            help = "open it in any browser",
+            "--open: {opener} can't open {}: {cause}",
+            path.display()
+        )
+    })
 }
 
 fn write_page(page: &Page, path: &Path) -> miette::Result<u64> {
