@@ -84,7 +84,7 @@ fn a_page_of_a_scene_holds_its_run() {
     assert_eq!(runs[0]["name"], "s-dop-sequential");
     assert_eq!(
         runs[0]["volumes"],
-        serde_json::json!(["sphere", "or-dop after sphere"])
+        serde_json::json!(["sphere", "or-dop"])
     );
     assert_eq!(runs[0]["construct"], Value::Null);
     let on = |name: &str| {

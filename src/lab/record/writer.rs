@@ -11,7 +11,7 @@ use super::{
 };
 use crate::bodies::Bodies;
 use crate::counters::Counters;
-use crate::lab::cost::predict::Volume;
+use crate::lab::measure::counts::{Counts, Volume};
 use crate::lab::scene::Scene;
 use crate::lab::simulate::Frame;
 use crate::lab::unfinished::Unfinished;
@@ -78,9 +78,13 @@ impl VolumeLine {
     /// A strategy's counters, in the order of its tests.
     #[must_use]
     pub fn of(strategy: Strategy, counters: &Counters) -> Vec<Self> {
+        let counts = Counts {
+            culler: *counters,
+            ..Counts::default()
+        };
         let line = |volume: Volume| Self {
             volume: volume.to_string(),
-            counters: volume.counters(counters),
+            counters: counts.of(volume),
         };
         Volume::of(strategy).into_iter().map(line).collect()
     }

@@ -6,7 +6,7 @@ use miette::Diagnostic as _;
 
 use crate::bodies::Bodies;
 use crate::culler::{CullError, Culler};
-use crate::lab::cost::predict::Volume;
+use crate::lab::measure::counts::Volume;
 use crate::lab::record::{FrameLine, Header, Reader, RecordError, VolumeLine};
 use crate::lab::scene::Scene;
 use crate::lab::simulate::{Simulation, SimulationError};

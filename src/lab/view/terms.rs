@@ -1,19 +1,21 @@
 //! T = Nu·Cu + F + Nv·Cv, frame by frame: a run's counters at prices calibrated for its shapes.
 
 use super::{Culled, Show};
-use crate::lab::cost::calibrate::{Effort, calibrate};
-use crate::lab::cost::predict::{Prices, Volume};
+use crate::lab::cost::calibrate::{Calibration, Effort};
+use crate::lab::cost::predict::Prices;
 use crate::lab::effects::{EffectsSpec, Velocities};
+use crate::lab::measure::counts::{Counts, Volume};
+use crate::lab::measure::variant::Variant;
 use crate::lab::record::VolumeLine;
 use crate::lab::scene::Scene;
 use crate::lab::simulate::SimulationError;
-use crate::settings::Strategy;
+use crate::settings::{CullSettings, Strategy};
 use crate::simd::Tier;
 
-/// Enough for a picture: prices within a tenth, in a fraction of a second.
+/// Enough for a picture: one pass, in a fraction of a second for hundreds of bodies.
 const EFFORT: Effort = Effort {
-    frames: 24,
-    builds: 3,
+    turns: 1,
+    builds: 1,
 };
 
 /// Seconds per frame by term, and once.
@@ -25,72 +27,84 @@ pub struct TermCourse {
     pub frames: Vec<[f64; 3]>,
 }
 
-/// Calibrates the prices of what `culled` tested, on this machine.
+/// Calibrates the prices of what `culled` tested, on this machine, for frames whose data are in the caches.
 ///
 /// # Errors
 /// Settings that can't be carried out.
-pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>, SimulationError> {
-    let Some(cull) = culled
-        .settings
-        .clone()
-        .filter(|cull| cull.strategy != Strategy::None)
-    else {
+pub fn prices(
+    show: &Show,
+    culled: &Culled,
+    tier: Tier,
+) -> Result<Option<Prices>, SimulationError> {
+    let culls = |cull: &CullSettings| cull.strategy != Strategy::None;
+    let Some(cull) = culled.settings.clone().filter(culls) else {
         return Ok(None);
     };
     let mut bodies = show.bodies.clone();
     if let Some(first) = show.frames.first() {
         first.pose(&mut bodies);
     }
-    let strategy = cull.strategy;
+    let variant = Variant::of(culled.name.clone(), cull.clone());
+    let at_rest = vec![[0.0; 3]; bodies.len()];
     let scene = Scene {
         name: show.header.scene.clone(),
         seed: show.header.seed,
-        frames: EFFORT.frames,
+        frames: 1,
         dt: 0.0,
         side: show.header.side,
         shapes: show.shapes.clone(),
         velocities: Velocities {
-            linear: vec![[0.0; 3]; bodies.len()],
-            angular: vec![[0.0; 3]; bodies.len()],
+            linear: at_rest.clone(),
+            angular: at_rest,
         },
         bodies,
         effects: EffectsSpec::default(),
         cull,
         construct_seconds: 0.0,
     };
-    calibrate(&scene, &[strategy], tier, EFFORT, |_| {}).map(Some)
+    let mut calibration = Calibration::new(&scene, &[variant], tier, EFFORT)?;
+    for turn in 0..calibration.turns_of_a_pass() {
+        calibration.turn(turn)?;
+    }
+    let [warm, _cold] = calibration.prices();
+    Ok(warm.into_iter().next())
 }
 
 impl TermCourse {
     /// T by its terms; none where the counters are of volumes that have no price.
     pub fn predict(show: &Show, culled: &Culled, prices: &Prices) -> Option<Self> {
         let counters = culled.counters.as_ref()?;
-        let volumes = volumes(counters.first()?)?;
         let bodies = show.bodies.len();
-        let frame = |lines: &Vec<VolumeLine>| {
-            let terms = volumes
-                .iter()
-                .zip(lines)
-                .map(|(&volume, line)| prices.terms(volume, &line.counters, 1, bodies));
-            terms.fold([0.0; 3], |[update, find, test], terms| {
-                [
-                    update + terms.update,
-                    find + terms.finding,
-                    test + terms.test,
-                ]
-            })
+        let mut course = Self {
+            construct: 0.0,
+            frames: Vec::new(),
         };
-        Some(Self {
-            construct: volumes
-                .iter()
-                .map(|&volume| prices.get(volume).construct)
-                .sum(),
-            frames: counters.iter().map(frame).collect(),
-        })
+        for lines in counters {
+            let terms = prices.predict(&counts(lines)?, 1, bodies);
+            course.construct = terms.iter().map(|term| term.construct).sum();
+            course.frames.push([
+                terms.iter().map(|term| term.update).sum(),
+                terms.iter().map(|term| term.finding).sum(),
+                terms.iter().map(|term| term.test).sum(),
+            ]);
+        }
+        Some(course)
     }
 }
 
-/// The volumes that have these names.
-fn volumes(lines: &[VolumeLine]) -> Option<Vec<Volume>> {
-    lines.iter().map(|line| line.volume.parse().ok()).collect()
+/// The counters of a frame; none where a volume is none of ours.
+fn counts(lines: &[VolumeLine]) -> Option<Counts> {
+    let mut counts = Counts::default();
+    for VolumeLine { volume, counters } in lines {
+        let place = match volume.parse().ok()? {
+            Volume::Sphere => &mut counts.culler.sphere,
+            Volume::OrDop => &mut counts.culler.ordop,
+            Volume::Aabb => &mut counts.culler.aabb,
+            Volume::KDop => &mut counts.culler.kdop,
+            Volume::Obb => &mut counts.culler.obb,
+            Volume::Hull => &mut counts.hulls,
+        };
+        *place = *counters;
+    }
+    Some(counts)
 }
