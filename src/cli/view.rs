@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use miette::{IntoDiagnostic as _, Report, WrapErr as _, miette};
-use sdop::lab::unfinished::Unfinished;
+use sdop::files::Whole;
 use sdop::lab::view::{Culled, Page, Show, decide_truth};
 use sdop::settings::{CullSettings, Strategy};
 
@@ -204,7 +204,7 @@ fn open(path: &Path) -> miette::Result<()> {
 
 fn write_page(page: &Page, path: &Path) -> miette::Result<u64> {
     let cannot = || format!("cannot write {}", path.display());
-    let mut file = Unfinished::create(path)
+    let mut file = Whole::create(path)
         .into_diagnostic()
         .wrap_err_with(cannot)?;
     page.write(&mut file)

@@ -14,6 +14,5 @@ pub mod scene;
 pub mod simulate;
 pub mod tightness;
 pub mod tradeoff;
-pub mod unfinished;
 pub mod verify;
 pub mod view;

@@ -72,7 +72,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     print!("{text}");
     if let Some(directory) = &args.out {
         std::fs::create_dir_all(directory).into_diagnostic()?;
-        std::fs::write(directory.join("narrow.csv"), text).into_diagnostic()?;
+        sdop::files::write(&directory.join("narrow.csv"), text).into_diagnostic()?;
     }
     Ok(())
 }

@@ -11,10 +11,10 @@ use super::{
 };
 use crate::bodies::Bodies;
 use crate::counters::Counters;
+use crate::files::Whole;
 use crate::lab::measure::counts::{Counts, Volume};
 use crate::lab::scene::Scene;
 use crate::lab::simulate::Frame;
-use crate::lab::unfinished::Unfinished;
 use crate::settings::Strategy;
 use crate::volume::Shape;
 
@@ -94,7 +94,7 @@ impl VolumeLine {
 #[derive(Debug)]
 pub struct Recorder {
     path: PathBuf,
-    file: Unfinished,
+    file: Whole,
 }
 
 impl Recorder {
@@ -103,7 +103,7 @@ impl Recorder {
     /// # Errors
     /// A file that can't be written.
     pub fn create(path: &Path, header: &Header) -> Result<Self, RecordError> {
-        let file = Unfinished::create(path);
+        let file = Whole::create(path);
         let mut recorder = Self {
             path: path.to_owned(),
             file: file.map_err(|cause| RecordError::unwritable(path, cause))?,
