@@ -8,7 +8,7 @@ use crate::settings::TestedVolume;
 
 /// Work done on one volume. Sums over frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "lab", derive(serde::Serialize))]
+#[cfg_attr(feature = "lab", derive(serde::Serialize, serde::Deserialize))]
 pub struct VolumeCounters {
     /// Nu: volumes updated.
     pub updates: u64,
@@ -45,7 +45,33 @@ pub struct Counters {
     pub reported: u64,
 }
 
+impl VolumeCounters {
+    /// What was added since `before`.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Self {
+        Self {
+            updates: self.updates - before.updates,
+            tests: self.tests - before.tests,
+            hits: self.hits - before.hits,
+        }
+    }
+}
+
 impl Counters {
+    /// What was added since `before`.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Self {
+        Self {
+            sphere: self.sphere.since(&before.sphere),
+            ordop: self.ordop.since(&before.ordop),
+            aabb: self.aabb.since(&before.aabb),
+            kdop: self.kdop.since(&before.kdop),
+            obb: self.obb.since(&before.obb),
+            untested: self.untested - before.untested,
+            reported: self.reported - before.reported,
+        }
+    }
+
     /// Those of one volume.
     #[must_use]
     pub fn of(&self, volume: TestedVolume) -> &VolumeCounters {

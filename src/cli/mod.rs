@@ -18,6 +18,7 @@ mod run;
 mod scene_args;
 mod tradeoff;
 mod verify;
+mod view;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
@@ -46,6 +47,7 @@ enum Command {
     Cases(cases::Args),
     Check(check::Args),
     Bench(bench::Args),
+    View(view::Args),
 }
 
 /// How a command ended when its input was good.
@@ -74,6 +76,7 @@ impl Cli {
             Command::Cases(args) => cases::run(&args),
             Command::Check(args) => check::run(&args),
             Command::Bench(args) => bench::run(&args),
+            Command::View(args) => view::run(&args),
         }
     }
 }

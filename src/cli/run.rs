@@ -5,8 +5,11 @@ use std::path::PathBuf;
 
 use sdop::counters::{Counters, Seconds};
 use sdop::lab::effects::EffectReport;
+use sdop::lab::record::{FrameLine, Header, Recorder};
 use sdop::lab::scene::Scene;
 use sdop::lab::simulate::{Simulation, Summary};
+use sdop::lab::tradeoff::TradeoffError;
+use sdop::lab::tradeoff::truth::Judge;
 use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
 use sdop::simd::Tier;
 use serde::Serialize;
@@ -15,7 +18,6 @@ use serde_json::{Map, Value};
 use super::Outcome;
 use super::output::{Format, emit, progress, table};
 use super::scene_args::{MachineArgs, SceneArgs};
-use sdop::lab::record::Recorder;
 
 /// Simulate and cull one scene
 ///
@@ -29,6 +31,9 @@ pub struct Args {
     /// Write every frame's poses and pairs to this file, as lines of JSON
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
+    /// Have the record say, too, which meshes truly meet, decided in exact arithmetic: slow for large scenes
+    #[arg(long, requires = "record")]
+    truth: bool,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -81,15 +86,23 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let scene = args.scene.build()?;
     let tier = args.machine.tier();
     let mut recorder = match &args.record {
-        Some(path) => Some(Recorder::create(path, &scene)?),
+        Some(path) => Some(Recorder::create(path, &Header::of(&scene))?),
         None => None,
+    };
+    let judge = match args.truth {
+        true => Some(Judge::new(&scene.shapes).map_err(TradeoffError::from)?),
+        false => None,
     };
     let bar = progress(scene.frames.into(), &scene.name);
     let threads = usize::from(args.threads);
     let simulation = Simulation::with_threads(&scene, tier, threads)?;
     let summary = simulation.run(|frame| -> miette::Result<()> {
         if let Some(recorder) = &mut recorder {
-            recorder.frame(frame)?;
+            let mut line = FrameLine::of(frame, scene.cull.strategy);
+            if let Some(judge) = &judge {
+                line.meets = Some(judge.meetings(frame.bodies).map_err(TradeoffError::from)?);
+            }
+            recorder.frame(&line)?;
         }
         bar.inc(1);
         Ok(())

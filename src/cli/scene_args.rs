@@ -32,7 +32,7 @@ pub struct SceneArgs {
 }
 
 /// Flags that override the scene's `[cull]` table, key by key.
-#[derive(clap::Args)]
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "Culling (each overrides the scene's [cull])")]
 pub struct CullArgs {
     /// Which volumes are tested, and in which order
@@ -104,6 +104,26 @@ impl SceneArgs {
         }
         self.cull.apply(&mut file.spec.cull);
         Ok(file)
+    }
+
+    /// The seed asked for, if any.
+    pub fn seed(&self) -> Option<u64> {
+        self.seed
+    }
+
+    /// The default culling settings with the overrides in place.
+    pub fn settings(&self) -> CullSettings {
+        let mut settings = CullSettings::default();
+        self.cull.apply(&mut settings);
+        settings
+    }
+
+    /// A flag that only a scene can have, if one is given.
+    pub fn scene_only(&self) -> Option<&'static str> {
+        if self.seed.is_some() {
+            return Some("--seed");
+        }
+        (self.cull != CullArgs::default()).then_some("a culling flag")
     }
 
     /// The frames asked for, if any.

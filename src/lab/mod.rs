@@ -15,3 +15,4 @@ pub mod simulate;
 pub mod tightness;
 pub mod tradeoff;
 pub mod verify;
+pub mod view;

@@ -113,6 +113,8 @@ pub struct Frame<'a> {
     pub bodies: &'a Bodies,
     /// The reported pairs, in the finder's order.
     pub pairs: &'a PairList,
+    /// What this frame's culling counted.
+    pub counters: Counters,
 }
 
 /// What a finished run says of itself. Counters and hashes are equal on every CPU, tier and thread count.
@@ -191,10 +193,13 @@ impl<'a> Simulation<'a> {
         let Some(bodies) = self.trajectory.advance()? else {
             return Ok(None);
         };
+        let before = *self.culler.counters();
+        self.culler.cull(bodies)?;
         Ok(Some(Frame {
             number,
-            pairs: self.culler.cull(bodies)?,
+            pairs: self.culler.pairs(),
             bodies,
+            counters: self.culler.counters().since(&before),
         }))
     }
 

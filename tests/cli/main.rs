@@ -7,6 +7,7 @@ mod mesh;
 mod recording;
 mod reproduce;
 mod run;
+mod view;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

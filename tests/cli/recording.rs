@@ -72,11 +72,20 @@ struct Body {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct Frame {
     frame: u32,
     poses: Vec<[f32; 7]>,
     pairs: Vec<(u32, u32)>,
+    counters: Vec<Volume>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Volume {
+    volume: String,
+    updates: u64,
+    tests: u64,
+    hits: u64,
 }
 
 /// Writes the scene's recording with the built binary and reads it back.
@@ -145,6 +154,59 @@ fn a_recording_reads_back_to_the_same_bits() {
     .unwrap();
     assert_eq!(next, frames.len());
     assert_eq!(frames.len(), 6);
+}
+
+#[test]
+fn counters_of_the_frames_add_up_to_those_of_the_run() {
+    let (directory, scene) = scene_file(SCENE);
+    let path = directory.path().join("run.ndjson");
+    let run = crate::json(&["run", text(&scene), "--record", text(&path)]);
+    let (_, frames) = record(&[]);
+    let sum = |volume: &str, get: fn(&Volume) -> u64| -> u64 {
+        let volumes = frames.iter().flat_map(|frame| &frame.counters);
+        volumes.filter(|v| v.volume == volume).map(get).sum()
+    };
+    for (volume, key) in [("sphere", "sphere"), ("or-dop", "ordop")] {
+        let counters = [
+            ("updates", sum(volume, |v| v.updates)),
+            ("tests", sum(volume, |v| v.tests)),
+            ("hits", sum(volume, |v| v.hits)),
+        ];
+        for (name, counted) in counters {
+            assert_eq!(
+                run["counters"][format!("{key}_{name}")],
+                counted,
+                "{volume}, {name}"
+            );
+            assert!(counted > 0, "{volume}, {name}");
+        }
+    }
+    let order = |frame: &Frame| {
+        frame
+            .counters
+            .iter()
+            .map(|v| v.volume.clone())
+            .collect::<Vec<_>>()
+    };
+    assert!(
+        frames
+            .iter()
+            .all(|frame| order(frame) == ["sphere", "or-dop"])
+    );
+}
+
+#[test]
+fn a_record_that_was_not_finished_leaves_no_file() {
+    let far = SCENE
+        .replace("dt = 0.1", "dt = 1e18")
+        .replace("walls = \"specular\"\n", "");
+    let (directory, scene) = scene_file(&far);
+    let path = directory.path().join("run.ndjson");
+    let message = crate::refusal(&["run", text(&scene), "--record", text(&path)]);
+    assert!(message.contains("frame 1"), "{message}");
+    let entries = std::fs::read_dir(directory.path()).unwrap();
+    let left: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, [scene.file_name().unwrap()]);
 }
 
 #[test]

@@ -96,6 +96,14 @@ macro_rules! effects {
         /// Every effect's name, in the order in which a step applies them.
         pub const NAMES: &[&str] = &[$(stringify!($name)),+];
 
+        impl EffectsSpec {
+            /// Every effect's name, in the order of [`NAMES`], and whether the scene lists it.
+            #[must_use]
+            pub fn lists(&self) -> Vec<(&'static str, bool)> {
+                vec![$((stringify!($name), self.$name.is_some())),+]
+            }
+        }
+
         /// The listed effects and the place of each in [`NAMES`].
         fn listed(spec: &EffectsSpec, start: &Start<'_>) -> Result<Vec<(usize, Box<dyn Effect>)>, EffectError> {
             let mut list = Vec::new();

@@ -55,21 +55,10 @@ impl Counts {
     /// What was counted since `before`.
     #[must_use]
     pub fn since(&self, before: &Self) -> Self {
-        let [mut now, then] = [*self, *before];
-        let less = |now: &mut VolumeCounters, then: VolumeCounters| {
-            now.updates -= then.updates;
-            now.tests -= then.tests;
-            now.hits -= then.hits;
-        };
-        less(&mut now.culler.sphere, then.culler.sphere);
-        less(&mut now.culler.ordop, then.culler.ordop);
-        less(&mut now.culler.aabb, then.culler.aabb);
-        less(&mut now.culler.kdop, then.culler.kdop);
-        less(&mut now.culler.obb, then.culler.obb);
-        less(&mut now.hulls, then.hulls);
-        now.culler.untested -= then.culler.untested;
-        now.culler.reported -= then.culler.reported;
-        now
+        Self {
+            culler: self.culler.since(&before.culler),
+            hulls: self.hulls.since(&before.hulls),
+        }
     }
 
     /// The counters of one volume.

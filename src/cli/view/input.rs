@@ -1,0 +1,144 @@
+//! What is to be shown: a scene is simulated, a record read, a group of hard cases made.
+
+use std::fs::File;
+use std::io::Read as _;
+use std::path::Path;
+
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop::lab::record::RecordError;
+use sdop::lab::verify::hard::Group;
+use sdop::lab::view::Show;
+use sdop::simd::Tier;
+
+use crate::cli::output::progress;
+use crate::cli::scene_args::SceneArgs;
+
+/// What was found.
+pub enum Input {
+    /// Something to show; with a record that is broken somewhere, what is wrong.
+    Show(Box<Show>, Option<RecordError>),
+    /// A record with no frame that can be read.
+    Broken(RecordError),
+}
+
+/// Reads what the path names. A record begins with a brace, a group of hard cases has a `[recipe]`, anything else is a scene.
+///
+/// # Errors
+/// A file that can't be read; a scene or case that can't be built; flags that the kind of file can't have.
+pub fn read(args: &SceneArgs, run: Option<usize>, tier: Tier) -> miette::Result<Input> {
+    let path = args.path();
+    if is_record(path)? {
+        return record(args, run);
+    }
+    if is_case(path) {
+        return Ok(Input::Show(
+            Box::new(case(args, run.unwrap_or(0), tier)?),
+            None,
+        ));
+    }
+    if run.is_some() {
+        return Err(miette!(
+            help = "leave --run out",
+            "--run is for groups of hard cases; {} is a scene",
+            path.display()
+        ));
+    }
+    let scene = args.build()?;
+    let bar = progress(scene.frames.into(), &scene.name);
+    let show = Show::scene(&scene, path, tier, || bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok(Input::Show(Box::new(show), None))
+}
+
+fn is_record(path: &Path) -> miette::Result<bool> {
+    if path
+        .extension()
+        .is_some_and(|ending| ending == "ndjson" || ending == "jsonl")
+    {
+        return Ok(true);
+    }
+    let mut start = [0; 64];
+    let read = File::open(path).and_then(|mut file| file.read(&mut start));
+    let read = read
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{}: cannot be read", path.display()))?;
+    Ok(start[..read].trim_ascii_start().starts_with(b"{"))
+}
+
+/// Whether a TOML file has a recipe. What is no TOML, or can't be read, is left to the scene's reader, which says so.
+fn is_case(path: &Path) -> bool {
+    let table = std::fs::read_to_string(path)
+        .ok()
+        .and_then(|text| text.parse::<toml::Table>().ok());
+    table.is_some_and(|table| table.contains_key("recipe"))
+}
+
+fn record(args: &SceneArgs, run: Option<usize>) -> miette::Result<Input> {
+    if let Some(flag) = args.scene_only().or(run.map(|_| "--run")) {
+        return Err(miette!(
+            help = "--beside STRATEGY culls its frames again",
+            "{}: a record is shown as it was culled; {flag} can't change it",
+            args.path().display()
+        ));
+    }
+    match Show::record(args.path(), args.frames()) {
+        Ok((show, broken)) => Ok(Input::Show(Box::new(show), broken)),
+        // Nothing there is no record that is broken.
+        Err(error @ RecordError::Unreadable { .. }) => Err(error.into()),
+        Err(error) => Ok(Input::Broken(error)),
+    }
+}
+
+fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<Show> {
+    let path = args.path();
+    let name = path.display();
+    let text = std::fs::read_to_string(path)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{name}: cannot be read"))?;
+    let group = Group::parse(&text)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{name}: no group of hard cases"))?;
+    if args.seed().is_some() {
+        return Err(miette!(
+            help = "leave --seed out",
+            "{name}: a group of hard cases has a seed of its own"
+        ));
+    }
+    let settings = args.settings();
+    let cases = group
+        .cases(settings.k, settings.axes)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{name}: can't be made"))?;
+    let frames = cases.runs.get(run).ok_or_else(|| {
+        miette!(
+            help = "runs are counted from 0",
+            "{name}: run {run} of {}",
+            cases.runs.len()
+        )
+    })?;
+    let most = args
+        .frames()
+        .map_or(frames.len(), |most| frames.len().min(most as usize));
+    let stem = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let mut show = Show::poses(
+        &stem,
+        path,
+        cases.shapes.built.clone(),
+        &frames[..most],
+        &settings,
+        tier,
+    )?;
+    show.header.seed = group.seed;
+    show.messages.push(group.why.clone());
+    if cases.runs.len() > 1 {
+        show.messages.push(format!(
+            "Run {run} of {}; --run N shows another.",
+            cases.runs.len()
+        ));
+    }
+    Ok(show)
+}

@@ -1,0 +1,130 @@
+// The camera: orbit, pan and zoom by mouse and touch (three's controls), the same by keys, flights to a place.
+
+import { PerspectiveCamera, Vector3 } from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { EXTENT } from "./space.ts";
+import { reducedMotion } from "./theme.ts";
+
+const FLIGHT = 600; // milliseconds
+
+/** Where the camera looks from at first; the whole box is in view. */
+const HOME = new Vector3(0.55, 0.42, 1).normalize();
+
+export class Camera {
+  readonly lens = new PerspectiveCamera(40, 1, EXTENT / 1000, 1000 * EXTENT);
+  private readonly controls: OrbitControls;
+  private flight: { start: number; from: [Vector3, Vector3]; to: [Vector3, Vector3] } | null = null;
+
+  /** `changed` is called whenever the picture must be drawn again, `moved` when a movement by hand has ended. */
+  constructor(element: HTMLElement, changed: () => void, moved: () => void) {
+    this.controls = new OrbitControls(this.lens, element);
+    this.controls.minDistance = EXTENT / 500;
+    this.controls.maxDistance = 200 * EXTENT;
+    this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("start", () => {
+      this.flight = null;
+    });
+    this.controls.addEventListener("end", moved);
+    this.home();
+  }
+
+  /** Sees the whole box. */
+  home(): void {
+    this.flight = null;
+    this.controls.target.set(0, 0, 0);
+    this.lens.position.copy(HOME).multiplyScalar(this.distanceFor(1.72 * EXTENT));
+    this.controls.update();
+  }
+
+  resize(aspect: number): void {
+    const ratio = this.distanceFor(1);
+    this.lens.aspect = aspect;
+    this.lens.updateProjectionMatrix();
+    // What was in view stays in view on a narrower screen.
+    const offset = this.lens.position.clone().sub(this.controls.target);
+    this.lens.position.copy(this.controls.target).add(offset.multiplyScalar(this.distanceFor(1) / ratio));
+    this.controls.update();
+  }
+
+  /** The distance from which a ball of this radius fills the view. */
+  private distanceFor(radius: number): number {
+    const half = (this.lens.fov * Math.PI) / 360;
+    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.lens.aspect));
+    return radius / Math.sin(narrow);
+  }
+
+  /** Flies to a ball; jumps where the person wants less motion. */
+  flyTo(centre: Vector3, radius: number): void {
+    const away = this.lens.position.clone().sub(this.controls.target).normalize();
+    const target = centre.clone();
+    const position = target.clone().addScaledVector(away, this.distanceFor(Math.max(2.2 * radius, EXTENT / 200)));
+    if (reducedMotion()) {
+      this.controls.target.copy(target);
+      this.lens.position.copy(position);
+      this.controls.update();
+    } else {
+      const from: [Vector3, Vector3] = [this.lens.position.clone(), this.controls.target.clone()];
+      this.flight = { start: performance.now(), from, to: [position, target] };
+    }
+  }
+
+  /** Moves on a flight; true while there is one. */
+  advance(now: number): boolean {
+    if (!this.flight) return false;
+    const part = Math.min(1, (now - this.flight.start) / FLIGHT);
+    const eased = part * part * (3 - 2 * part);
+    this.lens.position.lerpVectors(this.flight.from[0], this.flight.to[0], eased);
+    this.controls.target.lerpVectors(this.flight.from[1], this.flight.to[1], eased);
+    this.controls.update();
+    if (part === 1) this.flight = null;
+    return true;
+  }
+
+  /** Turns by these angles, in radians. */
+  orbit(right: number, up: number): void {
+    const offset = this.lens.position.clone().sub(this.controls.target);
+    const radius = offset.length();
+    const polar = Math.acos(Math.max(-1, Math.min(1, offset.y / radius)));
+    const azimuth = Math.atan2(offset.x, offset.z) + right;
+    const clamped = Math.max(0.01, Math.min(Math.PI - 0.01, polar - up));
+    offset.setFromSphericalCoords(radius, clamped, azimuth);
+    this.lens.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+  }
+
+  /** Shifts by parts of the distance. */
+  pan(right: number, up: number): void {
+    const distance = this.lens.position.distanceTo(this.controls.target);
+    const shift = new Vector3(right * distance, up * distance, 0).applyQuaternion(this.lens.quaternion);
+    this.lens.position.add(shift);
+    this.controls.target.add(shift);
+    this.controls.update();
+  }
+
+  /** Nearer below 1, farther above. */
+  zoom(factor: number): void {
+    const offset = this.lens.position.clone().sub(this.controls.target).multiplyScalar(factor);
+    this.lens.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+  }
+
+  /** The picture's origin has moved by this much. */
+  shift([x, y, z]: [number, number, number]): void {
+    this.lens.position.sub(new Vector3(x, y, z));
+    this.controls.target.sub(new Vector3(x, y, z));
+    this.controls.update();
+  }
+
+  /** Position, then target, as six numbers. */
+  get state(): number[] {
+    const end = this.flight ? this.flight.to : [this.lens.position, this.controls.target];
+    return [...end[0].toArray(), ...end[1].toArray()];
+  }
+
+  set state(numbers: number[]) {
+    this.flight = null;
+    this.lens.position.fromArray(numbers, 0);
+    this.controls.target.fromArray(numbers, 3);
+    this.controls.update();
+  }
+}

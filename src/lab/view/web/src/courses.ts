@@ -1,0 +1,47 @@
+// Which numbers the charts show.
+
+import { type Chart, Charts } from "./charts.ts";
+import type { Counts, Run } from "./run.ts";
+
+/** Builds the charts of a run. A second strategy's courses are dashed. */
+export function buildCharts(run: Run, element: HTMLElement, seek: (frame: number) => void): Charts {
+  const charts = new Charts(element, run.frames, seek);
+  const counts = run.header.runs.map((_, side) => Array.from({ length: run.frames }, (_, frame) => run.counts(frame, side)));
+  const chart = (title: string, unit: string, courses: [string, string, (c: Counts) => number | null][]): void => {
+    const made: Chart = { title, unit, courses: [] };
+    counts.forEach((list, side) => {
+      for (const [name, colour, get] of courses) {
+        if (list.some((c) => get(c) === null)) continue;
+        // The truth is one for both strategies.
+        if (side > 0 && name === "true") continue;
+        const label = counts.length > 1 && name !== "true" ? `${name}, ${run.header.runs[side].name}` : name;
+        made.courses.push({ name: label, colour, values: Float64Array.from(list, (c) => get(c)!), dashed: side > 0 });
+      }
+    });
+    if (made.courses.length > 0) charts.add(made);
+  };
+  chart("Pairs", "", [
+    ["hits", "--spheres", (c) => c.hits],
+    ["reported", "--reported", (c) => c.reported],
+    ["true", "--meets", (c) => c.true],
+  ]);
+  chart("Missed", "", counts.flat().some((c) => c.missed > 0) ? [["missed", "--missed", (c) => c.missed]] : []);
+  chart("Nu", "", [["updates", "--accent", (c) => c.nu]]);
+  chart("Nv", "", [["tests", "--accent", (c) => c.nv]]);
+  counts.forEach((list, side) => {
+    if (list.some((c) => c.terms === null)) return;
+    const term = (at: 0 | 1 | 2) => Float64Array.from(list, (c) => 1e6 * c.terms![at]);
+    const title = counts.length > 1 ? `T, ${run.header.runs[side].name}` : "T";
+    charts.add({
+      title,
+      unit: " µs",
+      stacked: true,
+      courses: [
+        { name: "Nu·Cu", colour: "--accent", values: term(0) },
+        { name: "F", colour: "--finding", values: term(1) },
+        { name: "Nv·Cv", colour: "--reported", values: term(2) },
+      ],
+    });
+  });
+  return charts;
+}

@@ -1,0 +1,152 @@
+// What can be switched on over the meshes: spheres, or-DOPs, world boxes, pairs, grid cells.
+
+import { Group } from "three";
+import type { Color } from "three";
+import type { Bodies } from "./bodies.ts";
+import { cubeLines, extent, plus, rotate, sphereLines, type Triple, turnFromX, UPRIGHT } from "./figures.ts";
+import { Wires } from "./lines.ts";
+import { halfSpaces, polytope } from "./polytope.ts";
+import { type Run, State } from "./run.ts";
+import type { Space } from "./space.ts";
+import type { Theme } from "./theme.ts";
+
+/** What can be switched, by its name in the page's address. */
+export const LAYERS = ["spheres", "ordops", "boxes", "pairs", "cells"] as const;
+export type Layer = (typeof LAYERS)[number];
+export type Switches = Record<Layer, boolean>;
+
+/** What the overlays need to know of the moment. */
+export interface Moment {
+  frame: number;
+  run: number;
+  switches: Switches;
+  picked: number | null;
+  theme: Theme;
+  /** A body's colour, or null where nothing of it is to be drawn. */
+  colour: (body: number) => Color | null;
+}
+
+const SEGMENT = [-1, 0, 0, 1, 0, 0];
+
+export class Overlays extends Group {
+  private readonly spheres = new Wires(sphereLines(), 0.55);
+  private readonly ordops: Wires[];
+  private readonly boxes = new Wires(cubeLines(), 0.7);
+  private readonly cells = new Wires(cubeLines(), 0.35);
+  private readonly pairs = new Wires(SEGMENT, 0.9);
+  private readonly marks = new Wires(sphereLines(40), 1, true);
+  private readonly markedPairs = new Wires(SEGMENT, 1, true);
+  private readonly hulls: Float64Array[];
+  private readonly widest: number;
+
+  constructor(
+    private readonly run: Run,
+    private readonly space: Space,
+    private readonly bodies: Bodies,
+  ) {
+    super();
+    const { shapes } = run.header;
+    this.ordops = shapes.map(({ ordop, reach }) => {
+      const unit = reach > 0 ? reach : 1;
+      const scaled = (ends: number[]) => ends.map((x) => x / unit);
+      const { corners, edges } = polytope(halfSpaces(ordop.k, ordop.basis, scaled(ordop.lo), scaled(ordop.hi)), 1);
+      return new Wires(
+        edges.flatMap(([a, b]) => [...corners[a], ...corners[b]]),
+        0.8,
+      );
+    });
+    this.hulls = shapes.map(({ hull: [start, count] }) =>
+      Float64Array.from(run.blocks.get("hull")!.subarray(3 * start, 3 * (start + count))),
+    );
+    this.widest = Math.max(0, ...Array.from(new Set(run.shapeOf), (shape) => shapes[shape].ball[3]));
+    this.add(this.spheres, ...this.ordops, this.boxes, this.cells, this.pairs, this.marks, this.markedPairs);
+  }
+
+  /** Draws what is switched on for the moment; `marked` are bodies with a ring, each with its colour. */
+  update(moment: Moment, marked: Map<number, Color>): void {
+    const { switches } = moment;
+    const all = [this.spheres, ...this.ordops, this.boxes, this.cells, this.pairs, this.marks, this.markedPairs];
+    for (const wires of all) wires.begin();
+    if (switches.spheres) this.addSpheres(moment);
+    if (switches.ordops) this.addOrDops(moment);
+    if (switches.boxes) this.addBoxes(moment);
+    if (switches.cells) this.addCells(moment);
+    this.addPairs(moment);
+    for (const [body, colour] of marked) {
+      const radius = 1.08 * this.bodies.radius(body);
+      this.marks.put(this.bodies.placement(body).offset, UPRIGHT, [radius, radius, radius], colour);
+    }
+    for (const wires of all) wires.end();
+  }
+
+  private *shown(moment: Moment): Generator<[number, Color]> {
+    for (let body = 0; body < this.run.header.bodies; body++) {
+      const colour = moment.colour(body);
+      if (colour) yield [body, colour];
+    }
+  }
+
+  private addSpheres(moment: Moment): void {
+    for (const [body, colour] of this.shown(moment)) {
+      const { ball } = this.run.header.shapes[this.run.shapeOf[body]];
+      const { turn, offset } = this.bodies.placement(body);
+      const centre = rotate(turn, [ball[0], ball[1], ball[2]], this.space.scale);
+      const radius = ball[3] * this.space.scale;
+      this.spheres.put(plus(offset, centre), turn, [radius, radius, radius], colour);
+    }
+  }
+
+  private addOrDops(moment: Moment): void {
+    for (const [body, colour] of this.shown(moment)) {
+      const { turn, offset } = this.bodies.placement(body);
+      const size = this.bodies.radius(body);
+      this.ordops[this.run.shapeOf[body]].put(offset, turn, [size, size, size], colour);
+    }
+  }
+
+  /** World-aligned boxes, fitted to the posed hull's vertices. */
+  private addBoxes(moment: Moment): void {
+    for (const [body, colour] of this.shown(moment)) {
+      const { turn, offset } = this.bodies.placement(body);
+      const { low, high } = extent(this.hulls[this.run.shapeOf[body]], turn);
+      const half = [0, 1, 2].map((axis) => ((high[axis] - low[axis]) / 2) * this.space.scale) as Triple;
+      const centre = [0, 1, 2].map((axis) => ((high[axis] + low[axis]) / 2) * this.space.scale) as Triple;
+      this.boxes.put(plus(offset, centre), UPRIGHT, half, colour);
+    }
+  }
+
+  /** The cells, of the widest ball's diameter, that hold the origin of a body: what a uniform grid would sort by. */
+  private addCells(moment: Moment): void {
+    const cell = 2 * this.widest * this.space.scale;
+    if (!(cell > 0)) return;
+    const seen = new Set<string>();
+    for (const [body] of this.shown(moment)) {
+      const at = this.bodies.placement(body).offset.map((x) => Math.floor(x / cell)) as Triple;
+      const name = at.join();
+      if (seen.has(name)) continue;
+      seen.add(name);
+      const centre = at.map((x) => (x + 0.5) * cell) as Triple;
+      this.cells.put(centre, UPRIGHT, [cell / 2, cell / 2, cell / 2], moment.theme.cells);
+    }
+  }
+
+  /** Lines between the origins of a pair's bodies: all pairs when switched on, missed ones always. */
+  private addPairs(moment: Moment): void {
+    const { states, spheres } = moment.theme;
+    for (const { i, j, flags } of this.run.pairsAt(moment.frame)) {
+      const state = this.run.state(flags, moment.run);
+      if (state === State.Missed) this.line(this.markedPairs, i, j, states[state]);
+      if (!moment.switches.pairs || state === State.Idle) continue;
+      if (moment.picked !== null && i !== moment.picked && j !== moment.picked) continue;
+      this.line(this.pairs, i, j, state === State.Spheres ? spheres : states[state]);
+    }
+  }
+
+  private line(wires: Wires, i: number, j: number, colour: Color): void {
+    const [a, b] = [this.bodies.placement(i).offset, this.bodies.placement(j).offset];
+    const half = [0, 1, 2].map((axis) => (b[axis] - a[axis]) / 2) as Triple;
+    const length = Math.hypot(...half);
+    const middle = [0, 1, 2].map((axis) => (a[axis] + b[axis]) / 2) as Triple;
+    wires.put(middle, turnFromX(half, length), [length, 1, 1], colour);
+  }
+}

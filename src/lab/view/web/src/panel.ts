@@ -1,0 +1,259 @@
+// The panel beside the picture: numbers, switches, lists.
+
+import { LAYERS, type Layer } from "./overlays.ts";
+import { type Counts, type Pair, type Run, State } from "./run.ts";
+import { STATE_NAMES } from "./theme.ts";
+
+/** Rows of a list; a click on a body shows its own pairs alone. */
+const ROWS = 60;
+
+/** Cells of the table, whose ids tests read. */
+const CELLS = ["nu", "nv", "hits", "reported", "true", "t"] as const;
+
+const LAYER_NAMES: Record<Layer, string> = {
+  spheres: "spheres",
+  ordops: "or-DOPs",
+  boxes: "world boxes",
+  pairs: "pairs as lines",
+  cells: "grid cells",
+};
+
+/** CSS colour of a state. */
+export const STATE_COLOURS: Record<State, string> = {
+  [State.Idle]: "var(--idle)",
+  [State.Spheres]: "var(--spheres)",
+  [State.Reported]: "var(--reported)",
+  [State.Meets]: "var(--meets)",
+  [State.Missed]: "var(--missed)",
+};
+
+const grouped = new Intl.NumberFormat("en");
+const short = new Intl.NumberFormat("en", { maximumSignificantDigits: 4 });
+
+export interface Actions {
+  toggle(layer: Layer): void;
+  sides(sides: "first" | "second" | "both"): void;
+  /** Flies to a pair of a frame. */
+  fly(frame: number, bodies: number[]): void;
+}
+
+export function element<T extends HTMLElement = HTMLElement>(id: string): T {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page has no #${id}`);
+  return found as T;
+}
+
+function create(tag: string, text = "", attributes: Record<string, string> = {}): HTMLElement {
+  const made = document.createElement(tag);
+  made.textContent = text;
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  return made;
+}
+
+export class Panel {
+  private readonly layers = new Map<Layer, HTMLElement>();
+  private readonly sideButtons = new Map<string, HTMLElement>();
+
+  constructor(
+    private readonly run: Run,
+    private readonly actions: Actions,
+  ) {
+    const { header } = run;
+    element("scene").textContent = header.scene;
+    const fixed = header.bodies - header.moving;
+    const size = `${grouped.format(header.bodies)} bodies, ${grouped.format(fixed)} of them at rest, ${grouped.format(header.frames)} frames`;
+    element("source").textContent = [size, header.seed && `seed ${header.seed}`, header.source].filter(Boolean).join("; ");
+    document.title = `${header.scene} – sdop view`;
+    element("last").textContent = String(run.numbers[run.frames - 1]);
+    for (const message of header.messages) element("notes").append(create("p", message));
+    this.buildNumbers();
+    this.buildSwitches();
+    this.buildEffects();
+    this.buildMissed();
+    this.buildLegend();
+  }
+
+  private buildNumbers(): void {
+    const head = create("tr");
+    head.append(create("td"));
+    this.run.header.runs.forEach((run, side) => {
+      head.append(create("th", run.name, { scope: "col", title: run.detail }));
+      for (const cell of CELLS) {
+        element(`row-${cell}`).append(create("td", "–", { id: side === 0 ? cell : `${cell}-${side + 1}` }));
+      }
+    });
+    element("numbers-head").append(head);
+  }
+
+  private buildSwitches(): void {
+    const toggle = (layer: Layer, key: number): void => {
+      const title = layer === "cells" ? "Cells of the widest ball's diameter that hold a body's origin" : LAYER_NAMES[layer];
+      const button = create("button", LAYER_NAMES[layer], { type: "button", "aria-pressed": "false", title: `${title} (${key})` });
+      button.addEventListener("click", () => this.actions.toggle(layer));
+      element("switches").append(button);
+      this.layers.set(layer, button);
+    };
+    LAYERS.forEach((layer, at) => toggle(layer, at + 1));
+    const { runs } = this.run.header;
+    if (runs.length < 2) return;
+    const choices = [
+      ["first", runs[0].name],
+      ["second", runs[1].name],
+      ["both", "side by side"],
+    ] as const;
+    for (const [sides, name] of choices) {
+      const button = create("button", name, { type: "button", "aria-pressed": "false", title: `${name} (v changes)` });
+      button.addEventListener("click", () => this.actions.sides(sides));
+      element("sides-choice").append(button);
+      this.sideButtons.set(sides, button);
+    }
+    element("sides-choice").hidden = false;
+  }
+
+  private buildEffects(): void {
+    const { effects } = this.run.header;
+    const list = element("effects");
+    if (!effects) {
+      list.append(create("li", "the record doesn't say which", { class: "off" }));
+      return;
+    }
+    for (const { name, on } of effects) {
+      list.append(create("li", on ? `${name}: on` : `${name}: not simulated`, { class: on ? "on" : "off" }));
+    }
+  }
+
+  private buildMissed(): void {
+    const { runs } = this.run.header;
+    let total = 0;
+    runs.forEach((run, side) => {
+      const { list, count } = this.run.missed(side, ROWS);
+      total += count;
+      for (const { frame, pair } of list) {
+        const where = runs.length > 1 ? `frame ${this.run.numbers[frame]}, ${run.name}` : `frame ${this.run.numbers[frame]}`;
+        element("missed").append(this.row(frame, pair, State.Missed, where));
+      }
+      if (count > list.length) element("missed").append(create("li", `… and ${grouped.format(count - list.length)} more of ${run.name}`));
+    });
+    element("missed-count").textContent = grouped.format(total);
+    element("missed-section").hidden = total === 0;
+  }
+
+  private buildLegend(): void {
+    const states = [State.Idle, State.Reported];
+    if (this.run.header.truth) states.push(State.Meets, State.Missed);
+    for (const state of states) {
+      const name = state === State.Reported && this.run.header.truth ? "reported, doesn't meet" : STATE_NAMES[state];
+      const entry = create("li");
+      entry.append(create("i", "", { style: `background: ${STATE_COLOURS[state]}` }), name);
+      element("legend").append(entry);
+    }
+  }
+
+  private row(frame: number, { i, j }: Pair, state: State, note: string): HTMLElement {
+    const item = create("li");
+    const button = create("button", "", { type: "button", title: "Fly to this pair" });
+    button.append(create("i", "", { style: `background: ${STATE_COLOURS[state]}` }), `${i} – ${j}`, create("em", note));
+    button.addEventListener("click", () => this.actions.fly(frame, [i, j]));
+    item.append(button);
+    return item;
+  }
+
+  /** The numbers of a frame: cheap, every frame. */
+  showNumbers(frame: number, sides: number[]): void {
+    element("frame").textContent = String(this.run.numbers[frame]);
+    this.run.header.runs.forEach((_, side) => {
+      const counts = this.run.counts(frame, side);
+      const suffix = side === 0 ? "" : `-${side + 1}`;
+      const total = counts.terms && 1e6 * counts.terms.reduce((a, b) => a + b, 0);
+      const values: Record<(typeof CELLS)[number], string> = {
+        nu: optional(counts.nu),
+        nv: optional(counts.nv),
+        hits: optional(counts.hits),
+        reported: grouped.format(counts.reported),
+        true: optional(counts.true),
+        t: total === null ? "–" : short.format(total),
+      };
+      for (const cell of CELLS) element(cell + suffix).textContent = values[cell];
+    });
+    element("caption").textContent = this.caption(frame, sides[0]);
+    this.showTerms(this.run.counts(frame, sides[0]), sides[0]);
+    this.showVolumes(frame, sides[0]);
+  }
+
+  private caption(frame: number, side: number): string {
+    const { scene, runs } = this.run.header;
+    const { reported, true: meeting, missed } = this.run.counts(frame, side);
+    const parts = [`${scene}, frame ${this.run.numbers[frame]}`];
+    if (runs.length === 1) parts.push(`${runs[0].name} reports ${grouped.format(reported)} pairs`);
+    if (meeting !== null) parts.push(`${grouped.format(meeting)} truly meet`);
+    if (missed > 0) parts.push(`${missed} missed`);
+    return parts.join(" · ");
+  }
+
+  private showTerms({ terms }: Counts, side: number): void {
+    const { construct, volumes } = this.run.header.runs[side];
+    const text = element("terms");
+    if (!terms || construct === null) {
+      text.textContent = volumes ? "T is not known: no prices" : "Nu, Nv, hits and T are not known: the record has no counters";
+      return;
+    }
+    const [update, find, test] = terms.map((x) => short.format(1e6 * x));
+    text.textContent = `T = Nu·Cu ${update} + F ${find} + Nv·Cv ${test} µs; Co ${short.format(1e6 * construct)} µs, once`;
+  }
+
+  private showVolumes(frame: number, side: number): void {
+    const volumes = this.run.volumes(frame, side);
+    const rows: HTMLElement[] = [];
+    if (volumes && volumes.length > 1) {
+      const head = create("tr");
+      for (const name of ["volume", "updates", "tests", "hits"]) head.append(create("th", name, { scope: "col" }));
+      rows.push(head);
+      for (const { name, updates, tests, hits } of volumes) {
+        const row = create("tr");
+        row.append(create("th", name, { scope: "row" }));
+        for (const value of [updates, tests, hits]) row.append(create("td", grouped.format(value)));
+        rows.push(row);
+      }
+    }
+    element("volumes").replaceChildren(...rows);
+  }
+
+  /** The lists of a frame: slower, when the frame stays. */
+  showPairs(frame: number, side: number, picked: number | null): void {
+    const shown: [State, Pair][] = [];
+    for (const pair of this.run.pairsAt(frame)) {
+      const state = this.run.state(pair.flags, side);
+      if (state === State.Idle || (picked !== null && pair.i !== picked && pair.j !== picked)) continue;
+      shown.push([state, pair]);
+    }
+    shown.sort(([a], [b]) => b - a);
+    const rows = shown.slice(0, ROWS).map(([state, pair]) => this.row(frame, pair, state, this.describe(state)));
+    if (shown.length > ROWS) rows.push(create("li", `… and ${grouped.format(shown.length - ROWS)} more: pick a body to see its own`));
+    if (shown.length === 0) rows.push(create("li", "none"));
+    element("pairs").replaceChildren(...rows);
+    element("pairs-count").textContent = grouped.format(shown.length);
+  }
+
+  private describe(state: State): string {
+    return state === State.Reported && this.run.header.truth ? "reported, doesn't meet" : STATE_NAMES[state];
+  }
+
+  showPicked(picked: number | null): void {
+    element("picked").hidden = picked === null;
+    if (picked === null) return;
+    const { header, shapeOf, fixed } = this.run;
+    const shape = header.shapes[shapeOf[picked]];
+    const kind = fixed[picked] ? "static" : "dynamic";
+    element("picked-text").textContent = `Body ${picked}: ${shape.name}, ${kind}, ${grouped.format(shape.triangles)} triangles, or-DOP with k = ${shape.ordop.k}`;
+  }
+
+  showSwitches(switches: Record<Layer, boolean>, sides: string): void {
+    for (const [layer, button] of this.layers) button.setAttribute("aria-pressed", String(switches[layer]));
+    for (const [name, button] of this.sideButtons) button.setAttribute("aria-pressed", String(name === sides));
+    const { runs } = this.run.header;
+    const names = sides === "both" ? runs.map((run) => run.name) : runs.length > 1 ? [runs[sides === "second" ? 1 : 0].name] : [];
+    element("sides").replaceChildren(...names.map((name) => create("span", name)));
+  }
+}
+
+const optional = (value: number | null): string => (value === null ? "–" : grouped.format(value));

@@ -1,0 +1,193 @@
+// The picture: meshes and overlays of one frame, for one strategy or for two side by side.
+
+import {
+  Color,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { Bodies } from "./bodies.ts";
+import { Camera } from "./camera.ts";
+import { cubeLines } from "./figures.ts";
+import { Wires } from "./lines.ts";
+import { type Moment, Overlays, type Switches } from "./overlays.ts";
+import { Pace } from "./quality.ts";
+import { type Run, State } from "./run.ts";
+import { Space } from "./space.ts";
+import { reducedMotion, type Theme, theme } from "./theme.ts";
+
+/** What is to be seen. */
+export interface Shown {
+  frame: number;
+  /** The strategies shown, one or two. */
+  sides: number[];
+  switches: Switches;
+  picked: number | null;
+  /** Whether pictures follow one another: then speed goes before sharpness. */
+  moving: boolean;
+}
+
+/** Half a period of the flashing of missed bodies, in milliseconds: slow enough for the photosensitive. */
+const FLASH = 350;
+
+export class Stage {
+  readonly camera: Camera;
+  readonly space: Space;
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly bodies: Bodies;
+  private readonly overlays: Overlays;
+  private readonly walls = new Wires(cubeLines(), 1);
+  private readonly states: Uint8Array;
+  private readonly related: Uint8Array;
+  private readonly pace = new Pace();
+  private flashing = false;
+  private phase = -1;
+
+  constructor(
+    private readonly run: Run,
+    private readonly canvas: HTMLCanvasElement,
+    changed: () => void,
+    moved: () => void,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
+    this.space = new Space(run);
+    this.camera = new Camera(canvas, changed, moved);
+    this.bodies = new Bodies(run, this.space);
+    this.overlays = new Overlays(run, this.space, this.bodies);
+    this.scene.add(this.bodies, this.overlays, this.walls);
+    this.states = new Uint8Array(run.header.bodies);
+    this.related = new Uint8Array(run.header.bodies);
+    new ResizeObserver(changed).observe(canvas);
+  }
+
+  /** Draws one moment. */
+  draw(shown: Shown, now: number): void {
+    const quality = this.pace.at(now, shown.moving);
+    this.resize(shown.sides.length, quality.sharpness);
+    const colours = theme();
+    this.dress(colours);
+    this.bodies.place(shown.frame);
+    const { width, height } = this.canvas.getBoundingClientRect();
+    const part = width / shown.sides.length;
+    this.renderer.setScissorTest(shown.sides.length > 1);
+    this.flashing = false;
+    shown.sides.forEach((side, place) => {
+      this.renderer.setViewport(place * part, 0, part, height);
+      this.renderer.setScissor(place * part + (place > 0 ? 1 : 0), 0, part, height);
+      this.judge(shown.frame, side, shown.picked);
+      const hidden = (body: number) => this.isAway(body, shown.picked);
+      this.bodies.arrange(this.camera.lens, height, quality.coarseness, hidden);
+      this.paint(shown, side, colours, now);
+      this.renderer.render(this.scene, this.camera.lens);
+    });
+  }
+
+  /** Whether drawing again now would show something else: a flight goes on, or missed bodies flash. */
+  restless(now: number): boolean {
+    return this.camera.advance(now) || (this.flashing && this.phaseAt(now) !== this.phase);
+  }
+
+  private phaseAt(now: number): number {
+    return reducedMotion() ? 0 : Math.floor(now / FLASH) % 2;
+  }
+
+  private paint(shown: Shown, side: number, colours: Theme, now: number): void {
+    const { frame, picked, switches } = shown;
+    this.phase = this.phaseAt(now);
+    const bright = colours.dark ? new Color("#ffffff") : new Color("#ffd9c9");
+    const colour = (body: number): Color => {
+      const state: State = this.states[body];
+      if (state === State.Missed) return this.phase === 1 ? bright : colours.states[state];
+      if (state >= State.Reported) return colours.states[state];
+      return this.run.fixed[body] ? colours.fixed : colours.moving;
+    };
+    this.bodies.paint(colour);
+    const overlay = (body: number): Color | null => {
+      if (this.isAway(body, picked)) return null;
+      return this.states[body] >= State.Reported ? colours.states[this.states[body]] : colours.volumes;
+    };
+    const moment: Moment = { frame, run: side, switches, picked, theme: colours, colour: overlay };
+    this.overlays.update(moment, this.marks(picked, colours));
+  }
+
+  /** With a picked body, whether this one has nothing to do with it. */
+  private isAway(body: number, picked: number | null): boolean {
+    return picked !== null && body !== picked && this.related[body] === 0;
+  }
+
+  /** Each body's state by its worst pair; with a picked body, by its pairs alone. */
+  private judge(frame: number, side: number, picked: number | null): void {
+    this.states.fill(State.Idle);
+    this.related.fill(0);
+    for (const { i, j, flags } of this.run.pairsAt(frame)) {
+      const state = this.run.state(flags, side);
+      const own = picked === null || i === picked || j === picked;
+      if (state === State.Missed) this.flashing = true;
+      if (!own && state !== State.Missed) continue;
+      this.related[i] = this.related[j] = 1;
+      this.states[i] = Math.max(this.states[i], state);
+      this.states[j] = Math.max(this.states[j], state);
+    }
+  }
+
+  private marks(picked: number | null, colours: Theme): Map<number, Color> {
+    const marked = new Map<number, Color>();
+    for (const body of this.run.header.interest) marked.set(body, colours.cells);
+    this.states.forEach((state, body) => {
+      if (state === State.Missed) marked.set(body, colours.states[state]);
+    });
+    if (picked !== null) marked.set(picked, colours.picked);
+    return marked;
+  }
+
+  private dress(colours: Theme): void {
+    this.renderer.setClearColor(colours.background);
+    this.bodies.surface.light(colours, this.camera.lens.position);
+    this.walls.begin();
+    const { side } = this.run.header;
+    if (side) {
+      const half = (side / 2) * this.space.scale;
+      const centre = [this.space.x(0), this.space.y(0), this.space.z(0)] as [number, number, number];
+      this.walls.put(centre, [0, 0, 0, 1], [half, half, half], colours.walls);
+    }
+    this.walls.end();
+  }
+
+  private resize(sides: number, sharpness: number): void {
+    const { width, height } = this.canvas.getBoundingClientRect();
+    const size = this.renderer.getSize(new Vector2());
+    if (size.x !== width || size.y !== height || this.renderer.getPixelRatio() !== sharpness) {
+      this.renderer.setPixelRatio(sharpness);
+      this.renderer.setSize(width, height, false);
+    }
+    const aspect = width / sides / Math.max(height, 1);
+    if (aspect > 0 && Math.abs(aspect - this.camera.lens.aspect) > 1e-6) this.camera.resize(aspect);
+  }
+
+  /** The body under a point of the canvas, in CSS pixels from its corner. */
+  pick(x: number, y: number, sides: number): number | null {
+    const { width, height } = this.canvas.getBoundingClientRect();
+    const part = width / sides;
+    const at = new Vector2(((x % part) / part) * 2 - 1, 1 - (y / height) * 2);
+    const raycaster = new Raycaster();
+    raycaster.setFromCamera(at, this.camera.lens);
+    return this.bodies.pick(raycaster);
+  }
+
+  /** Flies to bodies: one, or the two of a pair. */
+  flyTo(frame: number, bodies: number[]): void {
+    const poses = this.run.posesAt(frame);
+    const first = 7 * bodies[0] + 4;
+    const moved = this.space.rebase([poses[first], poses[first + 1], poses[first + 2]]);
+    if (moved) this.camera.shift(moved);
+    this.bodies.place(frame);
+    const places = bodies.map((body) => new Vector3(...this.bodies.placement(body).offset));
+    const centre = new Vector3();
+    for (const place of places) centre.addScaledVector(place, 1 / places.length);
+    const radii = bodies.map((body, n) => places[n].distanceTo(centre) + this.bodies.radius(body));
+    this.camera.flyTo(centre, Math.max(...radii));
+  }
+}
