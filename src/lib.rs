@@ -69,25 +69,52 @@
 //! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
 //! | `lab` | scenes, effects, the exact judge, measurements and studies |
 //! | `cli` (default) | the command line; implies `lab` |
+//! | `internals` | the inner rooms as modules, for tests and benches: no promise is made about them |
 
 pub mod bodies;
-pub mod broad_phase;
 mod choice;
 pub mod counters;
 pub mod culler;
 #[cfg(feature = "lab")]
 pub mod lab;
 pub mod mesh;
-pub mod overlap;
 pub mod pairs;
-pub mod rounding;
 pub mod settings;
-pub mod simd;
 mod strategy;
-pub mod threads;
-pub mod update;
 pub mod volume;
 pub mod world;
+
+// Inner rooms, which tests and benches enter from outside. What they alone need is unused without them.
+#[cfg(feature = "internals")]
+pub mod broad_phase;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod broad_phase;
+#[cfg(feature = "internals")]
+pub mod overlap;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod overlap;
+#[cfg(feature = "internals")]
+pub mod rounding;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod rounding;
+#[cfg(feature = "internals")]
+pub mod simd;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod simd;
+#[cfg(feature = "internals")]
+pub mod threads;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod threads;
+#[cfg(feature = "internals")]
+pub mod update;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod update;
 
 pub use bodies::contract::ContractError;
 pub use bodies::{Bodies, Groups};
@@ -98,7 +125,8 @@ pub use settings::{
     Axes, Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, SettingsError,
     Strategy, Updates, ViewCone,
 };
-pub use simd::Tier;
+pub use simd::{Tier, TierError};
+pub use threads::ThreadsError;
 pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
 pub use world::{Body, BodyId, Events, World, WorldError};
 

@@ -8,7 +8,7 @@ use libfuzzer_sys::fuzz_target;
 use sdop::mesh::ProceduralShape;
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::check_bodies;
-use sdop::simd::Tier;
+use sdop::Tier;
 use sdop::lab::verify::contact::{Contact, Kind, Placed};
 use sdop::lab::verify::draw::add;
 use sdop::lab::verify::rounds::{Ledger, check, ways};

@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use sdop::Tier;
 use sdop::counters::{Counters, Seconds};
 use sdop::lab::effects::EffectReport;
 use sdop::lab::scene::Scene;
 use sdop::lab::simulate::{Simulation, Summary};
 use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
-use sdop::simd::Tier;
 use serde::Serialize;
 use serde_json::{Map, Value};
 

@@ -35,17 +35,19 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Checks the mesh contract.
+    /// A mesh of these vertices, and the three vertices of each triangle.
     ///
     /// # Errors
     /// No vertex, no triangle, too many of either, a coordinate that is not finite or larger than 2⁶⁰, or an
     /// index out of range; the error names the mesh, the vertex or triangle, and the remedy.
     pub fn new(
         name: impl Into<String>,
-        vertices: Vec<Vec3>,
+        vertices: impl IntoIterator<Item = impl Into<[f32; 3]>>,
         triangles: Vec<[u32; 3]>,
     ) -> Result<Self, MeshError> {
         let name = name.into();
+        let vertices = vertices.into_iter().map(|v| Vec3::from_array(v.into()));
+        let vertices: Vec<Vec3> = vertices.collect();
         match check(&vertices, &triangles) {
             Ok(()) => Ok(Self {
                 name,

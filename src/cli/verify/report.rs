@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
+use sdop::Tier;
 use sdop::lab::verify::Predicate;
 use sdop::lab::verify::rounds::{Ledger, Row};
-use sdop::simd::Tier;
 use serde::Serialize;
 
 use crate::cli::output::table;
