@@ -119,6 +119,8 @@ mod update;
 pub use bodies::contract::ContractError;
 pub use bodies::{Bodies, Groups};
 pub use culler::{CullError, Culler, CullerBuilder};
+#[cfg(feature = "lab")]
+pub use lab::judge::{self, judge};
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
 pub use pairs::PairList;
 pub use settings::{

@@ -8,12 +8,12 @@ use miette::{IntoDiagnostic as _, WrapErr as _};
 ///
 /// # Errors
 /// The system refuses.
-pub fn write(path: &Path, text: &str) -> miette::Result<()> {
+pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> miette::Result<()> {
     let write = || {
         if let Some(directory) = path.parent() {
             std::fs::create_dir_all(directory)?;
         }
-        std::fs::write(path, text)
+        std::fs::write(path, &bytes)
     };
     write()
         .into_diagnostic()

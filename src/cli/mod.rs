@@ -2,8 +2,12 @@
 //!
 //! A new command is a file with `Args` and `run`, a module line, a variant and a line in [`Cli::run`].
 
+mod bench;
+mod cases;
+mod check;
 mod cost;
 mod files;
+mod judge;
 mod mesh;
 mod output;
 mod palette;
@@ -37,6 +41,9 @@ enum Command {
     Mesh(mesh::Args),
     Tradeoff(tradeoff::Args),
     Verify(verify::Args),
+    Cases(cases::Args),
+    Check(check::Args),
+    Bench(bench::Args),
 }
 
 /// How a command ended when its input was good.
@@ -61,6 +68,9 @@ impl Cli {
             Command::Mesh(args) => mesh::run(&args),
             Command::Tradeoff(args) => tradeoff::run(&args),
             Command::Verify(args) => verify::run(&args),
+            Command::Cases(args) => cases::run(&args),
+            Command::Check(args) => check::run(&args),
+            Command::Bench(args) => bench::run(&args),
         }
     }
 }

@@ -16,7 +16,8 @@ use sdop::lab::verify::scenes::scene;
 use sdop::lab::verify::shrink::Smallest;
 
 use super::Outcome;
-use super::output::{Format, emit, print, progress};
+use super::judge::{self, ReportFormat};
+use super::output::{emit, print, progress};
 use report::Report;
 
 /// Judge the optimised culler by the exact reference
@@ -54,7 +55,9 @@ pub struct Args {
     record_hard_cases: Option<PathBuf>,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: ReportFormat,
+    #[command(flatten)]
+    outside: judge::Outside,
 }
 
 /// Runs the command.
@@ -65,6 +68,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(directory) = &args.record_hard_cases {
         return record(directory);
     }
+    if let Some(command) = &args.outside.exec {
+        return judge::run(&args.outside, command, args.time, &args.out, args.format);
+    }
+    let format = args.format.plain()?;
     let start = Instant::now();
     // A scene that can't be built is said before the long work.
     let build = |path: &PathBuf| SceneFile::read(path).and_then(|file| file.build());
@@ -98,7 +105,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         add(format!("{name}, {bodies} bodies, {frames} frames"), ledger);
     }
     report.finish(start.elapsed());
-    emit(args.format, &report, Report::tables)?;
+    emit(format, &report, Report::tables)?;
     if report.missed == 0 {
         return Ok(Outcome::Passed);
     }
