@@ -29,7 +29,7 @@ fn shapes() -> Vec<Shape> {
     };
     let cube = cube.build().unwrap();
     let beside = cube.vertices.iter().map(|v| [v.x + 3.0, v.y, v.z]);
-    let beside = TriangleMesh::new("beside", beside, cube.triangles.clone()).unwrap();
+    let beside = TriangleMesh::from_arrays("beside", beside, cube.triangles.clone()).unwrap();
     let file = ShapeSpec {
         origin: Origin::File,
         ..ShapeSpec::default()

@@ -37,6 +37,7 @@ const ROOMS: &[&str] = &[
     "lab/measure",
     "lab/cost",
     "lab/verify",
+    "lab/judge",
     "lab/reproduce",
     "lab/tradeoff",
     // The command line.
@@ -73,16 +74,13 @@ fn heads(path: &str) -> Vec<String> {
     named.map(name).collect()
 }
 
-/// The rooms that a source names by `crate::`, or by the library's name in the binary.
+/// The rooms that a source names by `crate::`. What a macro names by `$crate::` is another room's when it is used.
 fn imports(source: &str) -> Vec<String> {
     let is_code = |line: &&str| !line.trim_start().starts_with("//");
     let code: Vec<&str> = source.lines().filter(is_code).collect();
-    let code = code.join("\n");
-    let paths = ["crate::", "sdop::"]
-        .into_iter()
-        .flat_map(|root| code.split(root).skip(1));
+    let code = code.join("\n").replace("$crate::", "");
     let mut rooms = Vec::new();
-    for path in paths {
+    for path in code.split("crate::").skip(1) {
         match path.strip_prefix("lab::") {
             Some(inner) => rooms.extend(heads(inner).iter().map(|name| format!("lab/{name}"))),
             None => rooms.extend(heads(path)),
@@ -163,5 +161,10 @@ fn an_upward_import_is_seen_however_it_is_written() {
     }
     assert!(wrong("bodies", "// see crate::world\nuse crate::volume::Shape;").is_empty());
     assert_eq!(wrong("update", "use crate::tools::trick;").len(), 1);
+    assert_eq!(
+        wrong("update", "use crate::Culler;").len(),
+        1,
+        "the face is above all"
+    );
     assert_eq!(wrong("helpers", "").len(), 1);
 }

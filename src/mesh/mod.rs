@@ -42,12 +42,10 @@ impl TriangleMesh {
     /// index out of range; the error names the mesh, the vertex or triangle, and the remedy.
     pub fn new(
         name: impl Into<String>,
-        vertices: impl IntoIterator<Item = impl Into<[f32; 3]>>,
+        vertices: Vec<Vec3>,
         triangles: Vec<[u32; 3]>,
     ) -> Result<Self, MeshError> {
         let name = name.into();
-        let vertices = vertices.into_iter().map(|v| Vec3::from_array(v.into()));
-        let vertices: Vec<Vec3> = vertices.collect();
         match check(&vertices, &triangles) {
             Ok(()) => Ok(Self {
                 name,
@@ -56,6 +54,19 @@ impl TriangleMesh {
             }),
             Err(problem) => Err(problem.at(&name, None)),
         }
+    }
+
+    /// The same of vertices that are arrays, or turn into arrays as those of any version of glam do.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn from_arrays(
+        name: impl Into<String>,
+        vertices: impl IntoIterator<Item = impl Into<[f32; 3]>>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, MeshError> {
+        let vertices = vertices.into_iter().map(|v| Vec3::from_array(v.into()));
+        Self::new(name, vertices.collect(), triangles)
     }
 }
 
