@@ -2,6 +2,7 @@
 //!
 //! A new command is a file with `Args` and `run`, a module line, a variant and a line in [`Cli::run`].
 
+mod advise;
 mod bench;
 mod cases;
 mod check;
@@ -38,6 +39,7 @@ enum Command {
     Reproduce(reproduce::Args),
     Run(run::Args),
     Cost(cost::Args),
+    Advise(advise::Args),
     Mesh(mesh::Args),
     Tradeoff(tradeoff::Args),
     Verify(verify::Args),
@@ -65,6 +67,7 @@ impl Cli {
             Command::Reproduce(args) => reproduce::run(&args),
             Command::Run(args) => run::run(&args),
             Command::Cost(args) => cost::run(&args),
+            Command::Advise(args) => advise::run(&args),
             Command::Mesh(args) => mesh::run(&args),
             Command::Tradeoff(args) => tradeoff::run(&args),
             Command::Verify(args) => verify::run(&args),

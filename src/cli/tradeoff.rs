@@ -20,7 +20,7 @@ use super::scene_args::{MachineArgs, SceneArgs};
 /// What accuracy costs in time, for every volume and strategy
 ///
 /// Culls sample frames of the scene with every volume and strategy, compares with the exact truth about the meshes, then
-/// measures time. Counts depend on scene and flags alone; seconds are this machine's. Given the JSON of an earlier run
+/// measures the time of frames that follow one another (warm) and of frames between which others ran (cold). Counts depend on scene and flags alone; seconds are this machine's. Given the JSON of an earlier run
 /// instead of a scene, prints and draws that.
 #[derive(clap::Args)]
 #[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
@@ -36,6 +36,9 @@ pub struct Args {
     /// Runs, each with a seed of its own from the scene's on [default: 5, or 2 with --quick]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: Option<u64>,
+    /// Print every table, not only the recommendation and what it rests on
+    #[arg(long)]
+    all: bool,
     /// Write the page, the figures, JSON and CSV into this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -83,7 +86,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     match args.format {
         // A line a variant; the rest is in the other formats.
         Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
-        format => emit(format, &recorded, |recorded| tables::text(&recorded.result))?,
+        format => emit(format, &recorded, |recorded| match args.all {
+            true => tables::text(&recorded.result),
+            false => tables::brief(&recorded.result),
+        })?,
     }
     let failures: Vec<&str> = result.failures().collect();
     if failures.is_empty() {

@@ -18,7 +18,7 @@ use super::TradeoffError;
 use crate::bodies::Bodies;
 use crate::lab::hash::{PairsHash, hex};
 use crate::lab::scene::Scene;
-use crate::lab::simulate::SimulationError;
+use crate::lab::simulate::{SimulationError, Trajectory};
 use crate::volume::Shape;
 
 /// First word of a cache file; the number changes with its layout.
@@ -41,24 +41,40 @@ pub type Truth = Vec<Vec<[u32; 2]>>;
 /// # Errors
 /// Effects that the scene can't have, a body that leaves the contract.
 pub fn samples(scene: &Scene, count: u32) -> Result<Vec<Sample>, SimulationError> {
+    let windows = windows(scene, count, 1)?.into_iter();
+    let sample = |(frame, mut poses): (u32, Vec<Bodies>)| {
+        let bodies = poses.pop()?;
+        Some(Sample { frame, bodies })
+    };
+    Ok(windows.filter_map(sample).collect())
+}
+
+/// The frames that [`samples`] keeps, by number, each with those that follow it: `length` frames, as far as the scene has
+/// so many.
+///
+/// # Errors
+/// As [`samples`].
+pub fn windows(
+    scene: &Scene,
+    count: u32,
+    length: usize,
+) -> Result<Vec<(u32, Vec<Bodies>)>, SimulationError> {
     let count = count.clamp(1, scene.frames);
     let wanted = |i: u32| (u64::from(i) * u64::from(scene.frames) / u64::from(count)) as u32;
-    let mut effects = scene.start_effects()?;
-    let mut bodies = scene.bodies.clone();
-    let mut kept: Vec<Sample> = Vec::new();
-    for frame in 0..=wanted(count - 1) {
-        if frame > 0 {
-            let step = effects.step(&mut bodies);
-            step.map_err(|error| SimulationError::Contract { frame, error })?;
+    let last = wanted(count - 1) as usize + length;
+    let mut trajectory = Trajectory::new(scene)?.with_frames(scene.frames.min(last as u32));
+    let mut kept: Vec<(u32, Vec<Bodies>)> = Vec::new();
+    loop {
+        let frame = trajectory.next_number();
+        let Some(bodies) = trajectory.advance()? else {
+            return Ok(kept);
+        };
+        if (kept.len() as u32) < count && frame == wanted(kept.len() as u32) {
+            kept.push((frame, Vec::new()));
         }
-        if frame == wanted(kept.len() as u32) {
-            kept.push(Sample {
-                frame,
-                bodies: bodies.clone(),
-            });
-        }
+        let open = kept.iter_mut().filter(|(_, poses)| poses.len() < length);
+        open.for_each(|(_, poses)| poses.push(bodies.clone()));
     }
-    Ok(kept)
 }
 
 /// A scene's meshes, prepared for exact judgement.

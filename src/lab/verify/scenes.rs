@@ -9,7 +9,7 @@ use super::judged::Shapes;
 use super::rounds::{Ledger, RoundError, check, ways};
 use crate::bodies::Bodies;
 use crate::lab::scene::Scene;
-use crate::lab::simulate::SimulationError;
+use crate::lab::simulate::{SimulationError, Trajectory};
 use crate::simd::Tier;
 
 /// Frames that are judged at once, to bound memory; a culler lives for one block.
@@ -40,23 +40,13 @@ pub fn scene(
 ) -> Result<Ledger, JudgeError> {
     let shapes = Shapes::new(scene.shapes.clone()).map_err(RoundError::from)?;
     let ways = ways(scene.cull.k, scene.cull.axes);
-    let mut effects = scene.start_effects().map_err(SimulationError::from)?;
-    let mut bodies = scene.bodies.clone();
+    let trajectory = Trajectory::new(scene).map_err(SimulationError::from)?;
+    let mut trajectory = trajectory.with_frames(frames as u32);
     let mut ledger = Ledger::default();
     let mut behind = 0;
     while behind < frames {
-        let mut block: Vec<Bodies> = Vec::new();
-        while block.len() < BLOCK.min(frames - behind) {
-            let frame = behind + block.len();
-            if frame > 0 {
-                let step = effects.step(&mut bodies);
-                step.map_err(|error| SimulationError::Contract {
-                    frame: frame as u32,
-                    error,
-                })?;
-            }
-            block.push(bodies.clone());
-        }
+        let block = trajectory.by_ref().take(BLOCK);
+        let block = block.collect::<Result<Vec<Bodies>, _>>()?;
         let judge = |frame| Answers::judge(&shapes, frame, scene.cull.k, &Predicate::ALL);
         let answers: Result<Vec<_>, _> = block.par_iter().map(judge).collect();
         let answers = answers.map_err(RoundError::from)?;
