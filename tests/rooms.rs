@@ -34,6 +34,7 @@ const ROOMS: &[&str] = &[
     "lab/simulate",
     "lab/record",
     "lab/view",
+    "lab/hull_test",
     "lab/measure",
     "lab/cost",
     "lab/verify",
