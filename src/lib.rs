@@ -75,6 +75,8 @@ pub mod bodies;
 mod choice;
 pub mod counters;
 pub mod culler;
+#[cfg(feature = "readers")]
+pub mod files;
 #[cfg(feature = "lab")]
 pub mod lab;
 pub mod mesh;

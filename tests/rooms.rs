@@ -11,6 +11,7 @@ const ROOMS: &[&str] = &[
     "simd",
     "rounding",
     "choice",
+    "files",
     "pairs",
     "threads",
     "mesh",

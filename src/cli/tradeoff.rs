@@ -4,16 +4,16 @@ mod page;
 mod plot;
 mod tables;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use etcetera::BaseStrategy as _;
 use miette::{IntoDiagnostic as _, WrapErr as _};
 use sdop::lab::measure::machine::Machine;
 use sdop::lab::tradeoff::{self, Plan, Tradeoff};
 use serde::{Deserialize, Serialize};
 
 use super::Outcome;
-use super::files::{command, write};
+use super::files::{self, command, write};
 use super::output::{Format, csv_text, emit, progress};
 use super::scene_args::{MachineArgs, SceneArgs};
 
@@ -45,9 +45,9 @@ pub struct Args {
     /// Write the page and the figures into this directory instead
     #[arg(long, value_name = "DIR", requires = "out")]
     paper: Option<PathBuf>,
-    /// Where exact truths are kept between runs
-    #[arg(long, value_name = "DIR", default_value = "target/truth")]
-    cache: PathBuf,
+    /// Where exact truths are kept between runs [default: sdop/truth in the user's cache directory]
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -120,8 +120,15 @@ fn plan(args: &Args) -> Plan {
         window: quick(30, 120) as u32,
         stride: 10,
         tier: args.machine.tier(),
-        cache: Some(args.cache.clone()),
+        cache: args.cache.clone().or_else(cache),
     }
+}
+
+/// Where the user's programs keep what can be made again: on Linux `$XDG_CACHE_HOME`, or `~/.cache`. None where there is no
+/// home either: then nothing is kept.
+fn cache() -> Option<PathBuf> {
+    let directories = etcetera::choose_base_strategy().ok()?;
+    Some(directories.cache_dir().join("sdop/truth"))
 }
 
 /// The argument as the JSON of an earlier run, by its name.
@@ -132,10 +139,7 @@ fn recorded(path: &Path) -> Option<&Path> {
 }
 
 fn read(path: &Path) -> miette::Result<Recorded> {
-    let text = fs::read_to_string(path)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot read {}", path.display()))?;
-    serde_json::from_str(&text)
+    serde_json::from_str(&files::read(path)?)
         .into_diagnostic()
         .wrap_err_with(|| format!("{} is no result of sdop tradeoff", path.display()))
 }

@@ -16,6 +16,7 @@ use sha2::{Digest, Sha256};
 
 use super::TradeoffError;
 use crate::bodies::Bodies;
+use crate::files;
 use crate::lab::hash::{PairsHash, hex};
 use crate::lab::scene::Scene;
 use crate::lab::simulate::{SimulationError, Trajectory};
@@ -249,7 +250,7 @@ fn poses(bodies: &Bodies) -> Result<Vec<Pose>, InvalidInput> {
 
 /// Header, a line of numbers a sample, the hash of all pairs. Anything else in the file counts as no file.
 fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
-    let text = fs::read_to_string(file).ok()?;
+    let text = files::read_text(file, files::MAX_BYTES).ok()?;
     let mut lines = text.lines();
     if lines.next()? != HEADER {
         return None;
@@ -266,7 +267,7 @@ fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
     (lines.next()? == hash(samples, &truth)).then_some(truth)
 }
 
-/// Written beside its place and moved there, so that nobody reads half a file.
+/// Written whole, so that nobody reads half a file.
 fn write(file: &Path, samples: &[Sample], truth: &Truth) -> io::Result<()> {
     let mut text = format!("{HEADER}\n");
     for pairs in truth {
@@ -277,9 +278,7 @@ fn write(file: &Path, samples: &[Sample], truth: &Truth) -> io::Result<()> {
     if let Some(directory) = file.parent() {
         fs::create_dir_all(directory)?;
     }
-    let unfinished = file.with_extension(format!("{}.part", std::process::id()));
-    fs::write(&unfinished, text)?;
-    fs::rename(&unfinished, file)
+    files::write(file, text)
 }
 
 fn hash(samples: &[Sample], truth: &Truth) -> String {

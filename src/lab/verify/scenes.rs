@@ -6,14 +6,15 @@ use thiserror::Error;
 
 use super::answers::{Answers, Predicate};
 use super::judged::Shapes;
-use super::rounds::{Ledger, RoundError, check, ways};
+use super::rounds::{Ledger, RoundError, Run};
+use super::ways::{Rotation, rows};
 use crate::bodies::Bodies;
 use crate::lab::scene::Scene;
 use crate::lab::simulate::{SimulationError, Trajectory};
-use crate::simd::Tier;
 
-/// Frames that are judged at once, to bound memory; a culler lives for one block.
-const BLOCK: usize = 10;
+/// Frames that are judged at once, to bound memory. A culler lives for one block, and each block is a turn of the rotation:
+/// a hundred frames show every way in twenty modes.
+const BLOCK: usize = 5;
 
 /// Why a scene can't be judged.
 #[derive(Debug, Error, Diagnostic)]
@@ -28,18 +29,18 @@ pub enum JudgeError {
 }
 
 /// Runs `frames` frames of a scene, judges every pair by every predicate, meshes included, and culls the frames in every
-/// way on each of `levels`. `done` is told after each block of frames how many are behind.
+/// way, in the modes whose turn it is. `done` is told after each block of frames how many are behind.
 ///
 /// # Errors
 /// A scene that can't be run or judged.
 pub fn scene(
     scene: &Scene,
     frames: usize,
-    tiers: &[Tier],
+    rotation: &Rotation,
     done: impl Fn(usize),
 ) -> Result<Ledger, JudgeError> {
     let shapes = Shapes::new(scene.shapes.clone()).map_err(RoundError::from)?;
-    let ways = ways(scene.cull.k, scene.cull.axes);
+    let rows = rows((scene.cull.k, scene.cull.axes));
     let trajectory = Trajectory::new(scene).map_err(SimulationError::from)?;
     let mut trajectory = trajectory.with_frames(frames as u32);
     let mut ledger = Ledger::default();
@@ -51,13 +52,18 @@ pub fn scene(
         let answers: Result<Vec<_>, _> = block.par_iter().map(judge).collect();
         let answers = answers.map_err(RoundError::from)?;
         answers.iter().for_each(|frame| ledger.note(frame));
-        let culled: Result<Vec<_>, _> = ways
+        let modes = rotation.turn((behind / BLOCK) as u64);
+        let run = Run {
+            shapes: &shapes,
+            frames: &block,
+            answers: &answers,
+        };
+        let culled: Result<Vec<_>, _> = rows
             .par_iter()
             .enumerate()
-            .map(|(n, way)| {
+            .map(|(n, row)| {
                 let mut part = Ledger::default();
-                let tier = tiers[n % tiers.len()];
-                check(&shapes, &block, &answers, way, tier, &mut part)?;
+                run.check_row(n, row, &modes, &mut part)?;
                 Ok::<_, RoundError>(part)
             })
             .collect();
