@@ -4,7 +4,7 @@ mod common;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use sdop::lab::cost::calibrate::construct;
-use sdop::lab::cost::predict::Volume;
+use sdop::lab::measure::counts::Volume;
 
 fn constructions(criterion: &mut Criterion) {
     let scene = common::scene("paper-500");

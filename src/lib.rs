@@ -14,7 +14,7 @@
 //! ```
 //! use sdop::{Bodies, Culler, ProceduralShape, Shape, ShapeSpec};
 //!
-//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?; // or `TriangleMesh::new`, or a file
+//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?; // or `TriangleMesh::from_arrays`, or a file
 //! let shapes = [Shape::build(&mesh, &ShapeSpec::default())?]; // ball, hull and or-DOP, once
 //!
 //! let mut bodies = Bodies::default();
@@ -69,9 +69,9 @@
 //! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
 //! | `lab` | scenes, effects, the exact judge, measurements and studies |
 //! | `cli` (default) | the command line; implies `lab` |
+//! | `internals` | the inner rooms as modules, for tests and benches: no promise is made about them |
 
 pub mod bodies;
-pub mod broad_phase;
 mod choice;
 pub mod counters;
 pub mod culler;
@@ -80,16 +80,43 @@ pub mod files;
 #[cfg(feature = "lab")]
 pub mod lab;
 pub mod mesh;
-pub mod overlap;
 pub mod pairs;
-pub mod rounding;
 pub mod settings;
-pub mod simd;
 mod strategy;
-pub mod threads;
-pub mod update;
 pub mod volume;
 pub mod world;
+
+// Inner rooms, which tests and benches enter from outside. What they alone need is unused without them.
+#[cfg(feature = "internals")]
+pub mod broad_phase;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod broad_phase;
+#[cfg(feature = "internals")]
+pub mod overlap;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod overlap;
+#[cfg(feature = "internals")]
+pub mod rounding;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod rounding;
+#[cfg(feature = "internals")]
+pub mod simd;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod simd;
+#[cfg(feature = "internals")]
+pub mod threads;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod threads;
+#[cfg(feature = "internals")]
+pub mod update;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
+mod update;
 
 pub use bodies::contract::ContractError;
 pub use bodies::{Bodies, Groups};
@@ -102,7 +129,8 @@ pub use settings::{
     Axes, Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, SettingsError,
     Strategy, Updates, ViewCone,
 };
-pub use simd::Tier;
+pub use simd::{Tier, TierError};
+pub use threads::ThreadsError;
 pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
 pub use world::{Body, BodyId, Events, World, WorldError};
 

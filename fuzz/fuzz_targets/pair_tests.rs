@@ -12,8 +12,8 @@ use sdop::lab::verify::draw::add;
 use sdop::lab::verify::rounds::{Ledger, Run};
 use sdop::lab::verify::ways::Rotation;
 use sdop::lab::verify::{Answers, Predicate, Shapes};
+use sdop::Tier;
 use sdop::mesh::ProceduralShape;
-use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 const NAMES: [&str; 4] = ["box", "l-shape", "needle", "plate"];

@@ -106,6 +106,14 @@ pub(crate) fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), Co
     }
 }
 
+/// Whether all coordinates of a column are at most 2⁶⁰ in size.
+fn are_within_limit(column: &[[f32; 3]]) -> bool {
+    // One flag over the whole column, without an early exit: it vectorises, and a column that fails is the last one.
+    column
+        .iter()
+        .fold(true, |fine, v| fine & is_within_limit(v))
+}
+
 /// Checks that so many bodies can be numbered.
 pub(crate) fn check_number(bodies: usize) -> Result<(), ContractError> {
     if bodies <= MOST_BODIES {
@@ -149,11 +157,7 @@ pub(crate) fn check_vectors(
     column: &[[f32; 3]],
     first: usize,
 ) -> Result<(), ContractError> {
-    // One flag over the whole column, without an early exit: it vectorises, and a column that fails is the last one.
-    if column
-        .iter()
-        .fold(true, |fine, v| fine & is_within_limit(v))
-    {
+    if are_within_limit(column) {
         return Ok(());
     }
     let at = column.iter().position(|v| !is_within_limit(v)).unwrap_or(0);
@@ -176,14 +180,15 @@ pub(crate) fn refuse(
 
 // All limits are written as `x ≤ limit`, and what isn't so is refused: a NaN fails.
 
-fn has_sound_size(shape: &Shape) -> bool {
+pub(crate) fn has_sound_size(shape: &Shape) -> bool {
     // The reach bounds the ball's centre and radius; a NaN in them it does not.
     [shape.reach, shape.ball.radius, shape.ball.centre.length()]
         .iter()
         .all(|size| (0.0..=LIMIT).contains(size))
 }
 
-fn is_within_limit(v: &[f32; 3]) -> bool {
+#[inline]
+pub(crate) fn is_within_limit(v: &[f32; 3]) -> bool {
     (v[0].abs() <= LIMIT) & (v[1].abs() <= LIMIT) & (v[2].abs() <= LIMIT)
 }
 

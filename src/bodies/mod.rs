@@ -2,10 +2,17 @@
 
 pub mod contract;
 mod groups;
+#[cfg_attr(
+    not(feature = "internals"),
+    allow(dead_code, reason = "benches use the rest")
+)]
 mod places;
 
 pub use groups::Groups;
+#[cfg(feature = "internals")]
 pub use places::Places;
+#[cfg(not(feature = "internals"))]
+pub(crate) use places::Places;
 
 /// Rigid bodies as columns. All columns have one length.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -61,7 +61,8 @@ impl Places {
     pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         let mut is_new = present.to_vec();
         let mut order = Vec::with_capacity(present.len());
-        for &body in self.body.iter().filter(|&&body| present[body as usize]) {
+        let stays = |body: &&u32| present.get(**body as usize) == Some(&true);
+        for &body in self.body.iter().filter(stays) {
             is_new[body as usize] = false;
             order.push(body);
         }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use sdop::Tier;
 use sdop::counters::{Counters, Seconds};
 use sdop::lab::effects::EffectReport;
 use sdop::lab::record::{FrameLine, Header, Recorder};
@@ -11,7 +12,6 @@ use sdop::lab::simulate::{Simulation, Summary};
 use sdop::lab::tradeoff::TradeoffError;
 use sdop::lab::tradeoff::truth::Judge;
 use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
-use sdop::simd::Tier;
 use serde::Serialize;
 use serde_json::{Map, Value};
 

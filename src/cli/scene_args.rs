@@ -4,11 +4,11 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use miette::Diagnostic as _;
+use sdop::Tier;
 use sdop::lab::scene::{Scene, SceneFile};
 use sdop::settings::{
     Axes, Budget, CullSettings, Finder, Interest, Order, Overlap, Strategy, Updates,
 };
-use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
 
 use super::files::ReadArgs;

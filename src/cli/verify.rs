@@ -8,13 +8,13 @@ use std::time::{Duration, Instant};
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
 use rayon::prelude::*;
+use sdop::Tier;
 use sdop::lab::scene::SceneFile;
 use sdop::lab::verify::hard::{FILES, Group, page};
 use sdop::lab::verify::rounds::{Failure, Ledger, RoundError, Source, group, round};
 use sdop::lab::verify::scenes::scene;
 use sdop::lab::verify::shrink::Smallest;
 use sdop::lab::verify::ways::{Rotation, variants};
-use sdop::simd::Tier;
 
 use super::Outcome;
 use super::files::{self, ReadArgs};

@@ -14,6 +14,17 @@ pub enum CullError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Contract(#[from] ContractError),
+    /// A shape that can't be culled together with those before it, or at all.
+    #[error("shape `{shape}` {problem}")]
+    Shape {
+        /// The shape's name.
+        shape: String,
+        /// What is wrong with it.
+        problem: String,
+        /// How to mend it.
+        #[help]
+        hint: &'static str,
+    },
     /// Settings that can't be carried out.
     #[error(transparent)]
     #[diagnostic(transparent)]

@@ -6,6 +6,7 @@
 //! state nothing is allocated.
 
 mod builder;
+mod check;
 mod error;
 pub(crate) mod models;
 mod needs;
@@ -14,13 +15,12 @@ mod portions;
 pub use builder::CullerBuilder;
 pub use error::CullError;
 
+use std::ops::Range;
 use std::time::Instant;
 
 use self::models::Models;
 use self::needs::Needs;
-use crate::bodies::contract::{
-    check_bodies, check_column, check_columns, check_numbers, check_poses,
-};
+use crate::bodies::contract::{check_bodies, check_column, check_poses};
 use crate::bodies::{Bodies, Groups, Places};
 use crate::broad_phase::{PairFinder, Reorder};
 use crate::counters::{Counters, Seconds};
@@ -44,6 +44,8 @@ pub struct Culler {
     models: Models,
     places: Places,
     groups: Option<Vec<Groups>>,
+    /// What doesn't change between two frames, as it was at the last [`Culler::refresh`].
+    fixed: Bodies,
     /// 0, 1, 2 …: the names of slots where pairs are refined further.
     numbers: Vec<u32>,
     order: Vec<u32>,
@@ -83,6 +85,7 @@ impl Culler {
         tier: Tier,
         pool: Threads,
     ) -> Result<Self, CullError> {
+        check::directions(shapes, settings)?;
         check_bodies(bodies, shapes)?;
         settings.check(bodies.len())?;
         let start = Instant::now();
@@ -102,6 +105,7 @@ impl Culler {
             models,
             places,
             groups: None,
+            fixed: check::fixed(bodies),
             numbers: (0..n as u32).collect(),
             order: Vec::new(),
             finder,
@@ -123,37 +127,34 @@ impl Culler {
         Ok(culler)
     }
 
-    /// Adds a model: the shape grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the returned number.
-    pub(crate) fn grow(&mut self, shape: u32, margin: f32) -> u32 {
-        self.models.grow(shape, margin)
+    /// Adds a shape. Bodies take it by the returned number in `bodies.shape`, from the next [`Self::refresh`] on.
+    ///
+    /// # Errors
+    /// A shape beyond the contract, or with other slab directions than those before; nothing is added.
+    pub fn add_shape(&mut self, shape: &Shape) -> Result<u32, CullError> {
+        check::shape(shape, self.models.directions())?;
+        if let Some(intervals) = &mut self.intervals {
+            intervals.add(shape);
+        }
+        Ok(self.models.add(shape))
+    }
+
+    /// Adds a model: another grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the returned number.
+    pub(crate) fn grow(&mut self, model: u32, margin: f32) -> u32 {
+        self.models.grow(model, margin)
     }
 
     /// Re-reads `bodies.shape` after a change of margin class.
     pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
+        self.fixed.shape.clone_from(&bodies.shape);
         self.places.reread_shapes(bodies);
-    }
-
-    /// Re-reads what [`Self::cull`] takes as fixed: the number of bodies, their shapes, which of them may move, and where those
-    /// stand that may not. Costs about one more frame. Groups are forgotten when the number of bodies changes.
-    ///
-    /// # Errors
-    /// Bodies outside of the contract, an interest in a body that is no longer there; the culler stays as it was.
-    pub fn refresh(&mut self, bodies: &Bodies) -> Result<(), CullError> {
-        check_columns(bodies)?;
-        check_numbers(&bodies.shape, self.models.frames.len())?;
-        check_poses(bodies, 0..bodies.len())?;
-        self.settings.check(bodies.len())?;
-        if bodies.len() != self.interest.len() {
-            self.groups = None;
-        }
-        self.replace(bodies, &vec![true; bodies.len()]);
-        Ok(())
     }
 
     /// Replaces the set of bodies by those that are `present`. Volumes, static ones too, are placed anew; bodies that were
     /// there keep their neighbours.
     pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         self.places.replace(bodies, present);
+        self.fixed = check::fixed(bodies);
         let n = self.places.len();
         self.numbers = (0..n as u32).collect();
         self.balls.resize(n, [0.0; 4]);
@@ -177,7 +178,7 @@ impl Culler {
     /// A column that is shorter or longer than there are bodies; the groups stay as they were.
     pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) -> Result<(), CullError> {
         if let Some(groups) = &groups {
-            check_column("groups", groups.len(), self.interest.len())?;
+            check_column("groups", groups.len(), self.fixed.len())?;
         }
         self.groups = groups;
         Ok(())
@@ -201,27 +202,41 @@ impl Culler {
     }
 
     /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
-    /// finder and on the frames so far alone. Poses must satisfy the contract.
+    /// finder and on the frames so far alone.
+    ///
+    /// Shapes and the poses of static bodies are not read here: they stay as they were at construction or at the last
+    /// [`Self::refresh`].
     ///
     /// # Errors
-    /// Fewer or more bodies than the culler was made for.
+    /// Fewer or more bodies than the culler was made for, a `dynamic` flag that has changed, a pose outside of the contract.
+    /// [`Self::pairs`] is empty then, and the next frame is culled as if this one hadn't been. One thing is not looked for:
+    /// the rotation of a body whose ball is centred in its origin, where a ball comes first. If it is zero or not finite,
+    /// no or-DOP is separated from this body's, so that whatever its ball meets is reported.
     pub fn cull(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
         let start = Instant::now();
         self.check_set(bodies)?;
         let mut pairs = std::mem::take(&mut self.pairs);
         pairs.clear();
-        self.cull_into(bodies, Output::List(&mut pairs), start);
+        let outcome = self.cull_into(bodies, Output::List(&mut pairs), start);
         self.counters.reported += pairs.len() as u64;
         self.pairs = pairs;
+        outcome?;
         Ok(&self.pairs)
     }
 
     /// Culls one frame, which began at `start`, and hands its pairs to `output`.
-    fn cull_into(&mut self, bodies: &Bodies, output: Output<'_>, start: Instant) {
+    fn cull_into(
+        &mut self,
+        bodies: &Bodies,
+        output: Output<'_>,
+        start: Instant,
+    ) -> Result<(), CullError> {
         self.stamp += 1;
         self.reorder(bodies);
         let reordered = Instant::now();
-        self.update_volumes(bodies, 0..self.places.moving);
+        if !self.update_volumes(bodies, 0..self.places.moving) {
+            self.check_moved(bodies)?;
+        }
         self.count_updates();
         let updated = Instant::now();
         self.arrange();
@@ -233,17 +248,7 @@ impl Culler {
         self.seconds.ordop += totals.refining_seconds;
         self.seconds.pair_finding += finding.as_secs_f64() - refining;
         self.seconds.total += start.elapsed().as_secs_f64();
-    }
-
-    /// Checks that there are as many bodies as there were.
-    fn check_set(&self, bodies: &Bodies) -> Result<(), CullError> {
-        check_columns(bodies)?;
-        let (made_for, given) = (self.interest.len(), bodies.len());
-        if given == made_for {
-            return Ok(());
-        }
-        let what = format!("{given} bodies in place of {made_for}");
-        Err(CullError::Changed { what })
+        Ok(())
     }
 
     /// The pairs of the last frame.
@@ -294,21 +299,29 @@ impl Culler {
         if changed == Reorder::None {
             return;
         }
-        self.places.reorder(bodies, &mut self.order, by_place);
+        self.places.reorder(&self.fixed, &mut self.order, by_place);
         if changed == Reorder::All {
-            self.update_volumes(bodies, 0..self.places.len());
+            let (moving, all) = (self.places.moving, self.places.len());
+            self.update_volumes(bodies, 0..moving);
+            if moving < all {
+                let fixed = std::mem::take(&mut self.fixed);
+                self.update_volumes(&fixed, moving..all);
+                self.fixed = fixed;
+            }
         }
     }
 
     /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies are left until a pair
-    /// needs them.
-    fn update_volumes(&mut self, bodies: &Bodies, range: std::ops::Range<usize>) {
+    /// needs them. Returns whether the poses were found within the contract.
+    fn update_volumes(&mut self, bodies: &Bodies, range: Range<usize>) -> bool {
         let (frames, places) = (&self.models.frames, &self.places);
         let executor = self.pool.executor(self.tier);
-        if self.needs.balls {
+        let is_sound = if self.needs.balls {
             let balls = &mut self.balls;
-            update_spheres(&self.pool, balls, frames, bodies, places, range.clone());
-        }
+            update_spheres(&self.pool, balls, frames, bodies, places, range.clone())
+        } else {
+            check_poses(bodies, 0..bodies.len()).is_ok()
+        };
         let posed = Posed {
             frames,
             bodies,
@@ -328,6 +341,7 @@ impl Culler {
         if let Some(intervals) = &mut self.intervals {
             intervals.update(executor, &mut self.balls, posed, range);
         }
+        is_sound
     }
 
     fn count_updates(&mut self) {
@@ -364,7 +378,7 @@ impl Culler {
     /// Finds and tests pairs.
     fn run(&mut self, bodies: &Bodies, output: Output<'_>) -> Totals {
         if let Some(interest) = &self.settings.interest {
-            let frame = |body: usize| &self.models.frames[bodies.shape[body] as usize];
+            let frame = |body: usize| &self.models.frames[self.fixed.shape[body] as usize];
             let centre = |body: usize| {
                 let pose = (bodies.rotation[body], bodies.translation[body]);
                 let [x, y, z, _] = frame(body).sphere(pose.0, pose.1);

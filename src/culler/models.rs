@@ -15,8 +15,12 @@ use crate::volume::{DirectionSet, Hull, OrDop, Shape};
 pub(crate) struct Models {
     pub frames: Vec<ShapeFrame>,
     pub tables: SlabTables,
-    /// The slabs of every shape: its or-DOP, or its oriented box.
+    /// The slabs of every model: an or-DOP, or an oriented box.
     ordops: Vec<OrDop>,
+    /// How many of the models are shapes as they were given.
+    shapes: u32,
+    /// Whether an oriented box takes the place of each or-DOP.
+    boxes: bool,
     /// Whether the or-DOP decides without a sphere, and is binned by its own ball.
     alone: bool,
 }
@@ -25,39 +29,51 @@ impl Models {
     /// One model per shape. For oriented boxes a box takes the place of the or-DOP.
     pub fn new(shapes: &[Shape], settings: &CullSettings) -> Self {
         let scheme = settings.strategy.scheme();
-        let boxes = scheme.has_boxes();
-        let slabs = |shape: &Shape| {
-            if boxes {
-                shape.obb(&Hull::of(&shape.vertices))
-            } else {
-                shape.ordop.clone()
-            }
-        };
-        let ordops: Vec<OrDop> = shapes.iter().map(slabs).collect();
-        let directions = if boxes {
-            DirectionSet::K6
-        } else {
-            ordops.first().map_or(settings.k, |ordop| ordop.directions)
-        };
         let mut models = Self {
             frames: Vec::new(),
-            tables: SlabTables::new(directions, shapes.iter().zip(&ordops)),
-            ordops,
+            tables: SlabTables::new(settings.k, std::iter::empty()),
+            ordops: Vec::new(),
+            shapes: 0,
+            boxes: scheme.has_boxes(),
             alone: scheme.is_oriented_alone(),
         };
-        for (number, (shape, ordop)) in shapes.iter().zip(&models.ordops).enumerate() {
-            let frame = ShapeFrame::new(shape, &ordop.basis).numbered(number as u32);
-            models.frames.push(models.binned(frame, number));
+        for shape in shapes {
+            models.add(shape);
         }
         models
     }
 
-    /// Adds the model of a shape grown by `margin`; returns its number.
-    pub fn grow(&mut self, shape: u32, margin: f32) -> u32 {
+    /// The slab directions that a further shape must have: those of the first, unless its own box is taken.
+    pub fn directions(&self) -> Option<DirectionSet> {
+        (!self.boxes && self.shapes > 0).then(|| self.tables.directions())
+    }
+
+    /// Adds the model of a shape; returns its number. The shapes' hulls are counted apart, from 0 in the order of these calls.
+    pub fn add(&mut self, shape: &Shape) -> u32 {
+        let ordop = if self.boxes {
+            shape.obb(&Hull::of(&shape.vertices))
+        } else {
+            shape.ordop.clone()
+        };
+        if self.frames.is_empty() {
+            self.tables = SlabTables::new(ordop.directions, std::iter::empty());
+        }
+        let frame = ShapeFrame::new(shape, &ordop.basis).numbered(self.shapes);
+        self.shapes += 1;
+        self.push(frame, ordop)
+    }
+
+    /// Adds the model of another grown by `margin`; returns its number.
+    pub fn grow(&mut self, model: u32, margin: f32) -> u32 {
+        let ordop = self.ordops[model as usize].grown(margin);
+        let frame = self.frames[model as usize].grown(margin);
+        self.push(frame, ordop)
+    }
+
+    fn push(&mut self, frame: ShapeFrame, ordop: OrDop) -> u32 {
         let number = self.frames.len();
-        let ordop = self.ordops[shape as usize].grown(margin);
-        let frame = self.frames[shape as usize].grown(margin);
         self.tables.push(&ordop, frame.centre(), frame.reach());
+        self.ordops.push(ordop);
         self.frames.push(self.binned(frame, number));
         number as u32
     }

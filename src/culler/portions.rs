@@ -36,10 +36,11 @@ impl Culler {
             taking += start.elapsed();
         };
         self.pairs.clear();
-        self.cull_into(bodies, Output::Portions(&mut sink), start);
+        let outcome = self.cull_into(bodies, Output::Portions(&mut sink), start);
         self.counters.reported += reported;
         self.seconds.pair_finding -= taking.as_secs_f64();
         self.seconds.total -= taking.as_secs_f64();
+        outcome?;
         Ok(reported)
     }
 

@@ -35,7 +35,7 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Checks the mesh contract.
+    /// A mesh of these vertices, and the three vertices of each triangle.
     ///
     /// # Errors
     /// No vertex, no triangle, too many of either, a coordinate that is not finite or larger than 2⁶⁰, or an
@@ -54,6 +54,19 @@ impl TriangleMesh {
             }),
             Err(problem) => Err(problem.at(&name, None)),
         }
+    }
+
+    /// The same of vertices that are arrays, or turn into arrays as those of any version of glam do.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn from_arrays(
+        name: impl Into<String>,
+        vertices: impl IntoIterator<Item = impl Into<[f32; 3]>>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, MeshError> {
+        let vertices = vertices.into_iter().map(|v| Vec3::from_array(v.into()));
+        Self::new(name, vertices.collect(), triangles)
     }
 }
 

@@ -39,6 +39,11 @@ impl Intervals {
         }
     }
 
+    /// Takes up a further shape, the next in number.
+    pub(crate) fn add(&mut self, shape: &Shape) {
+        self.hulls.push(hull_in_eights(shape));
+    }
+
     /// Room for another number of bodies.
     pub(crate) fn resize(&mut self, bodies: usize) {
         let slabs = self.directions.slabs();

@@ -12,9 +12,10 @@ pub use intervals::Intervals;
 pub use rows::{OrDopRows, Posed};
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::bodies::Bodies;
-use crate::bodies::Places;
+use crate::bodies::contract::is_within_limit;
+use crate::bodies::{Bodies, Places};
 use crate::rounding::pose::{norm, rotation};
 use crate::rounding::sphere::{inflate_radius, world_ball};
 use crate::rounding::up;
@@ -133,7 +134,9 @@ const AHEAD: usize = 32;
 /// Bodies whose spheres one thread updates at a time: some ten microseconds.
 const SPHERES: usize = 4096;
 
-/// Updates the spheres (x, y, z, R) of the bodies in a range of places.
+/// Updates the spheres (x, y, z, R) of the bodies in a range of places. Returns whether all translations, and the centres that
+/// a rotation takes part in, are within the contract: checked here, where they are at hand, this costs nothing that a
+/// stopwatch sees.
 pub fn update_spheres(
     pool: &Threads,
     spheres: &mut [[f32; 4]],
@@ -141,10 +144,11 @@ pub fn update_spheres(
     bodies: &Bodies,
     places: &Places,
     range: Range<usize>,
-) {
-    let first = range.start;
+) -> bool {
+    let (first, is_sound) = (range.start, AtomicBool::new(true));
     pool.pieces(&mut spheres[range], SPHERES, |start, spheres| {
         let start = first + start;
+        let mut sound = true;
         let who = places.body[start..].iter().zip(&places.shape[start..]);
         for (place, (sphere, (&body, &shape))) in (start..).zip(spheres.iter_mut().zip(who)) {
             if let Some(&later) = places.body.get(place + AHEAD) {
@@ -152,11 +156,20 @@ pub fn update_spheres(
             }
             let (body, frame) = (body as usize, &frames[shape as usize]);
             let t = bodies.translation[body];
+            sound &= is_within_limit(&t);
             // The rotation lies elsewhere in memory: reading it for nothing doubles the time of a million bodies.
             *sphere = match frame.inflated {
                 Some(inflated) => [t[0], t[1], t[2], inflated],
-                None => frame.sphere(bodies.rotation[body], t),
+                None => {
+                    let sphere = frame.sphere(bodies.rotation[body], t);
+                    sound &= sphere.iter().all(|x| x.is_finite());
+                    sphere
+                }
             };
         }
+        if !sound {
+            is_sound.store(false, Ordering::Relaxed);
+        }
     });
+    is_sound.into_inner()
 }

@@ -44,6 +44,29 @@ pub struct Body {
     pub margin: f32,
 }
 
+impl Body {
+    /// A dynamic body of a shape at a pose, that collides with all, without a margin: rotation as a quaternion (x, y, z, w) of
+    /// any non-zero norm, translation of the body origin in the world frame.
+    #[must_use]
+    pub fn at(shape: u32, rotation: impl Into<[f32; 4]>, translation: impl Into<[f64; 3]>) -> Self {
+        Self {
+            shape,
+            rotation: rotation.into(),
+            translation: translation.into(),
+            ..Self::default()
+        }
+    }
+
+    /// The same, not to be moved: pairs of two such bodies are never tested.
+    #[must_use]
+    pub fn fixed(self) -> Self {
+        Self {
+            dynamic: false,
+            ..self
+        }
+    }
+}
+
 impl Default for Body {
     /// A dynamic body of the first shape at the origin, unturned, that collides with all, without a margin.
     fn default() -> Self {

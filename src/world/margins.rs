@@ -17,8 +17,8 @@ pub(super) struct Margins {
 }
 
 impl Margins {
-    /// The model for a shape of size `reach` with a margin, placed with an error of at most `moved`; `grow` makes it
-    /// where it is new.
+    /// The model for a shape of size `reach` and with the number `shape` among the models, with a margin, placed with an error of
+    /// at most `moved`; `grow` makes it where it is new.
     pub fn model(
         &mut self,
         shape: u32,

@@ -49,6 +49,8 @@ use crate::volume::Shape;
 #[derive(Debug)]
 pub struct World {
     shapes: Vec<Shape>,
+    /// The culler's number of each shape.
+    models: Vec<u32>,
     /// One entry a slot; empty slots keep their last body's.
     bodies: Bodies,
     present: Vec<bool>,
@@ -96,6 +98,7 @@ impl World {
         let culler = culler.clone().interest(Interest::Bodies(Vec::new()));
         let culler = culler.build(&shapes, &Bodies::default())?;
         Ok(Self {
+            models: (0..shapes.len() as u32).collect(),
             shapes,
             bodies: Bodies::default(),
             present: Vec::new(),
@@ -114,6 +117,17 @@ impl World {
             replaced: false,
             regrouped: false,
         })
+    }
+
+    /// Adds a shape. Bodies take it by the returned number.
+    ///
+    /// # Errors
+    /// A shape beyond the contract, or with other slab directions than those before; nothing is added.
+    pub fn add_shape(&mut self, shape: Shape) -> Result<u32, WorldError> {
+        let model = self.culler.add_shape(&shape)?;
+        self.models.push(model);
+        self.shapes.push(shape);
+        Ok(self.shapes.len() as u32 - 1)
     }
 
     /// Adds a body.
@@ -313,10 +327,12 @@ impl World {
         let mut changed = false;
         for slot in present {
             let (place, moved) = local.place(self.translation[slot]);
-            let shape = self.shape[slot];
-            let (reach, margin) = (self.shapes[shape as usize].reach, self.margin[slot]);
-            let grow = |shape, margin| self.culler.grow(shape, margin);
-            let model = self.margins.model(shape, reach, margin, moved, grow);
+            let shape = self.shape[slot] as usize;
+            let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
+            let grow = |model, margin| self.culler.grow(model, margin);
+            let model = self
+                .margins
+                .model(self.models[shape], reach, margin, moved, grow);
             changed |= self.bodies.shape[slot] != model;
             self.bodies.shape[slot] = model;
             self.bodies.translation[slot] = place;

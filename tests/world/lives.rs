@@ -1,7 +1,7 @@
 //! What a world holds of its bodies: ids, interest and groups, from insertion to removal, and what it refuses.
 
 use sdop::culler::Culler;
-use sdop::settings::{CullSettings, Strategy};
+use sdop::settings::{CullSettings, DirectionSet, Strategy};
 use sdop::world::{Body, Groups, World, WorldError};
 
 use super::shapes;
@@ -156,4 +156,49 @@ fn a_body_that_collides_with_all_joins_others_that_do_not() {
     let all = world.insert(Body::default()).unwrap();
     world.cull().unwrap();
     assert_eq!(world.events().begun, [[a, all], [b, all]]);
+}
+
+#[test]
+fn a_shape_added_late_is_as_good_as_one_from_the_start() {
+    // Some bodies have margins, and so take models of their own before the other shapes come.
+    let body = |i: u8, shape: u32| Body {
+        margin: 0.25 * f32::from(i % 3),
+        ..Body::at(
+            shape,
+            [0.3 * f32::from(i), 0.2, 0.0, 1.0],
+            [1.1 * f64::from(i), 0.4 * f64::from(i % 4), 0.0],
+        )
+    };
+    for way in super::ways() {
+        let builder = Culler::builder().settings(&way);
+        let mut whole = World::with(shapes(), &builder).unwrap();
+        let mut late = World::with(shapes()[..1].to_vec(), &builder).unwrap();
+        let mut both = |bodies: Vec<Body>, late: &mut World| {
+            for world in [&mut whole, late] {
+                for &body in &bodies {
+                    world.insert(body).unwrap();
+                }
+                world.cull().unwrap();
+            }
+            assert!(whole.pairs().eq(late.pairs()), "{way:?}");
+            late.pairs().len()
+        };
+        let few = both((0..12).map(|i| body(i, 0)).collect(), &mut late);
+        for (number, shape) in (1..).zip(&shapes()[1..]) {
+            assert_eq!(late.add_shape(shape.clone()), Ok(number));
+        }
+        let next = both(
+            (0..24).map(|i| body(i, 1 + u32::from(i) % 2)).collect(),
+            &mut late,
+        );
+        assert!(few < next || way.strategy == Strategy::None, "{few} {next}");
+        let other = shapes()[0].clone().with_directions(DirectionSet::K26);
+        let refused = late.add_shape(other);
+        if way.strategy == Strategy::Obb {
+            assert_eq!(refused, Ok(3)); // takes boxes, whatever the shapes' or-DOPs
+        } else {
+            let told = refused.unwrap_err().to_string();
+            assert!(told.ends_with("of k = 26, shapes before it have k = 18"));
+        }
+    }
 }

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
+use sdop::Tier;
 use sdop::lab::measure::machine::Machine;
-use sdop::simd::Tier;
 use serde::Serialize;
 
 /// The flag that compiles the same engines in.

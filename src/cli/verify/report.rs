@@ -5,11 +5,11 @@ mod coverage;
 
 use std::time::Duration;
 
+use sdop::Tier;
 use sdop::lab::verify::Predicate;
 use sdop::lab::verify::matrix::Matrix;
 use sdop::lab::verify::rounds::{Ledger, Row};
 use sdop::lab::verify::ways::Rotation;
-use sdop::simd::Tier;
 use serde::Serialize;
 
 use crate::cli::output::table;

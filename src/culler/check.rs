@@ -1,0 +1,105 @@
+//! What a culler takes as fixed between two frames, and how it finds out that something has changed all the same.
+//!
+//! Numbers of bodies and `dynamic` flags are compared in every frame. Shapes, and poses of static bodies, are kept from
+//! construction on, so that a change of theirs has no effect before [`Culler::refresh`], whatever the pair finder does
+//! meanwhile. Translations are judged where they are read for the volumes.
+
+use super::{CullError, Culler};
+use crate::bodies::Bodies;
+use crate::bodies::contract::{check_columns, check_numbers, check_poses, has_sound_size};
+use crate::settings::{CullSettings, DirectionSet};
+use crate::volume::Shape;
+
+/// What a culler keeps of the bodies: their shapes, which of them may move, and all poses where some may not.
+pub(super) fn fixed(bodies: &Bodies) -> Bodies {
+    if bodies.dynamic.contains(&false) {
+        return bodies.clone();
+    }
+    Bodies {
+        shape: bodies.shape.clone(),
+        dynamic: bodies.dynamic.clone(),
+        ..Bodies::default()
+    }
+}
+
+/// Checks that all shapes have the slab directions of the first, where or-DOPs are tested.
+pub(super) fn directions(shapes: &[Shape], settings: &CullSettings) -> Result<(), CullError> {
+    let first = shapes.first().map(|shape| shape.ordop.directions);
+    let wanted = first.filter(|_| !settings.strategy.scheme().has_boxes());
+    let mut others = shapes.iter();
+    others.try_for_each(|shape| same_directions(shape, wanted))
+}
+
+/// Checks that a shape is no larger than 2⁶⁰ and has the directions that are wanted.
+pub(super) fn shape(shape: &Shape, wanted: Option<DirectionSet>) -> Result<(), CullError> {
+    if !has_sound_size(shape) {
+        return Err(CullError::Shape {
+            shape: shape.name.clone(),
+            problem: format!("has reach {} and {:?}", shape.reach, shape.ball),
+            hint: "sizes are finite and at most 2^60",
+        });
+    }
+    same_directions(shape, wanted)
+}
+
+fn same_directions(shape: &Shape, wanted: Option<DirectionSet>) -> Result<(), CullError> {
+    let found = shape.ordop.directions;
+    match wanted.filter(|&wanted| wanted != found) {
+        None => Ok(()),
+        Some(wanted) => Err(CullError::Shape {
+            shape: shape.name.clone(),
+            problem: format!("has an or-DOP of k = {found}, shapes before it have k = {wanted}"),
+            hint: "build all shapes with the same `ShapeSpec::directions`, or use `Shape::with_directions`",
+        }),
+    }
+}
+
+impl Culler {
+    /// Re-reads what [`Self::cull`] takes as fixed: the number of bodies, their shapes, which of them may move, and where those
+    /// stand that may not. Costs about one more frame. Groups are forgotten when the number of bodies changes.
+    ///
+    /// # Errors
+    /// Bodies outside of the contract, an interest in a body that is no longer there; the culler stays as it was.
+    pub fn refresh(&mut self, bodies: &Bodies) -> Result<(), CullError> {
+        check_columns(bodies)?;
+        check_numbers(&bodies.shape, self.models.frames.len())?;
+        check_poses(bodies, 0..bodies.len())?;
+        self.settings.check(bodies.len())?;
+        if bodies.len() != self.fixed.len() {
+            self.groups = None;
+        }
+        self.replace(bodies, &vec![true; bodies.len()]);
+        Ok(())
+    }
+
+    /// Checks that there are as many bodies as there were, and that the same may move.
+    pub(super) fn check_set(&self, bodies: &Bodies) -> Result<(), CullError> {
+        check_columns(bodies)?;
+        let (made_for, given) = (self.fixed.len(), bodies.len());
+        let what = if given != made_for {
+            format!("{given} bodies in place of {made_for}")
+        } else if bodies.dynamic != self.fixed.dynamic {
+            let mut flags = bodies.dynamic.iter().zip(&self.fixed.dynamic);
+            let body = flags.position(|(now, then)| now != then).unwrap_or(0);
+            let now = if bodies.dynamic[body] {
+                "dynamic"
+            } else {
+                "static"
+            };
+            format!("body {body} has become {now}")
+        } else {
+            return Ok(());
+        };
+        Err(CullError::Changed { what })
+    }
+
+    /// Looks for the body whose pose is outside of the contract, and leaves nothing of it for the next frame to sort by.
+    #[cold]
+    pub(super) fn check_moved(&mut self, bodies: &Bodies) -> Result<(), CullError> {
+        let outcome = check_poses(bodies, 0..bodies.len());
+        if outcome.is_err() {
+            self.balls[..self.places.moving].fill([0.0; 4]);
+        }
+        Ok(outcome?)
+    }
+}

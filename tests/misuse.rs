@@ -1,0 +1,258 @@
+//! What happens when a culler is used otherwise than meant. No entry may panic, hang or silently drop a pair.
+//!
+//! | misuse | what happens |
+//! |---|---|
+//! | columns of unequal length; a shape number out of range; a pose that is not finite or beyond 2⁶⁰, at construction | `CullError::Contract`, naming body and quantity |
+//! | fewer or more bodies in a frame than at construction | `CullError::Changed` |
+//! | a `dynamic` flag toggled between frames | `CullError::Changed`, naming the body |
+//! | a translation that is infinite, NaN or beyond 2⁶⁰ in a frame | `CullError::Contract`, naming the body; the next frame is culled as ever |
+//! | a rotation that is zero or not finite in a frame | the same; but where a ball comes first and is centred in the body's origin, all pairs that the ball meets are reported |
+//! | a shape number changed between frames, out of range or not | no effect before `Culler::refresh`, which checks it |
+//! | a static body moved between frames | stays where it was for the culler, whatever the finder does, until `Culler::refresh` |
+//! | shapes whose or-DOPs have unlike directions | `CullError::Shape`, naming the shape |
+//! | a column of groups of another length | `CullError::Contract`; the groups stay as they were |
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use sdop::{
+    Bodies, CullError, Culler, Finder, Groups, Origin, ProceduralShape, Shape, ShapeSpec, Strategy,
+    TriangleMesh,
+};
+
+const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+
+/// A cube about its body's origin, and one beside it, whose ball's centre turns with the body.
+fn shapes() -> Vec<Shape> {
+    let cube = ProceduralShape::Box {
+        x: 1.0,
+        y: 1.0,
+        z: 1.0,
+    };
+    let cube = cube.build().unwrap();
+    let beside = cube.vertices.iter().map(|v| [v.x + 3.0, v.y, v.z]);
+    let beside = TriangleMesh::from_arrays("beside", beside, cube.triangles.clone()).unwrap();
+    let file = ShapeSpec {
+        origin: Origin::File,
+        ..ShapeSpec::default()
+    };
+    vec![
+        Shape::build(&cube, &ShapeSpec::default()).unwrap(),
+        Shape::build(&beside, &file).unwrap(),
+    ]
+}
+
+/// Cubes in a row, each touching the next; every tenth is static.
+fn row(cubes: usize) -> Bodies {
+    let mut bodies = Bodies::default();
+    for i in 0..cubes {
+        bodies.push(0, i % 10 != 0, UNTURNED, [i as f32, 0.0, 0.0]);
+    }
+    bodies
+}
+
+/// A culler by every strategy that reports anything, by every finder.
+fn cullers(bodies: &Bodies) -> Vec<Culler> {
+    let shapes = shapes();
+    let judged = |strategy: &&Strategy| **strategy != Strategy::None;
+    let ways = Strategy::ALL.iter().filter(judged).flat_map(|&strategy| {
+        let of = move |&finder: &Finder| {
+            Culler::builder()
+                .strategy(strategy)
+                .finder(finder)
+                .interest(sdop::Interest::Bodies(vec![0]))
+                .budget(sdop::Budget::Tests(1000))
+        };
+        Finder::ALL.iter().map(of)
+    });
+    ways.map(|way| way.build(&shapes, bodies).unwrap())
+        .collect()
+}
+
+/// What is wrong with a body, as an error tells it.
+fn refused(result: Result<&sdop::PairList, CullError>) -> String {
+    result.map(sdop::PairList::len).unwrap_err().to_string()
+}
+
+#[test]
+fn construction_names_what_is_wrong() {
+    let refusal = |change: fn(&mut Bodies)| {
+        let mut bodies = row(200);
+        change(&mut bodies);
+        Culler::new(&shapes(), &bodies).unwrap_err().to_string()
+    };
+    assert_eq!(refusal(|b| b.shape[7] = 2), "body 7: shape 2 of 2");
+    assert_eq!(
+        refusal(|b| b.rotation[7] = [0.0; 4]),
+        "body 7: rotation [0.0, 0.0, 0.0, 0.0]"
+    );
+    assert_eq!(
+        refusal(|b| b.translation[7] = [0.0, f32::INFINITY, 0.0]),
+        "body 7: translation [0.0, inf, 0.0]"
+    );
+    assert_eq!(
+        refusal(|b| b.dynamic.truncate(3)),
+        "body 3: dynamic is missing or too much: 3 entries for 200 bodies"
+    );
+}
+
+#[test]
+fn another_number_of_bodies_is_an_error_until_refresh() {
+    let bodies = row(200);
+    for mut culler in cullers(&bodies) {
+        let wanted = culler.cull(&bodies).unwrap().sorted();
+        let fewer = row(150);
+        let told = refused(culler.cull(&fewer));
+        assert!(told.starts_with("150 bodies in place of 200"), "{told}");
+        let mut more = bodies.clone();
+        more.push(0, true, UNTURNED, [200.0, 0.0, 0.0]);
+        let told = refused(culler.cull(&more));
+        assert!(told.starts_with("201 bodies in place of 200"), "{told}");
+        assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted);
+
+        culler.refresh(&more).unwrap();
+        let now = culler.cull(&more).unwrap().sorted();
+        assert!(now.contains(&[199, 200]), "{:?}", culler.finder());
+        culler.refresh(&fewer).unwrap();
+        let now = culler.cull(&fewer).unwrap().sorted();
+        assert!(now.iter().all(|[_, j]| *j < 150) && now.contains(&[148, 149]));
+    }
+}
+
+#[test]
+fn a_toggled_flag_is_an_error_until_refresh() {
+    let bodies = row(200);
+    for mut culler in cullers(&bodies) {
+        let mut toggled = bodies.clone();
+        (toggled.dynamic[3], toggled.dynamic[4]) = (false, false);
+        let told = refused(culler.cull(&toggled));
+        assert!(told.starts_with("body 3 has become static"), "{told}");
+        culler.refresh(&toggled).unwrap();
+        let now = culler.cull(&toggled).unwrap().sorted();
+        assert!(!now.contains(&[3, 4]) && now.contains(&[2, 3]) && now.contains(&[4, 5]));
+    }
+}
+
+#[test]
+fn a_translation_outside_of_the_contract_is_an_error_and_no_freeze() {
+    let bodies = row(200);
+    for mut culler in cullers(&bodies) {
+        let wanted = culler.cull(&bodies).unwrap().sorted();
+        for far in [
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::NAN,
+            f32::MAX,
+            -1.2e18,
+        ] {
+            let mut lost = bodies.clone();
+            lost.translation[44][1] = far;
+            let told = refused(culler.cull(&lost));
+            assert!(told.starts_with("body 44: translation ["), "{told}");
+            assert_eq!(culler.pairs().len(), 0);
+            assert_eq!(
+                culler.cull(&bodies).unwrap().sorted(),
+                wanted,
+                "after {far}"
+            );
+        }
+        // All of them, apart by as much as f32 can say.
+        let mut apart = bodies.clone();
+        for (i, t) in apart.translation.iter_mut().enumerate() {
+            *t = [f32::MAX; 3].map(|x| if i % 2 == 0 { x } else { -x });
+        }
+        refused(culler.cull(&apart));
+        assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted);
+    }
+}
+
+#[test]
+fn a_rotation_outside_of_the_contract_loses_no_pair() {
+    let bodies = row(200);
+    for mut culler in cullers(&bodies) {
+        let wanted = culler.cull(&bodies).unwrap().sorted();
+        for turn in [[0.0; 4], [f32::NAN; 4], [f32::INFINITY, 0.0, 0.0, 1.0]] {
+            let mut turned = bodies.clone();
+            turned.rotation[44] = turn;
+            match culler.cull(&turned).map(sdop::PairList::sorted) {
+                Ok(now) => assert!(wanted.iter().all(|pair| now.contains(pair)), "{turn:?}"),
+                Err(error) => assert!(error.to_string().starts_with("body 44: rotation")),
+            }
+            assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted);
+        }
+    }
+    // A sphere whose centre turns with its body has no place then.
+    let mut bodies = row(200);
+    bodies.shape[44] = 1;
+    let mut culler = Culler::builder().strategy(Strategy::Sphere);
+    for &finder in Finder::ALL {
+        culler = culler.finder(finder);
+        let mut culler = culler.build(&shapes(), &bodies).unwrap();
+        let mut turned = bodies.clone();
+        turned.rotation[44] = [0.0; 4];
+        let told = refused(culler.cull(&turned));
+        assert_eq!(told, "body 44: rotation [0.0, 0.0, 0.0, 0.0]");
+    }
+}
+
+#[test]
+fn shapes_and_static_poses_are_those_of_the_last_refresh() {
+    let bodies = row(200);
+    for mut culler in cullers(&bodies) {
+        let wanted = culler.cull(&bodies).unwrap().sorted();
+        let mut moved = bodies.clone();
+        moved.shape[44] = 7;
+        moved.shape[45] = 1;
+        moved.translation[50] = [1000.0, 0.0, 0.0];
+        // Long enough for the grid to put its bodies into another order.
+        for frame in 0..40 {
+            assert_eq!(
+                culler.cull(&moved).unwrap().sorted(),
+                wanted,
+                "frame {frame}"
+            );
+        }
+        let told = culler.refresh(&moved).unwrap_err().to_string();
+        assert_eq!(told, "body 44: shape 7 of 2");
+        assert_eq!(culler.cull(&moved).unwrap().sorted(), wanted);
+
+        moved.shape[44] = 0;
+        culler.refresh(&moved).unwrap();
+        let now = culler.cull(&moved).unwrap().sorted();
+        let gone = |pair: &[u32; 2]| pair.contains(&50);
+        assert!(!now.iter().any(gone) && wanted.iter().any(gone));
+        assert!(now.contains(&[45, 47]) || now.contains(&[45, 48]) || now.contains(&[45, 49]));
+    }
+}
+
+#[test]
+fn groups_have_one_entry_a_body() {
+    let bodies = row(200);
+    for mut culler in cullers(&bodies) {
+        let wanted = culler.cull(&bodies).unwrap().sorted();
+        for length in [0, 199, 201] {
+            let told = culler.set_groups(Some(vec![Groups::ALL; length]));
+            let told = told.unwrap_err().to_string();
+            let expected =
+                format!("groups is missing or too much: {length} entries for 200 bodies");
+            assert!(told.ends_with(&expected), "{told}");
+        }
+        assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted);
+        let nobody = Groups { member: 0, mask: 0 };
+        culler.set_groups(Some(vec![nobody; 200])).unwrap();
+        assert_eq!(culler.cull(&bodies).unwrap().len(), 0);
+        culler.set_groups(None).unwrap();
+        assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted);
+    }
+}
+
+#[test]
+fn shapes_of_unlike_directions_are_refused_where_slabs_are_compared() {
+    let mut unlike = shapes();
+    unlike[1] = unlike[1].clone().with_directions(sdop::DirectionSet::K26);
+    let told = Culler::new(&unlike, &row(3)).unwrap_err().to_string();
+    assert_eq!(
+        told,
+        "shape `beside` has an or-DOP of k = 26, shapes before it have k = 18"
+    );
+    let boxes = Culler::builder().strategy(Strategy::Obb);
+    boxes.build(&unlike, &row(3)).unwrap();
+}
