@@ -1,6 +1,74 @@
-//! Sphere-encapsulated or-DOP (S-DOP) collision culling that never misses a pair.
+//! Which pairs of rigid bodies might touch? Collision culling by bounding spheres and oriented k-DOPs (S-DOP), on SIMD in
+//! every tier of the CPU, that never misses a pair.
 //!
-//! Data flows one way: mesh → volume → bodies → update → broad_phase → overlap → pairs.
+//! # The promise
+//!
+//! If two posed meshes intersect in exact real arithmetic, touching included, and at least one of them may move, the pair is
+//! reported: by every [`Strategy`] but the control [`Strategy::None`], with every [`Finder`], on every CPU, for any finite
+//! poses up to 2⁶⁰ in size. Pairs that don't intersect may be reported too; strategies differ in how many, and in time.
+//! The question is who touches *now*: there is no continuous detection, and a narrow phase still has to judge what is
+//! reported.
+//!
+//! # A first use
+//!
+//! ```
+//! use sdop::{Bodies, Culler, ProceduralShape, Shape, ShapeSpec};
+//!
+//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?; // or `TriangleMesh::new`, or a file
+//! let shapes = [Shape::build(&mesh, &ShapeSpec::default())?]; // ball, hull and or-DOP, once
+//!
+//! let mut bodies = Bodies::default();
+//! for x in [0.0, 1.5, 9.0] {
+//!     bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]); // shape, dynamic, quaternion, translation
+//! }
+//! let mut culler = Culler::new(&shapes, &bodies)?; // refuses what is not finite or out of range
+//! for _ in 0..10 {
+//!     for translation in &mut bodies.translation {
+//!         translation[0] *= 0.8; // your simulation moves the bodies …
+//!     }
+//!     for [i, j] in culler.cull(&bodies)?.iter() {
+//!         assert!(i < j); // … and your narrow phase judges these
+//!     }
+//! }
+//! assert_eq!(culler.pairs().sorted(), [[0, 1], [0, 2], [1, 2]]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of bodies; in a [`World`] they
+//! come and go, with stable ids, groups, contact margins, f64 translations and events.
+//!
+//! # Conventions
+//!
+//! - **Axes**: right-handed. Which one points up doesn't matter: nothing here prefers an axis.
+//! - **Rotations**: quaternions in the order (x, y, z, w), of any non-zero norm. They turn the body frame into the world
+//!   frame: a vertex p of a body stands at R(q)·p + t.
+//! - **Translations**: of the body's origin, world frame. A [`Shape`] puts its mesh's smallest enclosing ball about the origin
+//!   unless [`Origin::File`] says otherwise.
+//! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and at most 2⁶⁰.
+//! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair once, and its order depends on the
+//!   finder and the frames so far, never on the CPU or the number of threads; [`PairList::sorted`] gives an order of its own.
+//! - **Poses** are taken as anything that turns into arrays: `[f32; 4]` and `[f32; 3]`, or glam's `Quat` and `Vec3`.
+//!
+//! # Stages
+//!
+//! ```text
+//!  mesh ──▶ volume ──▶ bodies ──▶ update ──▶ broad_phase ──▶ overlap ──▶ pairs
+//!  check    ball,      poses as   volumes    candidates      survivors   i < j
+//!           hull,      columns    into the   (who might      (who does
+//!           or-DOP                world      meet)           not miss)
+//!  ╰─────── once ──────╯          ╰───────── each frame: Culler::cull ───────╯
+//! ```
+//!
+//! [`strategy`](Strategy) names which tests run in which order; [`counters`] say how often each did.
+//!
+//! # Features
+//!
+//! | feature | brings |
+//! |---|---|
+//! | none | all of the above |
+//! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
+//! | `lab` | scenes, effects, the exact judge, measurements and studies |
+//! | `cli` (default) | the command line; implies `lab` |
 
 pub mod bodies;
 pub mod broad_phase;
@@ -20,6 +88,19 @@ pub mod threads;
 pub mod update;
 pub mod volume;
 pub mod world;
+
+pub use bodies::contract::ContractError;
+pub use bodies::{Bodies, Groups};
+pub use culler::{CullError, Culler, CullerBuilder};
+pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
+pub use pairs::PairList;
+pub use settings::{
+    Axes, Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, SettingsError,
+    Strategy, Updates, ViewCone,
+};
+pub use simd::Tier;
+pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
+pub use world::{Body, BodyId, Events, World, WorldError};
 
 /// The README's example compiles and runs.
 #[cfg(all(doctest, feature = "lab"))]

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use sdop::bodies::Bodies;
-use sdop::lab::effects::NAMES;
+use sdop::lab::effects::{NAMES, Velocities};
 use sdop::lab::scene::{Scene, SceneFile};
 
 fn scene(text: &str) -> Scene {
@@ -34,13 +34,13 @@ fn single(pose: &str, velocity: &str, effects: &str) -> Scene {
     ))
 }
 
-fn after(scene: &Scene, steps: usize) -> Bodies {
+fn after(scene: &Scene, steps: usize) -> (Bodies, Velocities) {
     let mut bodies = scene.bodies.clone();
     let mut effects = scene.start_effects().unwrap();
     for _ in 0..steps {
         effects.step(&mut bodies).unwrap();
     }
-    bodies
+    (bodies, effects.velocities().clone())
 }
 
 const ALL: [&str; 6] = [
@@ -77,14 +77,14 @@ fn only_listed_effects_run() {
             }
         }
         // An effect changes its own columns alone.
-        let start = &scene.bodies;
+        let (start, velocities) = (&scene.bodies, effects.velocities());
+        let kept = velocities.linear == scene.velocities.linear;
         assert!(bodies.translation == start.translation || *name == "motion");
         assert!(bodies.rotation == start.rotation || *name == "spin");
+        assert!(kept || ["gravity", "brownian", "response"].contains(name));
+        assert_eq!(velocities.angular, scene.velocities.angular);
         assert!(
-            bodies.velocity == start.velocity || ["gravity", "brownian", "response"].contains(name)
-        );
-        assert!(
-            *name == "walls" || bodies != *start,
+            *name == "walls" || !kept || bodies != *start,
             "{name} does something"
         );
     }
@@ -97,6 +97,7 @@ fn nothing_listed_is_nothing_done() {
     let mut bodies = scene.bodies.clone();
     effects.step(&mut bodies).unwrap();
     assert_eq!(bodies, scene.bodies);
+    assert_eq!(*effects.velocities(), scene.velocities);
     assert!(
         effects
             .reports()
@@ -109,16 +110,16 @@ fn nothing_listed_is_nothing_done() {
 fn static_bodies_stay_to_the_bit() {
     let mut scene = crowd(&ALL.join("\n"));
     // Files can't say so, but a caller may: a static body stays whatever its velocity and spin.
-    scene.bodies.velocity[25..35].fill([1.0, 2.0, 3.0]);
-    scene.bodies.spin[25..35].fill([1.0, 2.0, 3.0]);
-    let bodies = after(&scene, 50);
+    scene.velocities.linear[25..35].fill([1.0, 2.0, 3.0]);
+    scene.velocities.angular[25..35].fill([1.0, 2.0, 3.0]);
+    let (bodies, velocities) = after(&scene, 50);
     for body in 0..50 {
         let same = bodies.rotation[body].map(f32::to_bits)
             == scene.bodies.rotation[body].map(f32::to_bits)
             && bodies.translation[body].map(f32::to_bits)
                 == scene.bodies.translation[body].map(f32::to_bits)
-            && bodies.velocity[body] == scene.bodies.velocity[body]
-            && bodies.spin[body] == scene.bodies.spin[body];
+            && velocities.linear[body] == scene.velocities.linear[body]
+            && velocities.angular[body] == scene.velocities.angular[body];
         assert_eq!(same, (25..35).contains(&body), "body {body}");
     }
 }
@@ -127,7 +128,7 @@ fn static_bodies_stay_to_the_bit() {
 fn motion_adds_dt_times_velocity() {
     let scene = single("[0, 0, 0, 1, 1, 2, 3]", "[0.5, -8, 0.1]", "motion = true");
     assert_eq!(
-        after(&scene, 1).translation[0],
+        after(&scene, 1).0.translation[0],
         [1.0625, 1.0, 3.0 + 0.125 * 0.1]
     );
 }
@@ -138,21 +139,22 @@ fn walls_mirror_and_turn() {
     let limit = |scene: &Scene| 5.0 - scene.shapes[0].ball.radius;
     let pose = "[0, 0, 0, 1, 3.5, -3.75, 1]";
     let specular = single(pose, "[8, -4, 2]", "motion = true\nwalls = \"specular\"");
-    let (w, bodies) = (limit(&specular), after(&specular, 1));
+    let w = limit(&specular);
+    let (bodies, velocities) = after(&specular, 1);
     assert_eq!(
         bodies.translation[0],
         [2.0 * w - 4.5, -2.0 * w + 4.25, 1.25]
     );
-    assert_eq!(bodies.velocity[0], [-8.0, 4.0, 2.0]);
+    assert_eq!(velocities.linear[0], [-8.0, 4.0, 2.0]);
     let reverse = single(pose, "[8, -1, 2]", "motion = true\nwalls = \"reverse\"");
-    let bodies = after(&reverse, 1);
+    let (bodies, velocities) = after(&reverse, 1);
     assert_eq!(bodies.translation[0], [2.0 * w - 4.5, -3.875, 1.25]);
-    assert_eq!(bodies.velocity[0], [-8.0, 1.0, -2.0]);
+    assert_eq!(velocities.linear[0], [-8.0, 1.0, -2.0]);
     // Touching is no bounce; a step longer than the box ends at the far wall.
     let touching = single(pose, "[0, 0, 0]", "motion = true\nwalls = \"specular\"");
-    assert_eq!(after(&touching, 1).velocity[0], [0.0; 3]);
+    assert_eq!(after(&touching, 1).1.linear[0], [0.0; 3]);
     let fast = single(pose, "[1000, 0, 0]", "motion = true\nwalls = \"specular\"");
-    assert_eq!(after(&fast, 1).translation[0], [-w, -3.75, 1.0]);
+    assert_eq!(after(&fast, 1).0.translation[0], [-w, -3.75, 1.0]);
 }
 
 #[test]
@@ -177,7 +179,8 @@ fn bounding_spheres_stay_inside_and_speeds_stay() {
             }
         }
         assert!(effects.reports()[5].changed > 100);
-        for (v, start) in bodies.velocity.iter().zip(&scene.bodies.velocity) {
+        let now = effects.velocities().linear.iter();
+        for (v, start) in now.zip(&scene.velocities.linear) {
             assert_eq!(v.map(f32::abs), start.map(f32::abs));
         }
     }
@@ -189,12 +192,12 @@ fn spin_turns_by_its_rate_and_keeps_the_norm() {
     // Any norm is a rotation: these two leave f32's range when squared.
     scene.bodies.rotation[0] = [0.0, 0.0, 0.0, 1e-23];
     scene.bodies.rotation[1] = [3e38, 0.0, 0.0, 0.0];
-    let bodies = after(&scene, 1);
+    let (bodies, velocities) = after(&scene, 1);
     for body in (0..25).chain(35..50) {
         let q = |bodies: &Bodies| {
             glam::DQuat::from_array(bodies.rotation[body].map(f64::from)).normalize()
         };
-        let rate = glam::DVec3::from(bodies.spin[body].map(f64::from));
+        let rate = glam::DVec3::from(velocities.angular[body].map(f64::from));
         let turn = q(&bodies) * q(&scene.bodies).inverse();
         // First order: tan of half the angle is half the angle.
         let angle = 2.0 * (0.5 * 0.125 * rate.length()).atan();
@@ -215,7 +218,7 @@ fn gravity_accelerates_and_turns() {
         "[1, 0, 0]",
         "gravity = { acceleration = [0, 0, -8] }",
     );
-    assert_eq!(after(&constant, 5).velocity[0], [1.0, 0.0, -5.0]);
+    assert_eq!(after(&constant, 5).1.linear[0], [1.0, 0.0, -5.0]);
     // A period of eight steps about x: −z, then after two steps y, after four z, after six −y.
     let turning = single(
         "[0, 0, 0, 1, 0, 0, 0]",
@@ -224,8 +227,8 @@ fn gravity_accelerates_and_turns() {
     );
     let gain = |step: usize| {
         let (a, b) = (
-            after(&turning, step).velocity[0],
-            after(&turning, step + 1).velocity[0],
+            after(&turning, step).1.linear[0],
+            after(&turning, step + 1).1.linear[0],
         );
         [0, 1, 2].map(|axis| b[axis] - a[axis])
     };
@@ -241,7 +244,7 @@ fn gravity_accelerates_and_turns() {
             "step {step}: {found:?}"
         );
     }
-    let round = after(&turning, 8).velocity[0];
+    let round = after(&turning, 8).1.linear[0];
     assert!(
         round.iter().all(|v| v.abs() < 1e-6),
         "a full turn adds up to nothing: {round:?}"
@@ -262,8 +265,9 @@ fn brownian_kicks_its_share() {
         "{}",
         effects.reports()[1].changed
     );
-    for (body, v) in bodies
-        .velocity
+    for (body, v) in effects
+        .velocities()
+        .linear
         .iter()
         .enumerate()
         .filter(|(body, _)| !(25..35).contains(body))
@@ -276,15 +280,17 @@ fn brownian_kicks_its_share() {
     }
     let kicked = |v: &[[f32; 3]]| {
         v.iter()
-            .zip(&scene.bodies.velocity)
+            .zip(&scene.velocities.linear)
             .filter(|(a, b)| a != b)
             .count()
     };
-    assert!((1..=4).contains(&kicked(&after(&scene, 1).velocity)));
+    assert!((1..=4).contains(&kicked(&after(&scene, 1).1.linear)));
 }
 
-/// The response by its formula alone: all pairs in order, everything in f64.
-fn respond(scene: &Scene, bodies: &mut Bodies) -> usize {
+/// The response by its formula alone: all pairs in order, everything in f64. The velocities after it, and how many pairs
+/// exchanged momentum.
+fn respond(scene: &Scene) -> (Vec<[f32; 3]>, usize) {
+    let (bodies, mut velocity) = (&scene.bodies, scene.velocities.linear.clone());
     let sphere = |bodies: &Bodies, body: usize| {
         let ball = scene.shapes[bodies.shape[body] as usize].ball;
         assert_eq!(ball.centre, glam::Vec3::ZERO);
@@ -298,7 +304,7 @@ fn respond(scene: &Scene, bodies: &mut Bodies) -> usize {
         for j in i + 1..bodies.len() {
             let ((ci, ri), (cj, rj)) = (sphere(bodies, i), sphere(bodies, j));
             let n = cj - ci;
-            let v = |body: usize| glam::DVec3::from(bodies.velocity[body].map(f64::from));
+            let v = |body: usize| glam::DVec3::from(velocity[body].map(f64::from));
             let approach = (v(i) - v(j)).dot(n);
             if n.dot(n) > (ri + rj) * (ri + rj)
                 || approach <= 0.0
@@ -316,12 +322,12 @@ fn respond(scene: &Scene, bodies: &mut Bodies) -> usize {
             let (mi, mj) = (mass(i, ri), mass(j, rj));
             let impulse = 2.0 * approach / n.dot(n) / (1.0 / mi + 1.0 / mj) * n;
             let (vi, vj) = (v(i) - impulse / mi, v(j) + impulse / mj);
-            bodies.velocity[i] = vi.to_array().map(|x| x as f32);
-            bodies.velocity[j] = vj.to_array().map(|x| x as f32);
+            velocity[i] = vi.to_array().map(|x| x as f32);
+            velocity[j] = vj.to_array().map(|x| x as f32);
             exchanges += 1;
         }
     }
-    exchanges
+    (velocity, exchanges)
 }
 
 #[test]
@@ -333,13 +339,12 @@ fn response_is_the_formula_on_all_pairs() {
              [[bodies]]\nshape = \"box\"\ncount = 10\nradius = {radius}\nstatic = true\n\
              [effects]\nresponse = \"elastic\"\n"
         ));
-        let mut expected = scene.bodies.clone();
-        let exchanges = respond(&scene, &mut expected);
+        let (expected, exchanges) = respond(&scene);
         assert!(exchanges > 50 || side == 200, "{exchanges}");
-        let found = after(&scene, 1);
+        let (_, found) = after(&scene, 1);
         for body in 0..90 {
             for axis in 0..3 {
-                let (a, b) = (found.velocity[body][axis], expected.velocity[body][axis]);
+                let (a, b) = (found.linear[body][axis], expected[body][axis]);
                 assert!(
                     (a - b).abs() <= 1e-5 * (1.0 + b.abs()),
                     "seed {seed}, body {body}: {a} {b}"
@@ -355,11 +360,12 @@ fn response_keeps_momentum_and_energy() {
         "[box]\nside = 12\n[[bodies]]\nshape = \"box\"\ncount = 120\nradius = [0.5, 2]\nspeed = [1, 3]\n\
          [effects]\nresponse = \"elastic\"\nmotion = true\n",
     );
-    let totals = |bodies: &Bodies| {
+    let totals = |velocities: &Velocities| {
         let (mut momentum, mut energy) = (glam::DVec3::ZERO, 0.0);
-        for body in 0..bodies.len() {
-            let mass = f64::from(scene.shapes[bodies.shape[body] as usize].ball.radius).powi(3);
-            let v = glam::DVec3::from(bodies.velocity[body].map(f64::from));
+        for (body, v) in velocities.linear.iter().enumerate() {
+            let mass =
+                f64::from(scene.shapes[scene.bodies.shape[body] as usize].ball.radius).powi(3);
+            let v = glam::DVec3::from(v.map(f64::from));
             momentum += mass * v;
             energy += 0.5 * mass * v.dot(v);
         }
@@ -367,13 +373,13 @@ fn response_keeps_momentum_and_energy() {
     };
     let mut bodies = scene.bodies.clone();
     let mut effects = scene.start_effects().unwrap();
-    let (momentum, energy) = totals(&bodies);
+    let (momentum, energy) = totals(effects.velocities());
     for _ in 0..100 {
         effects.step(&mut bodies).unwrap();
     }
     let changed = effects.reports()[2].changed;
     assert!(changed > 500, "{changed}");
-    let (momentum_now, energy_now) = totals(&bodies);
+    let (momentum_now, energy_now) = totals(effects.velocities());
     // Each exchange rounds six velocities by 2⁻²⁴ of their size; roundings add up like a random walk at most.
     let scale = changed as f64 * 2.0_f64.powi(-24);
     assert!(
@@ -388,10 +394,10 @@ fn response_keeps_momentum_and_energy() {
 
 #[test]
 fn a_body_that_leaves_the_contract_is_named_at_its_step() {
-    let scene = crowd("motion = true");
+    let mut scene = crowd("motion = true");
+    scene.velocities.linear[37] = [0.0, f32::NAN, 0.0];
     let mut bodies = scene.bodies.clone();
     let mut effects = scene.start_effects().unwrap();
-    bodies.velocity[37] = [0.0, f32::NAN, 0.0];
     let error = effects.step(&mut bodies).unwrap_err();
     assert_eq!(error.body, 37);
     assert!(

@@ -57,13 +57,14 @@ fn closed_form(s: f64) -> f64 {
 fn one_seed_is_one_scene_and_another_is_another() {
     let group = "count = 100\nradius = [0.5, 2]\nspeed = [1, 2]";
     let a = cubes("side = 40", 7, group);
-    assert_eq!(a.bodies, cubes("side = 40", 7, group).bodies);
+    let again = cubes("side = 40", 7, group);
+    assert_eq!(a.bodies, again.bodies);
+    assert_eq!(a.velocities, again.velocities);
     let b = cubes("side = 40", 8, group);
     let Bodies {
         shape,
         rotation,
         translation,
-        velocity,
         ..
     } = &a.bodies;
     assert!(*shape != b.bodies.shape);
@@ -72,7 +73,7 @@ fn one_seed_is_one_scene_and_another_is_another() {
             rotation[body] != b.bodies.rotation[body]
                 && translation[body] != b.bodies.translation[body]
         );
-        assert!(velocity[body] != b.bodies.velocity[body]);
+        assert!(a.velocities.linear[body] != b.velocities.linear[body]);
     }
 }
 
@@ -82,7 +83,7 @@ fn one_draw_leaves_the_others_as_they_are() {
     let b = cubes("side = 40", 7, "count = 70\nspeed = [3, 4]");
     assert_eq!(a.bodies.translation[..], b.bodies.translation[..50]);
     assert_eq!(a.bodies.rotation[..], b.bodies.rotation[..50]);
-    assert!(a.bodies.velocity[0] != b.bodies.velocity[0]);
+    assert!(a.velocities.linear[0] != b.velocities.linear[0]);
 }
 
 #[test]
@@ -100,7 +101,7 @@ fn spheres_start_inside_of_the_box_and_speeds_in_their_range() {
                 .all(|x| x.abs() <= room),
             "body {body}"
         );
-        let speed = scene.bodies.velocity[body]
+        let speed = scene.velocities.linear[body]
             .iter()
             .map(|v| f64::from(*v).powi(2))
             .sum::<f64>()
@@ -142,7 +143,7 @@ fn directions_and_rotations_are_uniform() {
     let n = 20_000.0;
     for axis in 0..3 {
         let (mut mean, mut square) = (0.0, 0.0);
-        for v in &scene.bodies.velocity {
+        for v in &scene.velocities.linear {
             mean += f64::from(v[axis]) / n;
             square += f64::from(v[axis]).powi(2) / n;
         }
@@ -233,7 +234,7 @@ fn poses_keep_the_files_frame_and_seeded_bodies_are_centred() {
     assert_eq!(scene.shapes.len(), 2, "two origins are two shapes");
     assert_eq!(scene.bodies.rotation[0], [0.0, 0.0, 0.0, 2.0]);
     assert_eq!(scene.bodies.translation[0], [1.0, 2.0, 3.0]);
-    assert_eq!(scene.bodies.velocity[0], [4.0, 5.0, 6.0]);
+    assert_eq!(scene.velocities.linear[0], [4.0, 5.0, 6.0]);
     assert_eq!(scene.bodies.dynamic, [true, false]);
     assert!(scene.shapes[0].ball.centre != glam::Vec3::ZERO);
     assert_eq!(scene.shapes[1].ball.centre, glam::Vec3::ZERO);

@@ -10,7 +10,8 @@ use crate::cost::Counters;
 use crate::linear::Vector;
 use crate::overlap::ordop::{self, Turned};
 use crate::overlap::{Overlap, obb, sphere, world};
-use crate::pose::{Body, separation};
+use crate::pose::separation;
+use crate::shape::Body;
 use crate::volume::DirectionSet;
 
 /// When a pair is reported.
@@ -26,7 +27,7 @@ pub enum Strategy<'a> {
     Sequential,
     /// The same from the listed sphere hits.
     Batch,
-    /// Spheres overlap and (neither body is of interest, or or-DOPs overlap). One flag a body.
+    /// Spheres overlap and (neither body is of interest, or or-DOPs overlap). One flag per body.
     ObjectOfInterest(&'a [bool]),
     /// Spheres overlap and (untested, or or-DOPs overlap). The sphere hits tested before the budget ended, sorted.
     TimeCritical(&'a [(u32, u32)]),
@@ -123,7 +124,7 @@ fn volumes(hit: bool, counters: &mut Counters) -> bool {
     hit
 }
 
-/// The plain f64 formulas over one frame of bodies. What a pose fixes is computed once a body, when first asked for.
+/// The plain f64 formulas over one frame of bodies. What a pose fixes is computed once per body, when first asked for.
 pub struct Plain<'a> {
     bodies: &'a [Body<'a>],
     overlap: Overlap,

@@ -18,21 +18,22 @@ pub struct Bodies {
     pub rotation: Vec<[f32; 4]>,
     /// Translation of the body origin, world frame.
     pub translation: Vec<[f32; 3]>,
-    /// Linear velocity, world frame, length units a second.
-    pub velocity: Vec<[f32; 3]>,
-    /// Angular velocity ω, world frame, radians a second.
-    pub spin: Vec<[f32; 3]>,
 }
 
 impl Bodies {
-    /// Appends a body at rest.
-    pub fn push(&mut self, shape: u32, dynamic: bool, rotation: [f32; 4], translation: [f32; 3]) {
+    /// Appends a body: the number of its shape, whether it may move, its orientation quaternion (x, y, z, w) of any non-zero
+    /// norm, and the translation of its origin, world frame.
+    pub fn push(
+        &mut self,
+        shape: u32,
+        dynamic: bool,
+        rotation: impl Into<[f32; 4]>,
+        translation: impl Into<[f32; 3]>,
+    ) {
         self.shape.push(shape);
         self.dynamic.push(dynamic);
-        self.rotation.push(rotation);
-        self.translation.push(translation);
-        self.velocity.push([0.0; 3]);
-        self.spin.push([0.0; 3]);
+        self.rotation.push(rotation.into());
+        self.translation.push(translation.into());
     }
 
     /// The number of bodies.

@@ -5,24 +5,31 @@
 //! A [`Culler`] is built once for a scene (the paper's Co) and then culls frame after frame. All buffers stay, so in steady
 //! state nothing is allocated.
 
+mod builder;
+mod error;
 pub(crate) mod models;
 mod needs;
+mod portions;
+
+pub use builder::CullerBuilder;
+pub use error::CullError;
 
 use std::time::Instant;
 
 use self::models::Models;
 use self::needs::Needs;
-use crate::bodies::Bodies;
-use crate::bodies::Groups;
-use crate::bodies::Places;
+use crate::bodies::contract::{
+    check_bodies, check_column, check_columns, check_numbers, check_poses,
+};
+use crate::bodies::{Bodies, Groups, Places};
 use crate::broad_phase::{PairFinder, Reorder};
 use crate::counters::{Counters, Seconds};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
-use crate::settings::{CullSettings, Finder, Interest, Overlap, SettingsError, Strategy, Updates};
+use crate::settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates};
 use crate::simd::Tier;
-use crate::strategy::{self, Memory, Stage, Worker};
-use crate::threads::{Threads, ThreadsError};
+use crate::strategy::{self, Inputs, Output, Scratch, Totals};
+use crate::threads::Threads;
 use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
 use crate::volume::Shape;
 
@@ -30,10 +37,10 @@ use crate::volume::Shape;
 #[derive(Debug)]
 pub struct Culler {
     settings: CullSettings,
+    scheme: Scheme,
     needs: Needs,
     tier: Tier,
     pool: Threads,
-    workers: Vec<Worker>,
     models: Models,
     places: Places,
     groups: Option<Vec<Groups>>,
@@ -47,8 +54,7 @@ pub struct Culler {
     intervals: Option<Intervals>,
     interval_slots: IntervalSlots,
     interest: Vec<bool>,
-    memory: Memory,
-    candidates: PairList,
+    scratch: Scratch,
     pairs: PairList,
     stamp: u32,
     counters: Counters,
@@ -56,33 +62,43 @@ pub struct Culler {
 }
 
 impl Culler {
-    /// Prepares culling of `bodies` in the tier `tier`, on the caller's thread. Static bodies' volumes are placed here, once.
-    ///
-    /// `bodies` must satisfy the contract (see [`check_bodies`](crate::bodies::contract::check_bodies)); shapes are in the
-    /// order that `bodies.shape` counts in. For [`Strategy::Obb`] each shape's own box replaces its or-DOP.
+    /// The culler of these bodies with every default: sequential S-DOP with the two-sided test, the finder that `auto`
+    /// picks, the fastest tier of this CPU, the caller's thread.
     ///
     /// # Errors
-    /// Settings that can't be carried out: a missing interest or budget, a body that doesn't exist.
-    pub fn new(
+    /// As [`CullerBuilder::build`].
+    pub fn new(shapes: &[Shape], bodies: &Bodies) -> Result<Self, CullError> {
+        Self::builder().build(shapes, bodies)
+    }
+
+    /// The choices that [`Self::new`] makes, to be made otherwise.
+    pub fn builder() -> CullerBuilder {
+        CullerBuilder::default()
+    }
+
+    fn build(
         shapes: &[Shape],
         bodies: &Bodies,
         settings: &CullSettings,
         tier: Tier,
-    ) -> Result<Self, SettingsError> {
-        settings.check(bodies.shape.len())?;
+        pool: Threads,
+    ) -> Result<Self, CullError> {
+        check_bodies(bodies, shapes)?;
+        settings.check(bodies.len())?;
         let start = Instant::now();
         let n = bodies.shape.len();
         let (models, places) = (Models::new(shapes, settings), Places::new(bodies));
-        let population = needs::population(settings.strategy, &models, &places);
+        let scheme = settings.strategy.scheme();
+        let population = needs::population(scheme, &models, &places);
         let finder = PairFinder::new(settings.pairs, &population);
-        let needs = Needs::of(settings, finder.name());
+        let needs = Needs::of(scheme, settings.k, finder.name());
         let directions = needs.intervals;
         let mut culler = Self {
             settings: settings.clone(),
+            scheme,
             needs,
             tier,
-            pool: Threads::default(),
-            workers: Vec::new(),
+            pool,
             models,
             places,
             groups: None,
@@ -94,8 +110,7 @@ impl Culler {
             intervals: directions.map(|directions| Intervals::new(directions, shapes, n)),
             interval_slots: IntervalSlots::default(),
             interest: vec![false; n],
-            memory: Memory::default(),
-            candidates: PairList::default(),
+            scratch: Scratch::default(),
             pairs: PairList::default(),
             stamp: 1,
             counters: Counters::default(),
@@ -108,26 +123,34 @@ impl Culler {
         Ok(culler)
     }
 
-    /// The same culler working on so many threads. Lists, counters and hashes don't depend on their number.
-    ///
-    /// # Errors
-    /// The system refuses to start the threads.
-    pub fn with_threads(mut self, threads: usize) -> Result<Self, ThreadsError> {
-        self.pool = Threads::new(threads)?;
-        Ok(self)
-    }
-
-    /// Adds a model: the shape grown by `margin` ≥ 0. Bodies wear it by the returned number in `bodies.shape`.
+    /// Adds a model: the shape grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the returned number.
     pub(crate) fn grow(&mut self, shape: u32, margin: f32) -> u32 {
         self.models.grow(shape, margin)
     }
 
-    /// Takes up bodies that wear another model since the last frame.
-    pub(crate) fn wear(&mut self, bodies: &Bodies) {
-        self.places.wear(bodies);
+    /// Re-reads `bodies.shape` after a change of margin class.
+    pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
+        self.places.reread_shapes(bodies);
     }
 
-    /// Takes up another set of bodies: those that are `present`. Volumes, static ones too, are placed anew; bodies that were
+    /// Re-reads what [`Self::cull`] takes as fixed: the number of bodies, their shapes, which of them may move, and where those
+    /// stand that may not. Costs about one more frame. Groups are forgotten when the number of bodies changes.
+    ///
+    /// # Errors
+    /// Bodies outside of the contract, an interest in a body that is no longer there; the culler stays as it was.
+    pub fn refresh(&mut self, bodies: &Bodies) -> Result<(), CullError> {
+        check_columns(bodies)?;
+        check_numbers(&bodies.shape, self.models.frames.len())?;
+        check_poses(bodies, 0..bodies.len())?;
+        self.settings.check(bodies.len())?;
+        if bodies.len() != self.interest.len() {
+            self.groups = None;
+        }
+        self.replace(bodies, &vec![true; bodies.len()]);
+        Ok(())
+    }
+
+    /// Replaces the set of bodies by those that are `present`. Volumes, static ones too, are placed anew; bodies that were
     /// there keep their neighbours.
     pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         self.places.replace(bodies, present);
@@ -139,22 +162,29 @@ impl Culler {
             intervals.resize(n);
         }
         self.interest.resize(bodies.len(), false);
-        let population = needs::population(self.settings.strategy, &self.models, &self.places);
+        let population = needs::population(self.scheme, &self.models, &self.places);
         self.finder = PairFinder::new(self.settings.pairs, &population);
         self.update_volumes(bodies, 0..n);
         self.reorder(bodies);
         self.arrange();
     }
 
-    /// From now on, only pairs of bodies that may collide are listed; `None`: all may.
+    /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a body.
     ///
     /// Pairs are filtered behind the first test, whose hits are few, and before anything else is done with them.
-    pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) {
+    ///
+    /// # Errors
+    /// A column that is shorter or longer than there are bodies; the groups stay as they were.
+    pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) -> Result<(), CullError> {
+        if let Some(groups) = &groups {
+            check_column("groups", groups.len(), self.interest.len())?;
+        }
         self.groups = groups;
+        Ok(())
     }
 
-    /// The bodies of interest from now on.
-    pub(crate) fn look_at(&mut self, bodies: Vec<u32>) {
+    /// From now on, these are the bodies of interest.
+    pub(crate) fn set_interest(&mut self, bodies: Vec<u32>) {
         self.settings.interest = Some(Interest::Bodies(bodies));
     }
 
@@ -172,27 +202,48 @@ impl Culler {
 
     /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
     /// finder and on the frames so far alone. Poses must satisfy the contract.
-    pub fn cull(&mut self, bodies: &Bodies) -> &PairList {
+    ///
+    /// # Errors
+    /// Fewer or more bodies than the culler was made for.
+    pub fn cull(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
         let start = Instant::now();
+        self.check_set(bodies)?;
+        let mut pairs = std::mem::take(&mut self.pairs);
+        pairs.clear();
+        self.cull_into(bodies, Output::List(&mut pairs), start);
+        self.counters.reported += pairs.len() as u64;
+        self.pairs = pairs;
+        Ok(&self.pairs)
+    }
+
+    /// Culls one frame, which began at `start`, and hands its pairs to `output`.
+    fn cull_into(&mut self, bodies: &Bodies, output: Output<'_>, start: Instant) {
         self.stamp += 1;
-        self.pairs.clear();
         self.reorder(bodies);
         let reordered = Instant::now();
         self.update_volumes(bodies, 0..self.places.moving);
         self.count_updates();
         let updated = Instant::now();
-        self.seconds.update += (updated - reordered).as_secs_f64();
-        let before = (self.seconds.ordop, self.seconds.update);
-
         self.arrange();
-        self.run(bodies);
+        let totals = self.run(bodies, output);
 
-        self.counters.reported += self.pairs.len() as u64;
-        let refined = (self.seconds.ordop - before.0) + (self.seconds.update - before.1);
         let finding = (reordered - start) + updated.elapsed();
-        self.seconds.pair_finding += finding.as_secs_f64() - refined;
+        let refining = totals.refining_seconds + totals.update_seconds;
+        self.seconds.update += (updated - reordered).as_secs_f64() + totals.update_seconds;
+        self.seconds.ordop += totals.refining_seconds;
+        self.seconds.pair_finding += finding.as_secs_f64() - refining;
         self.seconds.total += start.elapsed().as_secs_f64();
-        &self.pairs
+    }
+
+    /// Checks that there are as many bodies as there were.
+    fn check_set(&self, bodies: &Bodies) -> Result<(), CullError> {
+        check_columns(bodies)?;
+        let (made_for, given) = (self.interest.len(), bodies.len());
+        if given == made_for {
+            return Ok(());
+        }
+        let what = format!("{given} bodies in place of {made_for}");
+        Err(CullError::Changed { what })
     }
 
     /// The pairs of the last frame.
@@ -203,7 +254,7 @@ impl Culler {
 
     /// For strategies that list it, the potentially colliding set of the last frame in the order of refinement.
     pub fn potentially_colliding(&self) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
-        self.candidates.iter().map(|pair| {
+        self.scratch.candidates.iter().map(|pair| {
             let [a, b] = pair.map(|place| self.places.body[place as usize]);
             [a.min(b), a.max(b)]
         })
@@ -228,14 +279,15 @@ impl Culler {
 
     /// Lets the finder put bodies in other places. What has moved is updated anyway, unless it is static.
     fn reorder(&mut self, bodies: &Bodies) {
-        if self.settings.strategy == Strategy::None {
-            // The control arranges nothing, so there is no order to follow.
+        if self.scheme.flow == Flow::Nothing {
+            // Nothing is arranged, so there is no order to follow.
             return;
         }
         let by_place = self.names_are_places();
-        let names = match by_place {
-            true => &self.numbers,
-            false => &self.places.body,
+        let names = if by_place {
+            &self.numbers
+        } else {
+            &self.places.body
         };
         let (balls, order) = (&self.balls, &mut self.order);
         let changed = self.finder.reorder(&self.places, balls, names, order);
@@ -248,9 +300,11 @@ impl Culler {
         }
     }
 
-    /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies wait until a pair asks for them.
+    /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies are left until a pair
+    /// needs them.
     fn update_volumes(&mut self, bodies: &Bodies, range: std::ops::Range<usize>) {
         let (frames, places) = (&self.models.frames, &self.places);
+        let executor = self.pool.executor(self.tier);
         if self.needs.balls {
             let balls = &mut self.balls;
             update_spheres(&self.pool, balls, frames, bodies, places, range.clone());
@@ -269,57 +323,46 @@ impl Culler {
             let eager = start.min(range.end)..range.end;
             let balls = if self.needs.balls { &*self.balls } else { &[] };
             let posed = Posed { balls, ..posed };
-            self.rows
-                .update(self.tier, &self.pool, posed, eager, self.stamp);
+            self.rows.update(executor, posed, eager, self.stamp);
         }
         if let Some(intervals) = &mut self.intervals {
-            intervals.update(self.tier, &self.pool, &mut self.balls, posed, range);
+            intervals.update(executor, &mut self.balls, posed, range);
         }
     }
 
     fn count_updates(&mut self) {
         let moved = self.places.moving as u64;
-        let spheres_first = self.needs.balls && !self.is_homogeneous();
-        self.counters.sphere.updates += if spheres_first { moved } else { 0 };
-        let eager = self.needs.rows && self.settings.updates == Updates::Eager;
-        let oriented = match self.settings.strategy {
-            Strategy::Obb => &mut self.counters.obb,
-            _ => &mut self.counters.ordop,
-        };
-        oriented.updates += if eager { moved } else { 0 };
-        match self.settings.strategy {
-            Strategy::Aabb => self.counters.aabb.updates += moved,
-            Strategy::KDop => self.counters.kdop.updates += moved,
-            _ => {}
+        if let Some(volume) = self.scheme.first {
+            self.counters.of_mut(volume).updates += moved;
         }
-    }
-
-    /// Whether one volume alone, and not the sphere, decides.
-    fn is_homogeneous(&self) -> bool {
-        matches!(
-            self.settings.strategy,
-            Strategy::OrDop | Strategy::Obb | Strategy::Aabb | Strategy::KDop
-        )
+        if let Some(volume) = self.scheme.refining
+            && self.settings.updates == Updates::Eager
+        {
+            self.counters.of_mut(volume).updates += moved;
+        }
     }
 
     /// Brings the bodies, and the volumes of the first test, into slot order.
     fn arrange(&mut self) {
-        if self.settings.strategy == Strategy::None {
+        if self.scheme.flow == Flow::Nothing {
             return;
         }
-        let names = match self.names_are_places() {
-            true => &self.numbers,
-            false => &self.places.body,
+        let names = if self.names_are_places() {
+            &self.numbers
+        } else {
+            &self.places.body
         };
+        let executor = self.pool.executor(self.tier);
         self.finder
-            .arrange(self.tier, &self.pool, &self.places, &self.balls, names);
+            .arrange(executor, &self.places, &self.balls, names);
         if let Some(intervals) = &self.intervals {
             let order = &self.finder.slots().names[..self.places.len()];
             self.interval_slots.fill(order, &intervals.ends);
         }
     }
 
-    fn run(&mut self, bodies: &Bodies) {
+    /// Finds and tests pairs.
+    fn run(&mut self, bodies: &Bodies, output: Output<'_>) -> Totals {
         if let Some(interest) = &self.settings.interest {
             let frame = |body: usize| &self.models.frames[bodies.shape[body] as usize];
             let centre = |body: usize| {
@@ -329,50 +372,40 @@ impl Culler {
             };
             strategy::mark(interest, bodies, centre, &mut self.interest);
         }
-        let overlap = match self.settings.strategy {
-            Strategy::Obb => Overlap::Full,
-            _ => self.settings.overlap,
-        };
-        let (tests_before, names_are_places) = (self.first_tests(), self.names_are_places());
-        let mut stage = Stage {
-            tier: self.tier,
-            pool: &self.pool,
-            workers: &mut self.workers,
+        let inputs = Inputs {
+            executor: self.pool.executor(self.tier),
+            settings: &self.settings,
             finder: &self.finder,
-            names_are_places,
-            places: &self.places,
+            names_are_places: self.names_are_places(),
+            posed: Posed {
+                frames: &self.models.frames,
+                bodies,
+                places: &self.places,
+                balls: if self.needs.balls { &self.balls } else { &[] },
+            },
             groups: self.groups.as_deref(),
-            bodies,
             intervals: &self.interval_slots,
-            spheres: if self.needs.balls { &self.balls } else { &[] },
-            rows: &mut self.rows,
-            frames: &self.models.frames,
             tables: &self.models.tables,
-            overlap,
-            lazy: self.settings.updates == Updates::Lazy,
-            stamp: self.stamp,
             interest: &self.interest,
-            budget: self.settings.budget,
-            order: self.settings.order,
-            memory: &mut self.memory,
-            candidates: &mut self.candidates,
-            counters: &mut self.counters,
-            seconds: &mut self.seconds,
-            out: &mut self.pairs,
+            stamp: self.stamp,
         };
-        strategy::cull(self.settings.strategy, &mut stage);
-        self.finder.observe(self.first_tests() - tests_before);
+        let totals = strategy::cull(inputs, &mut self.rows, &mut self.scratch, output);
+        self.count(&totals);
+        totals
     }
 
-    /// How many candidates the first test has had.
-    fn first_tests(&self) -> u64 {
-        let counters = &self.counters;
-        match self.settings.strategy {
-            Strategy::OrDop => counters.ordop.tests,
-            Strategy::Obb => counters.obb.tests,
-            Strategy::Aabb => counters.aabb.tests,
-            Strategy::KDop => counters.kdop.tests,
-            _ => counters.sphere.tests,
+    fn count(&mut self, totals: &Totals) {
+        if let Some(volume) = self.scheme.first {
+            *self.counters.of_mut(volume) += totals.first;
         }
+        if let Some(volume) = self.scheme.refining {
+            *self.counters.of_mut(volume) += totals.refining;
+        }
+        self.counters.untested += totals.untested;
+        let candidates = match self.scheme.first {
+            Some(_) => totals.first.tests,
+            None => totals.refining.tests,
+        };
+        self.finder.observe(candidates);
     }
 }

@@ -1,5 +1,6 @@
 //! How a scene is culled: the `[cull]` table, whose keys are also the flags of the command line (design, section 2).
 
+mod scheme;
 #[cfg(feature = "lab")]
 mod text;
 
@@ -9,6 +10,7 @@ use thiserror::Error;
 pub use crate::choice::UnknownChoice;
 use crate::choice::choices;
 pub use crate::volume::{Axes, DirectionSet};
+pub use scheme::{Flow, Scheme, TestedVolume};
 
 choices! {
     /// Which volumes are tested, and in which order.
@@ -130,12 +132,14 @@ pub enum Budget {
     Microseconds(u64),
 }
 
-/// The `[cull]` table of a scene.
+/// How a scene is culled: sequential S-DOP with the finder that `auto` picks unless said otherwise.
+///
+/// A scene file's `[cull]` table, where the finder is `all-pairs` unless said otherwise ([`Self::all_pairs`]).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "lab",
     derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields, default)
+    serde(deny_unknown_fields, default = "CullSettings::all_pairs")
 )]
 pub struct CullSettings {
     /// The culling strategy.
@@ -156,7 +160,7 @@ pub struct CullSettings {
     pub updates: Updates,
     /// The bodies of interest.
     pub interest: Option<Interest>,
-    /// The budget a frame of time-critical culling.
+    /// The budget per frame of time-critical culling.
     pub budget: Option<Budget>,
     /// How time-critical culling spends it.
     pub order: Order,
@@ -166,7 +170,7 @@ impl Default for CullSettings {
     fn default() -> Self {
         Self {
             strategy: Strategy::SDopSequential,
-            pairs: Finder::AllPairs,
+            pairs: Finder::Auto,
             k: DirectionSet::K18,
             axes: Axes::Principal,
             overlap: Overlap::TwoSided,
@@ -204,6 +208,15 @@ pub enum SettingsError {
 }
 
 impl CullSettings {
+    /// The defaults of a scene file: as [`Self::default`], but every pair is a candidate, as in the paper.
+    #[must_use]
+    pub fn all_pairs() -> Self {
+        Self {
+            pairs: Finder::AllPairs,
+            ..Self::default()
+        }
+    }
+
     /// Checks the settings against each other and against a scene of `bodies` bodies.
     ///
     /// # Errors
@@ -214,15 +227,16 @@ impl CullSettings {
             key,
             hint,
         };
-        let looks = self.strategy == Strategy::SDopObjectOfInterest
-            || (self.strategy == Strategy::SDopTimeCritical && self.order == Order::InterestFirst);
-        if looks && self.interest.is_none() {
+        let flow = self.strategy.scheme().flow;
+        let needs_interest = flow == Flow::OfInterest
+            || (flow == Flow::TimeCritical && self.order == Order::InterestFirst);
+        if needs_interest && self.interest.is_none() {
             return Err(missing(
                 "interest",
                 "list body indices, interest = [0], or a cone, interest = { body = 0, direction = [0, 0, 1], half_angle = 30 }",
             ));
         }
-        if self.strategy == Strategy::SDopTimeCritical && self.budget.is_none() {
+        if flow == Flow::TimeCritical && self.budget.is_none() {
             return Err(missing(
                 "budget",
                 "give budget = { tests = 1000 } or budget = { microseconds = 500 }",

@@ -34,7 +34,7 @@ fn settings(strategy: Strategy, pairs: Finder) -> CullSettings {
         pairs,
         interest: Some(Interest::Cone(cone)),
         budget: Some(Budget::Tests(u64::MAX)),
-        ..CullSettings::default()
+        ..CullSettings::all_pairs()
     }
 }
 
@@ -49,10 +49,14 @@ fn run(
 ) {
     let mut rng = ChaCha8Rng::seed_from_u64(99);
     let mut bodies = scene.bodies.clone();
-    let culler = Culler::new(&scene.shapes, &bodies, settings, tier).unwrap();
-    let mut culler = culler.with_threads(threads).unwrap();
+    let mut culler = Culler::builder()
+        .settings(settings)
+        .tier(tier)
+        .threads(threads)
+        .build(&scene.shapes, &bodies)
+        .unwrap();
     for _ in 0..frames {
-        culler.cull(&bodies);
+        culler.cull(&bodies).unwrap();
         take(&culler);
         advance(&mut bodies, scene.step, &mut rng);
     }
@@ -260,13 +264,16 @@ fn groups_leave_of_every_list_the_pairs_that_may_collide() {
         for &finder in Finder::ALL {
             for threads in [1, 3] {
                 let settings = settings(strategy, finder);
-                let culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect());
-                let mut culler = culler.unwrap().with_threads(threads).unwrap();
-                culler.set_groups(Some(groups.clone()));
+                let mut culler = Culler::builder()
+                    .settings(&settings)
+                    .threads(threads)
+                    .build(&scene.shapes, &scene.bodies)
+                    .unwrap();
+                culler.set_groups(Some(groups.clone())).unwrap();
                 let (mut rng, mut bodies) = (ChaCha8Rng::seed_from_u64(99), scene.bodies.clone());
                 let mut found = Vec::new();
                 for _ in 0..3 {
-                    found.push(culler.cull(&bodies).sorted());
+                    found.push(culler.cull(&bodies).unwrap().sorted());
                     advance(&mut bodies, scene.step, &mut rng);
                 }
                 compare(&found, &wanted, &format!("{strategy}, {finder}, {threads}"));
@@ -346,7 +353,10 @@ fn bodies_may_gather_and_part_over_many_frames() {
     let start = scene.bodies.translation.clone();
     let cullers = [Finder::AllPairs].iter().chain(Finder::ALL).map(|&finder| {
         let settings = settings(Strategy::SDopSequential, finder);
-        Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect()).unwrap()
+        Culler::builder()
+            .settings(&settings)
+            .build(&scene.shapes, &scene.bodies)
+            .unwrap()
     });
     let mut cullers: Vec<Culler> = cullers.collect();
     for frame in 0..120 {
@@ -357,9 +367,9 @@ fn bodies_may_gather_and_part_over_many_frames() {
             }
         }
         let (first, rest) = cullers.split_first_mut().unwrap();
-        let wanted = first.cull(&scene.bodies).sorted();
+        let wanted = first.cull(&scene.bodies).unwrap().sorted();
         for culler in rest {
-            let found = culler.cull(&scene.bodies).sorted();
+            let found = culler.cull(&scene.bodies).unwrap().sorted();
             compare(
                 &[found],
                 std::slice::from_ref(&wanted),

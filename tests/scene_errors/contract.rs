@@ -2,6 +2,7 @@
 
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::check_bodies;
+use sdop::lab::effects::Velocities;
 
 use super::{SOUND, build, posed, refusal};
 
@@ -87,13 +88,22 @@ fn bodies_of_a_caller_are_checked_at_the_border() {
             .last(),
         Some("NaN]")
     );
+    let refused = |change: fn(&mut Velocities)| {
+        let mut velocities = scene.velocities.clone();
+        change(&mut velocities);
+        velocities.check(3).unwrap_err().to_string()
+    };
     assert_eq!(
-        refusal(|b| b.velocity[2] = [f32::INFINITY; 3]),
+        refused(|v| v.linear[2] = [f32::INFINITY; 3]),
         "body 2: velocity [inf, inf, inf]"
     );
     assert_eq!(
-        refusal(|b| b.spin[2] = [0.0, 1.2e18, 0.0]),
+        refused(|v| v.angular[2] = [0.0, 1.2e18, 0.0]),
         "body 2: spin [0.0, 1.2e18, 0.0]"
+    );
+    assert_eq!(
+        refused(|v| v.angular.truncate(1)),
+        "body 1: spin is missing or too much: 1 entries for 3 bodies"
     );
     assert_eq!(
         refusal(|b| b.dynamic.truncate(1)),

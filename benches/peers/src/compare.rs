@@ -50,14 +50,14 @@ pub struct LeftOut {
 /// A case with its answers.
 pub struct Compared {
     /// In the order of engines.
-    pub rows: Vec<Row>,
+    pub rows: Vec<EngineTiming>,
     /// Those without a row.
     pub left_out: Vec<LeftOut>,
 }
 
 /// What one engine did in a case.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct EngineTiming {
     /// The case.
     #[serde(flatten)]
     pub case: Case,
@@ -69,7 +69,7 @@ pub struct Row {
     pub work: &'static str,
     /// Pairs in the last frame.
     pub pairs: usize,
-    /// Milliseconds a frame: the lower quartile, the median and the upper quartile.
+    /// Milliseconds per frame: the lower quartile, the median and the upper quartile.
     pub ms_low: f64,
     /// See above.
     pub ms: f64,
@@ -79,13 +79,13 @@ pub struct Row {
     pub ns_a_body: f64,
     /// Median over frames of its time over ours for boxes.
     pub ratio: f64,
-    /// Bytes a body that it holds.
+    /// Bytes per body that it holds.
     pub bytes_a_body: f64,
-    /// The most bytes a body that it had at once; of C++ what it holds.
+    /// The most bytes per body that it had at once; of C++ what it holds.
     pub peak_bytes_a_body: f64,
 }
 
-/// Checks and times everyone who keeps to the limit, in milliseconds a frame.
+/// Checks and times everyone who keeps to the limit, in milliseconds per frame.
 ///
 /// # Errors
 /// An engine whose pairs are not the scene's, an engine that can't be built.
@@ -101,7 +101,7 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compa
         let ratio = base.as_ref().map(|base| median_ratio(&racer.ms, base));
         let [ms_low, ms, ms_high] = [0.25, 0.5, 0.75].map(|q| quantile(&mut racer.ms, q));
         let bodies = case.bodies as f64;
-        rows.push(Row {
+        rows.push(EngineTiming {
             case,
             engine: racer.entry.name,
             version: racer.entry.version,

@@ -3,7 +3,7 @@
 //!
 //! speed-up = t(one thread) / t(several), the median over frames of the same frame's times; a control's is what the machine
 //! has to give at the time, and ours is quoted as a share of it. The loops run on the same pool, in as many pieces, with as
-//! much work or as many bytes a body as the culler, so that waking threads costs them what it costs us.
+//! much work or as many bytes per body as the culler, so that waking threads costs them what it costs us.
 
 use std::fmt::Write as _;
 use std::hint::black_box;
@@ -46,15 +46,15 @@ const MEMORY: &str = "memory";
 /// Pieces of a control's work, on any number of threads: as many as ours has on two.
 const PIECES: usize = 8;
 
-/// Bytes a body that the memory loop reads and writes each frame: what a culler holds.
+/// Bytes per body that the memory loop reads and writes each frame: what a culler holds.
 const BYTES: usize = 152;
 
-/// Steps a body of the arithmetic loop: some 50 ns, as S-DOP takes.
+/// Steps per body of the arithmetic loop: some 50 ns, as S-DOP takes.
 const STEPS: usize = 96;
 
 /// One work's speed-up.
 #[derive(Serialize)]
-struct Row {
+struct SpeedUp {
     bodies: usize,
     work: &'static str,
     threads: usize,
@@ -69,7 +69,7 @@ struct Row {
 struct Measured {
     #[serde(flatten)]
     facts: Facts,
-    rows: Vec<Row>,
+    rows: Vec<SpeedUp>,
 }
 
 /// Measures, prints the table, and writes it if asked to.
@@ -99,7 +99,7 @@ struct Racer {
     ms: Vec<f64>,
 }
 
-fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<Row>> {
+fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
     let mut course = Course::new(Spread::Uniform, bodies, Order::Random, 0)?;
     let Schedule {
         warm_up,
@@ -152,7 +152,7 @@ fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<Row>> {
 }
 
 /// The second half of `racers` does what the first does, on more threads.
-fn rows(bodies: usize, threads: usize, racers: &mut [Racer]) -> miette::Result<Vec<Row>> {
+fn rows(bodies: usize, threads: usize, racers: &mut [Racer]) -> miette::Result<Vec<SpeedUp>> {
     let (alone, together) = racers.split_at_mut(racers.len() / 2);
     let sorted = |peer: &dyn Peer| {
         let mut pairs = peer.pairs();
@@ -168,7 +168,7 @@ fn rows(bodies: usize, threads: usize, racers: &mut [Racer]) -> miette::Result<V
                 one.name
             ));
         }
-        rows.push(Row {
+        rows.push(SpeedUp {
             bodies,
             work: one.name,
             threads,

@@ -1,6 +1,6 @@
 //! The scenes that everyone is measured on, made by the library's own scene code: the same frames for all.
 //!
-//! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a unit radius a frame,
+//! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a unit radius per frame,
 //! mirrored at walls. The paper's scene stands in for the smallest uniform one: 500 bodies in a box of 16.1.
 
 use std::path::Path;
@@ -110,7 +110,7 @@ impl Course {
             for _ in 0..=timed_from {
                 ahead.next_frame(&mut frame)?;
             }
-            permute(&mut scene.bodies, &along_curve(&frame.bodies.translation));
+            permute(&mut scene, &along_curve(&frame.bodies.translation));
         }
         Self::start(scene)
     }
@@ -169,16 +169,19 @@ fn along_curve(places: &[[f32; 3]]) -> Vec<usize> {
     order
 }
 
-fn permute(bodies: &mut Bodies, order: &[usize]) {
+fn permute(scene: &mut Scene, order: &[usize]) {
     fn column<T: Copy>(column: &mut Vec<T>, order: &[usize]) {
         *column = order.iter().map(|&body| column[body]).collect();
     }
+    let Scene {
+        bodies, velocities, ..
+    } = scene;
     column(&mut bodies.shape, order);
     column(&mut bodies.dynamic, order);
     column(&mut bodies.rotation, order);
     column(&mut bodies.translation, order);
-    column(&mut bodies.velocity, order);
-    column(&mut bodies.spin, order);
+    column(&mut velocities.linear, order);
+    column(&mut velocities.angular, order);
 }
 
 #[cfg(test)]

@@ -6,9 +6,10 @@
 //! lanes that it keeps busy. Dividing a run's own seconds by its own counts would predict nothing.
 
 use super::VolumeCosts;
-use super::fit::{self, Row};
+use super::fit::{self, Measurement};
 use super::predict::{Price, Prices, Volume};
 use crate::bodies::Bodies;
+use crate::lab::effects::Velocities;
 use crate::lab::measure::turns::{Trial, side_by_side, time};
 use crate::lab::number::Interval;
 use crate::lab::random::Stream;
@@ -97,7 +98,7 @@ fn resample(scene: &Scene, n: usize, stretch: f32, stream: u64) -> Scene {
         .map(|shape| shape.ball.radius)
         .fold(0.0, f32::max);
     let side = side.max(2.0 * widest);
-    let mut bodies = Bodies::default();
+    let (mut bodies, mut velocities) = (Bodies::default(), Velocities::default());
     for i in 0..n {
         let body = i * original.len() / n;
         let limit = 0.5 * side - scene.shapes[original.shape[body] as usize].ball.radius;
@@ -108,8 +109,8 @@ fn resample(scene: &Scene, n: usize, stretch: f32, stream: u64) -> Scene {
             .translation
             .push([(); 3].map(|()| draws.between(-limit, limit)));
         for (from, to) in [
-            (&original.velocity, &mut bodies.velocity),
-            (&original.spin, &mut bodies.spin),
+            (&scene.velocities.linear, &mut velocities.linear),
+            (&scene.velocities.angular, &mut velocities.angular),
         ] {
             let [x, y, z] = from[body];
             let length = libm::sqrtf(x * x + y * y + z * z);
@@ -121,6 +122,7 @@ fn resample(scene: &Scene, n: usize, stretch: f32, stream: u64) -> Scene {
     }
     Scene {
         bodies,
+        velocities,
         side: Some(side),
         seed: SEED,
         ..scene.clone()
@@ -143,7 +145,7 @@ struct Run {
     frames: f64,
     trials: Vec<Trial>,
     /// A list of or-DOP hits alone, where S-DOP is measured.
-    hits: Option<Row<4>>,
+    hits: Option<Measurement<4>>,
 }
 
 impl Run {
@@ -175,7 +177,7 @@ impl Run {
 
 /// Times the or-DOP test on a list of its hits. Refined pairs always have about the same share of hits, so that no
 /// choice of scenes alone could tell the price of a hit from that of a miss.
-fn time_hits(scene: &Scene, hits: &PairList, tier: Tier) -> Row<4> {
+fn time_hits(scene: &Scene, hits: &PairList, tier: Tier) -> Measurement<4> {
     let shapes = scene.shapes.iter().map(|shape| (shape, &shape.ordop));
     let posed = PosedOrDops::new(shapes, &scene.bodies, tier);
     let columns = posed.columns(scene.cull.overlap);
@@ -184,7 +186,7 @@ fn time_hits(scene: &Scene, hits: &PairList, tier: Tier) -> Row<4> {
         out.clear();
         columns.test_pairs(tier, hits.first(), hits.second(), &mut out)
     });
-    Row {
+    Measurement {
         counts: [1.0, 0.0, 0.0, hits.len() as f64],
         seconds: if hits.is_empty() { 0.0 } else { seconds },
     }
@@ -226,11 +228,11 @@ fn price(volume: Volume, runs: &[Run], known: &Prices) -> VolumeCosts {
         } else {
             0.0
         };
-        updates.push(Row {
+        updates.push(Measurement {
             counts: [per_frame(counters.updates)],
             seconds: medians.update - spheres / run.frames,
         });
-        finding.push(Row {
+        finding.push(Measurement {
             counts: [1.0, if refined { 0.0 } else { run.bodies }, misses, hits],
             seconds: medians.ordop + if refined { 0.0 } else { medians.pair_finding },
         });

@@ -6,7 +6,7 @@ use std::ops::Range;
 use serde::Deserialize;
 
 use super::Start;
-use super::{Effect, Made};
+use super::{Effect, Made, Velocities};
 use crate::bodies::Bodies;
 use crate::lab::number::{Interval, Share};
 use crate::lab::random::Stream;
@@ -47,13 +47,13 @@ pub(super) fn new(settings: &Settings, start: &Start<'_>) -> Made {
 }
 
 impl Effect for Brownian {
-    fn step(&mut self, bodies: &mut Bodies, _: &[Range<usize>]) -> u64 {
+    fn step(&mut self, _: &mut Bodies, velocities: &mut Velocities, _: &[Range<usize>]) -> u64 {
         // The fraction of a kick is drawn, so that the mean is the share also for few bodies.
         let kicks = (self.kicks_a_step + f64::from(self.draws.unit())) as u64;
         for _ in 0..kicks {
             let chosen = self.draws.index(self.dynamic.len() as u32);
             let body = self.dynamic[chosen as usize];
-            bodies.velocity[body as usize] = self.draws.vector(self.speed);
+            velocities.linear[body as usize] = self.draws.vector(self.speed);
         }
         kicks
     }

@@ -7,7 +7,7 @@ use std::ops::Range;
 use serde::Deserialize;
 
 use super::Start;
-use super::{Effect, Made};
+use super::{Effect, Made, Velocities};
 use crate::bodies::Bodies;
 use crate::lab::number::{Positive, Real, vector};
 
@@ -58,7 +58,12 @@ pub(super) fn new(settings: &Settings, start: &Start<'_>) -> Made {
 }
 
 impl Effect for Gravity {
-    fn step(&mut self, bodies: &mut Bodies, dynamic: &[Range<usize>]) -> u64 {
+    fn step(
+        &mut self,
+        _: &mut Bodies,
+        velocities: &mut Velocities,
+        dynamic: &[Range<usize>],
+    ) -> u64 {
         let now = match self.turning {
             None => self.acceleration,
             Some((axis, turns_a_step)) => {
@@ -70,7 +75,7 @@ impl Effect for Gravity {
         let gain = now.map(|a| self.dt * a as f32);
         let mut changed = 0;
         for run in dynamic {
-            for v in &mut bodies.velocity[run.clone()] {
+            for v in &mut velocities.linear[run.clone()] {
                 for axis in 0..3 {
                     v[axis] += gain[axis];
                 }

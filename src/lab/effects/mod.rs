@@ -10,7 +10,10 @@ pub mod gravity;
 pub mod motion;
 pub mod response;
 pub mod spin;
+mod velocities;
 pub mod walls;
+
+pub use velocities::Velocities;
 
 use std::ops::Range;
 use std::time::Instant;
@@ -35,8 +38,10 @@ pub struct Start<'a> {
     pub side: Option<f32>,
     /// What the bodies look like.
     pub shapes: &'a [Shape],
-    /// The initial state.
+    /// The initial poses.
     pub bodies: &'a Bodies,
+    /// The initial velocities.
+    pub velocities: &'a Velocities,
 }
 
 /// The world position of a body-frame point, computed in f64 and rounded once; t itself for the body origin.
@@ -51,7 +56,12 @@ pub(crate) fn world_centre(point: [f32; 3], q: &[f32; 4], t: &[f32; 3]) -> [f32;
 pub trait Effect: Send {
     /// Advances the bodies by one step and returns how many it changed. `dynamic` are the runs of bodies that may move;
     /// all others stay as they are.
-    fn step(&mut self, bodies: &mut Bodies, dynamic: &[Range<usize>]) -> u64;
+    fn step(
+        &mut self,
+        bodies: &mut Bodies,
+        velocities: &mut Velocities,
+        dynamic: &[Range<usize>],
+    ) -> u64;
 }
 
 /// An effect that a scene lists but can't have.
@@ -131,8 +141,9 @@ pub struct EffectReport {
     pub seconds: f64,
 }
 
-/// The effects of one run.
+/// The effects of one run, and the velocities between its frames.
 pub struct Effects {
+    velocities: Velocities,
     running: Vec<(usize, Box<dyn Effect>)>,
     reports: Vec<EffectReport>,
     dynamic: Vec<Range<usize>>,
@@ -158,6 +169,7 @@ impl Effects {
             reports[*place].listed = true;
         }
         Ok(Self {
+            velocities: start.velocities.clone(),
             running,
             reports,
             dynamic: runs(&start.bodies.dynamic),
@@ -175,7 +187,7 @@ impl Effects {
         let visited: usize = self.dynamic.iter().map(Range::len).sum();
         for (place, effect) in &mut self.running {
             let start = Instant::now();
-            let changed = effect.step(bodies, &self.dynamic);
+            let changed = effect.step(bodies, &mut self.velocities, &self.dynamic);
             let report = &mut self.reports[*place];
             report.seconds += start.elapsed().as_secs_f64();
             report.steps += 1;
@@ -185,6 +197,12 @@ impl Effects {
         self.dynamic
             .iter()
             .try_for_each(|run| check_poses(bodies, run.clone()))
+    }
+
+    /// The velocities of all bodies now.
+    #[must_use]
+    pub fn velocities(&self) -> &Velocities {
+        &self.velocities
     }
 
     /// What each effect did so far, listed or not, in the order of [`NAMES`].

@@ -7,7 +7,7 @@ use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::Start;
-use super::{Effect, Made};
+use super::{Effect, Made, Velocities};
 use crate::bodies::Bodies;
 
 /// `true`: there is nothing to set.
@@ -45,11 +45,16 @@ pub(super) fn new(Settings: &Settings, start: &Start<'_>) -> Made {
 }
 
 impl Effect for Motion {
-    fn step(&mut self, bodies: &mut Bodies, dynamic: &[Range<usize>]) -> u64 {
+    fn step(
+        &mut self,
+        bodies: &mut Bodies,
+        velocities: &mut Velocities,
+        dynamic: &[Range<usize>],
+    ) -> u64 {
         let mut changed = 0;
         for run in dynamic {
-            let velocities = &bodies.velocity[run.clone()];
-            for (t, v) in bodies.translation[run.clone()].iter_mut().zip(velocities) {
+            let linear = &velocities.linear[run.clone()];
+            for (t, v) in bodies.translation[run.clone()].iter_mut().zip(linear) {
                 for axis in 0..3 {
                     t[axis] += self.dt * v[axis];
                 }

@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use super::{Effect, Made};
+use super::{Effect, Made, Velocities};
 use super::{Start, world_centre};
 use crate::bodies::Bodies;
 use crate::choice::choices;
@@ -49,7 +49,12 @@ pub(super) fn new(Settings::Elastic: &Settings, start: &Start<'_>) -> Made {
 }
 
 impl Effect for Elastic {
-    fn step(&mut self, bodies: &mut Bodies, _: &[Range<usize>]) -> u64 {
+    fn step(
+        &mut self,
+        bodies: &mut Bodies,
+        velocities: &mut Velocities,
+        _: &[Range<usize>],
+    ) -> u64 {
         self.spheres.clear();
         self.spheres.extend((0..bodies.len()).map(|body| {
             let (centre, radius) = self.balls[bodies.shape[body] as usize];
@@ -75,7 +80,7 @@ impl Effect for Elastic {
             });
             partners.sort_unstable();
             for &j in &partners {
-                changed += exchange(bodies, spheres, i, j);
+                changed += exchange(bodies, &mut velocities.linear, spheres, i, j);
             }
         }
         changed
@@ -97,12 +102,15 @@ fn touch(a: &Sphere, b: &Sphere) -> bool {
 }
 
 /// Exchanges momentum if i and j approach; returns how many bodies changed.
-fn exchange(bodies: &mut Bodies, spheres: &[Sphere], i: usize, j: usize) -> u64 {
+fn exchange(
+    bodies: &Bodies,
+    velocity: &mut [[f32; 3]],
+    spheres: &[Sphere],
+    i: usize,
+    j: usize,
+) -> u64 {
     let n = difference(&spheres[i], &spheres[j]);
-    let (vi, vj) = (
-        bodies.velocity[i].map(f64::from),
-        bodies.velocity[j].map(f64::from),
-    );
+    let (vi, vj) = (velocity[i].map(f64::from), velocity[j].map(f64::from));
     let approach = dot([0, 1, 2].map(|axis| vi[axis] - vj[axis]), n);
     // Coincident centres have no line between them: their approach is 0, and dividing by n·n would make NaN.
     if approach <= 0.0 {
@@ -111,10 +119,10 @@ fn exchange(bodies: &mut Bodies, spheres: &[Sphere], i: usize, j: usize) -> u64 
     let rate = approach / dot(n, n);
     let (share_i, share_j) = shares(bodies, spheres, i, j);
     if bodies.dynamic[i] {
-        bodies.velocity[i] = [0, 1, 2].map(|axis| (vi[axis] - share_i * rate * n[axis]) as f32);
+        velocity[i] = [0, 1, 2].map(|axis| (vi[axis] - share_i * rate * n[axis]) as f32);
     }
     if bodies.dynamic[j] {
-        bodies.velocity[j] = [0, 1, 2].map(|axis| (vj[axis] + share_j * rate * n[axis]) as f32);
+        velocity[j] = [0, 1, 2].map(|axis| (vj[axis] + share_j * rate * n[axis]) as f32);
     }
     u64::from(bodies.dynamic[i]) + u64::from(bodies.dynamic[j])
 }

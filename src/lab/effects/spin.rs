@@ -6,7 +6,7 @@ use std::ops::Range;
 use serde::Deserialize;
 
 use super::Start;
-use super::{Effect, Made};
+use super::{Effect, Made, Velocities};
 use crate::bodies::Bodies;
 use crate::lab::number::Interval;
 
@@ -29,10 +29,15 @@ pub(super) fn new(_: &Settings, start: &Start<'_>) -> Made {
 }
 
 impl Effect for Spin {
-    fn step(&mut self, bodies: &mut Bodies, dynamic: &[Range<usize>]) -> u64 {
+    fn step(
+        &mut self,
+        bodies: &mut Bodies,
+        velocities: &mut Velocities,
+        dynamic: &[Range<usize>],
+    ) -> u64 {
         let mut changed = 0;
         for run in dynamic {
-            let spins = &bodies.spin[run.clone()];
+            let spins = &velocities.angular[run.clone()];
             for (q, spin) in bodies.rotation[run.clone()].iter_mut().zip(spins) {
                 *q = turned(*q, spin.map(|rate| self.half_dt * rate));
             }

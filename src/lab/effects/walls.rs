@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::Start;
 use super::world_centre;
-use super::{Effect, Made};
+use super::{Effect, Made, Velocities};
 use crate::bodies::Bodies;
 use crate::choice::choices;
 
@@ -69,7 +69,12 @@ pub(super) fn new(kind: &Settings, start: &Start<'_>) -> Made {
 }
 
 impl Effect for Walls {
-    fn step(&mut self, bodies: &mut Bodies, dynamic: &[Range<usize>]) -> u64 {
+    fn step(
+        &mut self,
+        bodies: &mut Bodies,
+        velocities: &mut Velocities,
+        dynamic: &[Range<usize>],
+    ) -> u64 {
         let mut changed = 0;
         for body in dynamic.iter().cloned().flatten() {
             let (centre, limit) = self.shapes[bodies.shape[body] as usize];
@@ -79,7 +84,7 @@ impl Effect for Walls {
             if hit == [false; 3] {
                 continue;
             }
-            let v = &mut bodies.velocity[body];
+            let v = &mut velocities.linear[body];
             for axis in 0..3 {
                 if hit[axis] {
                     let offset = world[axis] - t[axis];

@@ -274,7 +274,7 @@ pub fn run_scene(
 /// Seconds to build a strategy's volumes of all shapes, once.
 fn build(scene: &Scene, strategy: Strategy) -> f64 {
     let start = Instant::now();
-    for &volume in Volume::of(strategy) {
+    for volume in Volume::of(strategy) {
         for shape in &scene.shapes {
             construct(volume, shape, scene.cull.axes);
         }
@@ -305,7 +305,7 @@ impl Survival {
         scene.shapes = turned.collect();
         (scene.cull.k, scene.cull.overlap) = (self.k, self.overlap);
         let mut trial = Trial::new(&scene, Strategy::SDopBatch, tier)?;
-        trial.frame(&scene.bodies);
+        trial.frame(&scene.bodies)?;
         let ordop = trial.counters().ordop;
         Ok(ordop.hits as f64 / ordop.tests as f64)
     }

@@ -10,7 +10,7 @@ use super::placement::Placer;
 use super::{Scene, density};
 use crate::bodies::Bodies;
 use crate::bodies::contract::{ContractError, check_bodies};
-use crate::lab::effects::world_centre;
+use crate::lab::effects::{Velocities, world_centre};
 use crate::lab::number::Positive;
 
 impl SceneFile {
@@ -22,17 +22,19 @@ impl SceneFile {
     pub fn build(&self) -> Result<Scene, SceneError> {
         let groups = self.groups()?;
         let mut library = Library::default();
-        let mut bodies = Bodies::default();
+        let (mut bodies, mut velocities) = (Bodies::default(), Velocities::default());
         for group in &groups {
             self.add_shapes(group, &mut library, &mut bodies)?;
         }
         let side = self.side(&groups, &library, &bodies)?;
         for group in &groups {
             self.add_poses(group, side, &library, &mut bodies)?;
-            self.add_velocities(group, &mut bodies);
+            self.add_velocities(group, &mut velocities);
         }
         let (shapes, construct_seconds) = library.into_shapes();
-        check_bodies(&bodies, &shapes).map_err(|error| self.contract_error(&groups, &error))?;
+        check_bodies(&bodies, &shapes)
+            .and_then(|()| velocities.check(bodies.len()))
+            .map_err(|error| self.contract_error(&groups, &error))?;
         self.spec.cull.check(bodies.len())?;
         let scene = Scene {
             name: self.spec.name.clone(),
@@ -42,6 +44,7 @@ impl SceneFile {
             side,
             shapes,
             bodies,
+            velocities,
             effects: self.spec.effects.clone(),
             cull: self.spec.cull.clone(),
             construct_seconds,
@@ -219,32 +222,23 @@ impl SceneFile {
     }
 
     /// Draws or copies velocities, and the angular velocities of dynamic bodies where the scene lists `spin`.
-    fn add_velocities(&self, group: &Group<'_>, bodies: &mut Bodies) {
-        let spec = group.spec;
-        if let Some(velocities) = &spec.velocities {
-            bodies
-                .velocity
-                .extend(velocities.get_ref().iter().map(|v| *v.get_ref()));
+    fn add_velocities(&self, group: &Group<'_>, velocities: &mut Velocities) {
+        let (spec, all) = (group.spec, velocities.linear.len() + group.bodies);
+        let (linear, angular) = (&mut velocities.linear, &mut velocities.angular);
+        if let Some(given) = &spec.velocities {
+            linear.extend(given.get_ref().iter().map(|v| *v.get_ref()));
         } else if let Some(speed) = &spec.speed {
             let mut draws = group.stream(Purpose::Velocity);
-            bodies
-                .velocity
-                .extend((0..group.bodies).map(|_| draws.vector(*speed.get_ref())));
+            linear.extend((0..group.bodies).map(|_| draws.vector(*speed.get_ref())));
         } else {
-            bodies
-                .velocity
-                .resize(bodies.velocity.len() + group.bodies, [0.0; 3]);
+            linear.resize(all, [0.0; 3]);
         }
         match &self.spec.effects.spin {
             Some(spin) if !spec.fixed => {
                 let mut draws = group.stream(Purpose::Spin);
-                bodies
-                    .spin
-                    .extend((0..group.bodies).map(|_| draws.vector(spin.get_ref().rate)));
+                angular.extend((0..group.bodies).map(|_| draws.vector(spin.get_ref().rate)));
             }
-            _ => bodies
-                .spin
-                .resize(bodies.spin.len() + group.bodies, [0.0; 3]),
+            _ => angular.resize(all, [0.0; 3]),
         }
     }
 

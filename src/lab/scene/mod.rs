@@ -16,7 +16,7 @@ pub use error::SceneError;
 pub use file::SceneFile;
 
 use crate::bodies::Bodies;
-use crate::lab::effects::{EffectError, Effects, EffectsSpec, Start};
+use crate::lab::effects::{EffectError, Effects, EffectsSpec, Start, Velocities};
 use crate::settings::CullSettings;
 use crate::volume::Shape;
 
@@ -35,8 +35,10 @@ pub struct Scene {
     pub side: Option<f32>,
     /// What the bodies look like, each built once.
     pub shapes: Vec<Shape>,
-    /// The initial state.
+    /// The initial poses.
     pub bodies: Bodies,
+    /// The initial velocities.
+    pub velocities: Velocities,
     /// What is simulated.
     pub effects: EffectsSpec,
     /// How it is culled.
@@ -57,6 +59,7 @@ impl Scene {
             side: self.side,
             shapes: &self.shapes,
             bodies: &self.bodies,
+            velocities: &self.velocities,
         };
         Effects::new(&self.effects, &start)
     }

@@ -197,7 +197,6 @@ impl Judge {
                 dynamic,
                 rotation,
                 translation,
-                ..
             } = &sample.bodies;
             key.update(sample.frame.to_le_bytes());
             for body in 0..shape.len() {

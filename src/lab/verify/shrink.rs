@@ -73,8 +73,6 @@ impl Smallest {
             dynamic: which.iter().map(|&i| all.dynamic[i]).collect(),
             rotation: which.iter().map(|&i| all.rotation[i]).collect(),
             translation: which.iter().map(|&i| all.translation[i]).collect(),
-            velocity: vec![[0.0; 3]; which.len()],
-            spin: vec![[0.0; 3]; which.len()],
         };
         let mut smaller = Self {
             bodies,

@@ -19,7 +19,7 @@ use crate::peer::{Peer, Setup};
 const CUBES: usize = 4096;
 /// Bodies whose boxes are copied before any is looked at: each is a cache miss, and so more of them are on their way at once.
 const TOGETHER: usize = 64;
-/// Shares of the work a thread: whoever is done early takes another's.
+/// Ranges of the work per thread: a thread that is done early takes another one.
 const SHARES: usize = 4;
 
 /// Boxes in a grid.
@@ -94,7 +94,7 @@ impl Peer for Boxes {
         self.update(&frame.boxes);
         let (tier, pool) = (self.tier, &self.pool);
         self.finder
-            .arrange(tier, pool, &self.places, &self.cubes, &self.names);
+            .arrange(pool.executor(tier), &self.places, &self.cubes, &self.names);
         let (finder, parts, count) = (&self.finder, self.finder.parts(), self.shares.len());
         let gap = self.gap.twice();
         pool.each(&mut self.shares, |index, found| {
