@@ -1,17 +1,13 @@
 //! The price of safety: frames of the paper's scene culled with margins and without, in every tier. `cargo bench --bench
 //! safety` prints a Markdown table.
 //!
-//! The two take turns frame by frame, either first every other time, and a ratio is of a round's times. `sdop tradeoff`
-//! counts the extra pairs.
+//! The two take turns, and a ratio is of a round's warm frames. `sdop tradeoff` counts the extra pairs.
 
 mod common;
 
-use std::hint::black_box;
-use std::time::Instant;
-
 use sdop::bodies::Bodies;
-use sdop::culler::Culler;
-use sdop::lab::measure::turns::median;
+use sdop::lab::measure::culling::Culling;
+use sdop::lab::measure::turns::{Quartiles, Regime, Turns, median, turn_frames};
 use sdop::lab::tradeoff::safety::without_margins;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
@@ -32,46 +28,41 @@ fn main() {
         };
         for tier in Tier::available() {
             let cullers = [&scene.shapes, &bare].map(|shapes| {
-                Culler::builder()
-                    .settings(&settings)
-                    .tier(tier)
-                    .build(shapes, &scene.bodies)
+                Culling::new(shapes, &scene.bodies, &settings, tier)
                     .unwrap_or_else(|error| panic!("{error}"))
             });
             let [on, off, ratios] = compare(cullers, &frames);
-            let quartile = |q: usize| ratios[ratios.len() * q / 4];
+            let ratios = Quartiles::of(ratios);
             println!(
                 "| {strategy} | {tier} | {:.1} | {:.1} | {:.4} | {:.3} to {:.3} |",
                 1e6 * median(on),
                 1e6 * median(off),
-                quartile(2),
-                quartile(1),
-                quartile(3)
+                ratios.median,
+                ratios.low,
+                ratios.high
             );
         }
     }
 }
 
-/// Seconds per frame with margins, without, and their ratios in ascending order, round by round.
-fn compare(mut cullers: [Culler; 2], frames: &[Bodies]) -> [Vec<f64>; 3] {
-    let mut seconds = [vec![], vec![]];
+/// Seconds per warm frame with margins, without, and their ratios, round by round.
+fn compare(mut cullers: [Culling; 2], frames: &[Bodies]) -> [Vec<f64>; 3] {
+    let (mut turns, mut seconds) = (Turns::default(), [vec![], vec![]]);
     for round in 0..=ROUNDS {
-        let mut sums = [0.0; 2];
-        for (i, bodies) in frames.iter().enumerate() {
-            for turn in 0..2 {
-                let who = (turn + i + round) % 2;
-                let start = Instant::now();
-                black_box(cullers[who].cull(bodies).unwrap().len());
-                sums[who] += start.elapsed().as_secs_f64();
-            }
+        let mut warm = [vec![], vec![]];
+        for poses in frames.chunks(turn_frames(frames[0].len())) {
+            turns.round(&mut cullers, poses, |timed| {
+                if timed.regime == Regime::Warm {
+                    warm[timed.number].push(timed.seconds);
+                }
+            });
         }
         if round > 0 {
-            let a_frame = sums.map(|sum| sum / frames.len() as f64);
-            (seconds.iter_mut().zip(a_frame)).for_each(|(all, one)| all.push(one));
+            let medians = warm.map(median);
+            (seconds.iter_mut().zip(medians)).for_each(|(all, one)| all.push(one));
         }
     }
     let [on, off] = seconds;
-    let mut ratios: Vec<f64> = on.iter().zip(&off).map(|(on, off)| on / off).collect();
-    ratios.sort_by(f64::total_cmp);
+    let ratios = on.iter().zip(&off).map(|(on, off)| on / off).collect();
     [on, off, ratios]
 }

@@ -75,6 +75,8 @@ pub mod broad_phase;
 mod choice;
 pub mod counters;
 pub mod culler;
+#[cfg(feature = "readers")]
+pub mod files;
 #[cfg(feature = "lab")]
 pub mod lab;
 pub mod mesh;
@@ -92,6 +94,8 @@ pub mod world;
 pub use bodies::contract::ContractError;
 pub use bodies::{Bodies, Groups};
 pub use culler::{CullError, Culler, CullerBuilder};
+#[cfg(feature = "lab")]
+pub use lab::judge::{self, judge};
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
 pub use pairs::PairList;
 pub use settings::{

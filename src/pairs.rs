@@ -5,7 +5,7 @@ use crate::simd::MAX_WIDTH;
 /// Room of the smallest list that has any.
 const SMALLEST: usize = 1024;
 
-/// A list of body pairs as two columns. It grows as needed: a pair is never dropped for want of room.
+/// A list of body pairs as two columns. It grows by what is needed: no pair is ever dropped for lack of memory.
 ///
 /// Kernels write a whole vector and then advance by the lanes they kept, so the columns always have
 /// [`MAX_WIDTH`] elements of room behind the last pair.
@@ -49,7 +49,7 @@ impl PairList {
             .map(|(&i, &j)| [i, j])
     }
 
-    /// The pairs sorted, as `pairs_sha256` and records want them.
+    /// The pairs sorted, as `pairs_sha256` and records have them.
     #[must_use]
     pub fn sorted(&self) -> Vec<[u32; 2]> {
         let mut pairs: Vec<_> = self.iter().collect();

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use sdop::bodies::Bodies;
+use sdop::counters::Counters;
 use sdop::culler::{CullError, Culler};
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{
@@ -68,11 +69,29 @@ fn culler(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings, threads: u
     culler.build(shapes, bodies).unwrap()
 }
 
+/// What passes one test is what the next one gets, and what passes the last is reported.
+fn assert_counted(counters: &Counters, settings: &CullSettings, reported: u64) {
+    let scheme = settings.strategy.scheme();
+    let every_hit_is_refined = matches!(scheme.flow, Flow::Sequential | Flow::Batch);
+    let of = |volume: Option<_>| volume.map(|volume| *counters.of(volume));
+    match (of(scheme.first), of(scheme.refining)) {
+        (Some(first), Some(refining)) if every_hit_is_refined => {
+            assert_eq!(first.hits, refining.tests, "{settings:?}");
+            assert_eq!(refining.hits, reported, "{settings:?}");
+        }
+        (Some(only), None) | (None, Some(only)) => {
+            assert_eq!(only.hits, reported, "{settings:?}");
+        }
+        _ => assert_eq!(counters.reported, reported, "{settings:?}"),
+    }
+}
+
 /// Culls three frames in both ways, in which the crowd spreads.
 fn assert_same(settings: &CullSettings, threads: usize) {
     let (shapes, mut bodies) = (shapes(), crowd(640));
     let mut whole = culler(&shapes, &bodies, settings, 1);
     let mut taken = culler(&shapes, &bodies, settings, threads);
+    let mut total = 0;
     for frame in 0..3 {
         let expected: Vec<_> = whole.cull(&bodies).unwrap().iter().collect();
         let (mut pairs, mut portions) = (Vec::new(), 0);
@@ -85,6 +104,7 @@ fn assert_same(settings: &CullSettings, threads: usize) {
         assert!(pairs == expected, "{way}");
         assert_eq!(reported, expected.len() as u64, "{way}");
         assert_eq!(taken.counters(), whole.counters(), "{way}");
+        total += reported;
         if frame == 0 && expected.len() > 1 << 17 {
             assert!(portions > 1, "{way}");
         }
@@ -94,6 +114,7 @@ fn assert_same(settings: &CullSettings, threads: usize) {
             }
         }
     }
+    assert_counted(taken.counters(), settings, total);
 }
 
 #[test]

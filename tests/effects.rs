@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use sdop::bodies::Bodies;
-use sdop::lab::effects::{NAMES, Velocities};
+use sdop::lab::effects::{EffectReport, Effects, NAMES, Velocities};
 use sdop::lab::scene::{Scene, SceneFile};
 
 fn scene(text: &str) -> Scene {
@@ -43,50 +43,89 @@ fn after(scene: &Scene, steps: usize) -> (Bodies, Velocities) {
     (bodies, effects.velocities().clone())
 }
 
-const ALL: [&str; 6] = [
-    "gravity = { acceleration = [0, 0, -1] }",
-    "brownian = { share = 0.5, speed = 1 }",
-    "response = \"elastic\"",
-    "motion = true",
-    "spin = { rate = 1 }",
-    "walls = \"specular\"",
+/// What each effect does to a crowd: its line of `[effects]`, and the one column that it changes there; the walls of a crowd
+/// that stays inside change nothing.
+const EACH: &[(&str, &str, Option<Column>)] = &[
+    (
+        "gravity",
+        "acceleration = [0, 0, -1]",
+        Some(Column::Velocity),
+    ),
+    ("brownian", "share = 0.5, speed = 1", Some(Column::Velocity)),
+    ("response", "\"elastic\"", Some(Column::Velocity)),
+    ("motion", "true", Some(Column::Translation)),
+    ("spin", "rate = 1", Some(Column::Rotation)),
+    ("walls", "\"specular\"", None),
 ];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Column {
+    Translation,
+    Rotation,
+    Velocity,
+}
+
+/// The line of `[effects]` that lists an effect, and what it changes.
+fn listed(name: &str) -> (String, Option<Column>) {
+    let row = EACH.iter().find(|row| row.0 == name);
+    let (_, settings, changes) = row.unwrap_or_else(|| {
+        panic!(
+            "the effect `{name}` is new: say in EACH how it is listed and which column it changes"
+        )
+    });
+    let is_table = settings.contains('=');
+    let settings = match is_table {
+        true => format!("{{ {settings} }}"),
+        false => (*settings).to_owned(),
+    };
+    (format!("{name} = {settings}"), *changes)
+}
+
+/// Every effect's line.
+fn all() -> String {
+    let lines: Vec<String> = NAMES.iter().map(|name| listed(name).0).collect();
+    lines.join("\n")
+}
+
+/// What the effect of this name did.
+fn report<'a>(effects: &'a Effects, name: &str) -> &'a EffectReport {
+    let mut reports = effects.reports().iter();
+    reports.find(|report| report.name == name).unwrap()
+}
 
 #[test]
 fn only_listed_effects_run() {
-    for (listed, (line, name)) in ALL.iter().zip(NAMES).enumerate() {
-        assert!(line.starts_with(name));
-        let scene = crowd(line);
+    for name in NAMES {
+        let (line, changes) = listed(name);
+        let scene = crowd(&line);
         let mut effects = scene.start_effects().unwrap();
         let mut bodies = scene.bodies.clone();
         for _ in 0..3 {
             effects.step(&mut bodies).unwrap();
         }
-        for (place, report) in effects.reports().iter().enumerate() {
-            assert_eq!(
-                (report.name, report.listed),
-                (NAMES[place], place == listed)
-            );
-            if place == listed {
+        let reported: Vec<&str> = effects.reports().iter().map(|r| r.name).collect();
+        assert_eq!(reported, NAMES);
+        for report in effects.reports() {
+            let counts = (report.steps, report.visited, report.changed, report.seconds);
+            assert_eq!(report.listed, report.name == *name);
+            if report.listed {
                 assert_eq!((report.steps, report.visited), (3, 3 * 40));
             } else {
-                assert_eq!(
-                    (report.steps, report.visited, report.changed, report.seconds),
-                    (0, 0, 0, 0.0)
-                );
+                assert_eq!(counts, (0, 0, 0, 0.0));
             }
         }
-        // An effect changes its own columns alone.
         let (start, velocities) = (&scene.bodies, effects.velocities());
-        let kept = velocities.linear == scene.velocities.linear;
-        assert!(bodies.translation == start.translation || *name == "motion");
-        assert!(bodies.rotation == start.rotation || *name == "spin");
-        assert!(kept || ["gravity", "brownian", "response"].contains(name));
+        for (column, is_changed) in [
+            (Column::Translation, bodies.translation != start.translation),
+            (Column::Rotation, bodies.rotation != start.rotation),
+            (
+                Column::Velocity,
+                velocities.linear != scene.velocities.linear,
+            ),
+        ] {
+            assert_eq!(is_changed, changes == Some(column), "{name}: {column:?}");
+        }
         assert_eq!(velocities.angular, scene.velocities.angular);
-        assert!(
-            *name == "walls" || !kept || bodies != *start,
-            "{name} does something"
-        );
     }
 }
 
@@ -108,7 +147,7 @@ fn nothing_listed_is_nothing_done() {
 
 #[test]
 fn static_bodies_stay_to_the_bit() {
-    let mut scene = crowd(&ALL.join("\n"));
+    let mut scene = crowd(&all());
     // Files can't say so, but a caller may: a static body stays whatever its velocity and spin.
     scene.velocities.linear[25..35].fill([1.0, 2.0, 3.0]);
     scene.velocities.angular[25..35].fill([1.0, 2.0, 3.0]);
@@ -178,9 +217,9 @@ fn bounding_spheres_stay_inside_and_speeds_stay() {
                 );
             }
         }
-        assert!(effects.reports()[5].changed > 100);
-        let now = effects.velocities().linear.iter();
-        for (v, start) in now.zip(&scene.velocities.linear) {
+        assert!(report(&effects, "walls").changed > 100);
+        let velocities = effects.velocities().linear.iter();
+        for (v, start) in velocities.zip(&scene.velocities.linear) {
             assert_eq!(v.map(f32::abs), start.map(f32::abs));
         }
     }
@@ -261,9 +300,9 @@ fn brownian_kicks_its_share() {
     }
     // Four of forty a step.
     assert!(
-        (1990..=2010).contains(&effects.reports()[1].changed),
+        (1990..=2010).contains(&report(&effects, "brownian").changed),
         "{}",
-        effects.reports()[1].changed
+        report(&effects, "brownian").changed
     );
     for (body, v) in effects
         .velocities()
@@ -377,7 +416,7 @@ fn response_keeps_momentum_and_energy() {
     for _ in 0..100 {
         effects.step(&mut bodies).unwrap();
     }
-    let changed = effects.reports()[2].changed;
+    let changed = report(&effects, "response").changed;
     assert!(changed > 500, "{changed}");
     let (momentum_now, energy_now) = totals(effects.velocities());
     // Each exchange rounds six velocities by 2⁻²⁴ of their size; roundings add up like a random walk at most.

@@ -1,4 +1,4 @@
-//! The corpus of hard cases: recorded answers, the whole grid of ways to cull on every tier, and its own completeness.
+//! The corpus of hard cases: recorded answers, every way to cull on every tier, and its own completeness.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -6,12 +6,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use rayon::prelude::*;
-use sdop::culler::Culler;
-use sdop::lab::verify::compare::settings;
+use sdop::lab::verify::compare::{culler, settings};
 use sdop::lab::verify::hard::{
-    Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name, variants,
+    Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name,
 };
-use sdop::lab::verify::rounds::{Ledger, check, refines, ways};
+use sdop::lab::verify::rounds::{Ledger, Run, group};
+use sdop::lab::verify::ways::{Mode, Rotation, refines, variants, ways};
 use sdop::lab::verify::{Answers, Predicate};
 use sdop::mesh::ReadOptions;
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
@@ -48,26 +48,27 @@ fn no_way_to_cull_misses_a_pair_on_the_scalar_tier_and_kernels_agree_on_all() {
             "{name}: the recorded answers"
         );
         known_by_construction(name, group, cases, answers);
-        let mut ledger = Ledger::default();
-        for way in ways(k, axes) {
-            for (frames, answers) in cases.runs.iter().zip(answers) {
-                let shapes = &cases.shapes;
-                // Flush-to-zero decides otherwise here and there, but never misses.
-                for tier in [Tier::SCALAR, Tier::SCALAR_FLUSH] {
-                    check(shapes, frames, answers, &way, tier, &mut ledger).unwrap();
-                }
-                let failure = ledger.failures.first();
-                assert!(
-                    failure.is_none(),
-                    "{name}: {:?} on {:?}, pair {:?}",
-                    failure.unwrap().settings,
-                    failure.unwrap().tier,
-                    failure.unwrap().pair
-                );
-                let scalar = lists(cases, frames, &way, Tier::SCALAR);
+        for (frames, answers) in cases.runs.iter().zip(answers) {
+            let shapes = &cases.shapes;
+            let run = Run {
+                shapes,
+                frames,
+                answers,
+            };
+            let mut ledger = Ledger::default();
+            // Flush-to-zero decides otherwise here and there, but never misses.
+            for tier in [Tier::SCALAR, Tier::SCALAR_FLUSH] {
+                run.check((k, axes), &[Mode::plain(tier)], &mut ledger)
+                    .unwrap();
+            }
+            let failure = ledger.failures.first();
+            let failure = failure.map(|f| (&f.settings, f.mode, f.pair, f.missed));
+            assert!(failure.is_none(), "{name}: {failure:?}");
+            for way in ways(k, axes) {
+                let scalar = lists(cases, frames, &way, Mode::plain(Tier::SCALAR));
                 for &tier in &faster {
                     assert_eq!(
-                        lists(cases, frames, &way, tier),
+                        lists(cases, frames, &way, Mode::plain(tier)),
                         scalar,
                         "{name}: {way:?} on {tier}"
                     );
@@ -82,14 +83,10 @@ fn lists(
     cases: &Cases,
     frames: &[sdop::bodies::Bodies],
     way: &CullSettings,
-    tier: Tier,
+    mode: Mode,
 ) -> (Vec<Vec<[u32; 2]>>, sdop::counters::Counters) {
     let settings = settings(way.strategy, way, frames[0].len());
-    let mut culler = Culler::builder()
-        .settings(&settings)
-        .tier(tier)
-        .build(&cases.shapes.built, &frames[0])
-        .unwrap();
+    let mut culler = culler(&cases.shapes.built, &frames[0], &settings, mode).unwrap();
     let lists = frames
         .iter()
         .map(|frame| culler.cull(frame).unwrap().iter().collect())
@@ -107,19 +104,16 @@ fn more_threads_report_the_same_lists() {
         let cases = Group::parse(text).unwrap().cases(k, axes).unwrap();
         for way in ways(k, axes) {
             for frames in &cases.runs {
-                let alone = lists(&cases, frames, &way, Tier::detect());
-                let settings = settings(way.strategy, &way, frames[0].len());
-                let shapes = &cases.shapes.built;
-                let mut pool = Culler::builder()
-                    .settings(&settings)
-                    .threads(3)
-                    .build(shapes, &frames[0])
-                    .unwrap();
-                let shared: Vec<Vec<_>> = frames
-                    .iter()
-                    .map(|frame| pool.cull(frame).unwrap().iter().collect())
-                    .collect();
-                assert_eq!((shared, *pool.counters()), alone, "{name}: {way:?}");
+                let alone = Mode::plain(Tier::detect());
+                let shared = Mode {
+                    threads: 3,
+                    ..alone
+                };
+                assert_eq!(
+                    lists(&cases, frames, &way, shared),
+                    lists(&cases, frames, &way, alone),
+                    "{name}: {way:?}"
+                );
             }
         }
     }
@@ -196,9 +190,37 @@ fn every_file_is_a_group_and_every_group_has_its_answers() {
     }
 }
 
-/// A new strategy, finder, overlap test, volume or tier must show up here: the grid is counted, not assumed.
+/// What `sdop verify` does first, on as many tiers as any CPU has: whatever else it is asked for, no cell stays empty.
 #[test]
-fn the_grid_has_every_strategy_finder_overlap_volume_and_tier() {
+fn hard_cases_alone_fill_every_cell_of_the_matrix() {
+    // Small cases, so that this counts turns; the others are culled by the test above.
+    let small = r#"{ kind = "chain", bodies = [3] }"#;
+    let any = Group::parse(&format!(
+        "why = \"few bodies\"\nseed = 1\nrecipe = {small}\n[[forms]]\nform = \"box\"\n"
+    ))
+    .unwrap();
+    let tiers = [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat();
+    for tiers in [tiers, vec![Tier::SCALAR]] {
+        let rotation = Rotation::new(&tiers);
+        assert!(
+            FILES.len() >= rotation.modes().len(),
+            "more groups are needed"
+        );
+        let turns: Vec<_> = (0..FILES.len())
+            .flat_map(|n| variants().map(move |variant| (n, variant)))
+            .collect();
+        let judge = |(n, variant)| group(n, &any, variant, &rotation).unwrap();
+        let ledgers: Vec<Ledger> = turns.into_par_iter().map(judge).collect();
+        let mut all = Ledger::default();
+        ledgers.into_iter().for_each(|ledger| all.add(ledger));
+        assert_eq!(all.matrix.empty(&rotation), []);
+        assert_eq!((all.missed(), all.differing()), (0, 0));
+    }
+}
+
+/// A new strategy, finder, overlap test or volume shows up here by itself: the ways are counted, not assumed.
+#[test]
+fn the_ways_have_every_strategy_finder_overlap_and_volume() {
     let mut seen = BTreeSet::new();
     for (k, axes) in variants() {
         for way in ways(k, axes) {
@@ -219,12 +241,6 @@ fn the_grid_has_every_strategy_finder_overlap_volume_and_tier() {
         }
     }
     assert!(seen.is_empty());
-    let tiers = ["scalar", "sse2", "avx2", "avx512", "neon"];
-    assert_eq!(
-        Tier::NAMES,
-        tiers,
-        "a new tier: have it in this suite and in near_misses.rs"
-    );
     // Every predicate is required by some strategy, so no volume goes unjudged.
     let judged = |predicate: Predicate| match predicate {
         Predicate::Sphere => Strategy::Sphere,

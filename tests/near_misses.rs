@@ -14,8 +14,8 @@ use sdop::lab::verify::arbitrary;
 use sdop::lab::verify::contact::{Contact, Placed};
 use sdop::lab::verify::draw::add;
 use sdop::lab::verify::forms::{self, Form};
-use sdop::lab::verify::hard::variants;
-use sdop::lab::verify::rounds::{Ledger, check, ways};
+use sdop::lab::verify::rounds::{Ledger, Run};
+use sdop::lab::verify::ways::{Mode, Rotation, variants, ways};
 use sdop::lab::verify::{Answers, Predicate, Shapes, compare};
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
@@ -79,10 +79,12 @@ fn runner() -> TestRunner {
     })
 }
 
-/// Every strategy, overlap test and finder on one tier. Returns what was judged.
+/// Every strategy, overlap test and finder on one tier, updates and threads in turn. Returns what was judged.
 fn never_misses(tier: Tier) -> Ledger {
     let mut all = Ledger::default();
+    let rotation = Rotation::new(&[tier]);
     for (variant, shapes) in &*SHAPES {
+        let turn = std::cell::Cell::new(0);
         let ledger = std::cell::RefCell::new(Ledger::default());
         let property = |drawn: Drawn| {
             let bodies = frame(shapes, &drawn);
@@ -90,14 +92,18 @@ fn never_misses(tier: Tier) -> Ledger {
             let mut ledger = ledger.borrow_mut();
             ledger.note(&answers[0]);
             let frames = [bodies];
-            for way in ways(variant.0, variant.1) {
-                check(shapes, &frames, &answers, &way, tier, &mut ledger).unwrap();
-                if let Some(failure) = ledger.failures.pop() {
-                    return Err(TestCaseError::fail(format!(
-                        "{:?} missed by {:?} on {tier}",
-                        failure.pair, failure.settings
-                    )));
-                }
+            let run = Run {
+                shapes,
+                frames: &frames,
+                answers: &answers,
+            };
+            let modes = rotation.turn(turn.replace(turn.get() + 1));
+            run.check(*variant, &modes, &mut ledger).unwrap();
+            if let Some(failure) = ledger.failures.pop() {
+                return Err(TestCaseError::fail(format!(
+                    "{:?} missed (or, {}, found by one finder alone) by {:?}, {:?}",
+                    failure.pair, !failure.missed, failure.settings, failure.mode
+                )));
             }
             Ok(())
         };
@@ -121,6 +127,8 @@ macro_rules! on_tiers {
                     return eprintln!("{} is not on this CPU", stringify!($module));
                 };
                 let ledger = never_misses(tier);
+                let empty = ledger.matrix.empty(&Rotation::new(&[tier]));
+                assert_eq!(empty, [], "cases for every way in every mode");
                 // Beyond the margins only the slabs' bound of a support reports more; spheres and boxes have none.
                 for (row, count) in &ledger.rows {
                     let volume = row.strategy;
@@ -153,7 +161,7 @@ on_tiers! {
 #[test]
 fn the_suite_is_stamped_on_every_tier() {
     let stamped = ["scalar", "sse2", "avx2", "avx512", "neon"];
-    assert_eq!(stamped, Tier::NAMES);
+    assert_eq!(stamped, Tier::NAMES, "a new tier: stamp it in on_tiers!");
     let names: Vec<_> = Tier::available().iter().map(|tier| tier.name()).collect();
     assert!(names.iter().all(|name| stamped.contains(name)), "{names:?}");
 }
@@ -167,7 +175,9 @@ fn a_list_that_lacks_one_required_pair_is_caught() {
     let answers = Answers::judge(shapes, &bodies, variant.0, &Predicate::ALL).unwrap();
     for way in ways(variant.0, variant.1) {
         let settings = compare::settings(way.strategy, &way, bodies.len());
-        let list = compare::cull(&shapes.built, &bodies, &settings, Tier::SCALAR).unwrap();
+        let mode = Mode::plain(Tier::SCALAR);
+        let mut culler = compare::culler(&shapes.built, &bodies, &settings, mode).unwrap();
+        let list = culler.cull(&bodies).unwrap().sorted();
         let (count, missed, _) = compare(&answers, &settings, &list);
         assert_eq!((count.missed, missed), (0, vec![]));
         if count.required == 0 {

@@ -9,6 +9,7 @@ use sdop::lab::verify::draw::crowd;
 use sdop::lab::verify::forms::{self, Form};
 use sdop::lab::verify::rounds::{Failure, Ledger, judge_and_check};
 use sdop::lab::verify::shrink::Smallest;
+use sdop::lab::verify::ways::{Mode, Rotation};
 use sdop::lab::verify::{Predicate, Shapes};
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
@@ -26,7 +27,7 @@ fn lying_crowd() -> (Shapes, Ledger) {
         &[vec![frame]],
         variant,
         &Predicate::ALL,
-        &[Tier::SCALAR],
+        (&Rotation::new(&[Tier::SCALAR]), 0),
     );
     (shapes, ledger.unwrap())
 }
@@ -60,7 +61,8 @@ fn a_scene_without_a_miss_is_not_shrunk() {
     let (shapes, ledger) = lying_crowd();
     let honest = Failure {
         settings: CullSettings::all_pairs(),
-        tier: Tier::SCALAR,
+        mode: Mode::plain(Tier::SCALAR),
+        missed: true,
         shapes: shapes.built[1..].to_vec(),
         frames: vec![Default::default()],
         pair: ledger.failures[0].pair,

@@ -9,9 +9,9 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use sdop::lab::hull_test::{HullGraph, PosedHull, may_touch};
 use sdop::lab::scene::{Scene, SceneFile};
 use sdop::lab::tradeoff::counts::Tally;
-use sdop::lab::tradeoff::gjk::{HullGraph, PosedHull, may_touch};
 use sdop::lab::tradeoff::safety::without_margins;
 use sdop::lab::tradeoff::shapes::{Crowd, builtin};
 use sdop::lab::tradeoff::truth::{Judge, samples};
@@ -154,7 +154,7 @@ fn every_variant_finds_every_true_pair_and_finer_ones_report_fewer() {
     for (variant, found) in variants.iter().zip(&tallies) {
         assert_eq!(found.quality().recall, 1.0, "{}", variant.name);
         assert_eq!(*found, tally(variant), "{}", variant.name);
-        let tightness = variant.tightness(&scene).unwrap();
+        let tightness = variant::tightness(variant, &scene).unwrap();
         assert!(tightness >= 1.0 - 1e-6, "{}: {tightness}", variant.name);
     }
     let reported = |name: &str| {
@@ -217,8 +217,8 @@ fn counts(path: &Path) -> Vec<serde_json::Value> {
             "pairs_sha256",
         ];
         parts.extend(keys.map(|key| row[key].clone()));
-        for volume in row["volumes"].as_array().unwrap() {
-            parts.extend(["nu", "nv", "hits"].map(|key| volume[key].clone()));
+        for volume in row["warm"]["terms"].as_array().unwrap() {
+            parts.extend(["updates", "tests", "hits"].map(|key| volume[key].clone()));
         }
     }
     for row in result["interest"].as_array().unwrap() {
@@ -241,7 +241,8 @@ fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
             String::from_utf8_lossy(&run.stderr)
         );
         let text = String::from_utf8(run.stdout).unwrap();
-        assert!(text.contains("Cheapest at this density") && text.contains("sphere + hull"));
+        assert!(text.starts_with("Cheapest at this density"), "{text}");
+        assert!(text.contains("sphere + hull") && !text.contains("The price of safety"));
     }
     assert_eq!(
         counts(&here.join("one/tradeoff.json")),
@@ -271,6 +272,11 @@ fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
         let [one, two] = ["one", "again"].map(|out| fs::read(here.join(out).join(file)).unwrap());
         assert_eq!(one, two, "{file}");
     }
+    let page = fs::read_to_string(here.join("again/tradeoff.md")).unwrap();
+    let first = page.lines().find(|line| line.starts_with("## "));
+    assert_eq!(first, Some("## What should I use?"));
+    let all = sdop(&["tradeoff", "one/tradeoff.json", "--all"], here);
+    assert!(String::from_utf8_lossy(&all.stdout).contains("The price of safety"));
     let lines = String::from_utf8(again.stdout).unwrap();
     assert_eq!(lines.lines().count(), 1 + 41);
 
@@ -282,5 +288,45 @@ fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
     assert!(String::from_utf8_lossy(&run.stderr).contains("missed by: sphere"));
 
     let run = sdop(&["tradeoff", "few.json"], here);
+    assert_eq!(run.status.code(), Some(2));
+}
+
+#[test]
+fn advice_is_three_lines_and_the_cheapest_of_the_numbers_behind_them() {
+    let place = tempfile::tempdir().unwrap();
+    let here = place.path();
+    fs::write(here.join("few.toml"), SCENE).unwrap();
+    let run = sdop(&["advise", "few.toml", "--narrow-ns", "1e6"], here);
+    let text = String::from_utf8(run.stdout).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(
+        lines[0].starts_with("Use ") && lines[3].is_empty(),
+        "{text}"
+    );
+    assert!(lines[2].starts_with("By the price of a check: "), "{text}");
+
+    let run = sdop(
+        &[
+            "advise",
+            "few.toml",
+            "--narrow-ns",
+            "1e6",
+            "--format",
+            "json",
+        ],
+        here,
+    );
+    let advice: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+    let candidates = advice["candidates"].as_array().unwrap();
+    let total = |candidate: &serde_json::Value| candidate["total"].as_f64().unwrap();
+    let least = candidates.iter().map(total).fold(f64::INFINITY, f64::min);
+    assert_eq!(total(&candidates[0]), least);
+    assert_eq!(candidates[0]["name"], advice["best"]);
+    // A millisecond a check: whoever leaves the fewest pairs wins, and those are the hulls.
+    let pairs = |candidate: &serde_json::Value| candidate["pairs"].as_f64().unwrap();
+    let fewest = candidates.iter().map(pairs).fold(f64::INFINITY, f64::min);
+    assert_eq!(pairs(&candidates[0]), fewest);
+
+    let run = sdop(&["advise", "few.toml", "--narrow-ns", "-1"], here);
     assert_eq!(run.status.code(), Some(2));
 }

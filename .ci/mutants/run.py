@@ -6,7 +6,7 @@ process wakes one by its number. What can't sleep is built by itself. A mutant i
 times its time and ten seconds more. Two tiers run in the copy, scalar and AVX-512: a lane of every other tier is tested by
 itself, as a crate of the room `simd`.
 
-    .ci/mutants/run.py [--only REGEX] [--slowest SECONDS] [--outcomes FILE]
+    .ci/mutants/run.py [--only REGEX] [--sample N] [--slowest SECONDS] [--outcomes FILE]
 
 Goes on where FILE (target/mutants/outcomes.jsonl) ends; a line an outcome: number, name, how (`caught`, `endless`,
 `survived`, `doesn't compile`), by which test.
@@ -20,6 +20,7 @@ import functools
 import json
 import os
 import pathlib
+import random
 import re
 import resource
 import shutil
@@ -33,7 +34,8 @@ import plant
 TOP = pathlib.Path(__file__).resolve().parents[2]
 WORK = TOP / "target/mutants"
 FEATURES = ["-p", "sdop", "--no-default-features", "--features", "proptest"]
-SUITES = ["golden_pairs", "finders", "near_misses", "against_reference", "worst_case", "world", "naive_margins", "finder_costs"]
+SUITES = ["golden_pairs", "finders", "near_misses", "against_reference", "worst_case", "world", "naive_margins", "finder_costs",
+          "volume"]
 ENVIRONMENT = os.environ | {
     "CARGO_PROFILE_TEST_OPT_LEVEL": "1",
     "CARGO_PROFILE_TEST_DEBUG": "none",
@@ -266,7 +268,7 @@ def place(name):
 
 
 def report(mutants, outcomes):
-    """A Markdown table by room; fails on a survivor without a reason in tests/survivors.csv."""
+    """A Markdown table by room, of the mutants that were tried; fails on a survivor without a reason in tests/survivors.csv."""
     hows = ["doesn't compile", "caught", "endless", "survived"]
     rooms = collections.defaultdict(collections.Counter)
     for mutant in mutants:
@@ -286,6 +288,7 @@ def report(mutants, outcomes):
 def main():
     options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     options.add_argument("--only", default="", help="mutants whose name has this regular expression")
+    options.add_argument("--sample", type=int, help="so many of them, drawn by a fixed seed")
     options.add_argument("--slowest", type=float, default=15, help="seconds of CPU: a survivor is asked by every faster test")
     options.add_argument("--outcomes", type=pathlib.Path, default=WORK / "outcomes.jsonl")
     options = options.parse_args()
@@ -294,6 +297,8 @@ def main():
     mutants = [mutant | {"n": n} for n, mutant in enumerate(json.loads(listed), 1)]
     outcomes = Outcomes(options.outcomes)
     chosen = [mutant for mutant in mutants if re.search(options.only, mutant["name"])]
+    if options.sample is not None:
+        chosen = random.Random(1).sample(chosen, min(options.sample, len(chosen)))
     wanted = outcomes.missing(chosen)
     print(f"{len(mutants)} mutants, {len(wanted)} to try", flush=True)
 

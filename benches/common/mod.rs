@@ -14,6 +14,7 @@ use sdop::counters::{Counters, Seconds};
 use sdop::culler::Culler;
 use sdop::lab::cost::calibrate;
 use sdop::lab::scene::{Scene, SceneFile};
+use sdop::lab::simulate::Trajectory;
 use sdop::settings::{CullSettings, Strategy};
 
 /// Frames that a bench goes round in.
@@ -22,15 +23,17 @@ pub const FRAMES: usize = 32;
 /// A strategy and what is counted of it.
 pub type Counted = (Strategy, fn(&Counters) -> u64);
 
-/// A scene of `data/scenes`.
-pub fn scene(name: &str) -> Scene {
+/// A scene file of `data/scenes`.
+pub fn scene_file(name: &str) -> SceneFile {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("data/scenes")
         .join(name);
-    SceneFile::read(&path.with_extension("toml"))
-        .unwrap()
-        .build()
-        .unwrap()
+    SceneFile::read(&path.with_extension("toml")).unwrap()
+}
+
+/// A scene of `data/scenes`.
+pub fn scene(name: &str) -> Scene {
+    scene_file(name).build().unwrap()
 }
 
 /// The calibration scenes of the paper's 500 objects, named by their number of bodies and the side of their box.
@@ -46,14 +49,9 @@ pub fn calibration_scenes() -> Vec<(String, Scene)> {
 
 /// The first frames of a scene.
 pub fn frames(scene: &Scene) -> Vec<Bodies> {
-    let mut effects = scene.start_effects().unwrap();
-    let mut bodies = scene.bodies.clone();
-    let mut frames = vec![bodies.clone()];
-    while frames.len() < FRAMES {
-        effects.step(&mut bodies).unwrap();
-        frames.push(bodies.clone());
-    }
-    frames
+    let trajectory = Trajectory::new(scene).unwrap();
+    let frames = trajectory.with_frames(FRAMES as u32);
+    frames.collect::<Result<_, _>>().unwrap()
 }
 
 /// Times one stage of a strategy, frame after frame of the scene. Throughput is the stage's count a frame, so that the time

@@ -5,23 +5,18 @@
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use sdop::mesh::ProceduralShape;
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::check_bodies;
-use sdop::simd::Tier;
 use sdop::lab::verify::contact::{Contact, Kind, Placed};
 use sdop::lab::verify::draw::add;
-use sdop::lab::verify::rounds::{Ledger, check, ways};
+use sdop::lab::verify::rounds::{Ledger, Run};
+use sdop::lab::verify::ways::Rotation;
 use sdop::lab::verify::{Answers, Predicate, Shapes};
+use sdop::mesh::ProceduralShape;
+use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 const NAMES: [&str; 4] = ["box", "l-shape", "needle", "plate"];
-const SETS: [DirectionSet; 4] = [
-    DirectionSet::K6,
-    DirectionSet::K14,
-    DirectionSet::K18,
-    DirectionSet::K26,
-];
 
 static SHAPES: LazyLock<Vec<Shapes>> = LazyLock::new(|| {
     let build = |&directions| {
@@ -37,7 +32,7 @@ static SHAPES: LazyLock<Vec<Shapes>> = LazyLock::new(|| {
         });
         Shapes::new(shapes.into_iter().flatten().collect()).expect("procedural shapes are sound")
     };
-    SETS.iter().map(build).collect()
+    DirectionSet::ALL.iter().map(build).collect()
 });
 
 /// Seven f32 from the bytes as they are: NaN, infinities and subnormals included.
@@ -71,7 +66,7 @@ fuzz_target!(|data: &[u8]| {
         return;
     }
     let (head, poses) = data.split_at(HEAD);
-    let set = usize::from(head[0]) % SETS.len();
+    let set = usize::from(head[0]) % DirectionSet::ALL.len();
     let shapes = &SHAPES[set];
     let [first, mut second] = [0, 1].map(|body| {
         let mut placed = pose(&poses[28 * body..]);
@@ -88,18 +83,25 @@ fuzz_target!(|data: &[u8]| {
         return;
     }
     let answers = [
-        Answers::judge(shapes, &bodies, SETS[set], &Predicate::ALL).expect("within the contract")
+        Answers::judge(shapes, &bodies, DirectionSet::ALL[set], &Predicate::ALL)
+            .expect("within the contract"),
     ];
     let mut ledger = Ledger::default();
-    for (n, way) in ways(SETS[set], Axes::Principal).iter().enumerate() {
-        let tiers = Tier::available();
-        let tier = tiers[n % tiers.len()];
-        let frames = [bodies.clone()];
-        check(shapes, &frames, &answers, way, tier, &mut ledger).expect("settings fit");
-    }
+    let modes = Rotation::new(&Tier::available()).turn(u64::from(head[1] / 16));
+    let run = Run {
+        shapes,
+        frames: &[bodies],
+        answers: &answers,
+    };
+    run.check(
+        (DirectionSet::ALL[set], Axes::Principal),
+        &modes,
+        &mut ledger,
+    )
+    .expect("settings fit");
     assert_eq!(
-        ledger.missed(),
-        0,
+        (ledger.missed(), ledger.differing()),
+        (0, 0),
         "{:?}",
         ledger.failures.first().map(|f| &f.settings)
     );

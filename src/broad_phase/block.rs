@@ -14,7 +14,7 @@ pub const BLOCK_BODIES: usize = MAX_WIDTH;
 /// Candidates that are written at once; a run's surplus is overwritten by the next.
 const STRIDE: usize = 8;
 
-/// The longest run whose slots are written down; longer ones fill vectors by themselves.
+/// The longest run that is copied into a block; longer ones fill vectors by themselves.
 const LONGEST_WRITTEN: usize = 2 * STRIDE;
 
 /// Runs that a block has room for.

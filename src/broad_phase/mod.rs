@@ -1,4 +1,4 @@
-//! Pair finders: who hands which candidate pairs to the strategy's first volume test.
+//! Pair finders: which pairs are candidates for the strategy's first volume test.
 //!
 //! A finder arranges bodies in slots and hands out candidates in two forms: a slot against a contiguous run of slots, and
 //! a [`Block`] of scattered pairs where runs are too short to fill a vector. Each pair of bodies that are not both static
@@ -34,12 +34,12 @@ pub trait FirstTest {
     fn block<L: Lanes>(&mut self, l: L, block: &Block);
 }
 
-/// World balls (x, y, z, R) in slot order, padded by [`MAX_WIDTH`] finite entries, and whose they are.
+/// World balls (x, y, z, R) in slot order, padded by [`MAX_WIDTH`] finite entries, with the names of their bodies.
 #[derive(Clone, Debug, Default)]
 pub struct Slots {
     /// The balls as the first test takes them.
     pub balls: Vec<[f32; 4]>,
-    /// The same as columns, where the finder hands out long runs; otherwise empty.
+    /// The same as columns, for finders whose runs are long; otherwise empty.
     pub columns: [Vec<f32>; 4],
     /// The name of each slot's body.
     pub names: Vec<u32>,

@@ -1,23 +1,48 @@
-//! Results as files, and the command that makes them again.
+//! Results as files, how large a file may be, and the command that makes results again.
 
 use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
 
-/// Writes a file, and its directory when there is none.
+/// How much is read of a file.
+#[derive(clap::Args)]
+pub struct ReadArgs {
+    /// Refuse scenes and meshes of more MiB than this
+    #[arg(long, value_name = "MIB", default_value_t = sdop::files::MAX_BYTES >> 20)]
+    max_file_size: u64,
+}
+
+impl ReadArgs {
+    /// The limit in bytes.
+    pub fn max_bytes(&self) -> u64 {
+        self.max_file_size.saturating_mul(1 << 20)
+    }
+}
+
+/// Writes a file whole, and its directory when there is none.
 ///
 /// # Errors
 /// The system refuses.
-pub fn write(path: &Path, text: &str) -> miette::Result<()> {
+pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> miette::Result<()> {
     let write = || {
         if let Some(directory) = path.parent() {
             std::fs::create_dir_all(directory)?;
         }
-        std::fs::write(path, text)
+        sdop::files::write(path, &bytes)
     };
     write()
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot write {}", path.display()))
+}
+
+/// Reads a text file of no more bytes than is usual.
+///
+/// # Errors
+/// The system refuses; a file that is too large.
+pub fn read(path: &Path) -> miette::Result<String> {
+    sdop::files::read_text(path, sdop::files::MAX_BYTES)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", path.display()))
 }
 
 /// The command that makes these results again. Absolute paths are this machine's own business.

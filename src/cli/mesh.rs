@@ -10,6 +10,7 @@ use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};
 use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
 use serde::Serialize;
 
+use super::files::ReadArgs;
 use super::output::{Format, emit, table};
 use super::{Outcome, one_of};
 
@@ -33,6 +34,8 @@ pub struct Args {
     /// The dialect of a .tri file, where several fit
     #[arg(long, value_name = "DIALECT", value_parser = one_of::<TriFormat>(TriFormat::NAMES))]
     tri_format: Option<TriFormat>,
+    #[command(flatten)]
+    files: ReadArgs,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -66,6 +69,7 @@ struct Report {
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let options = ReadOptions {
         tri_format: args.tri_format,
+        max_bytes: args.files.max_bytes(),
     };
     let mut mesh = read(&args.file, &options)?;
     if let Some(most) = args.triangles {

@@ -2,8 +2,13 @@
 //!
 //! A new command is a file with `Args` and `run`, a module line, a variant and a line in [`Cli::run`].
 
+mod advise;
+mod bench;
+mod cases;
+mod check;
 mod cost;
 mod files;
+mod judge;
 mod mesh;
 mod output;
 mod palette;
@@ -34,9 +39,13 @@ enum Command {
     Reproduce(reproduce::Args),
     Run(run::Args),
     Cost(cost::Args),
+    Advise(advise::Args),
     Mesh(mesh::Args),
     Tradeoff(tradeoff::Args),
     Verify(verify::Args),
+    Cases(cases::Args),
+    Check(check::Args),
+    Bench(bench::Args),
 }
 
 /// How a command ended when its input was good.
@@ -58,9 +67,13 @@ impl Cli {
             Command::Reproduce(args) => reproduce::run(&args),
             Command::Run(args) => run::run(&args),
             Command::Cost(args) => cost::run(&args),
+            Command::Advise(args) => advise::run(&args),
             Command::Mesh(args) => mesh::run(&args),
             Command::Tradeoff(args) => tradeoff::run(&args),
             Command::Verify(args) => verify::run(&args),
+            Command::Cases(args) => cases::run(&args),
+            Command::Check(args) => check::run(&args),
+            Command::Bench(args) => bench::run(&args),
         }
     }
 }

@@ -1,23 +1,33 @@
 //! A volume's prices as a row of a table.
 
-use sdop::lab::cost::predict::Price;
+use sdop::lab::cost::table::PriceRow;
+use sdop::lab::reproduce::Estimate;
 
 /// The columns, each with its unit.
-pub const COLUMNS: [&str; 7] = [
+pub const COLUMNS: [&str; 9] = [
+    "strategy",
     "volume",
     "Co, ms",
     "Cu, ns",
-    "F, ns a frame",
-    "F, ns a body",
+    "F, ns per frame",
+    "F, ns per body",
+    "F, ns per listed pair",
     "Cv hit, ns",
     "Cv miss, ns",
 ];
 
 /// The cells, numbers written by `number`.
-pub fn cells(price: &Price, number: fn(f64) -> String) -> Vec<String> {
-    let costs = price.costs;
-    let recurring = [costs.update, costs.frame, costs.body, costs.hit, costs.miss];
-    let mut cells = vec![price.volume.to_string(), number(1e3 * costs.construct)];
-    cells.extend(recurring.map(|seconds| number(1e9 * seconds)));
-    cells
+pub fn cells(price: &PriceRow, number: impl Fn(&Estimate) -> String) -> Vec<String> {
+    let ns = |price: &Estimate| number(&price.scaled(1e9));
+    vec![
+        price.variant.clone(),
+        price.volume.to_string(),
+        number(&price.construct.scaled(1e3)),
+        ns(&price.update),
+        ns(&price.frame),
+        ns(&price.body),
+        ns(&price.handle),
+        ns(&price.hit),
+        ns(&price.miss),
+    ]
 }

@@ -11,6 +11,7 @@ use sdop::settings::{
 use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
 
+use super::files::ReadArgs;
 use super::one_of;
 
 /// A scene file and what overrides it.
@@ -24,6 +25,8 @@ pub struct SceneArgs {
     /// Where all random draws start
     #[arg(long)]
     seed: Option<u64>,
+    #[command(flatten)]
+    files: ReadArgs,
     #[command(flatten)]
     cull: CullArgs,
 }
@@ -92,7 +95,7 @@ impl SceneArgs {
     /// # Errors
     /// A scene that can't be read, or settings that no scene can have.
     pub fn read(&self) -> miette::Result<SceneFile> {
-        let mut file = SceneFile::read(&self.scene)?;
+        let mut file = SceneFile::read_within(&self.scene, self.files.max_bytes())?;
         if let Some(frames) = self.frames.and_then(NonZeroU32::new) {
             file.spec.frames = frames;
         }

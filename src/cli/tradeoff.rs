@@ -4,23 +4,23 @@ mod page;
 mod plot;
 mod tables;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use etcetera::BaseStrategy as _;
 use miette::{IntoDiagnostic as _, WrapErr as _};
 use sdop::lab::measure::machine::Machine;
 use sdop::lab::tradeoff::{self, Plan, Tradeoff};
 use serde::{Deserialize, Serialize};
 
 use super::Outcome;
-use super::files::{command, write};
+use super::files::{self, command, write};
 use super::output::{Format, csv_text, emit, progress};
 use super::scene_args::{MachineArgs, SceneArgs};
 
 /// What accuracy costs in time, for every volume and strategy
 ///
 /// Culls sample frames of the scene with every volume and strategy, compares with the exact truth about the meshes, then
-/// measures time. Counts depend on scene and flags alone; seconds are this machine's. Given the JSON of an earlier run
+/// measures the time of frames that follow one another (warm) and of frames between which others ran (cold). Counts depend on scene and flags alone; seconds are this machine's. Given the JSON of an earlier run
 /// instead of a scene, prints and draws that.
 #[derive(clap::Args)]
 #[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
@@ -36,15 +36,18 @@ pub struct Args {
     /// Runs, each with a seed of its own from the scene's on [default: 5, or 2 with --quick]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: Option<u64>,
+    /// Print every table, not only the recommendation and what it rests on
+    #[arg(long)]
+    all: bool,
     /// Write the page, the figures, JSON and CSV into this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Write the page and the figures into this directory instead
     #[arg(long, value_name = "DIR", requires = "out")]
     paper: Option<PathBuf>,
-    /// Where exact truths are kept between runs
-    #[arg(long, value_name = "DIR", default_value = "target/truth")]
-    cache: PathBuf,
+    /// Where exact truths are kept between runs [default: sdop/truth in the user's cache directory]
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -83,7 +86,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     match args.format {
         // A line a variant; the rest is in the other formats.
         Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
-        format => emit(format, &recorded, |recorded| tables::text(&recorded.result))?,
+        format => emit(format, &recorded, |recorded| match args.all {
+            true => tables::text(&recorded.result),
+            false => tables::brief(&recorded.result),
+        })?,
     }
     let failures: Vec<&str> = result.failures().collect();
     if failures.is_empty() {
@@ -114,8 +120,15 @@ fn plan(args: &Args) -> Plan {
         window: quick(30, 120) as u32,
         stride: 10,
         tier: args.machine.tier(),
-        cache: Some(args.cache.clone()),
+        cache: args.cache.clone().or_else(cache),
     }
+}
+
+/// Where the user's programs keep what can be made again: on Linux `$XDG_CACHE_HOME`, or `~/.cache`. None where there is no
+/// home either: then nothing is kept.
+fn cache() -> Option<PathBuf> {
+    let directories = etcetera::choose_base_strategy().ok()?;
+    Some(directories.cache_dir().join("sdop/truth"))
 }
 
 /// The argument as the JSON of an earlier run, by its name.
@@ -126,10 +139,7 @@ fn recorded(path: &Path) -> Option<&Path> {
 }
 
 fn read(path: &Path) -> miette::Result<Recorded> {
-    let text = fs::read_to_string(path)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot read {}", path.display()))?;
-    serde_json::from_str(&text)
+    serde_json::from_str(&files::read(path)?)
         .into_diagnostic()
         .wrap_err_with(|| format!("{} is no result of sdop tradeoff", path.display()))
 }

@@ -9,21 +9,26 @@ use std::time::{Duration, Instant};
 use miette::{IntoDiagnostic as _, WrapErr as _};
 use rayon::prelude::*;
 use sdop::lab::scene::SceneFile;
-use sdop::lab::verify::hard::{FILES, Group, page, variants};
+use sdop::lab::verify::hard::{FILES, Group, page};
 use sdop::lab::verify::rounds::{Failure, Ledger, RoundError, Source, group, round};
 use sdop::lab::verify::scenes::scene;
 use sdop::lab::verify::shrink::Smallest;
+use sdop::lab::verify::ways::{Rotation, variants};
 use sdop::simd::Tier;
 
 use super::Outcome;
-use super::output::{Format, emit, print, progress};
+use super::files::{self, ReadArgs};
+use super::judge::{self, ReportFormat};
+use super::output::{emit, print, progress};
 use report::Report;
 
 /// Judge the optimised culler by the exact reference
 ///
 /// Hard cases first, then seeded rounds (a probe among bodies that nearly touch it, and a random crowd, for every k and
-/// axes), then the scenes given, meshes included. Every strategy, overlap test, finder and SIMD tier takes part. A missed
-/// pair ends in exit code 1 and the smallest scene that shows it.
+/// axes), then the scenes given, meshes included. Strategies, overlap tests, finders, k, axes, update modes, SIMD tiers and
+/// numbers of threads meet in every combination; the matrix at the end says how often. Each list is held against the
+/// exact answers and against that of all-pairs. A missed pair, a list that differs from all-pairs' and an empty cell of the
+/// matrix end in exit code 1, the first two with the smallest scene that shows it.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100"
@@ -44,7 +49,7 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 20)]
     frames: usize,
     /// One SIMD tier alone, instead of all that the CPU has
-    #[arg(long, value_name = "LEVEL")]
+    #[arg(long, value_name = "TIER")]
     simd: Option<Tier>,
     /// Where the scene that shows a missed pair is written
     #[arg(long, value_name = "DIR", default_value = ".")]
@@ -52,9 +57,13 @@ pub struct Args {
     /// Write the hard cases' exact answers and their page into this directory, and judge nothing
     #[arg(long, value_name = "DIR")]
     record_hard_cases: Option<PathBuf>,
+    #[command(flatten)]
+    files: ReadArgs,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: ReportFormat,
+    #[command(flatten)]
+    outside: judge::Outside,
 }
 
 /// Runs the command.
@@ -65,9 +74,14 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(directory) = &args.record_hard_cases {
         return record(directory);
     }
+    if let Some(command) = &args.outside.exec {
+        return judge::run(&args.outside, command, args.time, &args.out, args.format);
+    }
+    let format = args.format.plain()?;
     let start = Instant::now();
     // A scene that can't be built is said before the long work.
-    let build = |path: &PathBuf| SceneFile::read(path).and_then(|file| file.build());
+    let most = args.files.max_bytes();
+    let build = |path: &PathBuf| SceneFile::read_within(path, most).and_then(|file| file.build());
     let scenes = args
         .scenes
         .iter()
@@ -77,29 +91,32 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         Some(tier) => vec![tier],
         None => [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat(),
     };
+    let rotation = Rotation::new(&tiers);
     let mut report = Report::new(&tiers);
     let mut failures = Vec::new();
     let mut add = |name: String, ledger: Ledger| {
         report.add(name, &ledger);
         failures.extend(ledger.failures);
     };
-    add("hard cases".to_owned(), hard_cases(&tiers)?);
+    add("hard cases".to_owned(), hard_cases(&rotation)?);
     // A time beyond the clock's end is none.
     let deadline = args.time.map(Duration::from_secs);
     let deadline = deadline.and_then(|time| start.checked_add(time));
-    let [near, random] = rounds(args, &tiers, deadline)?;
+    let [near, random] = rounds(args, &rotation, deadline)?;
     add("near pairs".to_owned(), near);
     add("random pairs".to_owned(), random);
     for built in &scenes {
         let bar = progress(args.frames as u64, &built.name);
-        let ledger = scene(built, args.frames, &tiers, |n| bar.set_position(n as u64))?;
+        let ledger = scene(built, args.frames, &rotation, |n| {
+            bar.set_position(n as u64)
+        })?;
         bar.finish_and_clear();
         let (name, bodies, frames) = (&built.name, built.bodies.len(), args.frames);
         add(format!("{name}, {bodies} bodies, {frames} frames"), ledger);
     }
-    report.finish(start.elapsed());
-    emit(args.format, &report, Report::tables)?;
-    if report.missed == 0 {
+    report.finish(start.elapsed(), &rotation);
+    emit(format, &report, Report::tables)?;
+    if report.passed() {
         return Ok(Outcome::Passed);
     }
     if let Some(failure) = failures.first() {
@@ -108,16 +125,16 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     Ok(Outcome::Failed)
 }
 
-fn hard_cases(tiers: &[Tier]) -> miette::Result<Ledger> {
-    let jobs: Vec<_> = FILES
-        .iter()
-        .flat_map(|file| variants().map(move |variant| (file.1, variant)))
+fn hard_cases(rotation: &Rotation) -> miette::Result<Ledger> {
+    let files = FILES.iter().enumerate();
+    let jobs: Vec<_> = files
+        .flat_map(|(n, file)| variants().map(move |variant| (n, file.1, variant)))
         .collect();
     let bar = progress(jobs.len() as u64, "hard cases");
     let judged: Result<Vec<Ledger>, RoundError> = jobs
         .par_iter()
-        .map(|(text, variant)| {
-            let ledger = group(&Group::parse(text)?, *variant, tiers);
+        .map(|(n, text, variant)| {
+            let ledger = group(*n, &Group::parse(text)?, *variant, rotation);
             bar.inc(1);
             ledger
         })
@@ -127,7 +144,11 @@ fn hard_cases(tiers: &[Tier]) -> miette::Result<Ledger> {
 }
 
 /// Near and random rounds. With a deadline, as many as it allows.
-fn rounds(args: &Args, tiers: &[Tier], deadline: Option<Instant>) -> miette::Result<[Ledger; 2]> {
+fn rounds(
+    args: &Args,
+    rotation: &Rotation,
+    deadline: Option<Instant>,
+) -> miette::Result<[Ledger; 2]> {
     let variants: Vec<_> = variants().collect();
     let jobs = args.seeds * variants.len() as u64;
     let bar = progress(jobs, "seeded rounds");
@@ -143,7 +164,7 @@ fn rounds(args: &Args, tiers: &[Tier], deadline: Option<Instant>) -> miette::Res
             let seed = args.first_seed.wrapping_add(n / variants.len() as u64);
             let variant = variants[n as usize % variants.len()];
             for (source, ledger) in [Source::Near, Source::Random].into_iter().zip(&mut ledgers) {
-                let judged = round(source, seed, variant, tiers)
+                let judged = round(source, seed, variant, rotation)
                     .inspect_err(|_| failed.store(true, Ordering::Relaxed))?;
                 ledger.add(judged);
             }
@@ -173,13 +194,20 @@ fn sum(ledgers: Vec<Ledger>) -> Ledger {
 fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
     let [i, j] = failure.pair;
     let what = format!(
-        "{} misses bodies {i} and {j} ({}, k = {}, {} axes, {}, {})",
+        "{} {} bodies {i} and {j} ({}, k = {}, {} axes, {}, {}, {}, {} threads)",
         failure.settings.strategy,
+        if failure.missed {
+            "misses"
+        } else {
+            "and all-pairs differ on"
+        },
         failure.settings.pairs,
         failure.settings.k,
         failure.settings.axes,
         failure.settings.overlap,
-        failure.tier
+        failure.mode.updates,
+        failure.mode.tier,
+        failure.mode.threads
     );
     let Some(smallest) = Smallest::of(failure) else {
         return print(&format!(
@@ -204,18 +232,12 @@ fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
 
 /// Recomputes the answers of the groups in a directory, and their page.
 fn record(directory: &Path) -> miette::Result<Outcome> {
-    let failed = |what: &str, path: &Path| format!("cannot {what} {}", path.display());
-    let write = |name: &str, text: &str| {
-        let path = directory.join(name);
-        let written = std::fs::write(&path, text).into_diagnostic();
-        written.wrap_err_with(|| failed("write", &path))
-    };
+    let write = |name: &str, text: &str| files::write(&directory.join(name), text);
     let bar = progress(FILES.len() as u64, "exact answers");
     let mut texts = Vec::new();
     for (name, _) in FILES {
         let path = directory.join(format!("{name}.toml"));
-        let text = std::fs::read_to_string(&path).into_diagnostic();
-        let text = text.wrap_err_with(|| failed("read", &path))?;
+        let text = files::read(&path)?;
         let mut group = Group::parse(&text).into_diagnostic()?;
         group.record().into_diagnostic()?;
         let head = text.split("\n[answers").next().unwrap_or(&text).trim_end();

@@ -28,7 +28,7 @@ use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
 use crate::settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates};
 use crate::simd::Tier;
-use crate::strategy::{self, Inputs, Output, Scratch, Totals};
+use crate::strategy::{self, Inputs, Output, Scratch, SlotNames, Totals};
 use crate::threads::Threads;
 use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
 use crate::volume::Shape;
@@ -188,7 +188,7 @@ impl Culler {
         self.settings.interest = Some(Interest::Bodies(bodies));
     }
 
-    /// The pair finder at work: the one asked for, or what `auto` has picked.
+    /// The pair finder in use: the one of the settings, or what `auto` has picked.
     #[must_use]
     pub fn finder(&self) -> Finder {
         self.finder.name()
@@ -372,11 +372,16 @@ impl Culler {
             };
             strategy::mark(interest, bodies, centre, &mut self.interest);
         }
+        let names = if self.names_are_places() {
+            SlotNames::Places(&self.places.body)
+        } else {
+            SlotNames::Bodies
+        };
         let inputs = Inputs {
             executor: self.pool.executor(self.tier),
             settings: &self.settings,
             finder: &self.finder,
-            names_are_places: self.names_are_places(),
+            names,
             posed: Posed {
                 frames: &self.models.frames,
                 bodies,

@@ -14,9 +14,9 @@ impl Culler {
     /// Culls one frame as [`Self::cull`] does and hands its pairs to `take`, some 65,000 at a time, in the order of that
     /// list. Returns their number; [`Self::pairs`] is empty.
     ///
-    /// No list of all pairs is kept, so memory doesn't grow with their number. Two exceptions need the whole potentially
-    /// colliding set, eight bytes per pair: `s-dop-time-critical` in another order than `as-found` sorts it, and
-    /// [`Self::potentially_colliding`], empty otherwise, shows it. With several threads, `take` is called from any of them,
+    /// No list of all pairs is kept, so memory doesn't grow with their number, and [`Self::potentially_colliding`] is empty.
+    /// The exception is `s-dop-time-critical` in another order than `as-found`: to sort the potentially colliding set, it
+    /// keeps some thirty bytes for each of its pairs. With several threads, `take` is called from any of them,
     /// one call at a time; its time is not counted in [`Self::seconds`], but does count against a budget of time.
     ///
     /// # Errors

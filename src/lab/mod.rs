@@ -3,6 +3,8 @@
 pub mod cost;
 pub mod effects;
 pub mod hash;
+pub mod hull_test;
+pub mod judge;
 pub mod measure;
 pub mod number;
 pub mod random;

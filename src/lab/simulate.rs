@@ -3,6 +3,8 @@
 //! F frames are F culls and F − 1 steps: the first frame is the scene as placed. The trajectory doesn't depend on how it is
 //! culled, so that runs which differ in [`CullSettings`](crate::settings::CullSettings) alone see the same poses.
 
+use std::time::Instant;
+
 use miette::Diagnostic;
 use thiserror::Error;
 
@@ -18,13 +20,88 @@ use crate::pairs::PairList;
 use crate::settings::{Finder, Strategy};
 use crate::simd::Tier;
 
+/// The poses of a scene, frame after frame: the first is the scene as placed, every other one a step of its effects.
+///
+/// As an iterator it yields a copy of each frame's bodies; [`Self::advance`] lends them instead.
+pub struct Trajectory {
+    bodies: Bodies,
+    effects: Effects,
+    next: u32,
+    frames: u32,
+    step_seconds: f64,
+}
+
+impl Trajectory {
+    /// The scene's own frames.
+    ///
+    /// # Errors
+    /// An effect that the scene can't have; never for a scene just built.
+    pub fn new(scene: &Scene) -> Result<Self, EffectError> {
+        Ok(Self {
+            bodies: scene.bodies.clone(),
+            effects: scene.start_effects()?,
+            next: 0,
+            frames: scene.frames,
+            step_seconds: 0.0,
+        })
+    }
+
+    /// The same trajectory with another number of frames.
+    #[must_use]
+    pub fn with_frames(self, frames: u32) -> Self {
+        Self { frames, ..self }
+    }
+
+    /// Goes to the next frame and lends its bodies; `None` after the last.
+    ///
+    /// # Errors
+    /// A body that left the contract, by its index and the frame.
+    pub fn advance(&mut self) -> Result<Option<&Bodies>, SimulationError> {
+        if self.next >= self.frames {
+            return Ok(None);
+        }
+        let frame = self.next;
+        if frame > 0 {
+            let start = Instant::now();
+            let step = self.effects.step(&mut self.bodies);
+            step.map_err(|error| SimulationError::Contract { frame, error })?;
+            self.step_seconds = start.elapsed().as_secs_f64();
+        }
+        self.next += 1;
+        Ok(Some(&self.bodies))
+    }
+
+    /// The number of the frame to come.
+    #[must_use]
+    pub fn next_number(&self) -> u32 {
+        self.next
+    }
+
+    /// Every effect of the scene with its steps and seconds so far.
+    pub fn reports(&self) -> &[EffectReport] {
+        self.effects.reports()
+    }
+
+    /// Seconds of the last step; 0 before the first.
+    #[must_use]
+    pub fn step_seconds(&self) -> f64 {
+        self.step_seconds
+    }
+}
+
+impl Iterator for Trajectory {
+    type Item = Result<Bodies, SimulationError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.advance().map(|bodies| bodies.cloned()).transpose()
+    }
+}
+
 /// A scene being run.
 pub struct Simulation<'a> {
     scene: &'a Scene,
-    bodies: Bodies,
-    effects: Effects,
+    trajectory: Trajectory,
     culler: Culler,
-    frame: u32,
 }
 
 /// One culled frame.
@@ -98,12 +175,10 @@ impl<'a> Simulation<'a> {
         let culler = Culler::builder().settings(&scene.cull).tier(tier);
         Ok(Self {
             scene,
-            bodies: scene.bodies.clone(),
-            effects: scene.start_effects()?,
+            trajectory: Trajectory::new(scene)?,
             culler: culler
                 .threads(threads)
                 .build(&scene.shapes, &scene.bodies)?,
-            frame: 0,
         })
     }
 
@@ -112,22 +187,14 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// A body that left the contract, by its index and the frame.
     pub fn next_frame(&mut self) -> Result<Option<Frame<'_>>, SimulationError> {
-        let number = self.frame;
-        if number == self.scene.frames {
+        let number = self.trajectory.next_number();
+        let Some(bodies) = self.trajectory.advance()? else {
             return Ok(None);
-        }
-        if number > 0 {
-            let step = self.effects.step(&mut self.bodies);
-            step.map_err(|error| SimulationError::Contract {
-                frame: number,
-                error,
-            })?;
-        }
-        self.frame += 1;
+        };
         Ok(Some(Frame {
             number,
-            pairs: self.culler.cull(&self.bodies)?,
-            bodies: &self.bodies,
+            pairs: self.culler.cull(bodies)?,
+            bodies,
         }))
     }
 
@@ -143,7 +210,7 @@ impl<'a> Simulation<'a> {
         let culling = self.culler.seconds();
         Seconds {
             construct: self.scene.construct_seconds + culling.construct,
-            effects: self.effects.reports().iter().map(|e| e.seconds).sum(),
+            effects: self.trajectory.reports().iter().map(|e| e.seconds).sum(),
             ..*culling
         }
     }
@@ -165,7 +232,7 @@ impl<'a> Simulation<'a> {
         Ok(Summary {
             counters: *self.counters(),
             seconds: self.seconds(),
-            effects: self.effects.reports().to_vec(),
+            effects: self.trajectory.reports().to_vec(),
             finder: self.culler.finder(),
             volumes_sha256: volumes_sha256(&self.scene.shapes),
             pairs_sha256: culls.then(|| hash.finish()),

@@ -31,6 +31,15 @@ pub enum Problem {
         /// What the system said.
         source: std::io::Error,
     },
+    /// More bytes than the caller allows.
+    #[error("the file has more than {most} bytes")]
+    #[diagnostic(help(
+        "is it the file you mean? If so, raise the limit: --max-file-size, or `ReadOptions::max_bytes`"
+    ))]
+    TooLong {
+        /// How many are allowed.
+        most: u64,
+    },
     /// The file name's extension names no known format.
     #[error("the extension {found:?} names no mesh format that can be {action}")]
     #[diagnostic(help("use .tri, .obj, .stl or .ply"))]

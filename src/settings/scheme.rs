@@ -112,3 +112,29 @@ impl Scheme {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_has_tests_that_its_stages_and_flow_can_carry_out() {
+        for strategy in Strategy::ALL {
+            let Scheme {
+                first,
+                refining,
+                flow,
+            } = strategy.scheme();
+            let oriented = [TestedVolume::OrDop, TestedVolume::Obb];
+            assert!(first.is_none_or(|volume| !oriented.contains(&volume)));
+            assert!(refining.is_none_or(|volume| oriented.contains(&volume)));
+            let lists_spheres = first == Some(TestedVolume::Sphere) && refining.is_some();
+            match flow {
+                Flow::Nothing => assert!(first.is_none() && refining.is_none()),
+                Flow::FirstTest => assert!(first.is_some() && refining.is_none()),
+                Flow::Sequential => assert!(refining.is_some()),
+                Flow::Batch | Flow::OfInterest | Flow::TimeCritical => assert!(lists_spheres),
+            }
+        }
+    }
+}

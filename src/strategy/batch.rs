@@ -25,9 +25,9 @@ pub(super) fn flow(
         candidates,
         selected,
         survivors,
+        portion,
         ..
     } = scratch;
-    candidates.clear();
     let mut batch = Batch {
         refiner: Refiner::new(inputs, rows),
         body: inputs.bodies_by_place(),
@@ -42,11 +42,10 @@ pub(super) fn flow(
             listed
         }
         Output::Portions(sink) => {
-            let mut out = PairList::default();
-            let mut take = |portion: &mut PairList| {
-                out.clear();
-                batch.refine(portion, None, &mut out);
-                sink(&mut out);
+            let mut take = |candidates: &mut PairList| {
+                portion.clear();
+                batch.refine(candidates, None, portion);
+                sink(portion);
             };
             list(inputs, Listed::Places, tasks, Output::Portions(&mut take))
         }

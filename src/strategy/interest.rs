@@ -109,3 +109,91 @@ impl PlacedCone {
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen(cone: &ViewCone, bodies: &Bodies, centre: [f32; 3]) -> bool {
+        let mut marks = [false];
+        mark(
+            &Interest::Cone(cone.clone()),
+            bodies,
+            |_| centre,
+            &mut marks,
+        );
+        marks[0]
+    }
+
+    /// Pythagorean quadruples, so that distances are f32.
+    const WAYS: [([f32; 3], f32); 4] = [
+        ([2.0, 3.0, 6.0], 7.0),
+        ([-4.0, 7.0, 4.0], 9.0),
+        ([8.0, -9.0, 12.0], 17.0),
+        ([-6.0, -6.0, -7.0], 11.0),
+    ];
+
+    const APEXES: [[f32; 3]; 3] = [[0.0; 3], [1000.0, -500.0, 250.0], [-0.5, 0.25, 4096.0]];
+
+    #[test]
+    fn a_cone_reaches_as_far_as_its_range_to_the_ulp() {
+        let body = |apex| {
+            let mut bodies = Bodies::default();
+            bodies.push(0, true, [0.0, 0.0, 0.0, 2.0], apex);
+            bodies
+        };
+        for apex in APEXES {
+            for (way, length) in WAYS {
+                let centre = std::array::from_fn(|i| apex[i] + way[i]);
+                for on_body in [false, true] {
+                    let cone = |range: f32| ViewCone {
+                        body: on_body.then_some(0),
+                        apex: (!on_body).then_some(apex),
+                        direction: way,
+                        half_angle: 10.0,
+                        range: Some(range),
+                    };
+                    let bodies = body(apex);
+                    assert!(seen(&cone(length), &bodies, centre), "{apex:?} {way:?}");
+                    assert!(!seen(&cone(length.next_down()), &bodies, centre));
+                }
+            }
+        }
+    }
+
+    /// Bodies 2·10⁻⁵ of their distance to either side of the rim, where f32 can place them: an apex or an angle a little off
+    /// tells.
+    #[test]
+    fn a_cone_s_rim_is_where_its_angle_says() {
+        let distance = 64.0_f64;
+        for apex in APEXES {
+            for half_angle in [1.0_f32, 30.0, 90.0, 135.0, 179.0] {
+                for (turn, turned) in [
+                    ([0.0, 0.0, 0.0, 1.0], [1, 2, 0]),
+                    ([0.5, 0.5, 0.5, 0.5], [2, 0, 1]),
+                ] {
+                    let mut bodies = Bodies::default();
+                    bodies.push(0, true, turn, apex);
+                    let cone = ViewCone {
+                        body: Some(0),
+                        apex: None,
+                        direction: [0.0, 3.0, 0.0],
+                        half_angle,
+                        range: None,
+                    };
+                    // The axis is y, or z once x → y → z; the rim is taken in all four ways across.
+                    for (across, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
+                        for (by, inside) in [(-2e-5, true), (2e-5, false)] {
+                            let angle = f64::from(half_angle).to_radians() + by;
+                            let mut centre = apex.map(f64::from);
+                            centre[turned[0]] += distance * libm::cos(angle);
+                            centre[turned[1 + across]] += sign * distance * libm::sin(angle);
+                            let is_seen = seen(&cone, &bodies, centre.map(|x| x as f32));
+                            assert_eq!(is_seen, inside, "{apex:?} {half_angle} {turn:?} {across}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::output::{Outlet, Output};
 use super::tasks::{Task, split_work};
-use super::{Inputs, Scratch, Totals};
+use super::{Inputs, Scratch, SlotNames, Totals};
 use crate::bodies::Groups;
 use crate::broad_phase::{Block, FirstTest, MOST_CANDIDATES, PairFinder};
 use crate::counters::VolumeCounters;
@@ -44,8 +44,7 @@ pub(super) struct Listing<'a> {
     finder: &'a PairFinder,
     first: First<'a>,
     listed: Listed,
-    /// The body in each place where the slots' names are places.
-    body: Option<&'a [u32]>,
+    names: SlotNames<'a>,
     /// Each body's groups where not all collide with all.
     groups: Option<&'a [Groups]>,
 }
@@ -57,13 +56,12 @@ impl<'a> Listing<'a> {
             Some(TestedVolume::Sphere) => First::Spheres,
             Some(_) => First::Intervals(inputs.intervals),
         };
-        let body = &inputs.posed.places.body;
         Self {
             tier: inputs.executor.tier,
             finder: inputs.finder,
             first,
             listed,
-            body: inputs.names_are_places.then_some(body),
+            names: inputs.names,
             groups: inputs.groups,
         }
     }
@@ -238,21 +236,21 @@ impl<T> Lister<'_, '_, T> {
         };
         let (first, second) = self.out.room(found);
         let pairs = first.iter_mut().zip(second).zip(&self.hits[..found]);
-        match (self.listing.body, self.listing.listed) {
-            (None, _) => {
+        match (self.listing.names, self.listing.listed) {
+            (SlotNames::Bodies, _) => {
                 for ((first, second), &hit) in pairs {
                     let (a, b) = names(hit);
                     (*first, *second) = (a.min(b), a.max(b));
                 }
             }
-            (Some(body), Listed::Bodies) => {
+            (SlotNames::Places(body), Listed::Bodies) => {
                 for ((first, second), &hit) in pairs {
                     let (i, j) = names(hit);
                     let (a, b) = (body[i as usize], body[j as usize]);
                     (*first, *second) = (a.min(b), a.max(b));
                 }
             }
-            (Some(body), Listed::Places) => {
+            (SlotNames::Places(body), Listed::Places) => {
                 for ((first, second), &hit) in pairs {
                     let (i, j) = names(hit);
                     let swap = body[i as usize] > body[j as usize];
@@ -271,8 +269,11 @@ impl<T> Lister<'_, '_, T> {
         slots: impl Fn(u32) -> (usize, usize),
         groups: &[Groups],
     ) {
-        let Listing { body, listed, .. } = self.listing;
-        let body = |name: u32| body.map_or(name, |body| body[name as usize]);
+        let Listing { names, listed, .. } = self.listing;
+        let body = |name: u32| match names {
+            SlotNames::Bodies => name,
+            SlotNames::Places(body) => body[name as usize],
+        };
         for &hit in &self.hits[..found] {
             let (i, j) = slots(hit);
             let (i, j) = (self.names[i], self.names[j]);

@@ -2,7 +2,8 @@
 //! number of pairs.
 //!
 //! Portions come in the order of the list, whichever thread found them: a thread whose list is full waits for its turn.
-//! Tasks are begun in their order, so the task whose turn it is always runs, and nobody waits for ever.
+//! Tasks are begun in their order, so the task whose turn it is always runs, and no thread waits for ever. While a task hands
+//! many portions over, the others wait: in a crowd, more threads bring nothing.
 
 use std::sync::{Condvar, Mutex, MutexGuard};
 
@@ -129,5 +130,38 @@ impl Drop for Turn<'_, '_> {
             state.task = self.task + 1;
         }
         self.turns.changed.notify_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn a_task_that_panics_leaves_no_other_waiting() {
+        let (done, is_done) = mpsc::channel();
+        std::thread::spawn(move || {
+            let mut handed_over = 0;
+            let mut sink = |list: &mut PairList| handed_over += list.len();
+            let turns = Turns::new(&mut sink);
+            let panicked = std::thread::scope(|scope| {
+                let later = scope.spawn(|| {
+                    let _outlet = Outlet::HandedOver(turns.of(1));
+                    panic!("planted");
+                });
+                later.join().is_err()
+            });
+            let mut list: PairList = (0..PORTION as u32).map(|pair| [pair, pair + 1]).collect();
+            let outlet = Outlet::HandedOver(turns.of(0));
+            outlet.offer(&mut list);
+            outlet.end(&mut list);
+            drop(turns);
+            done.send((panicked, list.len(), handed_over))
+        });
+        let outcome = is_done.recv_timeout(Duration::from_secs(20));
+        assert_eq!(outcome, Ok((true, 0, 0)));
     }
 }

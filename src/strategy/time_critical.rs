@@ -16,7 +16,7 @@ use crate::pairs::PairList;
 use crate::settings::{Budget, Order};
 use crate::update::OrDopRows;
 
-/// Tests between two looks at the clock: some microseconds.
+/// Tests between two readings of the clock: some microseconds.
 const SLICE: usize = 128;
 
 /// What a frame leaves to the next: when pairs were refined, and buffers.
@@ -48,17 +48,16 @@ pub(super) fn flow(
         tasks,
         candidates,
         history,
+        portion,
         ..
     } = scratch;
-    candidates.clear();
     let order = inputs.settings.order;
     let listed = match output {
         Output::Portions(sink) if order == Order::AsFound => {
-            let mut out = PairList::default();
-            let mut take = |portion: &mut PairList| {
-                out.clear();
-                spender.report(portion, 0..portion.len(), &mut out);
-                sink(&mut out);
+            let mut take = |candidates: &mut PairList| {
+                portion.clear();
+                spender.report(candidates, 0..candidates.len(), portion);
+                sink(portion);
             };
             list(inputs, Listed::Places, tasks, Output::Portions(&mut take))
         }
@@ -69,12 +68,11 @@ pub(super) fn flow(
             match output {
                 Output::List(out) => spender.report(candidates, all, out),
                 Output::Portions(sink) => {
-                    let mut out = PairList::default();
                     for start in all.step_by(PORTION) {
-                        out.clear();
+                        portion.clear();
                         let end = candidates.len().min(start + PORTION);
-                        spender.report(candidates, start..end, &mut out);
-                        sink(&mut out);
+                        spender.report(candidates, start..end, portion);
+                        sink(portion);
                     }
                 }
             }

@@ -22,10 +22,10 @@ use crate::simd::{ROW, prefetch};
 use crate::threads::Threads;
 use crate::volume::{Basis, Shape};
 
-/// Where the centre stands in a frame's row.
+/// The index of the centre in the row of a shape.
 const CENTRE: usize = 9;
 
-/// What updating a body needs to know of its shape.
+/// The numbers of a shape from which a body's volumes are updated, in the body frame.
 #[derive(Clone, Debug)]
 pub struct ShapeFrame {
     /// The shape, and how far it is grown.
@@ -36,14 +36,14 @@ pub struct ShapeFrame {
     /// R, if the ball's centre is the body's origin: no pose changes it then.
     inflated: Option<f32>,
     reach: f32,
-    /// The basis, column after column, then the centre: a row that becomes columns with those of other bodies.
+    /// The basis, column after column, then the centre: sixteen such rows are transposed into vectors.
     row: [f32; ROW],
     /// The length of each of the basis' columns.
     scale: f64,
 }
 
 impl ShapeFrame {
-    /// The frame of a shape whose or-DOP stands on `basis`.
+    /// Of a shape whose or-DOP has the axes `basis`.
     #[must_use]
     pub fn new(shape: &Shape, basis: &Basis) -> Self {
         let columns = basis.columns.map(|column| column.to_array());
@@ -75,7 +75,7 @@ impl ShapeFrame {
         }
     }
 
-    /// The same as that of the shape of this number, whose hull world-aligned volumes are fitted to.
+    /// The same with the number of its shape, to whose hull world-aligned volumes are fitted.
     #[must_use]
     pub fn numbered(self, shape: u32) -> Self {
         Self { shape, ..self }
@@ -105,7 +105,7 @@ impl ShapeFrame {
         self.centre
     }
 
-    /// What no point of the shape is farther from the body origin than.
+    /// An upper bound on the distance of the shape's points from the body origin.
     #[must_use]
     pub fn reach(&self) -> f32 {
         self.reach

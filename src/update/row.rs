@@ -1,15 +1,15 @@
-//! What stands where in an or-DOP's row: one cache line per body, which the pair test reads as columns.
+//! The layout of an or-DOP's row: one cache line per body, of which the pair test transposes a vector at a time.
 
-/// Where Q begins: the world direction of basis axis j in numbers 3j to 3j + 2.
+/// Index of Q: the world direction of basis axis j in numbers 3j to 3j + 2.
 pub const Q: usize = 0;
 
-/// Where the translation t begins.
+/// Index of the translation t.
 pub const T: usize = 9;
 
-/// Where the centre offset o begins.
+/// Index of the centre offset o.
 pub const O: usize = 12;
 
-/// Where the number of the shape stands, as the float whose bits are [`SHAPE`] + it.
+/// Index of the number of the shape, as the float whose bits are [`SHAPE`] + it.
 pub const S: usize = 15;
 
 /// The bits of 2²³, to which small integers add up as floats.

@@ -31,14 +31,14 @@ pub struct OrDopRows {
     missing: Vec<u32>,
 }
 
-/// What rows are made from.
+/// The inputs of an or-DOP update.
 #[derive(Clone, Copy)]
 pub struct Posed<'a> {
     /// Of every shape.
     pub frames: &'a [ShapeFrame],
     /// The poses.
     pub bodies: &'a Bodies,
-    /// Who stands where.
+    /// The body in each place.
     pub places: &'a Places,
     /// Updated spheres by place, or none: where a ball's centre is its body's origin, the translation is read here, in order,
     /// and not again from anywhere in the user's columns.

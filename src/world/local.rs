@@ -96,4 +96,58 @@ mod tests {
             .sqrt();
         assert!(moved > 0.5 * bound && moved <= bound, "{moved:e} {bound:e}");
     }
+
+    /// How far rounding moves a body, exactly but for 2⁻⁵⁰ of it, as a share of the bound.
+    fn share(local: &Local, t: [f64; 3]) -> f64 {
+        let (placed, bound) = local.place(t);
+        let moved = |i: usize| {
+            // Knuth's two-sum: t − origin = sum + lost.
+            let (a, b) = (t[i], -local.origin[i]);
+            let sum = a + b;
+            let of_b = sum - a;
+            let lost = (a - (sum - of_b)) + (b - of_b);
+            (f64::from(placed[i]) - sum) - lost
+        };
+        let sum: f64 = (0..3).map(|i| (moved(i) / bound).powi(2)).sum();
+        sum.sqrt()
+    }
+
+    #[test]
+    fn no_translation_is_moved_farther_than_the_bound_and_some_nearly_as_far() {
+        let mut seed = 1_u64;
+        let mut random = move || {
+            // Knuth's MMIX generator; the upper bits.
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            seed >> 33
+        };
+        for least in [false, true] {
+            let mut worst = 0.0_f64;
+            for _ in 0..50_000 {
+                // Sizes of 2⁻⁴⁰ to 2⁴⁰, or the smallest there are; halfway between two f32, and next to halfway.
+                let exponent = if least {
+                    -149
+                } else {
+                    (random() % 80) as i32 - 40
+                };
+                let relative: [f64; 3] = std::array::from_fn(|_| {
+                    let odd =
+                        (2 * (random() % 4) + 1) as f64 + [0.0, 1e-9, -1e-9][random() as usize % 3];
+                    match least {
+                        true => odd * exp2(-150),
+                        false => (1.0 + odd * exp2(-24)) * exp2(exponent),
+                    }
+                });
+                let origin = std::array::from_fn(|_| (random() % 64) as f64 * exp2(exponent + 1));
+                let t = std::array::from_fn(|i| origin[i] + relative[i]);
+                worst = worst.max(share(&Local { origin }, t));
+            }
+            // √3/2 of the bound is reached.
+            assert!(
+                (0.86..=1.0).contains(&worst),
+                "{worst}, of the least: {least}"
+            );
+        }
+    }
 }

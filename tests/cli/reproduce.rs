@@ -102,20 +102,19 @@ fn cost_predicts_every_term_of_the_strategies_asked_for() {
     ];
     let one = json(&[&arguments[..], &["--strategy", "s-dop-batch"]].concat());
     assert_eq!((&one["bodies"], &one["frames"]), (&50.into(), &3.into()));
-    let strategies = one["strategies"].as_array().unwrap();
-    assert_eq!(strategies.len(), 1);
+    let costs = one["costs"].as_array().unwrap();
+    let regimes: Vec<_> = costs.iter().map(|cost| &cost["regime"]).collect();
+    assert_eq!(regimes, ["warm", "cold"]);
     let names = |list: &serde_json::Value| {
         let names = list.as_array().unwrap().iter();
         names
             .map(|item| item["name"].as_str().unwrap().to_owned())
             .collect::<Vec<_>>()
     };
-    assert_eq!(names(&one["prices"]), ["sphere", "or-dop after sphere"]);
-    assert_eq!(
-        names(&strategies[0]["terms"]),
-        ["sphere", "or-dop after sphere"]
-    );
-    let terms = strategies[0]["terms"].as_array().unwrap().iter();
+    assert_eq!(names(&costs[0]["terms"]), ["sphere", "or-dop"]);
+    assert_eq!(one["prices"].as_array().unwrap().len(), 2 * 2);
+    assert!(one["conditions"]["of"].is_number(), "{one}");
+    let terms = costs[0]["terms"].as_array().unwrap().iter();
     let recurring = |term: &serde_json::Value| {
         ["update", "finding", "test"]
             .map(|key| term[key].as_f64().unwrap())
@@ -123,7 +122,7 @@ fn cost_predicts_every_term_of_the_strategies_asked_for() {
             .sum::<f64>()
     };
     let sum: f64 = terms.map(recurring).sum();
-    let predicted = strategies[0]["predicted"].as_f64().unwrap();
+    let predicted = costs[0]["frame"]["predicted"]["mean"].as_f64().unwrap();
     assert!((sum / predicted - 1.0).abs() < 1e-12 && predicted > 0.0);
 }
 
@@ -139,11 +138,14 @@ fn cost_covers_every_strategy_that_the_scene_has_settings_for() {
         "--format",
         "csv",
     ]);
-    let rows: Vec<&str> = csv
+    let header = "scene,strategy,regime,volume,term,unit,value,half_width";
+    assert_eq!(csv.lines().next(), Some(header));
+    let mut rows: Vec<&str> = csv
         .lines()
         .skip(1)
-        .filter_map(|line| line.split(',').nth(2))
+        .filter_map(|line| line.split(',').nth(1))
         .collect();
+    rows.dedup();
     let expected = [
         "sphere",
         "or-dop",
@@ -155,4 +157,23 @@ fn cost_covers_every_strategy_that_the_scene_has_settings_for() {
         "obb",
     ];
     assert_eq!(rows, expected, "{csv}");
+}
+
+#[test]
+fn cost_draws_where_the_time_goes() {
+    let directory = tempfile::tempdir().unwrap();
+    let plot = directory.path().join("cost.svg");
+    let table = stdout(&[
+        "cost",
+        "data/scenes/paper-50.toml",
+        "--frames",
+        "9",
+        "--seeds",
+        "1",
+        "--plot",
+        text(&plot),
+    ]);
+    assert!(table.contains("1 passes of 9 frames") && table.contains("Cold frames"));
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    assert!(svg.starts_with("<svg ") && svg.contains("F pair finding"));
 }

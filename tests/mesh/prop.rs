@@ -58,6 +58,7 @@ fn read_any(format: MeshFormat, bytes: &[u8]) -> Option<TriangleMesh> {
     for &tri_format in TriFormat::ALL {
         let options = ReadOptions {
             tri_format: Some(tri_format),
+            ..ReadOptions::default()
         };
         if format == MeshFormat::Tri
             && let Ok(mesh) = read_bytes("mesh", format, bytes, &options)

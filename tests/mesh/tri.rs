@@ -17,6 +17,7 @@ fn read(text: impl AsRef<[u8]>) -> Result<TriangleMesh, MeshError> {
 fn read_as(name: &str, text: &str) -> Result<TriangleMesh, MeshError> {
     let options = ReadOptions {
         tri_format: Some(name.parse().unwrap()),
+        ..ReadOptions::default()
     };
     read_bytes("data/a.tri", MeshFormat::Tri, text.as_bytes(), &options)
 }

@@ -5,6 +5,7 @@ mod ball;
 mod basis;
 mod containment;
 mod exact;
+mod grown;
 mod hull;
 mod meshes;
 mod principal;

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod lives;
+mod margins;
 
 use std::collections::{BTreeSet, HashMap};
 

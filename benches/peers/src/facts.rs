@@ -116,7 +116,7 @@ pub fn write(
         .into_diagnostic()
         .wrap_err_with(blame)?;
     for (ending, text) in [("csv", csv), ("json", json), ("md", page)] {
-        fs::write(directory.join(name).with_extension(ending), text)
+        sdop::files::write(&directory.join(name).with_extension(ending), text)
             .into_diagnostic()
             .wrap_err_with(blame)?;
     }

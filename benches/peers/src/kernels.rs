@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         let key = |row: &KernelTiming| (row.group.clone(), row.function.clone(), row.elements);
         key(a).cmp(&key(b)).then(a.parameter.cmp(&b.parameter))
     });
-    fs::write(&args.out, facts::csv(&rows)?)
+    sdop::files::write(&args.out, facts::csv(&rows)?)
         .into_diagnostic()
         .wrap_err_with(|| format!("writing {}", args.out.display()))
 }

@@ -13,8 +13,8 @@ use parry3d::query::intersection_test;
 use parry3d::shape::{ConvexPolyhedron, Shape as Solid, TriMesh};
 use sdop::bodies::Bodies;
 use sdop::culler::Culler;
+use sdop::lab::hull_test::{HullGraph, PosedHull, may_touch};
 use sdop::lab::scene::{Scene, SceneFile};
-use sdop::lab::tradeoff::gjk::{HullGraph, PosedHull, may_touch};
 use sdop::lab::tradeoff::truth::samples;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::Shape;
@@ -72,7 +72,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     print!("{text}");
     if let Some(directory) = &args.out {
         std::fs::create_dir_all(directory).into_diagnostic()?;
-        std::fs::write(directory.join("narrow.csv"), text).into_diagnostic()?;
+        sdop::files::write(&directory.join("narrow.csv"), text).into_diagnostic()?;
     }
     Ok(())
 }

@@ -9,6 +9,7 @@
 //! [`Path`] says which stage it was. A stage that cannot tell stays silent, so overflow, underflow and NaN fall through.
 
 pub mod axes;
+pub mod common;
 pub mod flat;
 pub mod interval;
 pub mod judge;

@@ -21,6 +21,11 @@ pub enum Overlap {
     Full,
 }
 
+impl Overlap {
+    /// Every test.
+    pub const ALL: [Self; 3] = [Self::OneSided, Self::TwoSided, Self::Full];
+}
+
 /// A polytope under a rotation, its position aside.
 #[derive(Clone, Debug)]
 pub struct Turned {

@@ -4,6 +4,7 @@
     reason = "a test that cannot build its input has failed"
 )]
 
+mod common_points;
 mod containment;
 mod exact_maps;
 mod exact_meshes;

@@ -58,7 +58,7 @@ fn plain_and_exact_agree_and_no_mesh_pair_is_missed() {
         );
         let interest: Vec<bool> = (0..40).map(|n| n % 5 == 0).collect();
         for strategy in strategies(&interest, &[(0, 1), (3, 7)]) {
-            for overlap in [Overlap::OneSided, Overlap::TwoSided, Overlap::Full] {
+            for overlap in Overlap::ALL {
                 let (exact, _) = judge::pairs(&bodies, strategy, overlap);
                 assert_eq!(
                     exact,

@@ -98,7 +98,7 @@ fn unrotated_intervals_are_not_compared() {
         pose,
         dynamic: true,
     };
-    for test in [Overlap::OneSided, Overlap::TwoSided, Overlap::Full] {
+    for test in Overlap::ALL {
         assert!(ordop::overlap(&body(along_x), &body(along_y(1.0)), test));
         assert!(!ordop::overlap(&body(along_x), &body(along_y(1.05)), test));
     }

@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use miette::{IntoDiagnostic as _, miette};
 use sdop::lab::cost::calibrate::Effort;
+use sdop::lab::measure::conditions::Conditions;
 use sdop::lab::measure::machine::Machine;
 use sdop::lab::reproduce::{Plan, Results, Shard};
 use sdop::settings::Strategy;
@@ -17,12 +18,13 @@ use super::Outcome;
 use super::files::{command, write};
 use super::output::{Format, csv_text, emit, progress};
 use super::scene_args::MachineArgs;
+pub use figures::draw_costs;
 use rows::Tables;
 
 /// Run the paper's experiments: Table 1, Figs 12 to 14, costs, claims
 ///
 /// For 50, 150, 300, 350 and 500 objects in one box, and 500 in a small one, every strategy culls the same seeded trajectories.
-/// Counts and hashes are equal on every CPU; times are medians over frames with intervals over seeds. Results are written
+/// Counts and hashes are equal on every CPU; times are medians over warm frames with intervals over seeds. Results are written
 /// as CSV, JSON, SVG and a summary in Markdown. The exit code is 1 when the sequential and the listed S-DOP report
 /// different pairs.
 #[derive(clap::Args)]
@@ -69,7 +71,7 @@ const QUICK: Size = Size {
     seeds: 5,
     frames: 100,
     effort: Effort {
-        frames: 20,
+        turns: 1,
         builds: 3,
     },
 };
@@ -77,8 +79,8 @@ const FULL: Size = Size {
     seeds: 64,
     frames: 400,
     effort: Effort {
-        frames: 160,
-        builds: 9,
+        turns: 2,
+        builds: 5,
     },
 };
 
@@ -89,6 +91,7 @@ const FULL: Size = Size {
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let plan = plan(args)?;
     let start = Instant::now();
+    let before = Conditions::before();
     let bar = progress(plan.steps() as u64, "reproduce");
     let results = plan.run(|what| {
         bar.set_message(what.to_owned());
@@ -96,7 +99,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     })?;
     bar.finish_and_clear();
     let machine = Machine::here(plan.tier);
-    let tables = Tables::new(&results, &machine, args.shard, command());
+    let tables = Tables::new(&results, &machine, args.shard, command(), before);
     let paper = args.paper.as_ref().unwrap_or(&args.out);
     write_tables(&args.out, &tables)?;
     figures::draw_all(&paper.join("figures"), &tables)?;

@@ -3,14 +3,15 @@
 //! Of those, `counts` has what is equal on every machine, and its hash stands in the summary; `times` has what is not.
 
 use miette::IntoDiagnostic as _;
-use sdop::lab::cost::predict::Prices;
+use sdop::lab::cost::table::{self, Cost, PriceRow};
+use sdop::lab::measure::conditions::Conditions;
 use sdop::lab::measure::machine::Machine;
+use sdop::lab::measure::turns::Regime;
 use sdop::lab::reproduce::check::{Claim, Verdict};
 use sdop::lab::reproduce::closed_form::{probability, relative_reach};
 use sdop::lab::reproduce::rates::{self, Rate};
 use sdop::lab::reproduce::readings::{self, Cell};
-use sdop::lab::reproduce::terms::{self, Cost};
-use sdop::lab::reproduce::{Estimate, Results, Run, Shard, claims, study};
+use sdop::lab::reproduce::{Estimate, PaperScene, Results, Run, Shard, claims, study};
 use sdop::settings::Strategy;
 use serde::Serialize;
 use serde_json::Value;
@@ -29,10 +30,15 @@ pub struct Tables {
     pub volumes_sha256: String,
     pub counts_sha256: String,
     pub boxes: Vec<BoxRow>,
-    pub prices: Prices,
+    pub conditions: Conditions,
+    pub prices: Vec<ScenePrice>,
     pub table_1: Vec<Cell>,
     pub rates: Vec<Rate>,
+    pub hidden: Vec<HiddenRow>,
+    /// Warm frames.
     pub costs: Vec<Cost>,
+    /// Cold frames.
+    pub cold_costs: Vec<Cost>,
     pub survival: Vec<SurvivalRow>,
     pub claims: Vec<Claim>,
     pub study: Vec<Claim>,
@@ -42,10 +48,20 @@ pub struct Tables {
     pub times: Vec<TimeRow>,
 }
 
+/// A price with the scene that it was calibrated for.
+#[derive(Serialize)]
+pub struct ScenePrice {
+    pub scene: &'static str,
+    #[serde(flatten)]
+    pub price: PriceRow,
+}
+
 /// A scene's bodies and box, and the share of sphere tests that hit there in the closed form.
 #[derive(Serialize)]
 pub struct BoxRow {
     pub scene: String,
+    /// Whether it is the small box.
+    pub crowded: bool,
     pub bodies: usize,
     pub statics: usize,
     pub side: f64,
@@ -72,7 +88,7 @@ pub struct CountRow {
     pairs_sha256: Option<String>,
 }
 
-/// What it took, in seconds: medians over frames, the mean, the simulation's step, and Co once.
+/// What it took, in seconds: medians over warm frames and over cold ones, the mean, the simulation's step, and Co once.
 #[derive(Serialize)]
 pub struct TimeRow {
     scene: String,
@@ -83,8 +99,17 @@ pub struct TimeRow {
     pair_finding: f64,
     ordop: f64,
     total: f64,
+    total_cold: f64,
     mean: f64,
     simulation_step: f64,
+}
+
+/// The F from which on two strategies' frame rates are within five percent; none where they are without any F.
+#[derive(Serialize)]
+pub struct HiddenRow {
+    pub scene: &'static str,
+    pub of: [Strategy; 2],
+    pub from: Option<Estimate>,
 }
 
 /// or-DOP hits among sphere hits.
@@ -115,6 +140,7 @@ impl Tables {
         machine: &Machine,
         shard: Option<Shard>,
         command: String,
+        before: Conditions,
     ) -> Self {
         let counts: Vec<CountRow> = results.runs.iter().map(count_row).collect();
         let survival = |row: &sdop::lab::reproduce::Survival| SurvivalRow {
@@ -122,6 +148,7 @@ impl Tables {
             overlap: row.overlap.name(),
             percent: Estimate::of(&row.shares).scaled(100.0),
         };
+        let costs = results.costs(Regime::Warm);
         Self {
             command,
             machine: machine.clone(),
@@ -134,13 +161,15 @@ impl Tables {
                 .plan
                 .names
                 .iter()
-                .filter_map(|scene| results.example(scene))
-                .map(box_row)
+                .filter_map(|&scene| results.example(scene.name()).map(|run| box_row(scene, run)))
                 .collect(),
-            prices: results.prices.clone(),
+            conditions: before.after(costs.iter().map(|cost| cost.frame.measured)),
+            prices: prices(results),
             table_1: readings::table(results),
             rates: rates::table(results),
-            costs: terms::table(results),
+            hidden: hidden(results),
+            costs,
+            cold_costs: results.costs(Regime::Cold),
             survival: results.survival.iter().map(survival).collect(),
             claims: claims::all(results),
             study: study::all(results),
@@ -157,11 +186,15 @@ impl Tables {
             ("times", value(serde_json::to_value(&self.times))?),
             ("table_1", value(serde_json::to_value(&self.table_1))?),
             ("frame_rates", value(serde_json::to_value(&self.rates))?),
-            ("costs", value(serde_json::to_value(&self.costs))?),
+            ("costs", value(serde_json::to_value(self.both_costs()))?),
             ("prices", value(serde_json::to_value(&self.prices))?),
             ("survival", value(serde_json::to_value(&self.survival))?),
             ("claims", value(serde_json::to_value(self.checks()))?),
         ])
+    }
+
+    fn both_costs(&self) -> Vec<&Cost> {
+        self.costs.iter().chain(&self.cold_costs).collect()
     }
 
     /// The scenes with costs.
@@ -210,15 +243,58 @@ fn hash(counts: &[CountRow]) -> miette::Result<String> {
     Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-fn box_row(run: &Run) -> BoxRow {
+fn box_row(scene: PaperScene, run: &Run) -> BoxRow {
     BoxRow {
         scene: run.scene.clone(),
+        crowded: scene.crowded(),
         bodies: run.bodies,
         statics: run.statics,
         side: run.side,
         radius: run.radius,
         percent: 100.0 * probability(relative_reach(run.side, run.radius)),
     }
+}
+
+/// The pairs of strategies that the paper compares, in the scenes of 500 objects.
+fn hidden(results: &Results) -> Vec<HiddenRow> {
+    use Strategy::{None as Control, SDopBatch, SDopObjectOfInterest, SDopSequential, Sphere};
+    let compared = [
+        [SDopObjectOfInterest, Control],
+        [SDopObjectOfInterest, Sphere],
+        [SDopSequential, Sphere],
+        [SDopBatch, Sphere],
+        [Strategy::OrDop, SDopBatch],
+    ];
+    let mut rows = Vec::new();
+    for &scene in &results.plan.names {
+        if results
+            .example(scene.name())
+            .is_some_and(|run| run.bodies == 500)
+        {
+            rows.extend(compared.map(|of| HiddenRow {
+                scene: scene.name(),
+                of,
+                from: rates::hides(results, scene.name(), of, 0.95),
+            }));
+        }
+    }
+    rows
+}
+
+/// Prices for warm and for cold frames, scene by scene.
+fn prices(results: &Results) -> Vec<ScenePrice> {
+    let mut prices = Vec::new();
+    for &scene in &results.plan.names {
+        let passes = results.passes_of(scene);
+        for &regime in Regime::ALL {
+            let rows = table::prices(&passes, regime).into_iter();
+            prices.extend(rows.map(|price| ScenePrice {
+                scene: scene.name(),
+                price,
+            }));
+        }
+    }
+    prices
 }
 
 fn count_row(run: &Run) -> CountRow {
@@ -251,6 +327,7 @@ fn time_row(run: &Run) -> TimeRow {
         pair_finding: run.seconds.pair_finding,
         ordop: run.seconds.ordop,
         total: run.seconds.total,
+        total_cold: run.cold,
         mean: run.mean,
         simulation_step: run.step,
     }

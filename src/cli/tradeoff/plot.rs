@@ -7,9 +7,10 @@ use std::ops::Range;
 use miette::miette;
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use sdop::lab::tradeoff::Tradeoff;
+use sdop::lab::tradeoff::pays::Standing;
+use sdop::lab::tradeoff::{Row, Tradeoff};
 
-use crate::cli::palette::{BLUE, GREEN, ORANGE, PALE, PURPLE, SKY, VERMILION};
+use crate::cli::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};
 
 const SIZE: (u32, u32) = (960, 600);
 const FONT: &str = "sans-serif";
@@ -18,53 +19,60 @@ const COLOURS: [RGBColor; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLA
 
 type Points = Vec<(f64, f64)>;
 
-/// Precision against time a frame; the Pareto front is a numbered line.
+/// Precision against time per frame: the Pareto front labelled at its points, with error bars; what is tied is grey.
 pub fn precision(result: &Tradeoff) -> miette::Result<String> {
-    let mut groups: BTreeMap<&str, Points> = BTreeMap::new();
-    let mut front = Vec::new();
-    for row in &result.rows {
-        let point = (1e6 * row.seconds.mean, row.precision.mean);
-        groups.entry(&row.volume).or_default().push(point);
-        if row.front {
-            front.push((point, row.name.clone()));
-        }
-    }
-    front.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
-    let times = span(groups.values().flatten().map(|p| p.0));
+    let at = |row: &Row| (1e6 * row.seconds().mean, row.precision.mean);
+    let of = |standing| {
+        result
+            .rows
+            .iter()
+            .filter(move |row| row.standing == standing)
+    };
+    let mut front: Vec<&Row> = of(Standing::Front).collect();
+    front.sort_by(|a, b| at(a).0.total_cmp(&at(b).0));
+    let times = span(result.rows.iter().map(|row| at(row).0));
     figure(|area| {
         let mut chart = ChartBuilder::on(&area)
             .caption(format!("{}: what accuracy costs", result.scene), (FONT, 20))
             .margin(14)
             .x_label_area_size(46)
             .y_label_area_size(56)
-            .build_cartesian_2d((times.start / 1.5..times.end * 12.0).log_scale(), 0.0..1.0)?;
+            .build_cartesian_2d((times.start / 1.5..times.end * 3.0).log_scale(), 0.0..1.0)?;
         chart
             .configure_mesh()
-            .x_desc("time a frame, µs (log)")
+            .x_desc("time per warm frame, µs (log)")
             .y_desc("precision: true pairs / reported pairs")
             .label_style((FONT, 14))
             .light_line_style(TRANSPARENT)
             .bold_line_style(PALE)
             .draw()?;
-        let steps = front.iter().map(|(point, _)| *point);
-        chart.draw_series(LineSeries::new(steps, BLACK.mix(0.4).stroke_width(2)))?;
-        for ((volume, points), colour) in groups.iter().zip(COLOURS) {
-            let dots = points.iter().map(|&p| Circle::new(p, 4, colour.filled()));
+        for (standing, colour) in [
+            (Standing::Beaten, RGBColor(190, 190, 190)),
+            (Standing::Tied, GREY),
+        ] {
+            let dots = of(standing).map(|row| Circle::new(at(row), 4, colour.filled()));
             chart
                 .draw_series(dots)?
-                .label(*volume)
+                .label(standing.name())
                 .legend(move |(x, y)| Circle::new((x + 8, y), 4, colour.filled()));
         }
-        // Names would hide one another: the front is numbered, and the legend tells.
-        for (number, (point, name)) in (1..).zip(&front) {
-            let mark = EmptyElement::at(*point)
-                + Circle::new((0, 0), 6, BLACK.stroke_width(1))
-                + Text::new(format!("{number}"), (-18, -14), (FONT, 13));
-            let place = number.to_string();
-            chart
-                .draw_series([mark])?
-                .label(name.as_str())
-                .legend(move |(x, y)| Text::new(place.clone(), (x + 4, y - 6), (FONT, 13)));
+        let steps = front.iter().map(|row| at(row));
+        chart.draw_series(LineSeries::new(steps, BLUE.stroke_width(2)))?;
+        for (number, row) in front.iter().enumerate() {
+            let (time, precision) = at(row);
+            let seconds = row.seconds();
+            if seconds.half_width.is_finite() {
+                let [lo, hi] = seconds.interval().map(|s| (1e6 * s).max(times.start / 1.5));
+                let whisker =
+                    PathElement::new([(lo, precision), (hi, precision)], BLUE.stroke_width(2));
+                chart.draw_series([whisker])?;
+            }
+            // Neighbours' names would hide one another on one side.
+            let offset = if number % 2 == 0 { (10, 2) } else { (10, -14) };
+            let mark = EmptyElement::at((time, precision))
+                + Circle::new((0, 0), 5, BLUE.filled())
+                + Text::new(row.name.clone(), offset, (FONT, 13));
+            chart.draw_series([mark])?;
         }
         chart
             .configure_series_labels()
@@ -111,7 +119,7 @@ pub fn budget(result: &Tradeoff) -> miette::Result<String> {
     let mut curves: BTreeMap<String, Points> = BTreeMap::new();
     for row in &result.budgets {
         let point = (row.tests as f64, row.precision);
-        curves.entry(row.order.clone()).or_default().push(point);
+        curves.entry(row.order.to_string()).or_default().push(point);
     }
     let most = result
         .budgets

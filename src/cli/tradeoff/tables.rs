@@ -1,18 +1,62 @@
 //! The result as tables: what a terminal shows, and what the page quotes.
 
 use comfy_table::Table;
+use sdop::lab::cost::predict::Terms;
+use sdop::lab::cost::table::Compared;
 use sdop::lab::measure::turns::median;
+use sdop::lab::tradeoff::decide::{CHECKS, Decision};
+use sdop::lab::tradeoff::pays::Standing;
 use sdop::lab::tradeoff::shapes::ShapeSurvival;
-use sdop::lab::tradeoff::timing::VolumeTerms;
 use sdop::lab::tradeoff::{Estimate, Row, Tradeoff};
-use sdop::settings::Overlap;
+use sdop::settings::{Axes, Overlap};
 
 use crate::cli::output::{rows, table};
 
+/// For people: the recommendation, then a short table.
+pub fn brief(result: &Tradeoff) -> String {
+    let front: Vec<Row> = {
+        let shown = result
+            .rows
+            .iter()
+            .filter(|row| row.standing != Standing::Beaten);
+        let mut shown: Vec<Row> = shown.cloned().collect();
+        shown.sort_by(|a, b| a.seconds().mean.total_cmp(&b.seconds().mean));
+        shown
+    };
+    let header = [
+        "variant",
+        "standing",
+        "precision",
+        "µs per warm frame",
+        "false pairs",
+    ];
+    let short = rows(&header, &front, |row| {
+        vec![
+            row.name.clone(),
+            row.standing.to_string(),
+            plus_minus(&row.precision, 1.0, 3),
+            plus_minus(&row.seconds(), 1e6, 1),
+            format!("{:.1}", row.reported.mean * (1.0 - row.precision.mean)),
+        ]
+    });
+    let mut parts = vec![result.advice.clone()];
+    parts.extend(result.conditions.warning());
+    parts.extend([
+        heading(result),
+        short.to_string(),
+        "--all prints the rest.".to_owned(),
+    ]);
+    parts.join("\n\n")
+}
+
 /// Everything, for people.
 pub fn text(result: &Tradeoff) -> String {
-    let parts = [
+    let mut parts = vec![result.advice.clone()];
+    parts.extend(result.conditions.warning());
+    parts.extend([
         heading(result),
+        "Which variant, by density, class of shapes and price of a narrow-phase check".into(),
+        decisions(result).to_string(),
         variants(result).to_string(),
         "Time-critical: precision against the budget of tests".into(),
         budgets(result).to_string(),
@@ -26,9 +70,39 @@ pub fn text(result: &Tradeoff) -> String {
         shapes(result).to_string(),
         "The price of safety".into(),
         safety(result).to_string(),
-        result.advice.clone(),
-    ];
+    ]);
     parts.join("\n\n")
+}
+
+/// A line a density and class of shapes, a column a price of a check: what to use, and what is tied with it.
+pub fn decisions(result: &Tradeoff) -> Table {
+    let checks: Vec<String> = CHECKS.iter().map(|check| nanoseconds(*check)).collect();
+    let header = [
+        &["sphere overlaps per body", "shapes"],
+        &checks.iter().map(String::as_str).collect::<Vec<_>>()[..],
+    ]
+    .concat();
+    let mut rows = table(&header);
+    for decisions in result
+        .decisions
+        .chunk_by(|a, b| (a.partners, a.class) == (b.partners, b.class))
+    {
+        let cell = |decision: &Decision| match decision.tied.as_slice() {
+            [] => decision.best.clone(),
+            [one] => format!("{} (tied: {one})", decision.best),
+            [one, rest @ ..] => format!("{} (tied: {one} and {} more)", decision.best, rest.len()),
+        };
+        let first = [
+            format!("{:.2}", decisions[0].partners),
+            decisions[0].class.to_string(),
+        ];
+        rows.add_row(first.into_iter().chain(decisions.iter().map(cell)));
+    }
+    rows
+}
+
+fn nanoseconds(seconds: f64) -> String {
+    format!("{:.0} ns a check", 1e9 * seconds)
 }
 
 /// What was run.
@@ -56,35 +130,48 @@ pub fn plus_minus(estimate: &Estimate, scale: f64, digits: usize) -> String {
     }
 }
 
-/// A line a variant; the Pareto front is marked.
+/// A line a variant, with how it stands to the Pareto front.
 pub fn variants(result: &Tradeoff) -> Table {
     let header = [
         "variant",
-        "front",
+        "standing",
         "precision",
         "reported / true",
         "recall",
         "volume / hull",
         "Nu",
         "Nv",
-        "Cu ns",
-        "Cv ns",
+        "Nu·Cu µs",
+        "F µs",
+        "Nv·Cv µs",
+        "sum µs",
+        "warm µs",
+        "residual %",
+        "cold µs",
+        "residual %",
         "Co ms",
-        "T µs",
-        "µs / frame",
+        "residual %",
     ];
     rows(&header, &result.rows, variant)
 }
 
 fn variant(row: &Row) -> Vec<String> {
-    let joined = |term: &dyn Fn(&VolumeTerms) -> String| {
-        let terms: Vec<String> = row.volumes.iter().map(term).collect();
+    let terms = row.warm.as_ref().map_or(&[][..], |cost| &cost.terms);
+    let joined = |term: fn(&Terms) -> f64| {
+        let terms: Vec<String> = terms.iter().map(|t| format!("{:.0}", term(t))).collect();
         terms.join(" + ")
     };
-    let construct: f64 = row.volumes.iter().map(|v| v.co).sum();
-    vec![
+    let sum = |term: fn(&Terms) -> f64| format!("{:.1}", 1e6 * terms.iter().map(term).sum::<f64>());
+    let compared = |cost: Option<&Compared>, scale: f64| {
+        let cells = cost.map(|cost| {
+            let residual = format!("{:+.1}", 100.0 * cost.residual.mean);
+            [plus_minus(&cost.measured, scale, 1), residual]
+        });
+        cells.unwrap_or_default()
+    };
+    let mut cells = vec![
         row.name.clone(),
-        if row.front { "●" } else { "" }.into(),
+        row.standing.to_string(),
         plus_minus(&row.precision, 1.0, 3),
         plus_minus(&row.per_true, 1.0, 2),
         if row.recall == 1.0 {
@@ -94,14 +181,17 @@ fn variant(row: &Row) -> Vec<String> {
         },
         row.volume_over_hull
             .map_or("–".into(), |ratio| format!("{ratio:.2}")),
-        joined(&|v| format!("{:.0}", v.nu)),
-        joined(&|v| format!("{:.0}", v.nv)),
-        joined(&|v| format!("{:.1}", 1e9 * v.cu)),
-        joined(&|v| format!("{:.2}", 1e9 * v.cv)),
-        format!("{:.2}", 1e3 * construct),
-        format!("{:.1}", 1e6 * row.predicted),
-        plus_minus(&row.seconds, 1e6, 1),
-    ]
+        joined(|t| t.updates),
+        joined(|t| t.tests),
+        sum(|t| t.update),
+        sum(|t| t.finding),
+        sum(|t| t.test),
+        sum(Terms::recurring),
+    ];
+    cells.extend(compared(row.warm.as_ref().map(|cost| &cost.frame), 1e6));
+    cells.extend(compared(row.cold.as_ref().map(|cost| &cost.frame), 1e6));
+    cells.extend(compared(row.warm.as_ref().map(|cost| &cost.construct), 1e3));
+    cells
 }
 
 /// A line an order and budget.
@@ -117,7 +207,7 @@ pub fn budgets(result: &Tradeoff) -> Table {
     ];
     rows(&header, &result.budgets, |row| {
         vec![
-            row.order.clone(),
+            row.order.to_string(),
             row.tests.to_string(),
             format!("{:.3}", row.refined),
             format!("{:.3}", row.precision),
@@ -149,8 +239,8 @@ pub fn interest(result: &Tradeoff) -> Table {
         "reported",
         "precision",
         "recall",
-        "µs / frame",
-        "lazy µs",
+        "warm µs",
+        "lazy, warm µs",
     ];
     rows(&header, &result.interest, |row| {
         vec![
@@ -159,8 +249,8 @@ pub fn interest(result: &Tradeoff) -> Table {
             format!("{:.1}", row.reported),
             format!("{:.3}", row.quality.precision),
             format!("{}", row.quality.recall),
-            format!("{:.1}", 1e6 * row.seconds),
-            format!("{:.1}", 1e6 * row.lazy_seconds),
+            plus_minus(&row.seconds, 1e6, 1),
+            plus_minus(&row.lazy_seconds, 1e6, 1),
         ]
     })
 }
@@ -197,7 +287,7 @@ pub fn shapes(result: &Tradeoff) -> Table {
     for shape in &result.shapes {
         let mut cells = vec![shape.shape.clone()];
         for &overlap in Overlap::ALL {
-            let share = |k| survivors(shape, k, "principal", overlap);
+            let share = |k| survivors(shape, k, Axes::Principal, overlap);
             cells.extend([6, 14, 18, 26].map(|k| share(k).map_or("–".into(), short)));
         }
         let outside = format!("{:.2} %", 100.0 * shape.outside);
@@ -211,12 +301,11 @@ pub fn shapes(result: &Tradeoff) -> Table {
 pub fn survivors<'a>(
     shape: &'a ShapeSurvival,
     k: usize,
-    axes: &str,
+    axes: Axes,
     overlap: Overlap,
 ) -> Option<&'a Estimate> {
-    let fits = |s: &&sdop::lab::tradeoff::shapes::Survival| {
-        s.k == k && s.axes == axes && s.overlap == overlap.name()
-    };
+    let fits =
+        |s: &&sdop::lab::tradeoff::shapes::Survival| (s.k, s.axes, s.overlap) == (k, axes, overlap);
     shape.ordops.iter().find(fits).map(|s| &s.share)
 }
 
@@ -277,17 +366,23 @@ pub fn safety(result: &Tradeoff) -> Table {
         "reported",
         "extra",
         "lost",
-        "µs / frame",
+        "warm µs",
+        "quartiles",
     ];
     rows(&header, &result.safety, |row| {
         vec![
-            row.strategy.clone(),
-            row.arithmetic.clone(),
+            row.strategy.to_string(),
+            row.arithmetic.to_string(),
             row.simd.clone(),
             row.reported.to_string(),
             row.extra.to_string(),
             row.lost.to_string(),
-            format!("{:.1}", 1e6 * row.seconds),
+            format!("{:.1}", 1e6 * row.seconds.median),
+            format!(
+                "{:.1} to {:.1}",
+                1e6 * row.seconds.low,
+                1e6 * row.seconds.high
+            ),
         ]
     })
 }

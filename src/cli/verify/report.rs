@@ -1,13 +1,19 @@
-//! What a verification run says of itself: answers by stage, lists by strategy, one table each a source.
+//! What a verification run says of itself: answers by stage and lists by strategy, one table each a source, and the matrix
+//! of what was judged.
+
+mod coverage;
 
 use std::time::Duration;
 
 use sdop::lab::verify::Predicate;
+use sdop::lab::verify::matrix::Matrix;
 use sdop::lab::verify::rounds::{Ledger, Row};
+use sdop::lab::verify::ways::Rotation;
 use sdop::simd::Tier;
 use serde::Serialize;
 
 use crate::cli::output::table;
+use coverage::Coverage;
 
 /// The result of `sdop verify`.
 #[derive(Serialize)]
@@ -17,8 +23,13 @@ pub struct Report {
     /// Wall time.
     seconds: f64,
     /// Pairs missed, over all sources.
-    pub missed: u64,
+    missed: u64,
+    /// Pairs on which a list and that of all-pairs differ, over all sources.
+    differ: u64,
     sources: Vec<SourceReport>,
+    coverage: Coverage,
+    #[serde(skip)]
+    matrix: Matrix,
 }
 
 #[derive(Serialize)]
@@ -47,6 +58,8 @@ struct StrategyReport {
     required: u64,
     reported: u64,
     missed: u64,
+    /// On which a list and that of all-pairs differ.
+    differ: u64,
     /// Reported although the exact volumes are apart, but not those wider by the rounding margins; per million judged.
     margin_per_million: Option<f64>,
     /// Reported although those are apart too, since supports are bounded from slabs; per million judged.
@@ -61,12 +74,17 @@ impl Report {
             simd: tiers.iter().map(|tier| tier.name()).collect(),
             seconds: 0.0,
             missed: 0,
+            differ: 0,
             sources: Vec::new(),
+            coverage: Coverage::default(),
+            matrix: Matrix::default(),
         }
     }
 
     pub fn add(&mut self, name: String, ledger: &Ledger) {
         self.missed += ledger.missed();
+        self.differ += ledger.differing();
+        self.matrix.add(&ledger.matrix);
         let answers = ledger.predicates.iter().zip(Predicate::ALL);
         self.sources.push(SourceReport {
             name,
@@ -85,11 +103,17 @@ impl Report {
         });
     }
 
-    pub fn finish(&mut self, elapsed: Duration) {
+    pub fn finish(&mut self, elapsed: Duration, rotation: &Rotation) {
         self.seconds = elapsed.as_secs_f64();
+        self.coverage = Coverage::of(&self.matrix, rotation);
     }
 
-    /// Two tables a source.
+    /// Whether no pair is missed, no finder disagrees with all-pairs, and no cell of the matrix is empty.
+    pub fn passed(&self) -> bool {
+        self.missed == 0 && self.differ == 0 && self.coverage.is_full()
+    }
+
+    /// Two tables a source, and those of the matrix.
     pub fn tables(&self) -> String {
         let mut text = String::new();
         for source in &self.sources {
@@ -117,12 +141,13 @@ impl Report {
                 );
             }
             let header = [
-                "strategy", "judged", "required", "reported", "missed", "margin/M", "bound/M",
-                "loose/M",
+                "strategy", "judged", "required", "reported", "missed", "differ", "margin/M",
+                "bound/M", "loose/M",
             ];
             let mut lists = table(&header);
             for s in &source.strategies {
-                let counts = [s.judged, s.required, s.reported, s.missed].map(|n| n.to_string());
+                let counts = [s.judged, s.required, s.reported, s.missed, s.differ];
+                let counts = counts.map(|n| n.to_string());
                 let rates = [
                     s.margin_per_million,
                     s.bound_per_million,
@@ -134,8 +159,10 @@ impl Report {
             text += &format!("{}\n{answers}\n{lists}\n\n", source.name);
         }
         text + &format!(
-            "{} missed in {:.0} s on {}",
+            "{}\n\n{} missed, {} differ from all-pairs, in {:.0} s on {}",
+            self.coverage.tables(),
             self.missed,
+            self.differ,
             self.seconds,
             self.simd.join(", ")
         )
@@ -153,6 +180,7 @@ fn strategy((row, count): (&Row, &sdop::lab::verify::Count)) -> StrategyReport {
         required: count.required,
         reported: count.reported,
         missed: count.missed,
+        differ: count.differ,
         margin_per_million: rate(count.margin, count.judged).filter(|_| !budgeted),
         bound_per_million: rate(count.bound, count.judged).filter(|_| !budgeted),
         looseness_per_million: rate(count.loose, count.meshes_judged),

@@ -1,36 +1,40 @@
-//! Calibration: Cu, Cv and Co of every volume, from seeded runs that no prediction is compared with.
+//! Calibration: Cu, Cv and Co of every volume, from seeded scenes that no prediction is compared with.
 //!
-//! The runs resample the scene ([`scenes`]): other numbers of bodies, other boxes, other seeds. Each stage's seconds are
-//! then explained by its counts ([`fit`]): an update stage by Nu, a finding stage by frames, bodies, misses and
-//! hits. Prices are therefore marginal: a hit costs what one more hit costs among the misses around it, with the vector of
-//! lanes that it keeps busy. Dividing a run's own seconds by its own counts would predict nothing.
+//! The scenes resample the one that is predicted ([`scenes`]): other numbers of bodies, other boxes, other seeds, none
+//! within a tenth of it, on both sides of it in numbers and in density. They take turns with the frames that they predict
+//! ([`pass`](super::pass)), so that whatever the machine does meanwhile falls on both. [`explain`](super::explain) then
+//! explains each stage's seconds by its counts. Dividing a run's own seconds by its own counts would predict nothing.
 
-use super::VolumeCosts;
-use super::fit::{self, Measurement};
-use super::predict::{Price, Prices, Volume};
+use std::time::Instant;
+
+use super::explain::{self, Observed, Split};
+use super::predict::Prices;
 use crate::bodies::Bodies;
 use crate::lab::effects::Velocities;
-use crate::lab::measure::turns::{Trial, side_by_side, time};
+use crate::lab::measure::contestant::Contestant;
+use crate::lab::measure::counts::{Counts, Volume};
+use crate::lab::measure::culling::Culling;
+use crate::lab::measure::turns::{Regime, Times, Turns, median, next_turn};
+use crate::lab::measure::variant::Variant;
+use crate::lab::measure::waiting::Waiting;
 use crate::lab::number::Interval;
 use crate::lab::random::Stream;
 use crate::lab::scene::Scene;
-use crate::lab::simulate::SimulationError;
-use crate::overlap::ordop::PosedOrDops;
-use crate::pairs::PairList;
-use crate::settings::{Axes, Strategy};
+use crate::lab::simulate::{SimulationError, Trajectory};
+use crate::settings::{Axes, Budget, CullSettings, Interest};
 use crate::simd::Tier;
-use crate::volume::{Ball, Hull, Shape};
+use crate::volume::{Ball, Shape};
 
 /// Bodies of the calibration scenes, as parts of the scene's number.
-const SIZES: [f64; 4] = [0.07, 0.23, 0.64, 1.3];
-/// Sides of the calibration scenes' boxes, as multiples of the scene's.
-const SIDES: [f64; 3] = [0.6, 1.0, 1.6];
+const SIZES: [f64; 4] = [0.78, 0.88, 1.13, 1.26];
+/// Sides of the calibration scenes' boxes, as multiples of the scene's. A vector of lanes that has a hit or none is a
+/// branch, and how often it is foreseen follows a curve in density and in the number of pairs: so both are near the
+/// scene's, on both sides of it.
+const SIDES: [f64; 2] = [0.89, 1.13];
 /// Where all calibration draws start; scenes count their seeds from 1.
 const SEED: u64 = 0xca11_b8a7_e000_0000;
-/// The fewest bodies of a calibration scene.
-const FEWEST: usize = 24;
-/// Candidate pairs, if all are, after which a calibration run may end.
-const PAIRS: f64 = 8e6;
+/// The calibration scene with the most pairs, on which hits and misses are told apart.
+const DENSEST: usize = (SIZES.len() - 1) * SIDES.len();
 
 /// The number of calibration scenes.
 pub const SCENES: usize = SIZES.len() * SIDES.len();
@@ -38,50 +42,18 @@ pub const SCENES: usize = SIZES.len() * SIDES.len();
 /// How long to calibrate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// The most frames a calibration scene.
-    pub frames: u32,
-    /// How often each shape's volumes are built.
+    /// Turns of each calibration scene in a pass.
+    pub turns: usize,
+    /// How often volumes and cullers are built in a pass, to measure Co; calibration builds them in each turn.
     pub builds: usize,
-}
-
-/// Prices of the volumes of `strategies` with the scene's shapes, settings and pair finder, in the tier `tier`.
-/// `done` hears how many of the [`scenes`] are measured.
-///
-/// # Errors
-/// Settings that can't be carried out, effects that can't be simulated.
-pub fn calibrate(
-    scene: &Scene,
-    strategies: &[Strategy],
-    tier: Tier,
-    effort: Effort,
-    mut done: impl FnMut(usize),
-) -> Result<Prices, SimulationError> {
-    let volumes: Vec<Volume> = Volume::ALL
-        .iter()
-        .copied()
-        .filter(|volume| strategies.iter().any(|&s| Volume::of(s).contains(volume)))
-        .collect();
-    let mut runs = Vec::new();
-    for (number, scene) in scenes(scene).enumerate() {
-        runs.push(Run::new(&scene, &volumes, tier, effort)?);
-        done(number + 1);
-    }
-    let mut prices = Prices::default();
-    for volume in volumes {
-        let mut costs = price(volume, &runs, &prices);
-        let build = |shape| time(effort.builds, || construct(volume, shape, scene.cull.axes));
-        costs.construct = scene.shapes.iter().map(build).sum();
-        prices.0.push(Price { volume, costs });
-    }
-    Ok(prices)
 }
 
 /// The calibration scenes of a scene: every size in every box.
 pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
     (0..SCENES).map(|number| {
         let (size, side) = (SIZES[number / SIDES.len()], SIDES[number % SIDES.len()]);
-        let bodies = (scene.bodies.len() as f64 * size) as usize;
-        resample(scene, bodies.max(FEWEST), side as f32, number as u64)
+        let bodies = (scene.bodies.len() as f64 * size).round() as usize;
+        resample(scene, bodies.max(2), side as f32, number as u64)
     })
 }
 
@@ -139,128 +111,245 @@ fn extent(scene: &Scene) -> f32 {
     2.0 * (0..bodies.len()).map(reach).fold(0.0, f32::max)
 }
 
-/// One calibration scene, measured.
-struct Run {
-    bodies: f64,
-    frames: f64,
-    trials: Vec<Trial>,
-    /// A list of or-DOP hits alone, where S-DOP is measured.
-    hits: Option<Measurement<4>>,
+/// The settings for a calibration scene of another size: the same bodies of interest, and a budget for the same share of
+/// its pairs.
+fn adapted(settings: &CullSettings, of: &Scene, to: &Scene) -> CullSettings {
+    let [n, of_n] = [to, of].map(|scene| scene.bodies.len());
+    let counterpart = |body: u32| ((body as usize * n / of_n.max(1)) as u32).min(n as u32 - 1);
+    let interest = settings.interest.clone().map(|interest| match interest {
+        Interest::Bodies(list) => Interest::Bodies(list.into_iter().map(counterpart).collect()),
+        Interest::Cone(mut cone) => {
+            cone.body = cone.body.map(counterpart);
+            Interest::Cone(cone)
+        }
+    });
+    let bodies = n as f64 / of_n.max(1) as f64;
+    let stretch = match (to.side, of.side) {
+        (Some(to), Some(of)) => f64::from(to / of),
+        _ => 1.0,
+    };
+    let pairs = bodies.powi(2) / stretch.powi(3);
+    let budget = settings.budget.map(|budget| match budget {
+        Budget::Tests(tests) => Budget::Tests((tests as f64 * pairs) as u64),
+        Budget::Microseconds(us) => Budget::Microseconds((us as f64 * pairs) as u64),
+    });
+    CullSettings {
+        interest,
+        budget,
+        ..settings.clone()
+    }
 }
 
-impl Run {
-    fn new(
+/// A variant with what never changes of it.
+struct Prepared {
+    variant: Variant,
+    shapes: Vec<Shape>,
+    /// Seconds that each of its volumes takes for all shapes, turn by turn.
+    volumes: Vec<Vec<f64>>,
+    observed: [Vec<Observed>; 2],
+    splits: Vec<Split>,
+}
+
+/// The calibration of some variants for one scene, in the same passes as the frames that it predicts.
+pub struct Calibration {
+    prepared: Vec<Prepared>,
+    /// Which of them is spheres alone.
+    spheres: usize,
+    companion: Option<Variant>,
+    subjects: Vec<(Scene, Trajectory)>,
+    scene: Scene,
+    turns: Turns,
+    tier: Tier,
+    effort: Effort,
+}
+
+impl Calibration {
+    /// Prepares the calibration scenes. Spheres alone are calibrated in any case ([`Self::companion`]): what other variants
+    /// pay beyond them has a name.
+    ///
+    /// # Errors
+    /// Effects that can't be simulated.
+    pub fn new(
         scene: &Scene,
-        volumes: &[Volume],
+        variants: &[Variant],
         tier: Tier,
         effort: Effort,
     ) -> Result<Self, SimulationError> {
-        let n = scene.bodies.len() as f64;
-        let frames = ((2.0 * PAIRS / (n * n)) as u32).clamp(4, effort.frames.max(4));
-        let trial = |&volume: &Volume| Trial::new(scene, measured_by(volume), tier);
-        let mut trials = volumes.iter().map(trial).collect::<Result<Vec<_>, _>>()?;
-        let mut hits = None;
-        let refined = volumes.iter().position(|&volume| volume == Volume::Refined);
-        side_by_side(scene, &mut trials, frames, |trial, frame, pairs| {
-            if Some(trial) == refined && frame == 0 {
-                hits = Some(time_hits(scene, pairs, tier));
-            }
-        })?;
+        let spheres = Variant::spheres(&scene.cull);
+        let place = variants.iter().position(|variant| *variant == spheres);
+        let companion = place.is_none().then_some(spheres);
+        let prepared = |variant: &Variant| Prepared {
+            shapes: variant.shapes(scene),
+            variant: variant.clone(),
+            volumes: Vec::new(),
+            observed: [Vec::new(), Vec::new()],
+            splits: Vec::new(),
+        };
+        let subject = |scene: Scene| {
+            Ok((
+                scene.clone(),
+                Trajectory::new(&scene)?.with_frames(u32::MAX),
+            ))
+        };
         Ok(Self {
-            bodies: n,
-            frames: f64::from(frames),
-            trials,
-            hits,
+            prepared: variants.iter().chain(&companion).map(prepared).collect(),
+            spheres: place.unwrap_or(variants.len()),
+            companion,
+            subjects: scenes(scene)
+                .map(subject)
+                .collect::<Result<_, SimulationError>>()?,
+            scene: scene.clone(),
+            turns: Turns::from_stream(1),
+            tier,
+            effort,
         })
     }
-}
 
-/// Times the or-DOP test on a list of its hits. Refined pairs always have about the same share of hits, so that no
-/// choice of scenes alone could tell the price of a hit from that of a miss.
-fn time_hits(scene: &Scene, hits: &PairList, tier: Tier) -> Measurement<4> {
-    let shapes = scene.shapes.iter().map(|shape| (shape, &shape.ordop));
-    let posed = PosedOrDops::new(shapes, &scene.bodies, tier);
-    let columns = posed.columns(scene.cull.overlap);
-    let mut out = PairList::default();
-    let seconds = time(9, || {
-        out.clear();
-        columns.test_pairs(tier, hits.first(), hits.second(), &mut out)
-    });
-    Measurement {
-        counts: [1.0, 0.0, 0.0, hits.len() as f64],
-        seconds: if hits.is_empty() { 0.0 } else { seconds },
+    /// Spheres alone, where they aren't among the variants. They take their turns with the predicted frames as well: the
+    /// branches and caches that a culler finds depend on who else ran.
+    #[must_use]
+    pub fn companion(&self) -> Option<&Variant> {
+        self.companion.as_ref()
     }
-}
 
-/// The strategy whose run shows a volume's prices.
-fn measured_by(volume: Volume) -> Strategy {
-    match volume {
-        Volume::Sphere => Strategy::Sphere,
-        Volume::OrDop => Strategy::OrDop,
-        Volume::Refined => Strategy::SDopSequential,
-        Volume::Aabb => Strategy::Aabb,
-        Volume::KDop => Strategy::KDop,
-        Volume::Obb => Strategy::Obb,
+    /// How often Co is measured in a pass.
+    #[must_use]
+    pub fn builds_of_a_pass(&self) -> usize {
+        self.effort.builds
     }
-}
 
-/// Explains the stages of the volume's runs by their counts. `known` has the volumes tested before it.
-fn price(volume: Volume, runs: &[Run], known: &Prices) -> VolumeCosts {
-    let (mut updates, mut finding) = (Vec::new(), Vec::new());
-    for run in runs {
-        let Some(trial) = run
-            .trials
-            .iter()
-            .find(|trial| trial.strategy() == measured_by(volume))
-        else {
-            continue;
-        };
-        let (medians, all) = (trial.medians(), trial.counters());
-        let counters = volume.counters(all);
-        let per_frame = |count: u64| count as f64 / run.frames;
-        let (misses, hits) = (
-            per_frame(counters.tests - counters.hits),
-            per_frame(counters.hits),
-        );
-        let refined = volume == Volume::Refined;
-        let spheres = if refined {
-            known.get(Volume::Sphere).update(&all.sphere)
-        } else {
-            0.0
-        };
-        updates.push(Measurement {
-            counts: [per_frame(counters.updates)],
-            seconds: medians.update - spheres / run.frames,
-        });
-        finding.push(Measurement {
-            counts: [1.0, if refined { 0.0 } else { run.bodies }, misses, hits],
-            seconds: medians.ordop + if refined { 0.0 } else { medians.pair_finding },
-        });
-        finding.extend(run.hits.filter(|_| refined));
+    /// How many calls of [`Self::turn`] make a pass.
+    #[must_use]
+    pub fn turns_of_a_pass(&self) -> usize {
+        SCENES * self.effort.turns
     }
-    let [update] = fit::prices(&updates);
-    let [frame, body, miss, hit] = fit::prices(&finding);
-    VolumeCosts {
-        construct: 0.0,
-        update,
-        frame,
-        body,
-        hit,
-        miss,
-    }
-}
 
-/// Builds a volume of one shape: the work behind Co.
-pub fn construct(volume: Volume, shape: &Shape, axes: Axes) {
-    let vertices = &shape.vertices;
-    match volume {
-        Volume::Sphere => drop(std::hint::black_box(Ball::smallest(vertices))),
-        Volume::OrDop | Volume::Refined => {
-            drop(std::hint::black_box(
-                shape.ordop_along(axes, shape.ordop.directions),
-            ));
+    /// One turn of one calibration scene, `number` counted within the pass.
+    ///
+    /// # Errors
+    /// Settings that can't be carried out, a body that leaves the contract.
+    pub fn turn(&mut self, number: usize) -> Result<(), SimulationError> {
+        // Neighbours in time are far apart in size: a drift must not look like a price. Five and eight share no divisor.
+        let subject = number * 5 % SCENES;
+        let (scene, trajectory) = &mut self.subjects[subject];
+        let poses = next_turn(trajectory, scene.bodies.len(), &mut Vec::new())?;
+        let mut cullers = Vec::new();
+        for prepared in &mut self.prepared {
+            prepared
+                .volumes
+                .push(volume_seconds(&prepared.variant, &prepared.shapes));
+            let variant = Variant {
+                settings: adapted(&prepared.variant.settings, &self.scene, scene),
+                ..prepared.variant.clone()
+            };
+            cullers.push(variant.culling_of(&prepared.shapes, scene, self.tier)?);
         }
-        Volume::Aabb | Volume::KDop => drop(std::hint::black_box(Hull::of(vertices))),
-        Volume::Obb => drop(std::hint::black_box(shape.obb(&Hull::of(vertices)))),
+        // Buffers have grown, and all others have run, before the first frame is timed.
+        cullers
+            .iter_mut()
+            .for_each(|culler| culler.frame(&poses[0]));
+        let before: Vec<Counts> = cullers.iter().map(Culling::counts).collect();
+        let mut times = vec![Times::default(); cullers.len()];
+        self.turns.round(&mut cullers, &poses, |timed| {
+            times[timed.number].push(&timed)
+        });
+        let listed = cullers[self.spheres].pairs();
+        for (at, prepared) in self.prepared.iter_mut().enumerate() {
+            let observed = Observed {
+                bodies: scene.bodies.len(),
+                frames: poses.len(),
+                counts: cullers[at].counts().since(&before[at]),
+                stages: Default::default(),
+                construct: cullers[at].construct_seconds(),
+            };
+            for (&regime, all) in Regime::ALL.iter().zip(&mut prepared.observed) {
+                let stages = times[at].medians(regime);
+                all.push(Observed { stages, ..observed });
+            }
+            if subject == DENSEST {
+                let kept = cullers[at].pairs();
+                let split = Split::of(
+                    &prepared.variant,
+                    &prepared.shapes,
+                    &poses[poses.len() - 1],
+                    self.tier,
+                    [&listed, &kept],
+                );
+                prepared.splits.extend(split);
+            }
+        }
+        Ok(())
     }
+
+    /// What the pass shows: prices for warm frames and for cold ones, of each variant. Another pass begins.
+    pub fn prices(&mut self) -> [Vec<Prices>; 2] {
+        let all = std::array::from_fn(|regime| {
+            let spheres = explain::spheres(&self.prepared[self.spheres].observed[regime]);
+            let of = |prepared: &Prepared| {
+                let volumes = prepared.variant.volumes().len();
+                let built = |volume: usize| {
+                    median(prepared.volumes.iter().map(|turn| turn[volume]).collect())
+                };
+                let built: Vec<f64> = (0..volumes).map(built).collect();
+                let observed = &prepared.observed[regime];
+                explain::prices(
+                    &prepared.variant,
+                    observed,
+                    &built,
+                    &prepared.splits,
+                    &spheres,
+                )
+            };
+            let variants = self.prepared.len() - usize::from(self.companion.is_some());
+            self.prepared[..variants].iter().map(of).collect()
+        });
+        for prepared in &mut self.prepared {
+            prepared.observed.iter_mut().for_each(Vec::clear);
+            prepared.splits.clear();
+            prepared.volumes.clear();
+        }
+        all
+    }
+}
+
+/// Builds what a variant's volume needs of one shape beyond what making the culler builds: the work behind Co.
+pub fn construct(volume: Volume, shape: &Shape, axes: Axes) {
+    match volume {
+        Volume::Sphere => drop(std::hint::black_box(Ball::smallest(&shape.vertices))),
+        Volume::OrDop => drop(std::hint::black_box(
+            shape.ordop_along(axes, shape.ordop.directions),
+        )),
+        // The culler builds these itself, from the hulls.
+        Volume::Aabb | Volume::KDop | Volume::Obb | Volume::Hull => {}
+    }
+}
+
+/// Seconds that each of a variant's volumes takes for all shapes, built once.
+fn volume_seconds(variant: &Variant, shapes: &[Shape]) -> Vec<f64> {
+    let mut waiting = Waiting::of_this_thread();
+    let seconds = |volume: Volume| {
+        let (waited, start) = (waiting.seconds(), Instant::now());
+        shapes
+            .iter()
+            .for_each(|shape| construct(volume, shape, variant.settings.axes));
+        let seconds = start.elapsed().as_secs_f64();
+        (seconds - (waiting.seconds() - waited)).max(0.0)
+    };
+    variant.volumes().into_iter().map(seconds).collect()
+}
+
+/// Builds a variant's volumes of all shapes and its culler, once: the culler, and Co as measured, in seconds.
+///
+/// # Errors
+/// Settings that can't be carried out.
+pub fn build(
+    variant: &Variant,
+    shapes: &[Shape],
+    scene: &Scene,
+    tier: Tier,
+) -> Result<(Culling, f64), SimulationError> {
+    let volumes: f64 = volume_seconds(variant, shapes).iter().sum();
+    let culling = variant.culling_of(shapes, scene, tier)?;
+    let seconds = volumes + culling.construct_seconds();
+    Ok((culling, seconds))
 }

@@ -7,6 +7,11 @@
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 
+use crate::lab::measure::turns::median;
+
+/// Rows this many times the median residual off are left out.
+const OUTLYING: f64 = 4.0;
+
 /// One measurement: how often each priced thing happened, and the seconds it took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement<const N: usize> {
@@ -16,14 +21,31 @@ pub struct Measurement<const N: usize> {
     pub seconds: f64,
 }
 
-/// The prices ≥ 0 that explain `rows` best; all 0 where nothing was measured.
+/// The prices ≥ 0 that explain `rows` best; all 0 where nothing was measured. Rows that lie far off (the machine did
+/// something else) are left out of a second fit.
 #[must_use]
 pub fn prices<const N: usize>(rows: &[Measurement<N>]) -> [f64; N] {
     let rows: Vec<&Measurement<N>> = rows.iter().filter(|row| row.seconds > 0.0).collect();
+    let first = positive_fit(&rows);
+    let off = |row: &&Measurement<N>| relative_residual(row, &first).abs();
+    let limit = OUTLYING * median(rows.iter().map(off).collect());
+    let near: Vec<&Measurement<N>> = rows
+        .iter()
+        .copied()
+        .filter(|row| off(row) <= limit)
+        .collect();
+    if near.len() == rows.len() || near.len() <= N {
+        return first;
+    }
+    positive_fit(&near)
+}
+
+/// The best of all subsets of prices that come out positive.
+fn positive_fit<const N: usize>(rows: &[&Measurement<N>]) -> [f64; N] {
     let mut best = ([0.0; N], f64::INFINITY);
     for subset in 1..1_u32 << N {
         let used: Vec<usize> = (0..N).filter(|j| subset >> j & 1 == 1).collect();
-        let Some(prices) = free_fit(&rows, &used) else {
+        let Some(prices) = free_fit(rows, &used) else {
             continue;
         };
         let residual = rows
@@ -98,6 +120,23 @@ mod tests {
         let found = prices(&counts.map(|counts| row(counts, truth)));
         for (found, truth) in found.iter().zip(truth) {
             assert!((found / truth - 1.0).abs() < 1e-9, "{found} for {truth}");
+        }
+    }
+
+    #[test]
+    fn what_lies_far_off_is_left_out() {
+        let truth = [4e-9, 7e-11, 3e-8];
+        let mut rows: Vec<_> = (1..=12)
+            .map(|i| {
+                let n = 40.0 * f64::from(i);
+                let mut row = row([n, 0.5 * n * n, (i * i % 7) as f64 * n], truth);
+                row.seconds *= 1.0 + 0.001 * f64::from(i % 3 - 1);
+                row
+            })
+            .collect();
+        rows[4].seconds *= 3.0;
+        for (found, truth) in prices(&rows).iter().zip(truth) {
+            assert!((found / truth - 1.0).abs() < 0.02, "{found} for {truth}");
         }
     }
 

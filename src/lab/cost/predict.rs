@@ -1,63 +1,15 @@
 //! The formula as a prediction: counts of a run times prices from other runs.
 //!
-//! > T = Co + Nu·Cu + F + Nv·Cv, summed over a strategy's volumes
+//! > T = Co + Nu·Cu + F + Nv·Cv, summed over a variant's volumes
 //!
-//! is the paper's equation 1 with F, pair finding, as a stage of its own: a price a frame and one a body and frame.
-//! Cv is two prices, for hits and for misses.
+//! is the paper's equation 1 with F, pair finding, as a stage of its own: a price per frame, one per body and frame, and one
+//! per pair that goes on to a second test: it is listed, and with an object of interest selected and merged. Cv is two
+//! prices, for hits and for misses.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::VolumeCosts;
-use crate::choice::choices;
-use crate::counters::{Counters, VolumeCounters};
-use crate::settings::{Strategy, TestedVolume};
-
-choices! {
-    /// What has prices of its own.
-    Volume, "volume", {
-        /// Bounding spheres.
-        Sphere = "sphere",
-        /// or-DOPs as the first test: every candidate pair.
-        OrDop = "or-dop",
-        /// or-DOPs of pairs whose spheres overlap: nearer pairs, nearly half of them hits.
-        Refined = "or-dop after sphere",
-        /// World-aligned boxes.
-        Aabb = "aabb",
-        /// World-aligned k-DOPs.
-        KDop = "k-dop",
-        /// Oriented boxes.
-        Obb = "obb",
-    }
-}
-
-impl Volume {
-    /// The volumes of a strategy, in the order of its tests.
-    #[must_use]
-    pub fn of(strategy: Strategy) -> Vec<Self> {
-        let scheme = strategy.scheme();
-        let priced = |volume| match volume {
-            TestedVolume::Sphere => Self::Sphere,
-            TestedVolume::OrDop if scheme.first.is_some() => Self::Refined,
-            TestedVolume::OrDop => Self::OrDop,
-            TestedVolume::Aabb => Self::Aabb,
-            TestedVolume::KDop => Self::KDop,
-            TestedVolume::Obb => Self::Obb,
-        };
-        scheme.volumes().map(priced).collect()
-    }
-
-    /// The volume's counters among those of a run.
-    #[must_use]
-    pub fn counters(self, run: &Counters) -> VolumeCounters {
-        match self {
-            Self::Sphere => run.sphere,
-            Self::OrDop | Self::Refined => run.ordop,
-            Self::Aabb => run.aabb,
-            Self::KDop => run.kdop,
-            Self::Obb => run.obb,
-        }
-    }
-}
+use crate::lab::measure::counts::{Counts, Volume};
 
 /// Prices of one volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -70,18 +22,28 @@ pub struct Price {
     pub costs: VolumeCosts,
 }
 
-/// All prices known.
+/// Prices of one variant's volumes, in the order of its tests.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-#[serde(transparent)]
-pub struct Prices(pub Vec<Price>);
+pub struct Prices {
+    /// The variant's name.
+    pub variant: String,
+    /// A price a volume.
+    pub volumes: Vec<Price>,
+}
 
-/// The terms of the formula for one volume in one run, in seconds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// The terms of the formula for one volume: seconds per frame, but for `construct`, which is paid once.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Terms {
     /// The volume.
     #[serde(rename = "name")]
     pub volume: Volume,
-    /// Co.
+    /// Nu per frame.
+    pub updates: f64,
+    /// Nv per frame.
+    pub tests: f64,
+    /// Of which so many hit, per frame.
+    pub hits: f64,
+    /// Co: its part of the construction, in seconds, once.
     pub construct: f64,
     /// Nu·Cu.
     pub update: f64,
@@ -92,89 +54,113 @@ pub struct Terms {
 }
 
 impl Terms {
-    /// Adds the terms of another run.
-    pub fn add(&mut self, other: &Self) {
-        self.construct += other.construct;
-        self.update += other.update;
-        self.finding += other.finding;
-        self.test += other.test;
-    }
-
-    /// What recurs: all but the construction.
+    /// What recurs each frame: all but the construction.
     #[must_use]
     pub fn recurring(&self) -> f64 {
         self.update + self.finding + self.test
     }
+
+    /// What the paper's equation has of it: without F.
+    #[must_use]
+    pub fn in_paper(&self) -> f64 {
+        self.update + self.test
+    }
+
+    /// The mean of one volume's terms over passes; `None` of none.
+    #[must_use]
+    pub fn mean(passes: &[Self]) -> Option<Self> {
+        let volume = passes.first()?.volume;
+        let over =
+            |term: fn(&Self) -> f64| passes.iter().map(term).sum::<f64>() / passes.len() as f64;
+        Some(Self {
+            volume,
+            updates: over(|t| t.updates),
+            tests: over(|t| t.tests),
+            hits: over(|t| t.hits),
+            construct: over(|t| t.construct),
+            update: over(|t| t.update),
+            finding: over(|t| t.finding),
+            test: over(|t| t.test),
+        })
+    }
 }
 
 impl Prices {
-    /// The prices of a volume; free when it was not calibrated.
+    /// Predicts a run of `frames` frames of `bodies` bodies from what it counted: the terms of each volume.
     #[must_use]
-    pub fn get(&self, volume: Volume) -> VolumeCosts {
-        let found = self.0.iter().find(|price| price.volume == volume);
-        found.map_or_else(VolumeCosts::default, |price| price.costs)
-    }
-
-    /// Predicts a run of `frames` frames of `bodies` bodies from its counters: the terms of each of the strategy's volumes.
-    #[must_use]
-    pub fn predict(
-        &self,
-        strategy: Strategy,
-        run: &Counters,
-        frames: u32,
-        bodies: usize,
-    ) -> Vec<Terms> {
+    pub fn predict(&self, counts: &Counts, frames: u32, bodies: usize) -> Vec<Terms> {
         let (frames, bodies) = (f64::from(frames), bodies as f64);
-        let terms = |&volume: &Volume| {
-            let (costs, counters) = (self.get(volume), volume.counters(run));
+        let refines = self.volumes.len() > 1;
+        let terms = |(place, price): (usize, &Price)| {
+            let (costs, counters) = (&price.costs, counts.of(price.volume));
+            // All that the first test lets through, whether the second then tests it or not.
+            let handed_on = if place == 0 && refines {
+                counters.hits as f64 / frames
+            } else {
+                0.0
+            };
             Terms {
-                volume,
-                construct: costs.construct,
-                update: costs.update(&counters),
-                finding: frames * (costs.frame + bodies * costs.body),
-                test: costs.test(&counters),
+                volume: price.volume,
+                updates: counters.updates as f64 / frames,
+                tests: counters.tests as f64 / frames,
+                hits: counters.hits as f64 / frames,
+                construct: costs.construct + bodies * costs.construct_body,
+                update: costs.update(&counters) / frames,
+                finding: costs.frame + bodies * costs.body + handed_on * costs.handle,
+                test: costs.test(&counters) / frames,
             }
         };
-        Volume::of(strategy).iter().map(terms).collect()
+        self.volumes.iter().enumerate().map(terms).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::counters::{Counters, VolumeCounters};
 
     #[test]
     fn s_dop_pays_for_both_volumes_and_finds_pairs_once() {
-        let costs = |frame, hit| VolumeCosts {
+        let costs = |frame, hit, handle| VolumeCosts {
             construct: 100.0,
+            construct_body: 1.0,
             update: 2.0,
             frame,
             body: 0.5 * frame,
+            handle,
             hit,
             miss: 1.0,
         };
         let price = |volume, costs| Price { volume, costs };
-        let prices = Prices(vec![
-            price(Volume::Sphere, costs(10.0, 1.0)),
-            price(Volume::Refined, costs(0.0, 7.0)),
-        ]);
+        let prices = Prices {
+            variant: String::new(),
+            volumes: vec![
+                price(Volume::Sphere, costs(10.0, 1.0, 3.0)),
+                price(Volume::OrDop, costs(0.0, 7.0, 0.0)),
+            ],
+        };
         let volume = |updates, tests, hits| VolumeCounters {
             updates,
             tests,
             hits,
         };
-        let run = Counters {
-            sphere: volume(8, 12, 4),
-            ordop: volume(8, 4, 3),
-            ..Counters::default()
+        let counts = Counts {
+            culler: Counters {
+                sphere: volume(8, 12, 4),
+                ordop: volume(8, 4, 3),
+                ..Counters::default()
+            },
+            hulls: VolumeCounters::default(),
         };
-        let terms = prices.predict(Strategy::SDopSequential, &run, 2, 4);
+        let terms = prices.predict(&counts, 2, 4);
         let parts: Vec<_> = terms
             .iter()
             .map(|t| [t.construct, t.update, t.finding, t.test])
             .collect();
-        assert_eq!(parts, [[100.0, 16.0, 60.0, 12.0], [100.0, 16.0, 0.0, 22.0]]);
-        assert_eq!(terms[0].recurring() + terms[1].recurring(), 126.0);
-        assert!(prices.predict(Strategy::None, &run, 2, 4).is_empty());
+        // Two of the four listed pairs are of each frame: 10 + 4·5 + 2·3.
+        assert_eq!(parts, [[104.0, 8.0, 36.0, 6.0], [104.0, 8.0, 0.0, 11.0]]);
+        assert_eq!(terms[0].recurring(), 50.0);
+        assert_eq!(terms[0].in_paper(), 14.0);
+        assert!(Prices::default().predict(&counts, 2, 4).is_empty());
     }
 }

@@ -28,3 +28,25 @@ pub trait Contestant {
         false
     }
 }
+
+impl<C: Contestant + ?Sized> Contestant for Box<C> {
+    fn frame(&mut self, bodies: &Bodies) {
+        (**self).frame(bodies);
+    }
+
+    fn settle(&mut self) {
+        (**self).settle();
+    }
+
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        (**self).pairs()
+    }
+
+    fn boxes(&mut self, boxes: &[WorldBox]) {
+        (**self).boxes(boxes);
+    }
+
+    fn change(&mut self, bodies: &Bodies, was: &[Option<u32>]) -> bool {
+        (**self).change(bodies, was)
+    }
+}

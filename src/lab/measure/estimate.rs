@@ -41,6 +41,24 @@ impl Estimate {
         }
     }
 
+    /// From values in the order of time, such as medians of runs apart. Neighbours in time share what the machine did: with
+    /// the correlation ρ of each value with the next, n values tell as much as n(1 − ρ)/(1 + ρ) independent ones.
+    #[must_use]
+    pub fn in_order(values: &[f64]) -> Self {
+        let plain = Self::of(values);
+        let correlation = lag_1(values).clamp(0.0, 0.9);
+        Self {
+            half_width: plain.half_width * ((1.0 + correlation) / (1.0 - correlation)).sqrt(),
+            ..plain
+        }
+    }
+
+    /// Half the interval's width as a share of the mean.
+    #[must_use]
+    pub fn relative(&self) -> f64 {
+        self.half_width / self.mean.abs()
+    }
+
     /// The interval's ends.
     #[must_use]
     pub fn interval(&self) -> [f64; 2] {
@@ -81,6 +99,20 @@ impl Estimate {
     }
 }
 
+/// The correlation of each value with the next; 0 of fewer than four values or of equal ones.
+#[must_use]
+pub fn lag_1(values: &[f64]) -> f64 {
+    let n = values.len();
+    let mean = values.iter().sum::<f64>() / n as f64;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    if n < 4 || squares == 0.0 {
+        return 0.0;
+    }
+    let products = values.windows(2).map(|w| (w[0] - mean) * (w[1] - mean));
+    // A series of independent values shows −1/n on average.
+    products.sum::<f64>() / squares + 1.0 / n as f64
+}
+
 /// JSON has no infinity and writes `null`.
 pub(crate) fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
     Option::deserialize(number).map(|number| number.unwrap_or(f64::INFINITY))
@@ -112,6 +144,24 @@ mod tests {
         assert!((five.half_width - 2.776 * (2.5_f64 / 5.0).sqrt()).abs() < 1e-3);
         assert!(five.covers(1.1) && !five.covers(1.0));
         assert_eq!(Estimate::of(&[2.0]).half_width, f64::INFINITY);
+    }
+
+    #[test]
+    fn what_drifts_tells_less_than_what_scatters() {
+        let drift: Vec<f64> = (0..20).map(f64::from).collect();
+        let mut scatter = drift.clone();
+        (0..20).for_each(|i| scatter.swap(i, (7 * i + 3) % 20));
+        assert!(lag_1(&drift) > 0.8 && lag_1(&scatter) < 0.4);
+        let [plain, drift, scatter] = [
+            Estimate::of(&drift),
+            Estimate::in_order(&drift),
+            Estimate::in_order(&scatter),
+        ];
+        assert_eq!(drift.mean, plain.mean);
+        assert!(drift.half_width > 3.0 * plain.half_width, "{drift:?}");
+        assert!(scatter.half_width < drift.half_width, "{scatter:?}");
+        let jumping = [1.0, 2.0, 1.0, 2.0, 1.0, 2.0];
+        assert_eq!(Estimate::in_order(&jumping), Estimate::of(&jumping));
     }
 
     #[test]

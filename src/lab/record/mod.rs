@@ -4,10 +4,10 @@
 //! are the body-frame numbers exactly as built, before any inflation for rounding; floats are the shortest decimals that
 //! read back to the same f32.
 
-use std::fs::File;
-use std::io::{BufWriter, Write as _};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use crate::files::Whole;
 use crate::lab::scene::Scene;
 use crate::lab::simulate::Frame;
 use crate::volume::Shape;
@@ -63,21 +63,21 @@ struct FrameLine {
 /// A recording being written.
 pub struct Recorder {
     path: PathBuf,
-    file: BufWriter<File>,
+    file: Whole,
 }
 
 impl Recorder {
-    /// Creates the file and writes the first line.
+    /// Starts the file, which gets its name when it is finished, and writes the first line.
     ///
     /// # Errors
     /// A file that can't be written.
     pub fn create(path: &Path, scene: &Scene) -> miette::Result<Self> {
-        let file = File::create(path)
+        let file = Whole::create(path)
             .into_diagnostic()
             .wrap_err_with(|| cannot_write(path))?;
         let mut recorder = Self {
             path: path.to_owned(),
-            file: BufWriter::new(file),
+            file,
         };
         let bodies = &scene.bodies;
         recorder.line(&Header {
@@ -112,15 +112,14 @@ impl Recorder {
         })
     }
 
-    /// Writes what is still in memory.
+    /// Writes what is still in memory, and gives the file its name.
     ///
     /// # Errors
     /// A file that can't be written.
-    pub fn finish(mut self) -> miette::Result<()> {
-        let flushed = self.file.flush();
-        flushed
-            .into_diagnostic()
-            .wrap_err_with(|| cannot_write(&self.path))
+    pub fn finish(self) -> miette::Result<()> {
+        let Self { path, file } = self;
+        let finished = file.finish().into_diagnostic();
+        finished.wrap_err_with(|| cannot_write(&path))
     }
 
     fn line(&mut self, value: &impl Serialize) -> miette::Result<()> {

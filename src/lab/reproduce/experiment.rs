@@ -1,21 +1,26 @@
 //! The runs: every scene with every seed, all strategies side by side on the same frames.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use miette::Diagnostic;
 use serde::Serialize;
 use thiserror::Error;
 
+use super::immediate::{self, Immediacy};
+use crate::choice::choices;
 use crate::counters::{Counters, Seconds};
-use crate::lab::cost::calibrate::{self, Effort, calibrate, construct};
-use crate::lab::cost::predict::{Prices, Volume};
+use crate::lab::cost::calibrate::{Calibration, Effort};
+use crate::lab::cost::pass::{Culled, Pass, Simulated, pass};
+use crate::lab::cost::table::{self, Cost};
 use crate::lab::hash::PairsHash;
 use crate::lab::hash::volumes_sha256;
-use crate::lab::measure::turns::{Trial, side_by_side};
+use crate::lab::measure::contestant::Contestant;
+use crate::lab::measure::culling::Culling;
+use crate::lab::measure::turns::Regime;
+use crate::lab::measure::variant::Variant;
 use crate::lab::scene::{Scene, SceneError, SceneFile};
 use crate::lab::simulate::SimulationError;
-use crate::settings::{Overlap, Strategy};
+use crate::settings::{CullSettings, Overlap, Strategy};
 use crate::simd::Tier;
 use crate::volume::DirectionSet;
 
@@ -29,25 +34,42 @@ pub const STRATEGIES: [Strategy; 6] = [
     Strategy::OrDop,
 ];
 
-/// The paper's scenes: its numbers of objects (350 in the text, 300 in Table 1) in one box, and 500 in a small box.
-const SCENES: [&str; 6] = [
-    "paper-50",
-    "paper-150",
-    "paper-300",
-    "paper-350",
-    "paper-500",
-    "crowded-500",
-];
-/// The scene whose shapes are calibrated and whose or-DOPs are compared by k.
-const CALIBRATED: &str = "paper-500";
+choices! {
+    /// The paper's scenes: its numbers of objects (350 in the text, 300 in Table 1) in one box, and 500 in a small box.
+    PaperScene, "scene of the paper", {
+        /// 50 objects.
+        Paper50 = "paper-50",
+        /// 150 objects.
+        Paper150 = "paper-150",
+        /// 300 objects, as in Table 1.
+        Paper300 = "paper-300",
+        /// 350 objects, as in the text.
+        Paper350 = "paper-350",
+        /// 500 objects.
+        Paper500 = "paper-500",
+        /// 500 objects in a small box.
+        Crowded500 = "crowded-500",
+    }
+}
+
+impl PaperScene {
+    /// Whether it is the small box, for which Table 1 has no column.
+    #[must_use]
+    pub const fn crowded(self) -> bool {
+        matches!(self, Self::Crowded500)
+    }
+}
+
+/// The scene whose or-DOPs are compared by k.
+const COMPARED: PaperScene = PaperScene::Paper500;
 
 /// What to run.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Where the scene files are.
     pub scenes: PathBuf,
-    /// Their names, without extension.
-    pub names: Vec<String>,
+    /// Which of them.
+    pub names: Vec<PaperScene>,
     /// One run of each scene a seed.
     pub seeds: Vec<u64>,
     /// Frames a run.
@@ -88,9 +110,12 @@ pub struct Run {
     pub strategy: Strategy,
     /// Sums over frames.
     pub counters: Counters,
-    /// Medians over frames; `construct` is Co of the strategy's volumes, built once for this run.
+    /// Medians over warm frames, such that the stages add up to the total; `construct` is Co of the strategy's volumes and
+    /// its culler, built once for this run.
     pub seconds: Seconds,
-    /// Mean seconds a frame, interruptions by other processes included.
+    /// Median seconds of a cold frame.
+    pub cold: f64,
+    /// Mean seconds of a frame, interruptions by other processes included.
     pub mean: f64,
     /// Median seconds of a simulation step.
     pub step: f64,
@@ -114,10 +139,14 @@ pub struct Survival {
 pub struct Results {
     /// The plan.
     pub plan: Plan,
-    /// What calibration found.
-    pub prices: Prices,
     /// One run a seed, scene and strategy.
     pub runs: Vec<Run>,
+    /// One pass a seed and scene, with its calibration: what the runs were taken from.
+    pub passes: Vec<(PaperScene, Pass)>,
+    /// The paper's sequential algorithm to the letter, a seed and scene of the most objects each.
+    pub immediacies: Vec<Immediacy>,
+    /// The strategies as variants, scene by scene.
+    pub variants: Vec<(PaperScene, Vec<Variant>)>,
     /// One an or-DOP and test.
     pub survival: Vec<Survival>,
     /// Hash of the calibrated scene's volumes.
@@ -154,7 +183,7 @@ impl Plan {
     pub fn new(scenes: &Path, seeds: u64, frames: u32, effort: Effort, tier: Tier) -> Self {
         Self {
             scenes: scenes.to_owned(),
-            names: SCENES.map(str::to_owned).to_vec(),
+            names: PaperScene::ALL.to_vec(),
             seeds: (1..=seeds).collect(),
             frames,
             effort,
@@ -182,48 +211,69 @@ impl Plan {
     /// How many times [`Plan::run`] reports progress.
     #[must_use]
     pub fn steps(&self) -> usize {
-        calibrate::SCENES + self.names.len() * self.seeds.len()
+        self.names.len() * self.seeds.len()
     }
 
-    /// Runs everything. `done` hears what was finished: a calibration scene, a scene and seed.
+    /// Runs everything. `done` is called with each scene that was finished for one seed.
     ///
     /// # Errors
     /// Scene files that can't be read or don't suit the strategies.
     pub fn run(&self, mut done: impl FnMut(&str)) -> Result<Results, ReproduceError> {
-        let load = |name: &str| SceneFile::read(&self.scenes.join(name).with_extension("toml"));
-        let mut calibrated = load(CALIBRATED)?;
-        let scene = calibrated.build()?;
-        let prices = calibrate(&scene, &STRATEGIES, self.tier, self.effort, |_| {
-            done("calibration")
-        })?;
-        let files = self
-            .names
-            .iter()
-            .map(|name| load(name))
-            .collect::<Result<Vec<_>, _>>()?;
-        let mut runs = Vec::new();
-        let mut survival = Survival::every();
+        let load = |scene: PaperScene| {
+            SceneFile::read(&self.scenes.join(scene.name()).with_extension("toml"))
+        };
+        let mut compared = load(COMPARED)?;
+        let volumes_sha256 = volumes_sha256(&compared.build()?.shapes);
+        let mut prepared = Vec::new();
+        for &name in &self.names {
+            let file = load(name)?;
+            let scene = file.build()?;
+            let variants = variants(&scene, &STRATEGIES);
+            let calibration = Calibration::new(&scene, &variants, self.tier, self.effort)?;
+            let bodies = scene.bodies.len();
+            prepared.push((name, file, variants, calibration, bodies));
+        }
+        let (mut runs, mut passes) = (Vec::new(), Vec::new());
+        let (mut survival, mut immediacies) = (Survival::every(), Vec::new());
+        let most = prepared.iter().map(|(_, _, _, _, bodies)| *bodies).max();
         for &seed in &self.seeds {
-            for mut file in files.iter().cloned() {
+            for (name, file, variants, calibration, bodies) in &mut prepared {
                 file.spec.seed = seed;
                 let scene = file.build()?;
-                runs.extend(run_scene(&scene, &STRATEGIES, self.frames, self.tier)?);
+                let how = (self.frames, self.tier);
+                let (of_seed, pass) = run_pass(&scene, variants, how, Some(calibration))?;
+                runs.extend(of_seed);
+                passes.push((*name, pass));
+                if Some(*bodies) == most {
+                    immediacies.push(immediate::measure(&scene, *name, self.tier)?);
+                }
                 done(&scene.name);
             }
-            calibrated.spec.seed = seed;
-            let scene = calibrated.build()?;
+            compared.spec.seed = seed;
+            let scene = compared.build()?;
             for row in &mut survival {
                 row.shares.push(row.share(&scene, self.tier)?);
             }
         }
         Ok(Results {
             plan: self.clone(),
-            prices,
             runs,
+            passes,
+            immediacies,
+            variants: prepared
+                .into_iter()
+                .map(|(name, _, variants, _, _)| (name, variants))
+                .collect(),
             survival,
-            volumes_sha256: volumes_sha256(&scene.shapes),
+            volumes_sha256,
         })
     }
+}
+
+/// The strategies as variants of the scene's settings.
+fn variants(scene: &Scene, strategies: &[Strategy]) -> Vec<Variant> {
+    let variant = |&strategy: &Strategy| Variant::strategy(&scene.cull, strategy);
+    strategies.iter().map(variant).collect()
 }
 
 /// Runs the first `frames` frames of one scene with all `strategies` side by side.
@@ -236,22 +286,37 @@ pub fn run_scene(
     frames: u32,
     tier: Tier,
 ) -> Result<Vec<Run>, SimulationError> {
-    let trial =
-        |&strategy: &Strategy| Trial::new(scene, strategy, tier).map_err(SimulationError::from);
-    let mut trials = strategies
-        .iter()
-        .map(trial)
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut hashes = vec![PairsHash::default(); trials.len()];
-    let step = side_by_side(scene, &mut trials, frames, |trial, frame, pairs| {
-        hashes[trial].frame(frame, &pairs.sorted());
-    })?;
+    let variants = variants(scene, strategies);
+    run_pass(scene, &variants, (frames, tier), None).map(|(runs, _)| runs)
+}
+
+/// The same as a pass, with its calibration.
+fn run_pass(
+    scene: &Scene,
+    variants: &[Variant],
+    (frames, tier): (u32, Tier),
+    calibration: Option<&mut Calibration>,
+) -> Result<(Vec<Run>, Pass), SimulationError> {
+    let mut hashes = vec![PairsHash::default(); variants.len()];
+    let mut simulated = Simulated::new(scene, frames)?;
+    let mut reported = |variant: usize, frame, culling: &Culling| {
+        let mut pairs = culling.pairs();
+        pairs.sort_unstable();
+        hashes[variant].frame(frame, &pairs);
+    };
+    let pass = pass(
+        scene,
+        variants,
+        tier,
+        &mut simulated,
+        calibration,
+        &mut reported,
+    )?;
     let bodies = &scene.bodies;
     let radius = |&shape: &u32| f64::from(scene.shapes[shape as usize].ball.radius);
-    let run = |(trial, hash): (&Trial, PairsHash)| {
-        let strategy = trial.strategy();
-        let mut seconds = trial.medians();
-        seconds.construct += build(scene, strategy);
+    let run = |((variant, culled), hash): ((&Variant, &Culled), PairsHash)| {
+        let strategy = variant.settings.strategy;
+        let warm = culled.times.medians(Regime::Warm);
         Run {
             scene: scene.name.clone(),
             bodies: bodies.len(),
@@ -261,25 +326,28 @@ pub fn run_scene(
             seed: scene.seed,
             frames,
             strategy,
-            counters: *trial.counters(),
-            seconds,
-            mean: trial.sums().total / f64::from(frames),
-            step,
+            counters: culled.counts.culler,
+            seconds: Seconds {
+                construct: culled.construct,
+                effects: 0.0,
+                update: warm.update,
+                pair_finding: warm.finding,
+                ordop: warm.refining,
+                total: warm.total(),
+            },
+            cold: culled.times.medians(Regime::Cold).total(),
+            mean: culled.times.mean(),
+            step: pass.step,
             pairs_sha256: (strategy != Strategy::None).then(|| hash.finish()),
         }
     };
-    Ok(trials.iter().zip(hashes).map(run).collect())
-}
-
-/// Seconds to build a strategy's volumes of all shapes, once.
-fn build(scene: &Scene, strategy: Strategy) -> f64 {
-    let start = Instant::now();
-    for volume in Volume::of(strategy) {
-        for shape in &scene.shapes {
-            construct(volume, shape, scene.cull.axes);
-        }
-    }
-    start.elapsed().as_secs_f64()
+    let runs = variants
+        .iter()
+        .zip(&pass.culled)
+        .zip(hashes)
+        .map(run)
+        .collect();
+    Ok((runs, pass))
 }
 
 impl Survival {
@@ -297,16 +365,19 @@ impl Survival {
 
     /// or-DOP hits among the sphere hits of the scene's first frame.
     fn share(&self, scene: &Scene, tier: Tier) -> Result<f64, SimulationError> {
-        let mut scene = scene.clone();
-        let turned = scene
-            .shapes
-            .into_iter()
-            .map(|shape| shape.with_directions(self.k));
-        scene.shapes = turned.collect();
-        (scene.cull.k, scene.cull.overlap) = (self.k, self.overlap);
-        let mut trial = Trial::new(&scene, Strategy::SDopBatch, tier)?;
-        trial.frame(&scene.bodies)?;
-        let ordop = trial.counters().ordop;
+        let variant = Variant::of(
+            String::new(),
+            CullSettings {
+                strategy: Strategy::SDopBatch,
+                k: self.k,
+                overlap: self.overlap,
+                ..scene.cull.clone()
+            },
+        );
+        let mut culling = variant.culling(scene, tier)?;
+        culling.frame(&scene.bodies);
+        culling.accepted()?;
+        let ordop = culling.counters().ordop;
         Ok(ordop.hits as f64 / ordop.tests as f64)
     }
 }
@@ -330,12 +401,35 @@ impl Results {
         self.runs.iter().find(|run| run.scene == scene)
     }
 
+    /// Every scene.
+    pub fn scenes(&self) -> impl Iterator<Item = &'static str> + '_ {
+        self.plan.names.iter().map(|scene| scene.name())
+    }
+
     /// The scenes that share the paper's one box, by number of bodies.
-    pub fn paper_scenes(&self) -> impl Iterator<Item = &str> {
-        self.plan
-            .names
-            .iter()
-            .map(String::as_str)
-            .filter(|name| !name.starts_with("crowded"))
+    pub fn paper_scenes(&self) -> impl Iterator<Item = &'static str> + '_ {
+        let usual = self.plan.names.iter().filter(|scene| !scene.crowded());
+        usual.map(|scene| scene.name())
+    }
+
+    /// A scene's passes in the order of time.
+    #[must_use]
+    pub fn passes_of(&self, scene: PaperScene) -> Vec<&Pass> {
+        let passes = self.passes.iter().filter(|(name, _)| *name == scene);
+        passes.map(|(_, pass)| pass).collect()
+    }
+
+    /// The cost of every strategy in every scene; the control costs nothing that the formula has a term for.
+    #[must_use]
+    pub fn costs(&self, regime: Regime) -> Vec<Cost> {
+        let mut costs = Vec::new();
+        for (scene, variants) in &self.variants {
+            let bodies = self.example(scene.name()).map_or(0, |run| run.bodies);
+            let passes = self.passes_of(*scene);
+            for of in variants.iter().enumerate() {
+                costs.extend(table::cost((scene.name(), bodies), of, &passes, regime));
+            }
+        }
+        costs
     }
 }

@@ -1,7 +1,7 @@
 //! The paper's experiments: the same seeded trajectories culled by each of its strategies, for each of its numbers of
 //! objects, and what that says of its results and of our own reading of them.
 //!
-//! > [`Plan`] → [`Run`]s → Table 1 ([`readings`]), frame rates ([`rates`]), T ([`terms`]), [`claims`], [`study`]
+//! > [`Plan`] → [`Run`]s → Table 1 ([`readings`]), frame rates ([`rates`]), T ([`Results::costs`]), [`claims`], [`study`]
 //!
 //! Everything behind the runs is a pure function of them, so that runs made elsewhere can be joined. Counts and hashes
 //! are equal on every CPU; seconds are this machine's.
@@ -10,14 +10,16 @@ pub mod check;
 pub mod claims;
 pub mod closed_form;
 mod experiment;
+pub mod immediate;
 pub mod paper;
 pub mod rates;
 pub mod readings;
 pub mod study;
-pub mod terms;
 
 pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};
-pub use experiment::{Plan, ReproduceError, Results, Run, STRATEGIES, Shard, Survival, run_scene};
+pub use experiment::{
+    PaperScene, Plan, ReproduceError, Results, Run, STRATEGIES, Shard, Survival, run_scene,
+};
 
 use crate::settings::Strategy;
 

@@ -117,7 +117,7 @@ pub fn table(results: &Results) -> Vec<Cell> {
     let mut cells = Vec::new();
     for &reading in Reading::ALL {
         for strategy in TABLE_1_STRATEGIES {
-            let scenes = results.plan.names.iter();
+            let scenes = results.scenes();
             cells.extend(scenes.map(|scene| cell(results, scene, strategy, reading)));
         }
     }

@@ -66,7 +66,7 @@ fn percent(results: &Results, scene: &str, strategy: Strategy, reading: Reading)
 
 fn closed_form(results: &Results) -> Vec<Check> {
     let family = results.plan.names.len();
-    let check = |scene: &String| {
+    let check = |scene: &'static str| {
         let run = results.example(scene)?;
         let s = relative_reach(run.side, run.radius);
         let measured = Estimate::of(&percent(results, scene, Sphere, Reading::OwnTests));
@@ -78,7 +78,7 @@ fn closed_form(results: &Results) -> Vec<Check> {
             family,
         ))
     };
-    results.plan.names.iter().filter_map(check).collect()
+    results.scenes().filter_map(check).collect()
 }
 
 fn paper_reach() -> Vec<Check> {
@@ -134,7 +134,7 @@ fn sequential(results: &Results) -> Vec<Check> {
             ));
         }
     }
-    checks.extend(results.plan.names.iter().map(|scene| {
+    checks.extend(results.scenes().map(|scene| {
         let [all, sphere] = [(Seq, Reading::AllTests), (Sphere, Reading::OwnTests)]
             .map(|(strategy, reading)| percent(results, scene, strategy, reading));
         let ratios: Vec<f64> = all
@@ -151,9 +151,7 @@ fn sequential(results: &Results) -> Vec<Check> {
 fn survival(results: &Results) -> Vec<Check> {
     let [lo, .., hi] = paper::row(Seq).copied().unwrap_or_default();
     let mut checks: Vec<Check> = results
-        .plan
-        .names
-        .iter()
+        .scenes()
         .map(|scene| {
             let measured = Estimate::of(&percent(results, scene, Seq, Reading::OwnTests));
             Check::between(
@@ -243,7 +241,7 @@ fn ordop_row() -> Vec<Check> {
 
 fn product(results: &Results) -> Vec<Check> {
     let mut checks = Vec::new();
-    for scene in &results.plan.names {
+    for scene in results.scenes() {
         let [ordop, sphere, sequential] = [OrDop, Sphere, Seq]
             .map(|strategy| percent(results, scene, strategy, Reading::OwnTests));
         let ratios: Vec<f64> = (0..ordop.len())

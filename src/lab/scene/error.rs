@@ -1,5 +1,6 @@
 //! What can be wrong with a scene: where, what, and how to mend it.
 
+use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::Path;
 
@@ -8,6 +9,7 @@ use thiserror::Error;
 
 use crate::bodies::contract::ContractError;
 use crate::choice::suggest;
+use crate::files;
 use crate::settings::SettingsError;
 
 /// Why a scene could not be made.
@@ -23,6 +25,15 @@ pub enum SceneError {
         file: String,
         /// What the system said.
         cause: std::io::Error,
+    },
+    /// More bytes than the caller allows.
+    #[error("{file}: the file has more than {most} bytes")]
+    #[diagnostic(help("is it the scene you mean? If so, raise the limit: --max-file-size"))]
+    TooLong {
+        /// The path as given.
+        file: String,
+        /// How many are allowed.
+        most: u64,
     },
     /// Something in the text of the scene file.
     #[error(transparent)]
@@ -69,9 +80,13 @@ pub(super) struct Source {
 }
 
 impl Source {
-    pub(super) fn read(path: &Path) -> Result<Self, SceneError> {
+    pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Self, SceneError> {
         let file = path.display().to_string();
-        match std::fs::read_to_string(path) {
+        match files::read_text(path, max_bytes) {
+            Err(error) if error.kind() == ErrorKind::FileTooLarge => Err(SceneError::TooLong {
+                file,
+                most: max_bytes,
+            }),
             Ok(text) => Ok(Self { file, text }),
             Err(cause) => Err(SceneError::Unreadable { file, cause }),
         }

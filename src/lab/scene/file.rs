@@ -9,6 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
 use super::error::{SceneError, Source};
+use crate::files;
 use crate::lab::effects::EffectsSpec;
 use crate::lab::number::{Interval, Positive, Real};
 use crate::settings::CullSettings;
@@ -19,6 +20,8 @@ use crate::volume::Origin;
 pub struct SceneFile {
     pub(super) source: Source,
     pub(super) directory: PathBuf,
+    /// Larger meshes are refused.
+    pub(super) max_bytes: u64,
     /// What the file says.
     pub spec: SceneSpec,
 }
@@ -125,8 +128,17 @@ impl SceneFile {
     /// An unreadable file; text that is no TOML; unknown keys, wrong types and impossible values, each with
     /// line, column and a hint.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
+        Self::read_within(path, files::MAX_BYTES)
+    }
+
+    /// The same for a file, and meshes, of at most so many bytes each.
+    ///
+    /// # Errors
+    /// As [`SceneFile::read`], and a file with more bytes.
+    pub fn read_within(path: &Path, max_bytes: u64) -> Result<Self, SceneError> {
         let directory = path.parent().unwrap_or(Path::new("")).to_owned();
-        Self::parse_source(Source::read(path)?, directory)
+        let file = Self::parse_source(Source::read(path, max_bytes)?, directory)?;
+        Ok(Self { max_bytes, ..file })
     }
 
     /// Reads a scene from text; `file` is what errors call it, mesh paths are relative to `directory`.
@@ -146,6 +158,7 @@ impl SceneFile {
             Ok(spec) => Ok(Self {
                 source,
                 directory,
+                max_bytes: files::MAX_BYTES,
                 spec,
             }),
             Err(error) => Err(source.toml_error(&error)),

@@ -49,15 +49,18 @@ impl Library {
                 if let Some(&known) = self.files.get(&path) {
                     return Ok(known);
                 }
-                self.meshes
-                    .push(read(&path, &ReadOptions::default()).map_err(|error| {
-                        let hint = if path.exists() {
-                            help(&error)
-                        } else {
-                            nearest_file(&path)
-                        };
-                        file.source.error(name.span(), error.to_string(), hint)
-                    })?);
+                let options = ReadOptions {
+                    max_bytes: file.max_bytes,
+                    ..ReadOptions::default()
+                };
+                self.meshes.push(read(&path, &options).map_err(|error| {
+                    let hint = if path.exists() {
+                        help(&error)
+                    } else {
+                        nearest_file(&path)
+                    };
+                    file.source.error(name.span(), error.to_string(), hint)
+                })?);
                 self.files.insert(path, number);
             }
             Form::Procedural(name, sizes) => {

@@ -10,8 +10,12 @@ use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::counts::{share, shared};
+use super::interest::spread;
 use super::truth::{Judge, Sample};
+use super::variant::Variant;
 use crate::culler::Culler;
+use crate::lab::cost::pass::{Culled, Simulated, pass};
+use crate::lab::measure::turns::{Regime, median};
 use crate::lab::scene::Scene;
 use crate::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
 use crate::simd::Tier;
@@ -23,7 +27,7 @@ const SHARES: [f64; 7] = [0.0, 0.125, 0.25, 0.5, 0.75, 1.0, 1.25];
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BudgetRow {
     /// Order of refinement.
-    pub order: String,
+    pub order: Order,
     /// Tests a frame.
     pub tests: u64,
     /// Refined pairs / pairs whose spheres overlap.
@@ -92,11 +96,13 @@ pub fn by_tests(
 
 fn settings(scene: &Scene, budget: Budget, order: Order) -> CullSettings {
     let own = &scene.cull;
+    // A tenth of the bodies: with one alone, a few pairs of a thousand would come first, and no row would show it.
+    let bodies = scene.bodies.len();
     CullSettings {
         strategy: Strategy::SDopTimeCritical,
         updates: Updates::Eager,
         budget: Some(budget),
-        interest: Some(own.interest.clone().unwrap_or(Interest::Bodies(vec![0]))),
+        interest: Some(Interest::Bodies(spread(bodies, bodies.div_ceil(10)))),
         order,
         ..own.clone()
     }
@@ -132,7 +138,7 @@ fn row(
     }
     let counters = culler.counters();
     Ok(BudgetRow {
-        order: settings.order.to_string(),
+        order: settings.order,
         tests: match settings.budget {
             Some(Budget::Tests(tests)) => tests,
             _ => 0,
@@ -183,46 +189,43 @@ impl Starvation {
     }
 }
 
-/// Clock budgets: shares of the median seconds that culling without a budget takes after its updates.
+/// Clock budgets: shares of the median seconds that culling without a budget takes after its updates. All budgets take
+/// turns on the scene's first `frames` frames.
 ///
 /// # Errors
 /// Settings that can't be carried out.
-pub fn by_clock(
-    scene: &Scene,
-    tier: Tier,
-    window: Window<'_>,
-) -> Result<Vec<ClockRow>, TradeoffError> {
-    let run = |budget| -> Result<(Vec<f64>, f64), TradeoffError> {
-        let settings = settings(scene, budget, Order::AsFound);
-        let mut culler = Culler::builder()
-            .settings(&settings)
-            .tier(tier)
-            .build(&scene.shapes, &scene.bodies)?;
-        let mut times = Vec::new();
-        for sample in window.frames {
-            let before = *culler.seconds();
-            culler.cull(&sample.bodies)?;
-            let spent = culler.seconds().since(&before);
-            times.push(1e6 * (spent.total - spent.update));
-        }
-        times.sort_by(f64::total_cmp);
-        let counters = culler.counters();
-        let refined = counters.ordop.tests as f64 / counters.sphere.hits.max(1) as f64;
-        Ok((times, refined))
+pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>, TradeoffError> {
+    let variant = |budget| Variant::of(String::new(), settings(scene, budget, Order::AsFound));
+    let culled = |budgets: &[Budget]| -> Result<Vec<Culled>, TradeoffError> {
+        let variants: Vec<Variant> = budgets.iter().copied().map(variant).collect();
+        let mut frames = Simulated::new(scene, frames)?;
+        let pass = pass(scene, &variants, tier, &mut frames, None, &mut |_, _, _| ())?;
+        Ok(pass.culled)
     };
-    let (unlimited, _) = run(Budget::Tests(u64::MAX))?;
-    let whole = unlimited[unlimited.len() / 2];
-    let mut rows = Vec::new();
-    for share in SHARES {
-        let microseconds = (share * whole).round() as u64;
-        let (times, refined) = run(Budget::Microseconds(microseconds))?;
+    let spent = |culled: &Culled| {
+        let warm = culled.times.of(Regime::Warm).iter();
+        let mut spent: Vec<f64> = warm.map(|s| 1e6 * (s.finding + s.refining)).collect();
+        spent.sort_by(f64::total_cmp);
+        spent
+    };
+    let whole = median(
+        culled(&[Budget::Tests(u64::MAX)])?
+            .iter()
+            .flat_map(spent)
+            .collect(),
+    );
+    let microseconds = SHARES.map(|share| (share * whole).round() as u64);
+    let row = |(microseconds, culled): (u64, Culled)| {
+        let times = spent(&culled);
         let at = |quantile: f64| times[((times.len() - 1) as f64 * quantile).round() as usize];
-        rows.push(ClockRow {
+        let counters = culled.counts.culler;
+        ClockRow {
             microseconds,
-            refined,
+            refined: counters.ordop.tests as f64 / counters.sphere.hits.max(1) as f64,
             p50: at(0.5) - microseconds as f64,
             p99: at(0.99) - microseconds as f64,
-        });
-    }
-    Ok(rows)
+        }
+    };
+    let culled = culled(&microseconds.map(Budget::Microseconds))?;
+    Ok(microseconds.into_iter().zip(culled).map(row).collect())
 }

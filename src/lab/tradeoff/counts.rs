@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::contender::Contender;
 use super::truth::{Sample, Truth};
 use super::variant::Variant;
 use crate::counters::{Counters, VolumeCounters};
 use crate::culler::CullError;
 use crate::lab::hash::PairsHash;
+use crate::lab::measure::contestant::Contestant;
 use crate::lab::scene::Scene;
 use crate::simd::Tier;
 
@@ -54,10 +54,13 @@ impl Tally {
         samples: &[Sample],
         truth: &Truth,
     ) -> Result<Self, CullError> {
-        let mut contender = Contender::new(scene, variant, tier)?;
+        let mut culling = variant.culling(scene, tier)?;
         let (mut reported, mut found, mut hash) = (0, 0, PairsHash::default());
         for (sample, truth) in samples.iter().zip(truth) {
-            let pairs = contender.frame(&sample.bodies)?.sorted();
+            culling.frame(&sample.bodies);
+            culling.accepted()?;
+            let mut pairs = culling.pairs();
+            pairs.sort_unstable();
             reported += pairs.len() as u64;
             found += shared(&pairs, truth);
             hash.frame(sample.frame, &pairs);
@@ -67,8 +70,8 @@ impl Tally {
             truth: truth.iter().map(|pairs| pairs.len() as u64).sum(),
             reported,
             found,
-            counters: *contender.counters(),
-            hulls: contender.hull_counters(),
+            counters: *culling.counters(),
+            hulls: culling.hull_counters(),
             pairs_sha256: hash.finish(),
         })
     }

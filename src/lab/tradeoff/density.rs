@@ -7,12 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::counts::Tally;
-use super::pays::{Line, Stretch, break_even, envelope};
+use super::pays::{Line, OrDopKind, Stretch, break_even, envelope};
 use super::timing::measure;
 use super::truth::samples;
 use super::variant::{Variant, s_dops};
+use crate::lab::cost::pass::Pass;
+use crate::lab::measure::turns::Regime;
 use crate::lab::number::Positive;
-use crate::lab::scene::SceneFile;
+use crate::lab::scene::{Scene, SceneFile};
 use crate::settings::{CullSettings, Overlap, Strategy};
 use crate::simd::Tier;
 
@@ -60,23 +62,39 @@ pub fn sweep(
             done();
             continue;
         };
-        let samples = samples(&scene, count)?;
-        let variants = variants(&scene.cull);
-        let truth = vec![Vec::new(); samples.len()];
-        let times = measure(&scene, &variants, tier, &samples, 3, || ())?;
-        let mut lines = Vec::new();
-        for (variant, time) in variants.iter().zip(times) {
-            let tally = Tally::of(&scene, variant, tier, &samples, &truth)?;
-            lines.push(Line {
-                name: variant.name.clone(),
-                time,
-                pairs: tally.reported as f64 / f64::from(tally.frames),
-            });
-        }
+        let lines = lines(&scene, &variants(&scene.cull), tier, count)?;
         densities.push(density(factor, scene.bodies.len(), lines));
         done();
     }
     Ok(densities)
+}
+
+/// Time, passes apart, and pairs per frame of some variants on a scene's sample frames.
+///
+/// # Errors
+/// Settings that can't be carried out, a body that leaves the contract.
+pub fn lines(
+    scene: &Scene,
+    variants: &[Variant],
+    tier: Tier,
+    count: u32,
+) -> Result<Vec<Line>, TradeoffError> {
+    let samples = samples(scene, count)?;
+    let truth = vec![Vec::new(); samples.len()];
+    let passes = measure(scene, variants, tier, count, || ())?;
+    let mut lines = Vec::new();
+    for (at, variant) in variants.iter().enumerate() {
+        let tally = Tally::of(scene, variant, tier, &samples, &truth)?;
+        let of = |pass: &Pass| pass.culled[at].times.quartiles(Regime::Warm).median;
+        lines.push(Line {
+            name: variant.name.clone(),
+            decides: variant.decides(),
+            ordop: OrDopKind::of(variant),
+            times: passes.iter().map(of).collect(),
+            pairs: tally.reported as f64 / f64::from(tally.frames),
+        });
+    }
+    Ok(lines)
 }
 
 /// How many steps [`sweep`] reports.
@@ -93,7 +111,7 @@ fn density(factor: f32, bodies: usize, lines: Vec<Line>) -> Density {
         cheapest: envelope(&lines),
         break_even: lines
             .iter()
-            .filter(|line| line.pairs < spheres.pairs && line.name.starts_with("s-dop"))
+            .filter(|line| line.pairs < spheres.pairs && line.ordop.is_some())
             .map(|line| BreakEven {
                 name: line.name.clone(),
                 cp: break_even(spheres, line),
@@ -117,7 +135,8 @@ fn crowded(file: &SceneFile, factor: f32) -> Option<SceneFile> {
 }
 
 /// Spheres first, boxes, S-DOP at each k with the scene's axes, and hulls.
-fn variants(own: &CullSettings) -> Vec<Variant> {
+#[must_use]
+pub fn variants(own: &CullSettings) -> Vec<Variant> {
     let boxes = CullSettings {
         strategy: Strategy::Aabb,
         ..own.clone()

@@ -2,11 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::TradeoffError;
 use super::counts::{Quality, Tally};
 use super::timing::measure;
 use super::truth::{Sample, Truth};
 use super::variant::Variant;
+use super::{Estimate, TradeoffError};
+use crate::lab::cost::pass::medians;
+use crate::lab::measure::turns::Regime;
 use crate::lab::scene::Scene;
 use crate::settings::{CullSettings, Interest, Strategy, Updates};
 use crate::simd::Tier;
@@ -26,10 +28,10 @@ pub struct InterestRow {
     /// Precision and recall.
     #[serde(flatten)]
     pub quality: Quality,
-    /// Median seconds a frame, all or-DOP poses updated.
-    pub seconds: f64,
-    /// Median seconds a frame, poses updated where a pair needs them.
-    pub lazy_seconds: f64,
+    /// Median seconds of a warm frame, all or-DOP poses updated.
+    pub seconds: Estimate,
+    /// Median seconds of a warm frame, poses updated where a pair needs them.
+    pub lazy_seconds: Estimate,
 }
 
 /// Grows the interest set over evenly spread bodies.
@@ -65,15 +67,9 @@ pub fn sweep(
         .iter()
         .map(|size| variant(size, Updates::Lazy))
         .collect();
-    let seconds = measure(
-        scene,
-        &[&eager[..], &lazy].concat(),
-        tier,
-        samples,
-        3,
-        || (),
-    )?;
-    let (of_eager, of_lazy) = seconds.split_at(sizes.len());
+    let both = [&eager[..], &lazy].concat();
+    let passes = measure(scene, &both, tier, samples.len() as u32, || ())?;
+    let seconds = |at: usize| medians(&passes, at, Regime::Warm);
     let mut rows = Vec::new();
     for (at, variant) in eager.iter().enumerate() {
         let tally = Tally::of(scene, variant, tier, samples, truth)?;
@@ -82,14 +78,14 @@ pub fn sweep(
             tests: tally.counters.ordop.tests as f64 / f64::from(tally.frames),
             reported: tally.reported as f64 / f64::from(tally.frames),
             quality: tally.quality(),
-            seconds: of_eager[at],
-            lazy_seconds: of_lazy[at],
+            seconds: seconds(at),
+            lazy_seconds: seconds(sizes.len() + at),
         });
     }
     Ok(rows)
 }
 
 /// `size` of `n` bodies, evenly spread over their numbers, so that every group of bodies has its part.
-fn spread(n: usize, size: usize) -> Vec<u32> {
+pub(super) fn spread(n: usize, size: usize) -> Vec<u32> {
     (0..size).map(|i| (i * n / size) as u32).collect()
 }

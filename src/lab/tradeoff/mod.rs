@@ -1,14 +1,16 @@
 //! What accuracy costs in time: every volume and strategy on one scene, judged by the exact truth.
 //!
-//! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`] (when does it pay?)
+//! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`], [`decide`] (when does it pay?)
 //!
 //! Counts come first and reproduce to the bit; time is measured afterwards and never decides a count. Every variant must
 //! report every true pair: a recall below 1 is a failed check.
 
+pub mod advise;
 pub mod budget;
 pub mod counts;
+pub mod decide;
 pub mod density;
-pub mod gjk;
+pub mod figure_4;
 pub mod interest;
 pub mod pays;
 pub mod safety;
@@ -18,10 +20,7 @@ pub mod timing;
 pub mod truth;
 pub mod variant;
 
-mod contender;
-
 pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate};
-pub use contender::{Contender, HullTest};
 pub use study::{Plan, Row, Tradeoff, steps, study};
 
 use std::path::PathBuf;

@@ -4,15 +4,16 @@
 //! so that it tests the true ones to the last bit or two; nobody can ask for that from outside of this measurement,
 //! since it loses touching pairs. f64 is the reference's plain scalar loops: the same predicate, uninflated.
 
-use std::time::Instant;
-
 use sdop_reference as reference;
 use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
-use super::truth::Sample;
-use crate::culler::Culler;
-use crate::lab::measure::turns::median;
+use super::truth::windows;
+use crate::bodies::Bodies;
+use crate::choice::choices;
+use crate::lab::measure::contestant::Contestant;
+use crate::lab::measure::culling::Culling;
+use crate::lab::measure::turns::{Quartiles, Regime, Turns, turn_frames};
 use crate::lab::scene::Scene;
 use crate::lab::verify::judged::{Shapes, overlap};
 use crate::rounding::pose::norm;
@@ -22,13 +23,25 @@ use crate::settings::{CullSettings, Strategy, Updates};
 use crate::simd::Tier;
 use crate::volume::Shape;
 
+choices! {
+    /// How the same predicate is computed.
+    Arithmetic, "arithmetic", {
+        /// As the culler does.
+        F32 = "f32",
+        /// As the culler does, on volumes shrunk by the margins.
+        Bare = "f32, no margins",
+        /// The reference's plain loops.
+        F64 = "f64",
+    }
+}
+
 /// One arithmetic in one tier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SafetyRow {
     /// The strategy.
-    pub strategy: String,
-    /// "f32", "f32, no margins" or "f64".
-    pub arithmetic: String,
+    pub strategy: Strategy,
+    /// How it is computed.
+    pub arithmetic: Arithmetic,
     /// The SIMD tier.
     pub simd: String,
     /// Pairs reported on the sample frames.
@@ -37,16 +50,18 @@ pub struct SafetyRow {
     pub extra: u64,
     /// Reported by the f64 predicate, not here.
     pub lost: u64,
-    /// Median seconds a frame.
-    pub seconds: f64,
+    /// Seconds of a warm frame.
+    pub seconds: Quartiles,
 }
 
-/// Spheres alone and S-DOP with the scene's or-DOPs, in every tier that this CPU has.
+/// Spheres alone and S-DOP with the scene's or-DOPs, in every tier that this CPU has, in turns on `count` sample frames
+/// and those that follow them.
 ///
 /// # Errors
 /// Settings that can't be carried out, numbers that the reference refuses.
-pub fn compare(scene: &Scene, samples: &[Sample]) -> Result<Vec<SafetyRow>, TradeoffError> {
+pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffError> {
     let bare: Vec<Shape> = scene.shapes.iter().map(without_margins).collect();
+    let shapes = Shapes::new(scene.shapes.clone())?;
     let mut rows = Vec::new();
     for strategy in [Strategy::Sphere, Strategy::SDopSequential] {
         let settings = CullSettings {
@@ -54,46 +69,92 @@ pub fn compare(scene: &Scene, samples: &[Sample]) -> Result<Vec<SafetyRow>, Trad
             updates: Updates::Eager,
             ..scene.cull.clone()
         };
-        let (plain, seconds) = in_f64(scene, &settings, samples)?;
+        let mut labels = vec![(Arithmetic::F64, None)];
+        let mut contestants: Vec<Box<dyn Contestant + '_>> =
+            vec![Box::new(InF64::new(&shapes, &settings))];
         for tier in Tier::available() {
-            for (arithmetic, shapes) in [("f32", &scene.shapes), ("f32, no margins", &bare)] {
-                let mut culler = Culler::builder()
-                    .settings(&settings)
-                    .tier(tier)
-                    .build(shapes, &scene.bodies)?;
-                let (mut frames, mut seconds) = (Vec::new(), Vec::new());
-                for sample in samples {
-                    for _ in 0..3 {
-                        let start = Instant::now();
-                        culler.cull(&sample.bodies)?;
-                        seconds.push(start.elapsed().as_secs_f64());
-                    }
-                    frames.push(culler.pairs().sorted());
-                }
-                rows.push(row(
-                    strategy,
-                    arithmetic,
-                    tier.name(),
-                    &frames,
-                    &plain,
-                    seconds,
-                ));
+            for (arithmetic, shapes) in
+                [(Arithmetic::F32, &scene.shapes), (Arithmetic::Bare, &bare)]
+            {
+                let culling = Culling::new(shapes, &scene.bodies, &settings, tier)?;
+                contestants.push(Box::new(culling));
+                labels.push((arithmetic, Some(tier)));
             }
         }
-        rows.push(row(strategy, "f64", "plain", &plain, &plain, seconds));
+        let mut found = vec![Found::default(); contestants.len()];
+        let mut turns = Turns::default();
+        for (_, poses) in windows(scene, count, turn_frames(scene.bodies.len()))? {
+            // The reference refuses no pose of the contract.
+            poses
+                .iter()
+                .try_for_each(|bodies| shapes.bodies(bodies).map(drop))?;
+            turns.round(&mut contestants, &poses, |timed| {
+                let found = &mut found[timed.number];
+                if timed.frame == 0 {
+                    let mut pairs = timed.contestant.pairs();
+                    pairs.sort_unstable();
+                    found.frames.push(pairs);
+                }
+                if timed.regime == Regime::Warm {
+                    found.seconds.push(timed.seconds);
+                }
+            });
+        }
+        let row = |(label, of)| safety_row(strategy, label, of, &found[0].frames);
+        rows.extend(labels.iter().zip(&found).map(row));
     }
     Ok(rows)
 }
 
+/// The reference's plain loops, from the poses on.
+struct InF64<'a> {
+    shapes: &'a Shapes,
+    strategy: reference::Strategy<'static>,
+    overlap: reference::Overlap,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl<'a> InF64<'a> {
+    fn new(shapes: &'a Shapes, settings: &CullSettings) -> Self {
+        Self {
+            shapes,
+            strategy: match settings.strategy {
+                Strategy::Sphere => reference::Strategy::Sphere,
+                _ => reference::Strategy::Sequential,
+            },
+            overlap: overlap(settings.overlap),
+            pairs: Vec::new(),
+        }
+    }
+}
+
+impl Contestant for InF64<'_> {
+    fn frame(&mut self, bodies: &Bodies) {
+        let judged = self.shapes.bodies(bodies).unwrap_or_default();
+        let pairs = reference::pairs(&judged, self.strategy, self.overlap);
+        self.pairs.clear();
+        self.pairs.extend(pairs.into_iter().map(|(i, j)| [i, j]));
+    }
+
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        self.pairs.clone()
+    }
+}
+
 type Frames = Vec<Vec<[u32; 2]>>;
 
-fn row(
-    strategy: Strategy,
-    arithmetic: &str,
-    simd: &str,
-    frames: &Frames,
-    plain: &Frames,
+/// What one contestant found, and its warm frames' seconds.
+#[derive(Clone, Default)]
+struct Found {
+    frames: Frames,
     seconds: Vec<f64>,
+}
+
+fn safety_row(
+    strategy: Strategy,
+    (arithmetic, tier): &(Arithmetic, Option<Tier>),
+    found: &Found,
+    plain: &Frames,
 ) -> SafetyRow {
     let beyond = |some: &Frames, others: &Frames| {
         let frames = some.iter().zip(others);
@@ -105,13 +166,13 @@ fn row(
         new.sum()
     };
     SafetyRow {
-        strategy: strategy.to_string(),
-        arithmetic: arithmetic.to_owned(),
-        simd: simd.to_owned(),
-        reported: frames.iter().map(|pairs| pairs.len() as u64).sum(),
-        extra: beyond(frames, plain),
-        lost: beyond(plain, frames),
-        seconds: median(seconds),
+        strategy,
+        arithmetic: *arithmetic,
+        simd: tier.map_or("plain", |tier| tier.name()).to_owned(),
+        reported: found.frames.iter().map(|pairs| pairs.len() as u64).sum(),
+        extra: beyond(&found.frames, plain),
+        lost: beyond(plain, &found.frames),
+        seconds: Quartiles::of(found.seconds.clone()),
     }
 }
 
@@ -133,26 +194,4 @@ pub fn without_margins(shape: &Shape) -> Shape {
         *hi = (f64::from(*hi) - margin) as f32;
     }
     bare
-}
-
-/// The reference's pairs and median seconds.
-fn in_f64(
-    scene: &Scene,
-    settings: &CullSettings,
-    samples: &[Sample],
-) -> Result<(Frames, Vec<f64>), TradeoffError> {
-    let shapes = Shapes::new(scene.shapes.clone())?;
-    let strategy = match settings.strategy {
-        Strategy::Sphere => reference::Strategy::Sphere,
-        _ => reference::Strategy::Sequential,
-    };
-    let (mut frames, mut seconds) = (Vec::new(), Vec::new());
-    for sample in samples {
-        let judged = shapes.bodies(&sample.bodies)?;
-        let start = Instant::now();
-        let pairs = reference::pairs(&judged, strategy, overlap(settings.overlap));
-        seconds.push(start.elapsed().as_secs_f64());
-        frames.push(pairs.into_iter().map(|(i, j)| [i, j]).collect());
-    }
-    Ok((frames, seconds))
 }

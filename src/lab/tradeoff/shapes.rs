@@ -7,9 +7,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
-use super::gjk::{HullGraph, PosedHull, may_touch};
 use super::truth::Judge;
 use crate::bodies::Bodies;
+use crate::lab::hull_test::{HullGraph, PosedHull, may_touch};
 use crate::lab::measure::estimate::Estimate;
 use crate::lab::random::Stream;
 use crate::lab::tightness::Size;
@@ -34,9 +34,9 @@ pub struct Survival {
     /// Half-spaces.
     pub k: usize,
     /// Axes.
-    pub axes: String,
+    pub axes: Axes,
     /// Overlap test.
-    pub overlap: String,
+    pub overlap: Overlap,
     /// Survivors per sphere hit.
     pub share: Estimate,
 }
@@ -163,8 +163,8 @@ pub fn survival(shape: &Shape, pairs: u32, tier: Tier) -> Result<ShapeSurvival, 
             for &overlap in Overlap::ALL {
                 ordops.push(Survival {
                     k: k.k(),
-                    axes: axes.to_string(),
-                    overlap: overlap.to_string(),
+                    axes,
+                    overlap,
                     share: share(&crowds, |crowd| {
                         crowd.ordop_hits(shape, &ordop, overlap, tier).len()
                     }),

@@ -6,18 +6,25 @@ use serde::{Deserialize, Serialize};
 
 use super::budget::{self, BudgetRow, ClockRow, Window};
 use super::counts::{Tally, share};
+use super::decide::{self, Decision};
 use super::density::{self, Density};
 use super::interest::{self, InterestRow};
-use super::pays::{self, Line, Stretch};
+use super::pays::{self, Line, Point, Standing, Stretch};
 use super::safety::{self, SafetyRow};
 use super::shapes::{self, ShapeSurvival};
-use super::timing::{self, VariantPrices, VolumeTerms};
+use super::timing::{PASSES, Windows};
 use super::truth::{Judge, NarrowPhase, Sample, Truth, samples};
 use super::variant::{self, Variant};
 use super::{Estimate, TradeoffError};
 use crate::culler::Culler;
-use crate::lab::cost::calibrate::Effort;
+use crate::lab::cost::calibrate::{Calibration, Effort};
+use crate::lab::cost::pass::{Pass, pass};
+use crate::lab::cost::table::{self, Cost, PriceRow};
+use crate::lab::measure::conditions::Conditions;
+use crate::lab::measure::counts::Volume;
+use crate::lab::measure::turns::Regime;
 use crate::lab::scene::{Scene, SceneFile};
+use crate::settings::{Axes, Overlap, Strategy};
 use crate::simd::Tier;
 use crate::volume::Shape;
 
@@ -46,35 +53,47 @@ pub struct Row {
     /// What tables call it.
     pub name: String,
     /// The strategy.
-    pub strategy: String,
+    pub strategy: Strategy,
+    /// Whether hulls stand behind it.
+    pub hulls: bool,
     /// The volume that decides last.
-    pub volume: String,
+    pub volume: Option<Volume>,
     /// Half-spaces, where the strategy has or-DOPs or k-DOPs.
     pub k: Option<usize>,
     /// The or-DOP's axes, where it has or-DOPs.
-    pub axes: Option<String>,
+    pub axes: Option<Axes>,
     /// The overlap test, where it has or-DOPs.
-    pub overlap: Option<String>,
+    pub overlap: Option<Overlap>,
     /// Pairs reported a frame.
     pub reported: Estimate,
     /// True pairs / reported pairs.
     pub precision: Estimate,
+    /// The same, a seed each.
+    pub precisions: Vec<f64>,
     /// Reported pairs / true pairs.
     pub per_true: Estimate,
     /// True pairs found / true pairs, over all seeds.
     pub recall: f64,
     /// Mean volume over hull volume; none when a hull is flat.
     pub volume_over_hull: Option<f64>,
-    /// Counts and prices of each volume; means over seeds.
-    pub volumes: Vec<VolumeTerms>,
-    /// T = Nu·Cu + Nv·Cv + Co over the run, predicted, seconds a frame.
-    pub predicted: f64,
-    /// Measured seconds a frame, construction not included.
-    pub seconds: Estimate,
-    /// On the Pareto front of time and precision.
-    pub front: bool,
+    /// The formula beside the clock, warm frames.
+    pub warm: Option<Cost>,
+    /// The same, cold frames.
+    pub cold: Option<Cost>,
+    /// Seconds of a warm frame, a pass each in the order of time.
+    pub times: Vec<f64>,
+    /// How it stands to the Pareto front of time and precision.
+    pub standing: Standing,
     /// The hash of the pairs reported on the sample frames, a seed.
     pub pairs_sha256: Vec<String>,
+}
+
+impl Row {
+    /// Seconds of a warm frame, construction not included.
+    #[must_use]
+    pub fn seconds(&self) -> Estimate {
+        Estimate::in_order(&self.times)
+    }
 }
 
 /// Everything about one scene.
@@ -114,6 +133,12 @@ pub struct Tradeoff {
     pub shapes: Vec<ShapeSurvival>,
     /// Margins, arithmetic and tiers.
     pub safety: Vec<SafetyRow>,
+    /// Prices of every variant's volumes, warm and cold.
+    pub prices: Vec<PriceRow>,
+    /// Which variant for which density, class of shapes and price of a check.
+    pub decisions: Vec<Decision>,
+    /// What else the machine did.
+    pub conditions: Conditions,
     /// What to do.
     pub advice: String,
 }
@@ -125,7 +150,7 @@ impl Tradeoff {
         let budgets = self.budgets.iter().filter(|row| row.recall != 1.0);
         let interest = self.interest.iter().filter(|row| row.quality.recall != 1.0);
         rows.map(|row| row.name.as_str())
-            .chain(budgets.map(|row| row.order.as_str()))
+            .chain(budgets.map(|row| row.order.name()))
             .chain(interest.map(|_| "s-dop of interest"))
     }
 }
@@ -136,7 +161,6 @@ struct Run {
     samples: Vec<Sample>,
     truth: Truth,
     tallies: Vec<Tally>,
-    seconds: Vec<f64>,
 }
 
 /// Compares everything on one scene. `step` hears what is being done, often.
@@ -162,20 +186,54 @@ pub fn study(
             run.tallies.push(tally);
         }
     }
-    for run in &mut runs {
-        let (scene, samples) = (&run.scene, &run.samples);
-        run.seconds = timing::measure(scene, &variants, plan.tier, samples, 2, || step("time"))?;
-    }
     let first = &runs[0];
+    let before = Conditions::before();
     let effort = Effort {
-        frames: 6,
-        builds: 1,
+        turns: 1,
+        builds: 5,
     };
-    let prices = timing::prices(&first.scene, &variants, plan.tier, effort, || {
-        step("prices")
-    })?;
-    let rows = rows(&variants, &runs, &prices);
-    finish(file, plan, first, &runs, rows, hits, step)
+    let mut calibration = Calibration::new(&first.scene, &variants, plan.tier, effort)?;
+    let mut passes = Vec::new();
+    for number in 0..passes_of(plan) {
+        let scene = &runs[number % runs.len()].scene;
+        let mut frames = Windows::new(scene, plan.samples)?;
+        step("time");
+        let calibration = Some(&mut calibration);
+        let pass = pass(
+            scene,
+            &variants,
+            plan.tier,
+            &mut frames,
+            calibration,
+            &mut |_, _, _| (),
+        )?;
+        passes.push(pass);
+    }
+    let rows = rows(&variants, &runs, &passes);
+    let measured = Measured {
+        prices: Regime::ALL
+            .iter()
+            .flat_map(|&regime| table::prices(&passes.iter().collect::<Vec<_>>(), regime))
+            .collect(),
+        conditions: before.after(rows.iter().map(Row::seconds)),
+        rows,
+        hits,
+    };
+    finish(file, plan, &runs, measured, step)
+}
+
+/// How many passes are timed: one a seed, three at least.
+fn passes_of(plan: &Plan) -> usize {
+    (plan.seeds as usize).max(PASSES)
+}
+
+/// What is known of the variants.
+struct Measured {
+    rows: Vec<Row>,
+    prices: Vec<PriceRow>,
+    conditions: Conditions,
+    /// Mean sphere hits per frame.
+    hits: f64,
 }
 
 /// How many times [`study`] calls `step`.
@@ -185,9 +243,8 @@ pub fn study(
 pub fn steps(file: &SceneFile, plan: &Plan) -> Result<u64, TradeoffError> {
     let scene = file.build()?;
     let variants = variant::all(&scene, 1).len() as u64;
-    let samples = u64::from(plan.samples.clamp(1, scene.frames));
     let runs = plan.seeds.max(1);
-    Ok(runs * (1 + variants + variants * samples) + variants + density::steps() + 5)
+    Ok(runs * (1 + variants) + passes_of(plan) as u64 + density::steps() + 5)
 }
 
 fn judged_run(file: &SceneFile, plan: &Plan, seed: u64) -> Result<Run, TradeoffError> {
@@ -201,7 +258,6 @@ fn judged_run(file: &SceneFile, plan: &Plan, seed: u64) -> Result<Run, TradeoffE
         samples,
         truth,
         tallies: Vec::new(),
-        seconds: Vec::new(),
     })
 }
 
@@ -212,58 +268,61 @@ fn sphere_hits(run: &Run, tier: Tier) -> Result<f64, TradeoffError> {
     Ok(tally.reported as f64 / f64::from(tally.frames))
 }
 
-fn rows(variants: &[Variant], runs: &[Run], prices: &[VariantPrices]) -> Vec<Row> {
+fn rows(variants: &[Variant], runs: &[Run], passes: &[Pass]) -> Vec<Row> {
     let mut rows: Vec<Row> = variants
         .iter()
         .enumerate()
-        .map(|(at, variant)| row(variant, at, runs, &prices[at]))
+        .map(|(at, variant)| row(variant, at, runs, passes))
         .collect();
-    let points: Vec<_> = rows
-        .iter()
-        .map(|row| (row.seconds.mean, row.precision.mean))
-        .collect();
-    for (row, front) in rows.iter_mut().zip(pays::front(&points)) {
-        row.front = front && row.recall == 1.0;
+    let point = |row: &Row| Point {
+        times: row.times.clone(),
+        precisions: row.precisions.clone(),
+    };
+    let points: Vec<Point> = rows.iter().map(point).collect();
+    for (row, standing) in rows.iter_mut().zip(pays::standings(&points)) {
+        row.standing = standing;
     }
     rows
 }
 
-fn row(variant: &Variant, at: usize, runs: &[Run], prices: &VariantPrices) -> Row {
-    let over_runs = |value: &dyn Fn(&Run, &Tally) -> f64| {
-        let values: Vec<f64> = runs
-            .iter()
-            .map(|run| value(run, &run.tallies[at]))
-            .collect();
+fn row(variant: &Variant, at: usize, runs: &[Run], passes: &[Pass]) -> Row {
+    let over_runs = |value: &dyn Fn(&Tally) -> f64| {
+        let values: Vec<f64> = runs.iter().map(|run| value(&run.tallies[at])).collect();
         Estimate::of(&values)
     };
     let scene = &runs[0].scene;
     let settings = &variant.settings;
-    let ordop = variant.volume() == "or-dop";
-    let terms: Vec<Vec<VolumeTerms>> = runs
-        .iter()
-        .map(|run| prices.terms(variant, &run.tallies[at], scene.bodies.len()))
-        .collect();
-    let volumes = timing::mean(&terms);
-    let recurring: f64 = volumes.iter().map(VolumeTerms::recurring).sum();
-    let construct: f64 = volumes.iter().map(|v| v.co).sum();
+    let volume = variant.decides();
+    let ordop = volume == Some(Volume::OrDop);
     let total =
         |count: fn(&Tally) -> u64| runs.iter().map(|run| count(&run.tallies[at])).sum::<u64>();
+    let all: Vec<&Pass> = passes.iter().collect();
+    let cost = |regime| {
+        let of = (scene.name.as_str(), scene.bodies.len());
+        table::cost(of, (at, variant), &all, regime)
+    };
+    let time = |pass: &Pass| pass.culled[at].times.quartiles(Regime::Warm).median;
     Row {
         name: variant.name.clone(),
-        strategy: settings.strategy.to_string(),
-        volume: variant.volume().to_owned(),
-        k: (ordop || variant.volume() == "k-dop").then(|| settings.k.k()),
-        axes: ordop.then(|| settings.axes.to_string()),
-        overlap: ordop.then(|| settings.overlap.to_string()),
-        reported: over_runs(&|_, t| t.reported as f64 / f64::from(t.frames)),
-        precision: over_runs(&|_, t| t.quality().precision),
-        per_true: over_runs(&|_, t| t.quality().per_true),
+        strategy: settings.strategy,
+        hulls: variant.hulls,
+        volume,
+        k: (ordop || volume == Some(Volume::KDop)).then(|| settings.k.k()),
+        axes: ordop.then_some(settings.axes),
+        overlap: ordop.then_some(settings.overlap),
+        reported: over_runs(&|t| t.reported as f64 / f64::from(t.frames)),
+        precision: over_runs(&|t| t.quality().precision),
+        precisions: runs
+            .iter()
+            .map(|run| run.tallies[at].quality().precision)
+            .collect(),
+        per_true: over_runs(&|t| t.quality().per_true),
         recall: share(total(|t| t.found), total(|t| t.truth)),
-        volume_over_hull: variant.tightness(scene),
-        volumes,
-        predicted: recurring + construct / f64::from(scene.frames),
-        seconds: over_runs(&|run, _| run.seconds[at]),
-        front: false,
+        volume_over_hull: variant::tightness(variant, scene),
+        warm: cost(Regime::Warm),
+        cold: cost(Regime::Cold),
+        times: passes.iter().map(time).collect(),
+        standing: Standing::Front,
         pairs_sha256: runs
             .iter()
             .map(|run| run.tallies[at].pairs_sha256.clone())
@@ -274,12 +333,17 @@ fn row(variant: &Variant, at: usize, runs: &[Run], prices: &VariantPrices) -> Ro
 fn finish(
     file: &SceneFile,
     plan: &Plan,
-    first: &Run,
     runs: &[Run],
-    rows: Vec<Row>,
-    hits: f64,
+    measured: Measured,
     step: &mut dyn FnMut(&'static str),
 ) -> Result<Tradeoff, TradeoffError> {
+    let first = &runs[0];
+    let Measured {
+        rows,
+        prices,
+        conditions,
+        hits,
+    } = measured;
     let (scene, tier) = (&first.scene, plan.tier);
     let judge = Judge::new(&scene.shapes)?;
     step("narrow phase");
@@ -291,12 +355,12 @@ fn finish(
         stride: plan.stride,
     };
     let budgets = budget::by_tests(scene, tier, window, &judge, plan.cache.as_deref(), hits)?;
-    let clock = budget::by_clock(scene, tier, window)?;
+    let clock = budget::by_clock(scene, tier, plan.window.min(scene.frames))?;
     step("interest");
     let interest = interest::sweep(scene, tier, &first.samples, &first.truth)?;
     let densities = density::sweep(file, tier, plan.samples.min(6), || step("density"))?;
     step("safety");
-    let safety = safety::compare(scene, &first.samples)?;
+    let safety = safety::compare(scene, plan.samples)?;
     step("shapes");
     let builtin = shapes::builtin()?;
     let shapes = distinct(scene)
@@ -306,6 +370,9 @@ fn finish(
     let lines: Vec<Line> = rows.iter().map(line).collect();
     let cheapest = pays::envelope(&lines);
     Ok(Tradeoff {
+        decisions: decide::table(&densities, &shapes),
+        prices,
+        conditions,
         scene: scene.name.clone(),
         bodies: scene.bodies.len(),
         frames: scene.frames,
@@ -346,7 +413,9 @@ fn true_pairs(runs: &[Run]) -> Estimate {
 fn line(row: &Row) -> Line {
     Line {
         name: row.name.clone(),
-        time: row.seconds.mean,
+        decides: row.volume,
+        ordop: None,
+        times: row.times.clone(),
         pairs: row.reported.mean,
     }
 }

@@ -16,9 +16,10 @@ use sha2::{Digest, Sha256};
 
 use super::TradeoffError;
 use crate::bodies::Bodies;
+use crate::files;
 use crate::lab::hash::{PairsHash, hex};
 use crate::lab::scene::Scene;
-use crate::lab::simulate::SimulationError;
+use crate::lab::simulate::{SimulationError, Trajectory};
 use crate::volume::Shape;
 
 /// First word of a cache file; the number changes with its layout.
@@ -41,24 +42,40 @@ pub type Truth = Vec<Vec<[u32; 2]>>;
 /// # Errors
 /// Effects that the scene can't have, a body that leaves the contract.
 pub fn samples(scene: &Scene, count: u32) -> Result<Vec<Sample>, SimulationError> {
+    let windows = windows(scene, count, 1)?.into_iter();
+    let sample = |(frame, mut poses): (u32, Vec<Bodies>)| {
+        let bodies = poses.pop()?;
+        Some(Sample { frame, bodies })
+    };
+    Ok(windows.filter_map(sample).collect())
+}
+
+/// The frames that [`samples`] keeps, by number, each with those that follow it: `length` frames, as far as the scene has
+/// so many.
+///
+/// # Errors
+/// As [`samples`].
+pub fn windows(
+    scene: &Scene,
+    count: u32,
+    length: usize,
+) -> Result<Vec<(u32, Vec<Bodies>)>, SimulationError> {
     let count = count.clamp(1, scene.frames);
     let wanted = |i: u32| (u64::from(i) * u64::from(scene.frames) / u64::from(count)) as u32;
-    let mut effects = scene.start_effects()?;
-    let mut bodies = scene.bodies.clone();
-    let mut kept: Vec<Sample> = Vec::new();
-    for frame in 0..=wanted(count - 1) {
-        if frame > 0 {
-            let step = effects.step(&mut bodies);
-            step.map_err(|error| SimulationError::Contract { frame, error })?;
+    let last = wanted(count - 1) as usize + length;
+    let mut trajectory = Trajectory::new(scene)?.with_frames(scene.frames.min(last as u32));
+    let mut kept: Vec<(u32, Vec<Bodies>)> = Vec::new();
+    loop {
+        let frame = trajectory.next_number();
+        let Some(bodies) = trajectory.advance()? else {
+            return Ok(kept);
+        };
+        if (kept.len() as u32) < count && frame == wanted(kept.len() as u32) {
+            kept.push((frame, Vec::new()));
         }
-        if frame == wanted(kept.len() as u32) {
-            kept.push(Sample {
-                frame,
-                bodies: bodies.clone(),
-            });
-        }
+        let open = kept.iter_mut().filter(|(_, poses)| poses.len() < length);
+        open.for_each(|(_, poses)| poses.push(bodies.clone()));
     }
-    Ok(kept)
 }
 
 /// A scene's meshes, prepared for exact judgement.
@@ -233,7 +250,7 @@ fn poses(bodies: &Bodies) -> Result<Vec<Pose>, InvalidInput> {
 
 /// Header, a line of numbers a sample, the hash of all pairs. Anything else in the file counts as no file.
 fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
-    let text = fs::read_to_string(file).ok()?;
+    let text = files::read_text(file, files::MAX_BYTES).ok()?;
     let mut lines = text.lines();
     if lines.next()? != HEADER {
         return None;
@@ -250,7 +267,7 @@ fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
     (lines.next()? == hash(samples, &truth)).then_some(truth)
 }
 
-/// Written beside its place and moved there, so that nobody reads half a file.
+/// Written whole, so that nobody reads half a file.
 fn write(file: &Path, samples: &[Sample], truth: &Truth) -> io::Result<()> {
     let mut text = format!("{HEADER}\n");
     for pairs in truth {
@@ -261,9 +278,7 @@ fn write(file: &Path, samples: &[Sample], truth: &Truth) -> io::Result<()> {
     if let Some(directory) = file.parent() {
         fs::create_dir_all(directory)?;
     }
-    let unfinished = file.with_extension(format!("{}.part", std::process::id()));
-    fs::write(&unfinished, text)?;
-    fs::rename(&unfinished, file)
+    files::write(file, text)
 }
 
 fn hash(samples: &[Sample], truth: &Truth) -> String {

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::lab::measure::counts::Volume;
+pub use crate::lab::measure::variant::Variant;
 use crate::lab::scene::Scene;
 use crate::lab::tightness::mean_world_aligned_volume;
 use crate::settings::{
@@ -12,112 +14,35 @@ use crate::volume::{Hull, Shape};
 /// Random rotations over which a world-aligned volume is averaged.
 const TURNS: u32 = 64;
 
-/// One way to cull.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Variant {
-    /// What tables call it.
-    pub name: String,
-    /// Its culling settings.
-    pub settings: CullSettings,
-    /// Whether pairs that the settings report are then tested by their convex hulls.
-    pub hulls: bool,
+/// Mean volume over hull volume of the scene's bodies; world-aligned volumes are averaged over rotations. `None` when a
+/// hull is flat, or nothing is tested.
+#[must_use]
+pub fn tightness(variant: &Variant, scene: &Scene) -> Option<f64> {
+    let shapes = variant.shapes(scene);
+    let ratios = shapes
+        .iter()
+        .map(|shape| shape_tightness(variant, shape))
+        .collect::<Option<Vec<_>>>()?;
+    let sum: f64 = scene.bodies.shape.iter().map(|&s| ratios[s as usize]).sum();
+    Some(sum / scene.bodies.len() as f64)
 }
 
-impl Variant {
-    /// Spheres alone, with a scene's other settings.
-    #[must_use]
-    pub fn spheres(own: &CullSettings) -> Self {
-        let settings = CullSettings {
-            strategy: Strategy::Sphere,
-            ..own.clone()
-        };
-        Self::of("sphere".into(), settings)
-    }
-
-    /// Spheres, then convex hulls.
-    #[must_use]
-    pub fn hulls(own: &CullSettings) -> Self {
-        Self {
-            name: "sphere + hull".into(),
-            hulls: true,
-            ..Self::spheres(own)
-        }
-    }
-
-    /// A variant of the scene's settings.
-    pub(super) fn of(name: String, settings: CullSettings) -> Self {
-        Self {
-            name,
-            settings,
-            hulls: false,
-        }
-    }
-
-    /// The volume that decides last.
-    #[must_use]
-    pub fn volume(&self) -> &'static str {
-        match self.settings.strategy {
-            _ if self.hulls => "hull",
-            Strategy::None | Strategy::Sphere => "sphere",
-            Strategy::Aabb => "aabb",
-            Strategy::KDop => "k-dop",
-            Strategy::Obb => "obb",
-            _ => "or-dop",
-        }
-    }
-
-    /// The scene culled this way, its shapes' or-DOPs rebuilt for it.
-    #[must_use]
-    pub fn apply(&self, scene: &Scene) -> Scene {
-        Scene {
-            shapes: scene
-                .shapes
-                .iter()
-                .map(|s| refit(s, &self.settings))
-                .collect(),
-            cull: self.settings.clone(),
-            ..scene.clone()
-        }
-    }
-
-    /// Mean volume over hull volume of the scene's bodies; world-aligned volumes are averaged over rotations. `None` when
-    /// a hull is flat.
-    #[must_use]
-    pub fn tightness(&self, scene: &Scene) -> Option<f64> {
-        let ratios = scene
-            .shapes
-            .iter()
-            .map(|shape| self.shape_tightness(shape))
-            .collect::<Option<Vec<_>>>()?;
-        let sum: f64 = scene.bodies.shape.iter().map(|&s| ratios[s as usize]).sum();
-        Some(sum / scene.bodies.len() as f64)
-    }
-
-    fn shape_tightness(&self, shape: &Shape) -> Option<f64> {
-        let hull = Hull::of(&shape.vertices);
-        let inner = hull.volume(&shape.vertices);
-        let aligned = |k| {
-            let points: Vec<Vec3> = hull.points(&shape.vertices);
-            mean_world_aligned_volume(&points, k, TURNS)
-        };
-        let volume = match self.volume() {
-            "hull" => inner,
-            "sphere" => shape.ball.volume(),
-            "aabb" => aligned(DirectionSet::K6),
-            "k-dop" => aligned(self.settings.k),
-            "obb" => shape.obb(&hull).volume(),
-            _ => refit(shape, &self.settings).ordop.volume(),
-        };
-        (inner > 0.0).then_some(volume / inner)
-    }
-}
-
-/// The shape with the or-DOP that the settings ask for.
-fn refit(shape: &Shape, settings: &CullSettings) -> Shape {
-    Shape {
-        ordop: shape.ordop_along(settings.axes, settings.k),
-        ..shape.clone()
-    }
+fn shape_tightness(variant: &Variant, shape: &Shape) -> Option<f64> {
+    let hull = Hull::of(&shape.vertices);
+    let inner = hull.volume(&shape.vertices);
+    let aligned = |k| {
+        let points: Vec<Vec3> = hull.points(&shape.vertices);
+        mean_world_aligned_volume(&points, k, TURNS)
+    };
+    let volume = match variant.decides()? {
+        Volume::Hull => inner,
+        Volume::Sphere => shape.ball.volume(),
+        Volume::Aabb => aligned(DirectionSet::K6),
+        Volume::KDop => aligned(variant.settings.k),
+        Volume::Obb => shape.obb(&hull).volume(),
+        Volume::OrDop => shape.ordop.volume(),
+    };
+    (inner > 0.0).then_some(volume / inner)
 }
 
 /// Every variant for a scene: its own settings give what is not varied. `hits` is the mean number of sphere hits a

@@ -1,10 +1,10 @@
 //! A culler's list against the exact answers: what it must report, what it reports on top, and where that comes from.
 
 use super::answers::{Answers, Predicate};
+use super::ways::Mode;
 use crate::bodies::Bodies;
 use crate::culler::{CullError, Culler};
 use crate::settings::{Budget, CullSettings, Interest, Strategy};
-use crate::simd::Tier;
 use crate::volume::Shape;
 
 /// What a comparison counted.
@@ -18,6 +18,8 @@ pub struct Count {
     pub reported: u64,
     /// Required and not reported: the promise broken.
     pub missed: u64,
+    /// In this list and not in that of all-pairs, or the other way round.
+    pub differ: u64,
     /// Reported although the exact volumes don't overlap, but volumes wider by the stated margins do: the price of rounding.
     pub margin: u64,
     /// Reported although not even those overlap: an or-DOP's support is bounded from its slabs, not from its corners
@@ -36,6 +38,7 @@ impl Count {
         self.required += other.required;
         self.reported += other.reported;
         self.missed += other.missed;
+        self.differ += other.differ;
         self.margin += other.margin;
         self.bound += other.bound;
         self.loose += other.loose;
@@ -54,22 +57,48 @@ pub fn settings(strategy: Strategy, base: &CullSettings, bodies: usize) -> CullS
     }
 }
 
-/// Culls one frame from scratch.
+/// A culler of these settings in this mode.
 ///
 /// # Errors
-/// Settings that the bodies can't have.
-pub fn cull(
+/// Settings that the bodies can't have, threads that the system refuses.
+pub fn culler(
     shapes: &[Shape],
     bodies: &Bodies,
     settings: &CullSettings,
-    tier: Tier,
-) -> Result<Vec<[u32; 2]>, CullError> {
-    Ok(Culler::builder()
+    mode: Mode,
+) -> Result<Culler, CullError> {
+    let mode = Culler::builder()
         .settings(settings)
-        .tier(tier)
-        .build(shapes, bodies)?
-        .cull(bodies)?
-        .sorted())
+        .updates(mode.updates)
+        .tier(mode.tier)
+        .threads(mode.threads);
+    mode.build(shapes, bodies)
+}
+
+/// What the finder led to in the culler's last frame, sorted: the list, which every finder must give. What a budget leaves
+/// untested depends on the order in which pairs were found, so time-critical culling shows the potentially colliding set.
+#[must_use]
+pub fn found(culler: &Culler, settings: &CullSettings) -> Vec<[u32; 2]> {
+    if settings.strategy != Strategy::SDopTimeCritical {
+        return culler.pairs().sorted();
+    }
+    let mut pairs: Vec<[u32; 2]> = culler.potentially_colliding().collect();
+    pairs.sort_unstable();
+    pairs
+}
+
+/// The pairs that one of two sorted lists has more often than the other.
+#[must_use]
+pub fn difference(one: &[[u32; 2]], other: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let mut differing = Vec::new();
+    let (mut one, mut other) = (one.iter().peekable(), other.iter().peekable());
+    while let Some(&next) = one.peek().into_iter().chain(other.peek()).min() {
+        match (one.next_if_eq(&next), other.next_if_eq(&next)) {
+            (Some(_), Some(_)) => {}
+            _ => differing.push(*next),
+        }
+    }
+    differing
 }
 
 /// Compares a sorted list with the answers. Returns the count, in which all that is reported and not required is `bound`,
@@ -119,6 +148,15 @@ pub fn compare(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lists_differ_in_what_one_has_more_often() {
+        let (a, b, c) = ([0, 1], [0, 2], [3, 4]);
+        assert!(difference(&[a, b, c], &[a, b, c]).is_empty());
+        assert_eq!(difference(&[a, b, b], &[a, b]), vec![b]);
+        assert_eq!(difference(&[b], &[a, c]), vec![a, b, c]);
+        assert_eq!(difference(&[], &[a]), vec![a]);
+    }
 
     #[test]
     fn a_list_with_a_pair_twice_or_an_impossible_pair_is_no_pass() {

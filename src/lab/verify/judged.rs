@@ -95,8 +95,8 @@ fn shape(shape: &Shape, margins: f64) -> Result<reference::Shape, InvalidInput> 
         .with_obb(&slabs(&obb))
 }
 
-/// The slabs, each end further out by `by` times its direction's length.
-fn slabs(ordop: &OrDop, by: f64) -> reference::Slabs {
+/// The slabs in the reference's terms, each end further out by `by` times its direction's length.
+pub(crate) fn slabs(ordop: &OrDop, by: f64) -> reference::Slabs {
     let lengths = ordop.directions.coefficients().iter();
     let lengths = lengths.map(|&c| norm(ordop.basis.direction(c).to_array()));
     let moved = |ends: &[f32], sign: f64, outward: fn(f64) -> f32| -> Vec<f32> {

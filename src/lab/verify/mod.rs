@@ -14,10 +14,12 @@ pub mod draw;
 pub mod forms;
 pub mod hard;
 pub mod judged;
+pub mod matrix;
 pub mod naive;
 pub mod rounds;
 pub mod scenes;
 pub mod shrink;
+pub mod ways;
 
 pub use answers::{Answers, Predicate};
 pub use compare::{Count, compare};

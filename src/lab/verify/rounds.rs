@@ -1,22 +1,25 @@
-//! What a verification run does with frames: exact answers once, then every strategy, overlap test and finder on every
-//! tier against them.
+//! What a verification run does with frames: exact answers once, then every way to cull against them and against
+//! all-pairs, in the modes whose turn it is.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use sdop_reference::exact::Tally;
 
 use super::answers::{Answers, Predicate, explained_by_margins};
-use super::compare::{Count, compare, settings};
+use super::compare::{Count, compare, culler, difference, found, settings};
 use super::draw::{ContactSpec, crowd, probe};
 use super::forms::{self, Form, FormError};
 use super::hard::{Group, GroupError};
 use super::judged::{InvalidInput, Shapes};
+use super::matrix::Matrix;
+use super::ways::{Mode, Rotation, refines, rows};
 use crate::bodies::Bodies;
-use crate::culler::{CullError, Culler};
+use crate::culler::CullError;
 use crate::mesh::ProceduralShape;
-use crate::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
+use crate::settings::{CullSettings, Finder, Overlap, Strategy};
 use crate::simd::Tier;
 use crate::volume::{Axes, DirectionSet, Shape};
 
@@ -51,25 +54,29 @@ pub struct Row {
 pub struct Ledger {
     /// Answers by predicate: pairs that overlap, and which stage decided.
     pub predicates: [(u64, Tally); Predicate::ALL.len()],
-    /// Lists against answers; a pair counts once a finder and tier that reported on it.
+    /// Lists against answers; a pair counts once a finder that reported on it.
     pub rows: BTreeMap<Row, Count>,
-    /// Pairs missed, with all that is needed to see it again.
+    /// Pairs missed or found by one finder alone, with all that is needed to see it again.
     pub failures: Vec<Failure>,
+    /// In which cells lists were judged.
+    pub matrix: Matrix,
 }
 
-/// A missed pair.
+/// A missed pair, or one on which a finder disagrees with all-pairs.
 #[derive(Clone, Debug)]
 pub struct Failure {
     /// The culler's settings.
     pub settings: CullSettings,
-    /// Its tier.
-    pub tier: Tier,
+    /// How it was computed.
+    pub mode: Mode,
     /// The shapes.
     pub shapes: Vec<Shape>,
-    /// The frames up to the one in which the pair was missed.
+    /// The frames up to the one with the pair.
     pub frames: Vec<Bodies>,
     /// The pair.
     pub pair: [u32; 2],
+    /// Whether the exact answers ask for it; otherwise all-pairs has it and this list not, or the other way round.
+    pub missed: bool,
 }
 
 impl Ledger {
@@ -99,6 +106,7 @@ impl Ledger {
         for (row, count) in other.rows {
             self.rows.entry(row).or_default().add(&count);
         }
+        self.matrix.add(&other.matrix);
         self.failures.extend(other.failures);
         self.failures.truncate(MOST_FAILURES);
     }
@@ -108,117 +116,185 @@ impl Ledger {
     pub fn missed(&self) -> u64 {
         self.rows.values().map(|count| count.missed).sum()
     }
+
+    /// Pairs on which a list and that of all-pairs differ, in all.
+    #[must_use]
+    pub fn differing(&self) -> u64 {
+        self.rows.values().map(|count| count.differ).sum()
+    }
 }
 
 const MOST_FAILURES: usize = 8;
 
-/// Whether the overlap test matters to a strategy.
-#[must_use]
-pub fn refines(strategy: Strategy) -> bool {
-    match strategy {
-        Strategy::None | Strategy::Sphere | Strategy::Aabb | Strategy::KDop | Strategy::Obb => {
-            false
-        }
-        Strategy::OrDop
-        | Strategy::SDopSequential
-        | Strategy::SDopBatch
-        | Strategy::SDopObjectOfInterest
-        | Strategy::SDopTimeCritical => true,
-    }
+/// Frames that one culler sees, and their exact answers.
+#[derive(Clone, Copy)]
+pub struct Run<'a> {
+    /// The shapes.
+    pub shapes: &'a Shapes,
+    /// The frames, all with the same bodies.
+    pub frames: &'a [Bodies],
+    /// One a frame.
+    pub answers: &'a [Answers],
 }
 
-/// Every way to cull with one or-DOP: strategy × overlap × finder. Updates alternate between eager and lazy.
-#[must_use]
-pub fn ways(k: DirectionSet, axes: Axes) -> Vec<CullSettings> {
-    let mut ways = Vec::new();
-    for &strategy in Strategy::ALL {
-        let overlaps = if refines(strategy) {
-            Overlap::ALL
-        } else {
-            &[Overlap::TwoSided]
+impl Run<'_> {
+    /// Culls the frames in every way, way number `w` in the mode numbered `w` modulo their number, and holds every list
+    /// against the answers and against that of all-pairs.
+    ///
+    /// # Errors
+    /// Settings that the bodies can't have.
+    pub fn check(
+        &self,
+        variant: (DirectionSet, Axes),
+        modes: &[Mode],
+        ledger: &mut Ledger,
+    ) -> Result<(), RoundError> {
+        for (n, row) in rows(variant).iter().enumerate() {
+            self.check_row(n, row, modes, ledger)?;
+        }
+        Ok(())
+    }
+
+    /// The same for row number `n` of [`rows`] alone.
+    ///
+    /// # Errors
+    /// As [`Run::check`].
+    pub fn check_row(
+        &self,
+        n: usize,
+        row: &CullSettings,
+        modes: &[Mode],
+        ledger: &mut Ledger,
+    ) -> Result<(), RoundError> {
+        let Some(first) = self.frames.first() else {
+            return Ok(());
         };
-        for &overlap in overlaps {
-            for &pairs in Finder::ALL {
-                let lazy = ways.len() % 2 == 1;
-                ways.push(CullSettings {
-                    strategy,
-                    pairs,
-                    k,
-                    axes,
-                    overlap,
-                    updates: if lazy { Updates::Lazy } else { Updates::Eager },
-                    ..CullSettings::all_pairs()
+        let row = settings(row.strategy, row, first.len());
+        let mut expected = Expected::new(self, &row);
+        for (finder, &pairs) in Finder::ALL.iter().enumerate() {
+            let mode = modes[(n * Finder::ALL.len() + finder) % modes.len()];
+            let way = CullSettings {
+                pairs,
+                updates: mode.updates,
+                ..row.clone()
+            };
+            self.check_way(&way, mode, &mut expected, ledger)?;
+        }
+        Ok(())
+    }
+
+    fn check_way(
+        &self,
+        way: &CullSettings,
+        mode: Mode,
+        expected: &mut Expected<'_>,
+        ledger: &mut Ledger,
+    ) -> Result<(), RoundError> {
+        let mut culler = culler(&self.shapes.built, &self.frames[0], way, mode)?;
+        ledger.matrix.count(way, mode, self.frames.len() as u64);
+        for (n, (frame, answers)) in self.frames.iter().zip(self.answers).enumerate() {
+            let list = culler.cull(frame)?.sorted();
+            let (mut count, missed, extra) = compare(answers, way, &list);
+            if way.strategy != Strategy::SDopTimeCritical {
+                for pair in extra {
+                    let margin = u64::from(expected.explained(n, pair)?);
+                    count.margin += margin;
+                    count.bound -= margin;
+                }
+            }
+            let differing = difference(&found(&culler, way), expected.found(n, mode.tier)?);
+            count.differ = differing.len() as u64;
+            ledger.count(way, &count);
+            let wrong = missed.first().or(differing.first());
+            if let (Some(&pair), true) = (wrong, ledger.failures.len() < MOST_FAILURES) {
+                ledger.failures.push(Failure {
+                    settings: way.clone(),
+                    mode,
+                    shapes: self.shapes.built.clone(),
+                    frames: self.frames[..=n].to_vec(),
+                    pair,
+                    missed: !missed.is_empty(),
                 });
             }
         }
+        Ok(())
     }
-    ways
 }
 
-/// Culls a run of frames in one way on one tier and holds every list against the answers.
-///
-/// # Errors
-/// Settings that the bodies can't have.
-pub fn check(
-    shapes: &Shapes,
-    frames: &[Bodies],
-    answers: &[Answers],
-    way: &CullSettings,
-    tier: Tier,
-    ledger: &mut Ledger,
-) -> Result<(), RoundError> {
-    let Some(first) = frames.first() else {
-        return Ok(());
-    };
-    let settings = settings(way.strategy, way, first.len());
-    let mut culler = Culler::builder()
-        .settings(&settings)
-        .tier(tier)
-        .build(&shapes.built, first)?;
-    for (n, (frame, answers)) in frames.iter().zip(answers).enumerate() {
-        let (mut count, missed, extra) = compare(answers, &settings, &culler.cull(frame)?.sorted());
-        if settings.strategy != Strategy::SDopTimeCritical {
-            for pair in extra {
-                let margin = u64::from(explained_by_margins(shapes, frame, &settings, pair)?);
-                count.margin += margin;
-                count.bound -= margin;
+/// What the lists of one strategy and overlap test are held against, whichever finder and mode.
+struct Expected<'a> {
+    run: &'a Run<'a>,
+    row: &'a CullSettings,
+    /// What all-pairs finds in the plainest mode, a list a frame, by tier: flush-to-zero may decide otherwise.
+    all_pairs: BTreeMap<&'static str, Vec<Vec<[u32; 2]>>>,
+    /// Whether the margins explain an extra pair, by frame.
+    explained: BTreeMap<(usize, [u32; 2]), bool>,
+}
+
+impl<'a> Expected<'a> {
+    fn new(run: &'a Run<'a>, row: &'a CullSettings) -> Self {
+        Self {
+            run,
+            row,
+            all_pairs: BTreeMap::new(),
+            explained: BTreeMap::new(),
+        }
+    }
+
+    /// The list of all-pairs in a frame.
+    fn found(&mut self, frame: usize, tier: Tier) -> Result<&[[u32; 2]], RoundError> {
+        let tier = match tier {
+            Tier::SCALAR_FLUSH => tier,
+            _ => Tier::SCALAR,
+        };
+        let lists = match self.all_pairs.entry(tier.name()) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => {
+                let (shapes, frames) = (&self.run.shapes.built, self.run.frames);
+                let mut culler = culler(shapes, &frames[0], self.row, Mode::plain(tier))?;
+                let lists = frames.iter().map(|frame| {
+                    culler.cull(frame)?;
+                    Ok(found(&culler, self.row))
+                });
+                entry.insert(lists.collect::<Result<_, CullError>>()?)
             }
-        }
-        ledger.count(&settings, &count);
-        if let (Some(&pair), true) = (missed.first(), ledger.failures.len() < MOST_FAILURES) {
-            ledger.failures.push(Failure {
-                settings: settings.clone(),
-                tier,
-                shapes: shapes.built.clone(),
-                frames: frames[..=n].to_vec(),
-                pair,
-            });
-        }
+        };
+        Ok(&lists[frame])
     }
-    Ok(())
+
+    fn explained(&mut self, frame: usize, pair: [u32; 2]) -> Result<bool, RoundError> {
+        if let Some(&known) = self.explained.get(&(frame, pair)) {
+            return Ok(known);
+        }
+        let Run { shapes, frames, .. } = *self.run;
+        let explained = explained_by_margins(shapes, &frames[frame], self.row, pair)?;
+        self.explained.insert((frame, pair), explained);
+        Ok(explained)
+    }
 }
 
-/// Judges runs of frames and culls them in every way on each of `levels`.
+/// Judges runs of frames and culls them in every way; run number `n` takes turn `turn + n` of the rotation.
 ///
 /// # Errors
-/// As [`check`], and poses outside the contract.
+/// As [`Run::check`], and poses outside the contract.
 pub fn judge_and_check(
     shapes: &Shapes,
     runs: &[Vec<Bodies>],
-    (k, axes): (DirectionSet, Axes),
+    variant: (DirectionSet, Axes),
     predicates: &[Predicate],
-    tiers: &[Tier],
+    (rotation, turn): (&Rotation, u64),
 ) -> Result<Ledger, RoundError> {
     let mut ledger = Ledger::default();
-    for frames in runs {
-        let judge = |frame| Answers::judge(shapes, frame, k, predicates);
+    for (n, frames) in (turn..).zip(runs) {
+        let judge = |frame| Answers::judge(shapes, frame, variant.0, predicates);
         let answers: Vec<Answers> = frames.iter().map(judge).collect::<Result<_, _>>()?;
         answers.iter().for_each(|frame| ledger.note(frame));
-        for (n, way) in ways(k, axes).iter().enumerate() {
-            // Tiers are bit-identical (tested), so each way takes its turn on one of them.
-            let tier = tiers[n % tiers.len().max(1)];
-            check(shapes, frames, &answers, way, tier, &mut ledger)?;
-        }
+        let run = Run {
+            shapes,
+            frames,
+            answers: &answers,
+        };
+        run.check(variant, &rotation.turn(n), &mut ledger)?;
     }
     Ok(ledger)
 }
@@ -238,7 +314,7 @@ pub const PARTNERS: usize = 1024;
 /// Bodies of a random round.
 pub const CROWD: usize = 150;
 
-/// One round: the frame of a seed for one or-DOP, judged by everything but the meshes.
+/// One round: the frame of a seed for one or-DOP, judged by everything but the meshes. The seed is the turn, too.
 ///
 /// # Errors
 /// As [`judge_and_check`].
@@ -246,7 +322,7 @@ pub fn round(
     source: Source,
     seed: u64,
     (k, axes): (DirectionSet, Axes),
-    tiers: &[Tier],
+    rotation: &Rotation,
 ) -> Result<Ledger, RoundError> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(1 + source as u64);
@@ -260,7 +336,15 @@ pub fn round(
         Source::Random => crowd(&shapes, CROWD, 6.5, &mut rng),
     };
     let volumes = &Predicate::ALL[..7];
-    judge_and_check(&shapes, &[vec![frame]], (k, axes), volumes, tiers)
+    // Both sources of one seed take modes that are far apart.
+    let turn = seed.wrapping_add(source as u64 * rotation.modes().len() as u64 / 2);
+    judge_and_check(
+        &shapes,
+        &[vec![frame]],
+        (k, axes),
+        volumes,
+        (rotation, turn),
+    )
 }
 
 /// Every procedural shape with a size of its own, and two about origins that are not their balls' centres.
@@ -288,14 +372,16 @@ fn contacts(seed: u64) -> ContactSpec {
     }
 }
 
-/// One group of hard cases in every way on each of `levels`, for one or-DOP.
+/// One group of hard cases for one or-DOP. As many groups as there are modes, numbered from 0, fill every cell: run `n` of
+/// group `g` takes turn `g + n`.
 ///
 /// # Errors
 /// As [`judge_and_check`], and groups that can't be made.
 pub fn group(
+    number: usize,
     group: &Group,
     (k, axes): (DirectionSet, Axes),
-    tiers: &[Tier],
+    rotation: &Rotation,
 ) -> Result<Ledger, RoundError> {
     let cases = group.cases(k, axes)?;
     judge_and_check(
@@ -303,6 +389,6 @@ pub fn group(
         &cases.runs,
         (k, axes),
         &Predicate::ALL,
-        tiers,
+        (rotation, number as u64),
     )
 }

@@ -5,14 +5,16 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::answers::{Answers, Predicate};
-use super::compare::{compare, cull};
+use super::compare::{compare, culler, difference, found};
 use super::judged::Shapes;
 use super::rounds::Failure;
+use super::ways::Mode;
 use crate::bodies::Bodies;
+use crate::culler::CullError;
+use crate::files;
 use crate::lab::scene::SceneFile;
 use crate::mesh::{self, TriangleMesh};
-use crate::settings::{CullSettings, Interest};
-use crate::simd::Tier;
+use crate::settings::{CullSettings, Finder, Interest};
 use crate::volume::Shape;
 
 /// A scene of a few bodies that shows a missed pair.
@@ -20,8 +22,8 @@ use crate::volume::Shape;
 pub struct Smallest {
     /// The settings, with interest renumbered.
     pub settings: CullSettings,
-    /// The tier.
-    pub tier: Tier,
+    /// How it was computed.
+    pub mode: Mode,
     /// Shapes.
     pub shapes: Vec<Shape>,
     /// Bodies.
@@ -29,17 +31,17 @@ pub struct Smallest {
 }
 
 impl Smallest {
-    /// Leaves bodies out, half of the rest at a time, for as long as some pair is missed. `None` when the last frame alone
-    /// shows nothing: the miss depends on the frames before.
+    /// Leaves bodies out, half of the rest at a time, for as long as some pair is missed or found by one finder alone. `None` when the last frame alone
+    /// shows nothing: it depends on the frames before.
     #[must_use]
     pub fn of(failure: &Failure) -> Option<Self> {
         let mut smallest = Self {
             settings: failure.settings.clone(),
-            tier: failure.tier,
+            mode: failure.mode,
             shapes: failure.shapes.clone(),
             bodies: failure.frames.last()?.clone(),
         };
-        if !smallest.misses() {
+        if !smallest.is_wrong() {
             return None;
         }
         let [i, j] = failure.pair.map(|body| body as usize);
@@ -83,11 +85,11 @@ impl Smallest {
             let renumbered = list.iter().filter_map(place).map(|i| i as u32).collect();
             smaller.settings.interest = Some(Interest::Bodies(renumbered));
         }
-        smaller.misses().then_some(smaller)
+        smaller.is_wrong().then_some(smaller)
     }
 
-    fn misses(&self) -> bool {
-        missed(&self.shapes, &self.bodies, &self.settings, self.tier).unwrap_or(false)
+    fn is_wrong(&self) -> bool {
+        wrong(&self.shapes, &self.bodies, &self.settings, self.mode).unwrap_or(false)
     }
 
     /// Writes the scene and its meshes into `directory`. Returns the scene's path and whether the file, read back, still
@@ -98,7 +100,7 @@ impl Smallest {
     pub fn write(&self, directory: &Path) -> io::Result<(PathBuf, bool)> {
         let path = directory.join("missed-pair.toml");
         for origin in ["ball", "file"] {
-            std::fs::write(&path, self.toml(directory, origin)?)?;
+            files::write(&path, self.toml(directory, origin)?)?;
             if self.shown_by(&path) {
                 return Ok((path, true));
             }
@@ -137,15 +139,26 @@ impl Smallest {
     fn shown_by(&self, path: &Path) -> bool {
         let scene = SceneFile::read(path).and_then(|file| file.build());
         scene.is_ok_and(|scene| {
-            missed(&scene.shapes, &scene.bodies, &scene.cull, self.tier) == Some(true)
+            wrong(&scene.shapes, &scene.bodies, &scene.cull, self.mode) == Some(true)
         })
     }
 }
 
-/// Whether a culler misses a pair of the frame.
-fn missed(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings, tier: Tier) -> Option<bool> {
+/// Whether a culler misses a pair of the frame, or finds others than all-pairs does on the same tier.
+fn wrong(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings, mode: Mode) -> Option<bool> {
     let judged = Shapes::new(shapes.to_vec()).ok()?;
     let answers = Answers::judge(&judged, bodies, settings.k, &Predicate::ALL).ok()?;
-    let list = cull(shapes, bodies, settings, tier).ok()?;
-    Some(compare(&answers, settings, &list).0.missed > 0)
+    let all_pairs = CullSettings {
+        pairs: Finder::AllPairs,
+        ..settings.clone()
+    };
+    let lists = |settings, mode| -> Result<_, CullError> {
+        let mut culler = culler(shapes, bodies, settings, mode)?;
+        let list = culler.cull(bodies)?.sorted();
+        Ok((list, found(&culler, settings)))
+    };
+    let (list, found) = lists(settings, mode).ok()?;
+    let (_, expected) = lists(&all_pairs, Mode::plain(mode.tier)).ok()?;
+    let missed = compare(&answers, settings, &list).0.missed;
+    Some(missed > 0 || !difference(&found, &expected).is_empty())
 }

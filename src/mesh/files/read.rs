@@ -1,8 +1,10 @@
 //! Reading a mesh: the extension names the format, the format's reader makes the parts, validation makes the mesh.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use super::{TriFormat, obj, ply, stl, tri};
+use crate::files;
 use crate::mesh::{MeshError, Problem, TriangleMesh};
 
 /// A file format.
@@ -18,11 +20,22 @@ pub enum MeshFormat {
     Ply,
 }
 
-/// What a file cannot say about itself.
-#[derive(Clone, Copy, Debug, Default)]
+/// What a file cannot say about itself, and how much of it is read.
+#[derive(Clone, Copy, Debug)]
 pub struct ReadOptions {
     /// The dialect of a `.tri` file; without it, the one that fits.
     pub tri_format: Option<TriFormat>,
+    /// Larger files are refused.
+    pub max_bytes: u64,
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self {
+            tri_format: None,
+            max_bytes: files::MAX_BYTES,
+        }
+    }
 }
 
 impl MeshFormat {
@@ -58,12 +71,17 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TriangleMes
     let path = path.as_ref();
     let file = path.display().to_string();
     let format = MeshFormat::of_path(path, "read").map_err(|problem| problem.at(&file, None))?;
-    let bytes = std::fs::read(path).map_err(|source| {
-        Problem::Io {
-            action: "read",
-            source,
-        }
-        .at(&file, None)
+    let bytes = files::read(path, options.max_bytes).map_err(|source| {
+        let problem = match source.kind() {
+            ErrorKind::FileTooLarge => Problem::TooLong {
+                most: options.max_bytes,
+            },
+            _ => Problem::Io {
+                action: "read",
+                source,
+            },
+        };
+        problem.at(&file, None)
     })?;
     read_bytes(&file, format, &bytes, options)
 }

@@ -11,9 +11,10 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::{MeshFormat, stl};
+use crate::files;
 use crate::mesh::{MeshError, Problem, TriangleMesh};
 
-/// Writes a mesh in the format that the extension names.
+/// Writes a mesh in the format that the extension names; the file appears when it is whole.
 ///
 /// # Errors
 /// An extension that names no format, or a file that cannot be written.
@@ -21,7 +22,7 @@ pub fn write(mesh: &TriangleMesh, path: impl AsRef<Path>) -> Result<(), MeshErro
     let path = path.as_ref();
     let file = path.display().to_string();
     let format = MeshFormat::of_path(path, "written").map_err(|problem| problem.at(&file, None))?;
-    std::fs::write(path, write_bytes(mesh, format)).map_err(|source| {
+    files::write(path, write_bytes(mesh, format)).map_err(|source| {
         Problem::Io {
             action: "write",
             source,

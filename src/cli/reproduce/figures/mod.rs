@@ -10,9 +10,9 @@ mod useful_tests;
 
 use std::path::Path;
 
-use miette::IntoDiagnostic as _;
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use sdop::lab::cost::table::Cost;
 
 use super::rows::Tables;
 
@@ -40,14 +40,31 @@ const FIGURES: [Figure; 5] = [
 /// A file that can't be written.
 pub fn draw_all(directory: &Path, tables: &Tables) -> miette::Result<()> {
     for (name, size, draw) in FIGURES {
-        let mut svg = String::new();
-        {
-            let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-            area.fill(&WHITE).into_diagnostic()?;
-            draw(&area, tables).map_err(|error| miette::miette!("cannot draw {name}: {error}"))?;
-            area.present().into_diagnostic()?;
-        }
+        let svg = svg(size, |area| draw(area, tables))
+            .map_err(|error| miette::miette!("cannot draw {name}: {error}"))?;
         super::write(&directory.join(name).with_extension("svg"), &svg)?;
     }
     Ok(())
+}
+
+/// Where the time of one scene's frames goes, strategy by strategy.
+///
+/// # Errors
+/// What can't be drawn.
+pub fn draw_costs(scene: &str, costs: &[&Cost]) -> miette::Result<String> {
+    svg((1060, 480), |area| {
+        costs::draw_strategies(area, scene, costs)
+    })
+    .map_err(|error| miette::miette!("cannot draw the costs: {error}"))
+}
+
+fn svg(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> Drawn) -> Result<String, Failure> {
+    let mut svg = String::new();
+    {
+        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        area.fill(&WHITE)?;
+        draw(&area)?;
+        area.present()?;
+    }
+    Ok(svg)
 }

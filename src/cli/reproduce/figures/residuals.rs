@@ -3,8 +3,8 @@
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
+use sdop::lab::cost::table::Cost;
 use sdop::lab::reproduce::paper_name;
-use sdop::lab::reproduce::terms::Cost;
 
 use super::style::{anchored, colour, ends, label, legend, quiet, titled};
 use super::{Area, Drawn};
@@ -15,7 +15,7 @@ use crate::cli::reproduce::rows::Tables;
 pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {
     let body = titled(
         area,
-        "Residual of T = Nu·Cu + F + Nv·Cv: measured over predicted, less one (whiskers: 95 % over seeds)",
+        "Residual of T = Nu·Cu + F + Nv·Cv: measured over predicted, less one, warm frames (whiskers: 95 %)",
     )?;
     let (keys, body) = body.split_vertically(30);
     let (scenes, strategies) = (tables.scenes(), tables.strategies());
@@ -24,7 +24,10 @@ pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {
         .map(|&s| (paper_name(s), colour(s), false))
         .collect();
     legend(&keys, (14, 12), &named)?;
-    let sizes = tables.costs.iter().map(|cost| cost.residual.abs());
+    let sizes = tables
+        .costs
+        .iter()
+        .map(|cost| cost.frame.residual.mean.abs());
     let limit = 120.0 * sizes.fold(0.1, f64::max);
     let mut chart = ChartBuilder::on(&body)
         .margin(12)
@@ -61,11 +64,15 @@ type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64
 
 fn mark(chart: &mut Chart<'_, '_>, cost: &Cost, x: f64) -> Drawn {
     let colour = colour(cost.strategy);
-    let ends = ends(&cost.measured).map(|seconds| 100.0 * (seconds / cost.predicted - 1.0));
+    let ends = ends(&cost.frame.residual).map(|share| 100.0 * share);
     chart.draw_series([PathElement::new(
         vec![(x, ends[0]), (x, ends[1])],
         colour.stroke_width(2),
     )])?;
-    chart.draw_series([Circle::new((x, 100.0 * cost.residual), 5, colour.filled())])?;
+    chart.draw_series([Circle::new(
+        (x, 100.0 * cost.frame.residual.mean),
+        5,
+        colour.filled(),
+    )])?;
     Ok(())
 }

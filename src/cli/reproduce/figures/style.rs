@@ -5,7 +5,8 @@ use plotters::coord::CoordTranslate;
 use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use sdop::lab::cost::predict::{Terms, Volume};
+use sdop::lab::cost::predict::Terms;
+use sdop::lab::measure::counts::Volume;
 use sdop::lab::reproduce::Estimate;
 use sdop::settings::Strategy;
 

@@ -2,9 +2,9 @@
 
 use std::fmt::{Result, Write as _};
 
+use sdop::lab::cost::table::Cost;
 use sdop::lab::reproduce::paper_name;
 use sdop::lab::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
-use sdop::lab::reproduce::terms::Cost;
 
 use super::text::{interval, number};
 use crate::cli::output::table;
@@ -43,7 +43,7 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
     }
     writeln!(
         out,
-        "{rows}\n\nCulling, µs a frame, and how far the formula's prediction is off"
+        "{rows}\n\nCulling, µs per warm frame, and how far the formula's prediction is off"
     )?;
     let mut rows = table(&heads);
     for strategy in tables.strategies() {
@@ -51,14 +51,18 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
         let cell = |cost: &Cost| {
             format!(
                 "{} ({:+.0} %)",
-                number(1e6 * cost.measured.mean),
-                100.0 * cost.residual
+                number(1e6 * cost.frame.measured.mean),
+                100.0 * cost.frame.residual.mean
             )
         };
         let cells = tables.costs.iter().filter(of).map(cell);
         rows.add_row(std::iter::once(paper_name(strategy).to_owned()).chain(cells));
     }
-    writeln!(out, "{rows}\n\nThe paper's claims")?;
+    if let Some(warning) = tables.conditions.warning() {
+        writeln!(out, "{rows}\n\n{warning}\n\nThe paper's claims")?;
+    } else {
+        writeln!(out, "{rows}\n\nThe paper's claims")?;
+    }
     for claim in &tables.claims {
         writeln!(out, "  {:<12} {}", claim.verdict().name(), claim.claim)?;
     }

@@ -2,10 +2,10 @@
 
 use std::fmt::{Result, Write as _};
 
+use sdop::lab::cost::table::Cost;
 use sdop::lab::reproduce::check::{Claim, Verdict};
 use sdop::lab::reproduce::paper_name;
 use sdop::lab::reproduce::rates::{ELSEWHERE, Rate};
-use sdop::lab::reproduce::terms::Cost;
 
 use super::table_1;
 use super::text::number;
@@ -81,14 +81,22 @@ fn order(tables: &Tables, scene: &str) -> String {
 
 /// How far the formula is off in the crowded scenes, or in the others.
 fn residual(tables: &Tables, crowded: bool) -> String {
-    let of = |cost: &&Cost| cost.scene.starts_with("crowded") == crowded;
+    let scenes = tables.boxes.iter().filter(|row| row.crowded == crowded);
+    let scenes: Vec<&str> = scenes.map(|row| row.scene.as_str()).collect();
+    let of = |cost: &&Cost| scenes.contains(&cost.scene.as_str());
     let costs = tables.costs.iter().filter(of);
-    let mut sizes: Vec<f64> = costs.map(|cost| 100.0 * cost.residual.abs()).collect();
+    let mut sizes: Vec<f64> = costs
+        .map(|cost| 100.0 * cost.frame.residual.mean.abs())
+        .collect();
     sizes.sort_by(f64::total_cmp);
     let worst = sizes.last().copied().unwrap_or(0.0);
     let median = sizes.get(sizes.len().saturating_sub(1) / 2);
     let median = median.copied().unwrap_or(0.0);
-    format!("{median:.1} % in the median, {worst:.1} % at worst")
+    let beyond = sizes.iter().filter(|size| **size > 5.0).count();
+    format!(
+        "{median:.1} % in the median, {worst:.1} % at worst, {beyond} of {} by more than 5 %",
+        sizes.len()
+    )
 }
 
 /// The largest share over scenes of each strategy.

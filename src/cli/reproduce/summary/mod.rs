@@ -7,6 +7,7 @@ mod digest;
 mod frame_rates;
 mod table_1;
 mod text;
+mod words;
 
 use std::fmt::{Result, Write as _};
 
@@ -24,6 +25,7 @@ pub fn write(tables: &Tables) -> String {
 
 fn sections(out: &mut String, tables: &Tables) -> Result {
     head(out, tables)?;
+    words::section(out, tables)?;
     digest::section(out, tables)?;
     table_1::section(out, tables)?;
     frame_rates::section(out, tables)?;
@@ -31,7 +33,9 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
     claims::section(out, "Claims of the paper", &tables.claims)?;
     claims::section(out, "Our reading of Table 1, checked", &tables.study)?;
     survival(out, tables)?;
-    hashes(out, tables)
+    table_1::appendix(out, tables)?;
+    hashes(out, tables)?;
+    words::references(out)
 }
 
 fn head(out: &mut String, tables: &Tables) -> Result {
@@ -74,8 +78,12 @@ fn head(out: &mut String, tables: &Tables) -> Result {
     )?;
     writeln!(
         out,
-        "- ± is half of a 95 % interval over seeds: frames of one run are correlated, so a run is one observation\n"
-    )
+        "- times are medians over *warm* frames: a culler's frames follow one another, as in a simulation; *cold* ones, before which other cullers ran, stand in `times.csv` and `costs.csv`\n- ± is half of a 95 % interval over seeds, each run at another time: frames of one run are correlated, so a run is one observation, and neighbours in time count for less where they are alike"
+    )?;
+    if let Some(warning) = tables.conditions.warning() {
+        writeln!(out, "- **{warning}**")?;
+    }
+    writeln!(out)
 }
 
 fn boxes(tables: &Tables) -> String {
@@ -86,13 +94,8 @@ fn boxes(tables: &Tables) -> String {
             row.side, row.radius
         )
     };
-    let of = |prefix: &str| {
-        tables
-            .boxes
-            .iter()
-            .rfind(|row| row.scene.starts_with(prefix))
-    };
-    let both = [("the box", of("paper")), ("the crowded box", of("crowded"))];
+    let of = |crowded: bool| tables.boxes.iter().rfind(|row| row.crowded == crowded);
+    let both = [("the box", of(false)), ("the crowded box", of(true))];
     let described = both
         .into_iter()
         .filter_map(|(name, row)| Some(describe(name, row?)));

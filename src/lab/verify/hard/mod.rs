@@ -15,6 +15,7 @@ use super::draw::ContactSpec;
 use super::forms::{Form, FormError};
 use super::judged::InvalidInput;
 use super::naive::Misses;
+use super::ways::variants;
 use crate::volume::{Axes, DirectionSet};
 
 mod readme;
@@ -97,12 +98,6 @@ pub enum GroupError {
     /// Numbers that the reference refuses.
     #[error(transparent)]
     Input(#[from] InvalidInput),
-}
-
-/// The volumes that a group is made for.
-pub fn variants() -> impl Iterator<Item = (DirectionSet, Axes)> {
-    let axes = |&k| Axes::ALL.iter().map(move |&axes| (k, axes));
-    DirectionSet::ALL.iter().flat_map(axes)
 }
 
 impl Group {

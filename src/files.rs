@@ -1,0 +1,197 @@
+//! Files, read within a limit and written whole.
+//!
+//! What is written appears under its name only when all of it is there: it is written beside, and renamed. A crash, a full
+//! disk or a kill leaves the former file or none, and at worst a `.part` file beside it.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Read as _, Write};
+use std::path::{Path, PathBuf};
+
+/// Bytes of a file that are read unless the caller says otherwise: 1 GiB, several times the largest scanned meshes. A link
+/// to an endless device ends here.
+pub const MAX_BYTES: u64 = 1 << 30;
+
+/// Reads a file of at most `most` bytes.
+///
+/// # Errors
+/// What the system says, and [`ErrorKind::FileTooLarge`] for a file with more bytes.
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?
+        .take(most.saturating_add(1))
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        let text = format!("the file is larger than {most} bytes");
+        return Err(io::Error::new(ErrorKind::FileTooLarge, text));
+    }
+    Ok(bytes)
+}
+
+/// Reads a UTF-8 file of at most `most` bytes.
+///
+/// # Errors
+/// As [`read`], and [`ErrorKind::InvalidData`] for other bytes than UTF-8.
+pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
+    let text = String::from_utf8(read(path, most)?);
+    text.map_err(|_| io::Error::new(ErrorKind::InvalidData, "the file is not UTF-8 text"))
+}
+
+/// Writes a file whole.
+///
+/// # Errors
+/// What the system says; the former file, if any, is as it was.
+pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
+    let mut file = Whole::create(path)?;
+    file.write_all(bytes.as_ref())?;
+    file.finish()
+}
+
+/// A file that is being written, and takes its name when it is finished. Dropped before, it leaves nothing.
+#[derive(Debug)]
+pub struct Whole {
+    file: BufWriter<File>,
+    /// Where it is written, and the name that it takes; `None` for devices and pipes, which can't be replaced.
+    part: Option<[PathBuf; 2]>,
+}
+
+impl Whole {
+    /// Starts a file. Symbolic links are followed, so that the file they lead to is replaced and not the link.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        let target = match fs::canonicalize(path) {
+            Ok(target) => target,
+            Err(error) if error.kind() == ErrorKind::NotFound => path.to_owned(),
+            Err(error) => return Err(error),
+        };
+        let former = fs::metadata(&target).ok();
+        if former.as_ref().is_some_and(|former| !former.is_file()) {
+            let file = BufWriter::new(File::create(&target)?);
+            return Ok(Self { file, part: None });
+        }
+        let name = target.file_name().ok_or(ErrorKind::InvalidInput)?;
+        let mut part = name.to_owned();
+        part.push(format!(".{}.part", std::process::id()));
+        let part = target.with_file_name(part);
+        let file = BufWriter::new(File::create(&part)?);
+        let whole = Self {
+            file,
+            part: Some([part, target]),
+        };
+        if let Some(former) = former {
+            whole.file.get_ref().set_permissions(former.permissions())?;
+        }
+        Ok(whole)
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// What the system says; the former file is as it was.
+    pub fn finish(mut self) -> io::Result<()> {
+        self.file.flush()?;
+        if let Some([part, target]) = &self.part {
+            // A disk that turns out to be full says so here at the latest.
+            self.file.get_ref().sync_all()?;
+            fs::rename(part, target)?;
+            self.part = None;
+        }
+        Ok(())
+    }
+}
+
+impl Write for Whole {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for Whole {
+    fn drop(&mut self) {
+        if let Some([part, _]) = &self.part {
+            // What failed has said so; nobody is left to tell.
+            let _ = fs::remove_file(part);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    fn names(directory: &Path) -> Vec<String> {
+        let entries = fs::read_dir(directory).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_has_its_name_only_when_it_is_finished() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.txt");
+        let mut file = Whole::create(&path).unwrap();
+        file.write_all(b"half").unwrap();
+        file.flush().unwrap();
+        assert!(!path.exists());
+        drop(file);
+        assert_eq!(names(directory.path()), Vec::<String>::new());
+
+        write(&path, "first").unwrap();
+        let mut file = Whole::create(&path).unwrap();
+        file.write_all(b"half of the second").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "first");
+        drop(file);
+        write(&path, "second").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "second");
+        assert_eq!(names(directory.path()), ["a.txt"]);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_are_written_to_and_never_replaced_and_a_full_one_says_so() {
+        write(Path::new("/dev/null"), "anything").unwrap();
+        let full = write(Path::new("/dev/full"), "anything");
+        assert_eq!(full.unwrap_err().kind(), ErrorKind::StorageFull);
+        let kind = fs::metadata("/dev/full").unwrap().file_type();
+        assert!(!kind.is_file());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_a_link_and_permissions_stay() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let directory = tempfile::tempdir().unwrap();
+        let [file, link] = ["file", "link"].map(|name| directory.path().join(name));
+        write(&file, "former").unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write(&link, "new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+        let mode = fs::metadata(&file).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o640);
+    }
+
+    #[test]
+    fn reading_ends_at_the_limit() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("five");
+        write(&path, "12345").unwrap();
+        assert_eq!(read(&path, 5).unwrap(), b"12345");
+        let error = read(&path, 4).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::FileTooLarge);
+        assert_eq!(read_text(&path, u64::MAX).unwrap(), "12345");
+        #[cfg(target_os = "linux")]
+        assert!(read(Path::new("/dev/zero"), 1 << 16).is_err());
+    }
+}

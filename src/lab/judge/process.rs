@@ -1,0 +1,256 @@
+//! A program under judgement: one process a case, fed on standard input, read from standard output, never waited for longer
+//! than it may take and never read further than any right answer goes.
+
+use std::io::{Read, Write};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::answer::{Answer, Seconds, Stop, Trouble};
+use super::case::Case;
+use super::claim::Claim;
+use super::subject::Subject;
+use super::wire::{Said, Wire, beginning};
+
+/// A program and how it is run.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// A line for the system's shell.
+    pub command: String,
+    /// How cases are written for it.
+    pub wire: Wire,
+    /// What it has for a case, on top of a second for each megabyte of it.
+    pub timeout: Duration,
+}
+
+/// How much is read at a time.
+const CHUNK: usize = 1 << 16;
+/// What is kept of standard error.
+const SAID: usize = 400;
+/// Output that any program may make beyond its pairs.
+const CHATTER: usize = 1 << 16;
+
+impl Subject for Program {
+    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
+        let start = |why: String| Trouble::Start { why };
+        let input = self
+            .wire
+            .encode(case, claim)
+            .map_err(|e| start(e.to_string()))?;
+        let time = self.timeout + Duration::from_micros(input.len() as u64);
+        let mut running = Running::start(&self.command, input).map_err(|e| start(e.to_string()))?;
+        running.answers(self.wire, case, time)
+    }
+}
+
+/// A process with threads that feed and read it. Dropping it ends it and all that it has started.
+struct Running {
+    child: Child,
+    output: Receiver<Vec<u8>>,
+    said: Receiver<String>,
+    buffer: Vec<u8>,
+    bytes: usize,
+}
+
+impl Running {
+    fn start(command: &str, input: Vec<u8>) -> std::io::Result<Self> {
+        let mut child = shell(command)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()?;
+        let (send, output) = sync_channel(4);
+        let (say, said) = channel();
+        if let Some(mut stdin) = child.stdin.take() {
+            // A program that doesn't read to the end has its reasons; what it answers is judged.
+            thread::spawn(move || stdin.write_all(&input));
+        }
+        if let Some(mut stdout) = child.stdout.take() {
+            thread::spawn(move || {
+                let mut chunk = vec![0; CHUNK];
+                while let Ok(n @ 1..) = stdout.read(&mut chunk) {
+                    if send.send(chunk[..n].to_vec()).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        if let Some(mut stderr) = child.stderr.take() {
+            thread::spawn(move || say.send(tail(&mut stderr)));
+        }
+        Ok(Self {
+            child,
+            output,
+            said,
+            buffer: Vec::new(),
+            bytes: 0,
+        })
+    }
+
+    fn answers(&mut self, wire: Wire, case: &Case, time: Duration) -> Result<Vec<Answer>, Stop> {
+        let deadline = Instant::now() + time;
+        let seconds = Seconds(time.as_secs_f64());
+        let (frames, most) = (case.frames.len(), most_bytes(case));
+        let mut answers = Vec::new();
+        loop {
+            let line = match self.line(deadline, most) {
+                Ok(Some(line)) => line,
+                Ok(None) => break,
+                Err(Unread::Flood) => return Err(Trouble::Flood { bytes: most }.into()),
+                Err(Unread::Late) if answers.len() == frames => {
+                    return Err(Trouble::Hanging { seconds }.into());
+                }
+                Err(Unread::Late) => {
+                    let frame = answers.len();
+                    return Err(Trouble::Timeout { frame, seconds }.into());
+                }
+            };
+            if line.trim_ascii().is_empty() {
+                continue;
+            }
+            if answers.len() == frames {
+                let line = beginning(&line);
+                return Err(Trouble::TooMany { frames, line }.into());
+            }
+            match wire.decode(answers.len(), &line)? {
+                Said::Answer(answer) => answers.push(answer),
+                Said::Skipped(why) => return Err(Stop::Skipped(why)),
+            }
+        }
+        let answered = answers.len();
+        let Some(status) = self.status(deadline) else {
+            return Err(Trouble::Hanging { seconds }.into());
+        };
+        if !status.success() {
+            let (how, said) = (ending(status), self.said());
+            return Err(Trouble::Crashed {
+                how,
+                answered,
+                said,
+            }
+            .into());
+        }
+        if answered < frames {
+            let said = self.said();
+            return Err(Trouble::Early {
+                answered,
+                frames,
+                said,
+            }
+            .into());
+        }
+        Ok(answers)
+    }
+
+    /// The next line; `None` at the end of the output.
+    fn line(&mut self, deadline: Instant, most: usize) -> Result<Option<Vec<u8>>, Unread> {
+        let mut searched = 0;
+        loop {
+            if let Some(end) = self.buffer[searched..]
+                .iter()
+                .position(|byte| *byte == b'\n')
+            {
+                let rest = self.buffer.split_off(searched + end + 1);
+                return Ok(Some(std::mem::replace(&mut self.buffer, rest)));
+            }
+            searched = self.buffer.len();
+            let left = deadline.saturating_duration_since(Instant::now());
+            match self.output.recv_timeout(left) {
+                Ok(chunk) => self.buffer.extend(chunk),
+                Err(RecvTimeoutError::Timeout) => return Err(Unread::Late),
+                Err(RecvTimeoutError::Disconnected) if self.buffer.is_empty() => return Ok(None),
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Ok(Some(std::mem::take(&mut self.buffer)));
+                }
+            }
+            self.bytes += self.buffer.len() - searched;
+            if self.bytes > most {
+                return Err(Unread::Flood);
+            }
+        }
+    }
+
+    fn status(&mut self, deadline: Instant) -> Option<ExitStatus> {
+        loop {
+            match self.child.try_wait() {
+                Ok(Some(status)) => return Some(status),
+                Ok(None) if Instant::now() < deadline => thread::sleep(Duration::from_millis(1)),
+                _ => return None,
+            }
+        }
+    }
+
+    /// The end of what it wrote to standard error.
+    fn said(&self) -> String {
+        match self.said.recv_timeout(Duration::from_millis(200)) {
+            Ok(said) if !said.is_empty() => format!("; it says: {said}"),
+            _ => String::new(),
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // The group first: the shell's children are in it. It is this process's own, so it can't be another's.
+        #[cfg(unix)]
+        if let Some(group) = rustix::process::Pid::from_raw(self.child.id() as i32) {
+            let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+        }
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Why there is no line.
+enum Unread {
+    Late,
+    Flood,
+}
+
+#[cfg(unix)]
+fn shell(command: &str) -> Command {
+    use std::os::unix::process::CommandExt as _;
+    let mut shell = Command::new("sh");
+    shell.arg("-c").arg(command).process_group(0);
+    shell
+}
+
+#[cfg(not(unix))]
+fn shell(command: &str) -> Command {
+    let mut shell = Command::new("cmd");
+    shell.arg("/C").arg(command);
+    shell
+}
+
+/// More than any right answer to a case has: 24 bytes hold a pair.
+fn most_bytes(case: &Case) -> usize {
+    let pairs = |n: usize| n * n.saturating_sub(1) / 2;
+    let frames = case
+        .frames
+        .iter()
+        .map(|frame| 256 + 24 * pairs(frame.bodies.len()));
+    CHATTER + frames.sum::<usize>()
+}
+
+/// The last bytes of a stream, on one line.
+fn tail(stream: &mut impl Read) -> String {
+    let (mut kept, mut chunk) = (Vec::new(), [0; 4096]);
+    while let Ok(n @ 1..) = stream.read(&mut chunk) {
+        kept.extend_from_slice(&chunk[..n]);
+        let surplus = kept.len().saturating_sub(SAID);
+        kept.drain(..surplus);
+    }
+    let text = String::from_utf8_lossy(&kept);
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn ending(status: ExitStatus) -> String {
+    #[cfg(unix)]
+    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
+        return format!("signal {signal}");
+    }
+    status
+        .code()
+        .map_or_else(|| status.to_string(), |code| format!("exit code {code}"))
+}

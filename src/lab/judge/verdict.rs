@@ -1,0 +1,251 @@
+//! What a run of cases says: by group and by case, with the smallest scene of a miss.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::claim::Claim;
+use super::score::{Count, Miss, Outcome};
+use super::shrink::Smallest;
+
+/// A case's line.
+#[derive(Clone, Debug, Serialize)]
+pub struct CaseVerdict {
+    /// Its name.
+    pub name: String,
+    /// The bug that it looks for.
+    pub flag: String,
+    /// How it ended.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+    /// Pairs counted.
+    pub pairs: Count,
+    /// The first missed pair.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub miss: Option<Miss>,
+    /// Listed as a known failure.
+    pub known: bool,
+}
+
+impl CaseVerdict {
+    /// The group: the name without its number.
+    #[must_use]
+    pub fn group(&self) -> &str {
+        self.name
+            .rsplit_once('/')
+            .map_or(&self.name, |(group, _)| group)
+    }
+}
+
+/// A group's line.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct GroupVerdict {
+    /// The group.
+    pub name: String,
+    /// Cases that passed.
+    pub passed: u32,
+    /// Cases with a miss, or with answers that differ from run to run.
+    pub failed: u32,
+    /// Cases that were skipped.
+    pub skipped: u32,
+    /// Cases without an answer that could be judged.
+    pub errors: u32,
+    /// Pairs.
+    pub pairs: Count,
+}
+
+/// The result of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verdict {
+    /// What was claimed.
+    pub claim: Claim,
+    /// The seed of the fresh cases, if there were any.
+    pub seed: Option<u64>,
+    /// Every case that was run.
+    pub cases: Vec<CaseVerdict>,
+    /// Cases that time or an earlier failure left no room for.
+    pub not_run: usize,
+    /// Known failures that pass, or that are no case of this run: the list is stale.
+    pub stale: Vec<String>,
+    /// The most extra pairs for each required one that the culler allows itself.
+    pub extra_limit: Option<f64>,
+    /// The smallest scene of the first miss.
+    #[serde(skip)]
+    pub smallest: Option<Smallest>,
+}
+
+impl Verdict {
+    /// Whether nothing speaks against the claim: some cases passed, and all others are skipped or known.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.stale.is_empty()
+            && !self.is_beyond_limit()
+            && self.cases.iter().any(|case| case.outcome == Outcome::Pass)
+            && !self.cases.iter().any(|case| self.counts_against(case))
+    }
+
+    /// A case that failed or erred, and isn't known to.
+    #[must_use]
+    pub fn counts_against(&self, case: &CaseVerdict) -> bool {
+        !case.known && matches!(case.outcome, Outcome::Fail { .. } | Outcome::Error { .. })
+    }
+
+    /// Whether more extra pairs were reported than the culler allows itself.
+    #[must_use]
+    pub fn is_beyond_limit(&self) -> bool {
+        let pairs = self.pairs();
+        self.extra_limit
+            .is_some_and(|limit| pairs.extra as f64 > limit * pairs.required as f64)
+    }
+
+    /// Pairs over all cases.
+    #[must_use]
+    pub fn pairs(&self) -> Count {
+        let mut sum = Count::default();
+        self.cases.iter().for_each(|case| sum.add(&case.pairs));
+        sum
+    }
+
+    /// Cases by group, in the order in which groups first appear.
+    #[must_use]
+    pub fn groups(&self) -> Vec<GroupVerdict> {
+        let mut groups: Vec<GroupVerdict> = Vec::new();
+        for case in &self.cases {
+            let at = groups.iter().position(|group| group.name == case.group());
+            let at = at.unwrap_or_else(|| {
+                groups.push(GroupVerdict {
+                    name: case.group().to_owned(),
+                    ..GroupVerdict::default()
+                });
+                groups.len() - 1
+            });
+            let group = &mut groups[at];
+            match case.outcome {
+                Outcome::Pass => group.passed += 1,
+                Outcome::Fail { .. } => group.failed += 1,
+                Outcome::Skipped { .. } => group.skipped += 1,
+                Outcome::Error { .. } => group.errors += 1,
+            }
+            group.pairs.add(&case.pairs);
+        }
+        groups
+    }
+
+    /// Panics with the summary unless the verdict is a pass: what a test calls.
+    ///
+    /// # Panics
+    /// When the verdict is no pass.
+    pub fn assert_passed(&self) {
+        assert!(self.passed(), "\n{self}");
+    }
+}
+
+/// The summary, in ten lines or so.
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (pairs, count) = (self.pairs(), |outcome: fn(&Outcome) -> bool| {
+            self.cases
+                .iter()
+                .filter(|case| outcome(&case.outcome))
+                .count()
+        });
+        writeln!(
+            f,
+            "claim {}: {}",
+            self.claim,
+            if self.passed() { "PASS" } else { "NOT PASSED" }
+        )?;
+        writeln!(
+            f,
+            "cases: {} passed, {} failed, {} errors, {} skipped, {} not run",
+            count(|o| *o == Outcome::Pass),
+            count(|o| matches!(o, Outcome::Fail { .. })),
+            count(|o| matches!(o, Outcome::Error { .. })),
+            count(|o| matches!(o, Outcome::Skipped { .. })),
+            self.not_run
+        )?;
+        writeln!(
+            f,
+            "pairs: {} judged, {} required, {} missed; {} extra ({} by rounding, {} by a looser volume, {} both static, {} neither)",
+            pairs.judged,
+            pairs.required,
+            pairs.missed,
+            pairs.extra,
+            pairs.by_rounding,
+            pairs.by_looseness,
+            pairs.both_static,
+            pairs.unexplained()
+        )?;
+        if self.is_beyond_limit() {
+            writeln!(
+                f,
+                "more extra pairs than the limit of {} for each required one",
+                self.extra_limit.unwrap_or_default()
+            )?;
+        }
+        for name in self.stale.iter().take(3) {
+            writeln!(
+                f,
+                "known failure {name} passes or is no case of this run: take it off the list"
+            )?;
+        }
+        for case in self
+            .cases
+            .iter()
+            .filter(|case| self.counts_against(case))
+            .take(3)
+        {
+            match &case.outcome {
+                Outcome::Fail { why } => writeln!(f, "{} {why} [{}]", case.name, case.flag)?,
+                Outcome::Error { trouble } => writeln!(f, "{} {trouble}", case.name)?,
+                _ => {}
+            }
+        }
+        if let Some(case) = self
+            .cases
+            .iter()
+            .find(|case| matches!(case.outcome, Outcome::Skipped { .. }))
+            && let Outcome::Skipped { why } = &case.outcome
+        {
+            writeln!(f, "skipped, for one: {} ({why})", case.name)?;
+        }
+        self.smallest
+            .as_ref()
+            .map_or(Ok(()), |smallest| smallest.fmt(f))
+    }
+}
+
+impl fmt::Display for Smallest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Miss {
+            frame,
+            pair: [i, j],
+        } = self.miss;
+        let bodies = self.case.frames[frame].bodies.len();
+        writeln!(
+            f,
+            "smallest: {bodies} bodies, {} frames; bodies {i} and {j} of frame {frame} share a point",
+            self.case.frames.len()
+        )?;
+        let Some(witness) = &self.witness else {
+            return Ok(());
+        };
+        let [x, y, z] = witness.decimals;
+        writeln!(f, "  ({x:?}, {y:?}, {z:?})")?;
+        if witness.point.iter().map(String::len).sum::<usize>() < 160 {
+            writeln!(f, "  exactly ({})", witness.point.join(", "))?;
+        }
+        match witness.depth_ulps {
+            Some(ulps) => writeln!(
+                f,
+                "  {ulps} ulp deep at most (an ulp is {:e} here)",
+                witness.ulp
+            ),
+            None => writeln!(
+                f,
+                "  deeper than 2^24 ulp (an ulp is {:e} here)",
+                witness.ulp
+            ),
+        }
+    }
+}

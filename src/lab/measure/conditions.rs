@@ -1,0 +1,104 @@
+//! Whether the machine did other work while it measured: whoever quotes a time should know.
+
+use serde::{Deserialize, Serialize};
+
+use super::estimate::Estimate;
+
+/// Intervals wider than this share of their mean, to either side, are a disturbance.
+const WIDE: f64 = 0.1;
+/// Processes beside ours that want to run, on average, from which on the machine counts as disturbed.
+const BUSY: f64 = 0.5;
+
+/// What the machine was like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Conditions {
+    /// Processes that wanted to run beside ours, before and after, where the system tells: one-minute means.
+    pub others: [Option<f64>; 2],
+    /// How many of the quoted times have an interval of more than ± 10 %.
+    pub wide: usize,
+    /// Of how many.
+    pub of: usize,
+}
+
+impl Conditions {
+    /// Before anything is measured.
+    #[must_use]
+    pub fn before() -> Self {
+        Self {
+            others: [load(), None],
+            wide: 0,
+            of: 0,
+        }
+    }
+
+    /// After everything is: with the times that will be quoted.
+    #[must_use]
+    pub fn after(self, times: impl Iterator<Item = Estimate>) -> Self {
+        let times: Vec<Estimate> = times.collect();
+        // Our own single thread has been running all the time.
+        let others = load().map(|load| (load - 1.0).max(0.0));
+        Self {
+            others: [self.others[0], others],
+            wide: times.iter().filter(|time| time.relative() > WIDE).count(),
+            of: times.len(),
+        }
+    }
+
+    /// Whether the times shouldn't be quoted.
+    #[must_use]
+    pub fn disturbed(&self) -> bool {
+        self.wide > 0 || self.others.iter().flatten().any(|&others| others > BUSY)
+    }
+
+    /// What to say of it; `None` of an undisturbed machine.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        if !self.disturbed() {
+            return None;
+        }
+        let load =
+            |load: Option<f64>| load.map_or("unknown".to_owned(), |load| format!("{load:.1}"));
+        Some(format!(
+            "The machine did other work (load beside ours {} before, {} after; {} of {} intervals above 10 %): \
+             don't quote these times.",
+            load(self.others[0]),
+            load(self.others[1]),
+            self.wide,
+            self.of
+        ))
+    }
+}
+
+/// The one-minute load average, where the system has it in a file.
+fn load() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/loadavg").ok()?;
+    text.split_whitespace().next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wide_interval_or_a_load_is_a_disturbance() {
+        let quiet = Conditions {
+            others: [Some(0.1), Some(0.2)],
+            wide: 0,
+            of: 2,
+        };
+        assert_eq!(quiet.warning(), None);
+        let loaded = Conditions {
+            others: [Some(0.1), Some(3.0)],
+            ..quiet
+        };
+        assert!(
+            loaded
+                .warning()
+                .is_some_and(|text| text.contains("3.0 after"))
+        );
+        let times = [[1.0, 1.01, 0.99], [1.0, 2.0, 0.5]];
+        let wide = quiet.after(times.iter().map(|times| Estimate::of(times)));
+        assert_eq!((wide.wide, wide.of), (1, 2));
+        assert!(wide.disturbed());
+    }
+}

@@ -1,0 +1,46 @@
+//! How long this thread was ready and had to wait for a processor: what other processes took of a measured time.
+//!
+//! Linux counts it for each thread, in nanoseconds. Where the system doesn't tell, nothing is taken off.
+
+use std::fs::File;
+use std::io::{Read as _, Seek as _, SeekFrom};
+
+/// The thread's own count.
+#[derive(Debug)]
+pub struct Waiting(Option<File>);
+
+impl Waiting {
+    /// The count of the calling thread, which alone may read it.
+    #[must_use]
+    pub fn of_this_thread() -> Self {
+        Self(File::open("/proc/thread-self/schedstat").ok())
+    }
+
+    /// Seconds that the thread has waited since it began; 0 where the system doesn't tell.
+    pub fn seconds(&mut self) -> f64 {
+        self.nanoseconds().map_or(0.0, |ns| 1e-9 * ns as f64)
+    }
+
+    fn nanoseconds(&mut self) -> Option<u64> {
+        let file = self.0.as_mut()?;
+        let mut text = [0; 96];
+        file.seek(SeekFrom::Start(0)).ok()?;
+        let length = file.read(&mut text).ok()?;
+        // Time on a processor, time waiting for one, slices.
+        let text = std::str::from_utf8(&text[..length]).ok()?;
+        text.split_whitespace().nth(1)?.parse().ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn waiting_never_shrinks() {
+        let mut waiting = Waiting::of_this_thread();
+        let before = waiting.seconds();
+        std::thread::yield_now();
+        assert!(waiting.seconds() >= before && before >= 0.0);
+    }
+}

@@ -1,0 +1,103 @@
+//! Files: what is written appears whole or not at all, and nothing is read without end.
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::{command, refusal, scene_file, text};
+
+const LONG: &str = r#"
+name = "long"
+frames = 100000000
+dt = 0.01
+[box]
+side = 20.0
+[[bodies]]
+shape = "box"
+count = 50
+radius = 1.0
+speed = 1.0
+[effects]
+motion = true
+walls = "specular"
+"#;
+
+/// The bytes of the unfinished file beside `path`.
+fn unfinished(path: &Path) -> u64 {
+    let entries = fs::read_dir(path.parent().unwrap()).unwrap();
+    let parts = entries.map(|entry| entry.unwrap().path());
+    let part = parts.filter(|path| path.extension() == Some("part".as_ref()));
+    part.map(|path| fs::metadata(path).unwrap().len()).sum()
+}
+
+#[test]
+fn a_run_that_is_interrupted_leaves_the_former_record_or_none() {
+    for signal in ["INT", "TERM", "KILL"] {
+        for former in [Some("the former record"), None] {
+            let (directory, scene) = scene_file(LONG);
+            let record = directory.path().join("run.ndjson");
+            if let Some(former) = former {
+                fs::write(&record, former).unwrap();
+            }
+            let mut child = command(&["run", text(&scene), "--record", text(&record)])
+                .stdout(Stdio::null())
+                .spawn()
+                .unwrap();
+            let start = Instant::now();
+            while unfinished(&record) < 100_000 {
+                assert!(child.try_wait().unwrap().is_none(), "it runs for days");
+                assert!(
+                    start.elapsed() < Duration::from_secs(120),
+                    "no record is begun"
+                );
+                std::thread::sleep(Duration::from_millis(5));
+            }
+            let pid = child.id().to_string();
+            let killed = Command::new("kill").args(["-s", signal, &pid]).status();
+            assert!(killed.unwrap().success());
+            assert!(!child.wait().unwrap().success());
+            let left = fs::read_to_string(&record).ok();
+            assert_eq!(left.as_deref(), former, "{signal}");
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_said() {
+    let (_directory, scene) = scene_file(LONG);
+    let message = refusal(&["run", text(&scene), "--record", "/dev/full"]);
+    assert!(message.contains("cannot write /dev/full"), "{message}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_link_to_an_endless_device_ends_at_the_limit() {
+    let directory = tempfile::tempdir().unwrap();
+    let link = |name: &str| {
+        let path = directory.path().join(name);
+        symlink("/dev/zero", &path).unwrap();
+        path
+    };
+    let [mesh, scene] = ["mesh.obj", "scene.toml"].map(link);
+    for args in [
+        ["mesh", text(&mesh)],
+        ["run", text(&scene)],
+        ["verify", text(&scene)],
+    ] {
+        let message = refusal(&[&args[..], &["--max-file-size", "1"]].concat());
+        assert!(message.contains("more than 1048576 bytes"), "{message}");
+        assert!(message.contains("--max-file-size"), "{message}");
+    }
+    // A scene within the limit whose mesh is not.
+    let (_other, scene) = scene_file(&format!(
+        "name = \"endless\"\nframes = 1\n[[bodies]]\nmesh = {:?}\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n",
+        text(&mesh)
+    ));
+    let message = refusal(&["run", text(&scene), "--max-file-size", "1"]);
+    assert!(message.contains("more than 1048576 bytes"), "{message}");
+    assert!(message.contains("mesh = "), "at its place: {message}");
+}

@@ -1,0 +1,7 @@
+//! Strangers under judgement: Rust cullers and programs, right ones and one of each flaw.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod cullers;
+mod programs;
+mod rust;

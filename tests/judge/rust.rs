@@ -1,0 +1,207 @@
+//! Rust cullers: right ones pass, a flaw each is found, by the group that looks for it.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use sdop::judge::answer::Trouble;
+use sdop::judge::{Claim, Outcome, Scene, Verdict, judge, run::judge_pair_test};
+use sdop::settings::Strategy;
+
+use crate::cullers::{All, Balls, Flaw, NarrowBalls, Ours};
+
+fn all(flaw: Flaw) -> impl Fn(&Scene<'_>) -> All + Sync {
+    move |_| All {
+        flaw,
+        bodies: 0,
+        runs: 0,
+    }
+}
+
+/// The cases that were judged and not passed.
+fn failures(verdict: &Verdict) -> Vec<&str> {
+    let against = verdict
+        .cases
+        .iter()
+        .filter(|case| verdict.counts_against(case));
+    against.map(|case| case.name.as_str()).collect()
+}
+
+#[test]
+fn our_strategies_pass_the_claims_that_they_make() {
+    for (strategy, claim) in [
+        (Strategy::Sphere, Claim::Sphere),
+        (Strategy::OrDop, Claim::OrDop),
+        (Strategy::Obb, Claim::Hull),
+        (Strategy::SDopSequential, Claim::Mesh),
+    ] {
+        let verdict = judge(|scene: &Scene<'_>| Ours::new(scene, strategy))
+            .claims(claim)
+            .seed(5)
+            .run()
+            .unwrap();
+        // Its bodies are those it was made for: such cases are skipped, with a reason.
+        let skipped =
+            |o: &Outcome| matches!(o, Outcome::Skipped { why } if why.contains("can't change"));
+        assert!(verdict.passed(), "{strategy}: {verdict}");
+        assert!(
+            verdict
+                .cases
+                .iter()
+                .all(|case| case.outcome == Outcome::Pass
+                    || (skipped(&case.outcome) && case.group() == "churn/insert-remove"))
+        );
+        assert!(verdict.pairs().required > 5_000, "{verdict}");
+    }
+}
+
+#[test]
+fn a_culler_that_reports_less_than_its_claim_is_found_out() {
+    let verdict = judge(|scene: &Scene<'_>| Ours::new(scene, Strategy::SDopSequential))
+        .claims(Claim::Sphere)
+        .run()
+        .unwrap();
+    assert!(
+        !verdict.passed() && verdict.pairs().missed > 100,
+        "{verdict}"
+    );
+    let smallest = verdict.smallest.unwrap();
+    assert_eq!(smallest.case.frames[0].bodies.len(), 2);
+    assert!(smallest.witness.is_some());
+}
+
+#[test]
+fn balls_in_f64_with_a_margin_pass_and_in_f32_without_one_are_found_out() {
+    let right = judge_pair_test(|scene: &Scene<'_>| Balls {
+        shapes: scene.shapes.to_vec(),
+    });
+    let verdict = right
+        .claims(Claim::Sphere)
+        .seed(7)
+        .extra_limit(0.1)
+        .run()
+        .unwrap();
+    assert!(verdict.passed(), "{verdict}");
+    assert_eq!(
+        verdict.pairs().extra,
+        verdict.pairs().by_rounding,
+        "{verdict}"
+    );
+    let wrong = judge_pair_test(|scene: &Scene<'_>| NarrowBalls {
+        shapes: scene.shapes.to_vec(),
+    });
+    let verdict = wrong.claims(Claim::Sphere).run().unwrap();
+    assert!(
+        failures(&verdict)
+            .iter()
+            .any(|name| name.starts_with("touch/ball-ball")),
+        "{verdict}"
+    );
+    let smallest = verdict.smallest.as_ref().unwrap();
+    let depth = smallest.witness.as_ref().unwrap().depth_ulps;
+    assert!(depth.is_some_and(|ulps| ulps < 64), "{verdict}");
+}
+
+#[test]
+fn full_buffers_and_stale_answers_are_found_by_their_groups() {
+    for (flaw, group) in [
+        (Flaw::Buffer(4096), "buffer/growth"),
+        (Flaw::Buffer(380), "buffer/hub"),
+        (Flaw::Stale, "churn/insert-remove"),
+    ] {
+        let verdict = judge(all(flaw)).cases(&format!("{group}/*")).run().unwrap();
+        assert!(!failures(&verdict).is_empty(), "{group}: {verdict}");
+    }
+    let verdict = judge(all(Flaw::None))
+        .cases("churn/insert-remove/*")
+        .run()
+        .unwrap();
+    assert!(verdict.passed(), "{verdict}");
+}
+
+#[test]
+fn a_culler_that_changes_its_mind_is_found_out() {
+    let runs = AtomicUsize::new(0);
+    // Every second culler is fickle, and sees the case that the one before saw.
+    let fickle = |_: &Scene<'_>| All {
+        flaw: Flaw::Fickle,
+        bodies: 0,
+        runs: runs.fetch_add(1, Ordering::Relaxed),
+    };
+    let verdict = judge(fickle)
+        .claims(Claim::Aabb)
+        .cases("exact/tip-to-tip/0000")
+        .run()
+        .unwrap();
+    let case = &verdict.cases[0];
+    assert!(
+        matches!(&case.outcome, Outcome::Fail { why } if why.contains("again")),
+        "{verdict}"
+    );
+}
+
+#[test]
+fn answers_that_are_none_are_errors_and_never_a_pass() {
+    let trouble = |flaw: Flaw| {
+        let verdict = judge(all(flaw))
+            .cases("exact/face-to-face/0000")
+            .run()
+            .unwrap();
+        assert!(!verdict.passed());
+        match verdict.cases[0].outcome.clone() {
+            Outcome::Error { trouble } => trouble,
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(
+        trouble(Flaw::SelfPair),
+        Trouble::SelfPair { frame: 0, body: 0 }
+    );
+    assert_eq!(
+        trouble(Flaw::Twice),
+        Trouble::Twice {
+            frame: 0,
+            pair: [0, 1]
+        }
+    );
+    assert_eq!(
+        trouble(Flaw::Reversed),
+        Trouble::Reversed {
+            frame: 0,
+            pair: [1, 0]
+        }
+    );
+    assert_eq!(
+        trouble(Flaw::NoBody),
+        Trouble::NoBody {
+            frame: 0,
+            pair: [0, 9],
+            bodies: 9
+        }
+    );
+    assert!(
+        matches!(trouble(Flaw::Panics), Trouble::Crashed { how, .. } if how.contains("as planned"))
+    );
+}
+
+#[test]
+fn a_limit_of_extra_pairs_is_kept() {
+    let wide = judge(all(Flaw::None))
+        .claims(Claim::Mesh)
+        .cases("random/crowd/*")
+        .extra_limit(0.5)
+        .run()
+        .unwrap();
+    assert!(wide.is_beyond_limit() && !wide.passed(), "{wide}");
+    assert!(
+        wide.pairs().unexplained() > 0 && wide.pairs().both_static > 0,
+        "{wide}"
+    );
+}
+
+mod stamped {
+    use super::{Claim, Ours, Strategy};
+
+    sdop::judge_tests!(Claim::Mesh, |scene: &super::Scene<'_>| Ours::new(
+        scene,
+        Strategy::SDopBatch
+    ));
+}

@@ -1,0 +1,69 @@
+//! Slabs that are grown by a margin contain every point within it, in exact arithmetic and by no ulp more than they must.
+
+use dashu_int::IBig;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use sdop::lab::verify::ways::variants;
+use sdop::mesh::ProceduralShape;
+use sdop::volume::{OrDop, Shape, ShapeSpec};
+
+use super::exact::{dot, integer, point};
+
+/// ‖d‖² of each direction, times 2²⁹⁸.
+fn lengths_squared(ordop: &OrDop) -> Vec<IBig> {
+    let basis = ordop.basis.columns.map(point);
+    let coefficients = ordop.directions.coefficients().iter();
+    let length = |c: &[i8; 3]| {
+        let d: [IBig; 3] =
+            std::array::from_fn(|k| (0..3).map(|j| &basis[j][k] * IBig::from(c[j])).sum());
+        dot(&d, &d)
+    };
+    coefficients.map(length).collect()
+}
+
+/// Whether an end that was moved from `before` to `after`, upward, lets in all that a ball of radius `margin` adds:
+/// after − before ≥ margin·‖d‖.
+fn is_far_enough(before: f32, after: f32, margin: f32, length_squared: &IBig) -> bool {
+    let (moved, margin) = (integer(after) - integer(before), integer(margin));
+    // Squares of integers carry 2²⁹⁸, and ‖d‖² another 2²⁹⁸.
+    after >= before && ((&moved * &moved) << 298) >= &margin * &margin * length_squared
+}
+
+#[test]
+fn slabs_grow_by_the_margin_to_the_ulp() {
+    let mut rng = ChaCha8Rng::seed_from_u64(12);
+    let (mut ends, mut close) = (0, 0);
+    for (directions, axes) in variants() {
+        for name in ProceduralShape::NAMES {
+            let mesh = ProceduralShape::default_of(name).unwrap().build().unwrap();
+            let spec = ShapeSpec {
+                directions,
+                axes,
+                radius: Some(rng.random_range(0.5..2.0)),
+                ..ShapeSpec::default()
+            };
+            let ordop = Shape::build(&mesh, &spec).unwrap().ordop;
+            let lengths = lengths_squared(&ordop);
+            for draw in 0..24 {
+                let margin = rng.random_range(0.5_f32..1.0) * 2_f32.powi(draw - 12);
+                let grown = ordop.grown(margin);
+                for (i, length) in lengths.iter().enumerate() {
+                    let upper = (ordop.hi[i], grown.hi[i]);
+                    for (before, after) in [upper, (-ordop.lo[i], -grown.lo[i])] {
+                        let what =
+                            || format!("{name}, k = {directions}, {axes}, slab {i}, {margin:e}");
+                        assert!(is_far_enough(before, after, margin, length), "{}", what());
+                        // Where the end and the margin cancel, its ulps are finer than the margin's.
+                        ends += 1;
+                        if after.abs() >= margin * 2_f32.powi(-8) {
+                            let nearer = (0..3).fold(after, |x, _| x.next_down());
+                            assert!(!is_far_enough(before, nearer, margin, length), "{}", what());
+                            close += 1;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(close > ends / 2, "{close} of {ends}");
+}

@@ -1,0 +1,142 @@
+//! Margins: bodies that touch to the ulp once they are grown, along faces, edges and corners, and margins that change.
+
+use sdop::culler::Culler;
+use sdop::lab::verify::ways::{variants, ways};
+use sdop::mesh::ProceduralShape;
+use sdop::settings::{Budget, CullSettings, Strategy};
+use sdop::volume::{Axes, DirectionSet, Shape, ShapeSpec};
+use sdop::world::{Body, BodyId, World};
+
+/// A cube of edge 2.
+fn cube(directions: DirectionSet, axes: Axes) -> Shape {
+    let [x, y, z] = [2.0; 3];
+    let mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
+    let spec = ShapeSpec {
+        directions,
+        axes,
+        ..ShapeSpec::default()
+    };
+    Shape::build(&mesh, &spec).unwrap()
+}
+
+/// Two bodies in a world that culls in this way; what a strategy looks at or spends is given.
+fn two(way: &CullSettings, shape: &Shape, bodies: [Body; 2]) -> (World, [BodyId; 2]) {
+    let culler = Culler::builder().settings(way).budget(Budget::Tests(1));
+    let mut world = World::with(vec![shape.clone()], &culler).unwrap();
+    let ids = bodies.map(|body| world.insert(body).unwrap());
+    world.set_interest(&ids).unwrap();
+    (world, ids)
+}
+
+fn is_reported(world: &mut World) -> bool {
+    world.cull().unwrap();
+    world.pairs().len() == 1
+}
+
+/// The largest δ of whole 2⁻²², so that 2 + δ is an f32, with n·δ² ≤ reach²: cubes that are δ apart in n coordinates are no
+/// farther apart than `reach`, decided in integers.
+fn farthest(n: u64, reach: f64) -> f32 {
+    let step = f64::from(1 << 22);
+    let unit = 2_f64.powi(26);
+    // Margins here are whole multiples of 2⁻²⁶, so their sum's square is an integer of 2⁻⁵².
+    let reach = (reach * unit) as u128;
+    assert!(reach < 1 << 60);
+    let mut steps = (f64::sqrt(1.0 / n as f64) * reach as f64 / unit * step) as u128 + 2;
+    while u128::from(n) * (steps << 4) * (steps << 4) > reach * reach {
+        steps -= 1;
+    }
+    (steps as f64 / step) as f32
+}
+
+/// Below each stands a class of margins, to which the culler rounds up: here by one ulp.
+const CLASSES: [f32; 3] = [0.5, 0.171875, 1.75];
+
+/// Whether a direction set has a slab across the contact in `n` coordinates.
+fn sees(k: DirectionSet, n: usize) -> bool {
+    let has = |c: &[i8; 3]| c.iter().filter(|x| **x != 0).count() == n;
+    k.coefficients().iter().any(has)
+}
+
+#[test]
+fn bodies_that_touch_to_the_ulp_once_grown_are_reported() {
+    let mut too_far = 0;
+    for (k, axes) in variants() {
+        let shape = cube(k, axes);
+        for way in ways(k, axes) {
+            if way.strategy == Strategy::None {
+                continue;
+            }
+            let (mut world, [a, b]) = two(&way, &shape, [Body::default(); 2]);
+            for (margin, other) in [(0, 0), (1, 2), (2, 0), (0, 1)] {
+                let margins = [margin, other].map(|class| CLASSES[class].next_down());
+                let reach = margins.iter().map(|&m| f64::from(m)).sum();
+                for n in 1..=3 {
+                    let gap = farthest(n as u64, reach);
+                    let mut reported = |gap: f32| {
+                        let t = |i: usize| if i < n { f64::from(2.0 + gap) } else { 0.25 };
+                        for (id, translation, margin) in [
+                            (a, [0.0; 3], margins[0]),
+                            (b, [t(0), -t(1), t(2)], margins[1]),
+                        ] {
+                            let body = Body {
+                                margin,
+                                translation,
+                                ..Body::default()
+                            };
+                            world.set(id, body).unwrap();
+                        }
+                        is_reported(&mut world)
+                    };
+                    let what = || format!("{way:?}, {margins:?}, {n} coordinates");
+                    assert!(reported(gap), "{}", what());
+                    // Half a thousandth beyond, a slab across the contact tells.
+                    let told = way.strategy == Strategy::OrDop && sees(k, n);
+                    if told {
+                        assert!(!reported(gap * 1.0005), "{}", what());
+                        too_far += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(too_far > 100);
+}
+
+#[test]
+fn a_margin_that_changes_counts_from_the_next_cull_on() {
+    let (k, axes) = (DirectionSet::K18, Axes::Principal);
+    let shape = cube(k, axes);
+    // Too far for the spheres, 2·√3.
+    let away = Body {
+        translation: [3.5, 0.0, 0.0],
+        ..Body::default()
+    };
+    for way in ways(k, axes) {
+        for dynamic in [true, false] {
+            let first = Body {
+                dynamic,
+                ..Body::default()
+            };
+            let (mut world, [a, b]) = two(&way, &shape, [first, away]);
+            let culled = way.strategy != Strategy::None;
+            for (margin, reported) in [(0.0, false), (0.8, culled), (0.0, false), (1.6, culled)] {
+                for (id, body) in [(a, first), (b, away)] {
+                    world.set(id, Body { margin, ..body }).unwrap();
+                }
+                for _ in 0..2 {
+                    assert_eq!(is_reported(&mut world), reported, "{way:?}, {margin}");
+                }
+            }
+            // One body's margin alone.
+            world.set(a, first).unwrap();
+            world.set(b, away).unwrap();
+            assert!(!is_reported(&mut world), "{way:?}");
+            let grown = Body {
+                margin: 1.6,
+                ..away
+            };
+            world.set(b, grown).unwrap();
+            assert_eq!(is_reported(&mut world), culled, "{way:?}");
+        }
+    }
+}
