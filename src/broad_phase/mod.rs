@@ -23,7 +23,7 @@ pub use all_pairs::AllPairs;
 pub use auto::Population;
 pub use block::{BLOCK_BODIES, Block, MOST_CANDIDATES, Pen};
 pub use bounds::Bounds;
-pub use grid::Grid;
+pub use grid::{Cells, Grid, Layout};
 pub use sweep::Sweep;
 
 /// The strategy's first volume test.

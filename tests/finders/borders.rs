@@ -1,41 +1,19 @@
-//! Scenes built from the grid's own arithmetic: extents and centres on the borders between its cells, one unit in the last
-//! place of f64 to either side.
-//!
-//! A random coordinate comes within such a unit of a border once in 2⁵⁰ draws, so random scenes can't tell a cell that is
-//! found by rounding half to even from one that is counted by a division rounding half away from zero. Here the lowest
-//! centre, which is the grid's origin, is a number so small that moving it by its own last place moves a quotient by about
-//! one of its own.
+//! Scenes on the borders between cells, to a unit in the last place of f64: three that once lost a pair or panicked, and a
+//! short search for others. `cargo bench --bench finder_borders` is the long one.
 
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
-use sdop::mesh::TriangleMesh;
+use sdop::lab::verify::borders::{Borders, bar};
 use sdop::settings::{Finder, Strategy};
 use sdop::simd::Tier;
-use sdop::volume::{Origin, Shape, ShapeSpec};
 
 use super::scenes::Scene;
 use super::{compare, run, settings};
 
 const NO_TURN: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
-/// A thin body about its own origin, whose ball reaches as far as its ends.
-fn bar(reach: f32) -> Shape {
-    let half = reach / 2.0;
-    let vertices = [
-        [reach, 0.0, 0.0],
-        [-reach, 0.0, 0.0],
-        [0.0, half, 0.0],
-        [0.0, 0.0, half],
-    ];
-    let faces = vec![[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
-    let mesh = TriangleMesh::new("bar", vertices.map(glam::Vec3::from).to_vec(), faces).unwrap();
-    let spec = ShapeSpec {
-        origin: Origin::File,
-        ..ShapeSpec::default()
-    };
-    Shape::build(&mesh, &spec).unwrap()
-}
-
-/// A bar for each reach; of the bodies, `(shape, moves, centre)`.
+/// A bar whose ends lie so far from its middle, for each reach; of the bodies, `(shape, moves, centre)`.
 fn scene(reaches: &[f32], bodies: impl IntoIterator<Item = (u32, bool, [f32; 3])>) -> Scene {
     let mut columns = Bodies::default();
     for (shape, moves, centre) in bodies {
@@ -43,7 +21,7 @@ fn scene(reaches: &[f32], bodies: impl IntoIterator<Item = (u32, bool, [f32; 3])
     }
     Scene {
         name: "borders",
-        shapes: reaches.iter().map(|&reach| bar(reach)).collect(),
+        shapes: reaches.iter().map(|r| bar(r.next_up()).unwrap()).collect(),
         bodies: columns,
         step: 0.0,
     }
@@ -111,4 +89,28 @@ fn a_giant_bar_meets_the_farthest_small_one() {
     let wanted = pairs(&scene, Strategy::Sphere, Finder::AllPairs, Tier::SCALAR);
     assert!(wanted.contains(&[1, 2000]));
     judge(&scene, &[Strategy::Sphere], "a giant bar");
+}
+
+/// How many scenes the short search draws, and how many of them at least a division must count otherwise than the grid.
+const SCENES: usize = 6000;
+const DIVIDED: usize = 100;
+
+#[test]
+fn no_pair_is_lost_on_a_border_between_cells() {
+    let mut rng = ChaCha8Rng::seed_from_u64(12);
+    let (settings, tiers) = (Borders::settings(), Tier::available());
+    let (mut divided, mut pairs) = (0, 0);
+    for n in 0..SCENES {
+        let scene = Borders::draw(&mut |below| rng.random_range(0..below));
+        let shapes = scene.radii.map(|r| bar(r).unwrap());
+        assert_eq!(shapes[0].ball.radius, scene.radii[0]);
+        let frames = if n % 16 == 0 { 6 } else { 1 };
+        let tier = tiers[n % tiers.len()];
+        let (found, difference) = scene.judge(&shapes, &settings, tier, frames).unwrap();
+        assert_eq!(difference, None, "scene {n}, {tier}");
+        pairs += found;
+        divided += usize::from(scene.divides);
+    }
+    assert!(pairs > 10 * SCENES, "{pairs} pairs");
+    assert!(divided > DIVIDED, "{divided} of {SCENES}");
 }

@@ -13,6 +13,8 @@ mod plan;
 
 use std::ops::Range;
 
+pub use self::cells::{Cells, Layout};
+
 use self::across::Search;
 use self::level::Level;
 use super::{Block, FirstTest, Reorder, Slots, bytes};

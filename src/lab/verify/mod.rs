@@ -7,6 +7,7 @@
 pub mod answers;
 #[cfg(feature = "proptest")]
 pub mod arbitrary;
+pub mod borders;
 pub mod compare;
 pub mod contact;
 pub mod draw;
