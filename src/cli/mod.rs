@@ -2,12 +2,15 @@
 //!
 //! A new command is a file with `Args` and `run`, a module line, a variant and a line in [`Cli::run`].
 
+mod cmp;
 mod cost;
 mod files;
 mod mesh;
 mod output;
 mod palette;
 mod prices;
+mod record;
+mod report;
 mod reproduce;
 mod run;
 mod scene_args;
@@ -37,6 +40,9 @@ enum Command {
     Mesh(mesh::Args),
     Tradeoff(tradeoff::Args),
     Verify(verify::Args),
+    Record(record::Args),
+    Cmp(cmp::Args),
+    Report(report::Args),
 }
 
 /// How a command ended when its input was good.
@@ -61,6 +67,9 @@ impl Cli {
             Command::Mesh(args) => mesh::run(&args),
             Command::Tradeoff(args) => tradeoff::run(&args),
             Command::Verify(args) => verify::run(&args),
+            Command::Record(args) => record::run(&args),
+            Command::Cmp(args) => cmp::run(&args),
+            Command::Report(args) => report::run(&args),
         }
     }
 }
