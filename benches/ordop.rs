@@ -18,9 +18,11 @@ fn pairs(scene: &Scene, strategy: Strategy) -> PairList {
         strategy,
         ..scene.cull.clone()
     };
-    let culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect());
+    let culler = Culler::builder()
+        .settings(&settings)
+        .build(&scene.shapes, &scene.bodies);
     culler
-        .map(|mut culler| culler.cull(&scene.bodies).clone())
+        .map(|mut culler| culler.cull(&scene.bodies).unwrap().clone())
         .unwrap_or_default()
 }
 

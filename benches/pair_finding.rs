@@ -59,7 +59,7 @@ fn bench_finder(
             let before = culler.seconds().total;
             for _ in 0..iterations {
                 swarm.sway();
-                culler.cull(&swarm.bodies);
+                culler.cull(&swarm.bodies).unwrap();
             }
             Duration::from_secs_f64(culler.seconds().total - before)
         });

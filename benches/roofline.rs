@@ -130,7 +130,11 @@ fn nanoseconds(work: &Work, scene: &Scene, tier: Tier) -> f64 {
         pairs,
         ..scene.cull.clone()
     };
-    let mut culler = match Culler::new(&scene.shapes, &scene.bodies, &settings, tier) {
+    let mut culler = match Culler::builder()
+        .settings(&settings)
+        .tier(tier)
+        .build(&scene.shapes, &scene.bodies)
+    {
         Ok(culler) => culler,
         Err(error) => panic!("{error}"),
     };
@@ -139,7 +143,7 @@ fn nanoseconds(work: &Work, scene: &Scene, tier: Tier) -> f64 {
     let mut sample = || {
         let before = read(&culler);
         for _ in 0..frames {
-            black_box(culler.cull(&scene.bodies));
+            black_box(culler.cull(&scene.bodies).unwrap());
         }
         let after = read(&culler);
         1e9 * (after.0 - before.0) / (after.1 - before.1) as f64

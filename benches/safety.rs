@@ -32,7 +32,10 @@ fn main() {
         };
         for tier in Tier::available() {
             let cullers = [&scene.shapes, &bare].map(|shapes| {
-                Culler::new(shapes, &scene.bodies, &settings, tier)
+                Culler::builder()
+                    .settings(&settings)
+                    .tier(tier)
+                    .build(shapes, &scene.bodies)
                     .unwrap_or_else(|error| panic!("{error}"))
             });
             let [on, off, ratios] = compare(cullers, &frames);
@@ -58,7 +61,7 @@ fn compare(mut cullers: [Culler; 2], frames: &[Bodies]) -> [Vec<f64>; 3] {
             for turn in 0..2 {
                 let who = (turn + i + round) % 2;
                 let start = Instant::now();
-                black_box(cullers[who].cull(bodies).len());
+                black_box(cullers[who].cull(bodies).unwrap().len());
                 sums[who] += start.elapsed().as_secs_f64();
             }
         }

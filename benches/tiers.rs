@@ -41,10 +41,13 @@ fn main() {
     let frames = common::frames(&scene);
     let mut rows = Vec::new();
     for tier in Tier::available() {
-        let culler = Culler::new(&scene.shapes, &scene.bodies, &scene.cull, tier);
+        let culler = Culler::builder()
+            .settings(&scene.cull)
+            .tier(tier)
+            .build(&scene.shapes, &scene.bodies);
         let mut culler = culler.unwrap_or_else(|error| panic!("{error}"));
         let seconds = measure(&mut criterion, &format!("s-dop, {tier}"), |i| {
-            black_box(culler.cull(&frames[i % frames.len()]).len());
+            black_box(culler.cull(&frames[i % frames.len()]).unwrap().len());
         });
         rows.push((tier.name(), seconds));
     }

@@ -21,6 +21,18 @@ pub mod update;
 pub mod volume;
 pub mod world;
 
+pub use bodies::{Bodies, Groups};
+pub use culler::{CullError, Culler, CullerBuilder};
+pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
+pub use pairs::PairList;
+pub use settings::{
+    Axes, Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, Strategy, Updates,
+    ViewCone,
+};
+pub use simd::Tier;
+pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
+pub use world::{Body, BodyId, World, WorldError};
+
 /// The README's example compiles and runs.
 #[cfg(all(doctest, feature = "lab"))]
 #[doc = include_str!("../README.md")]

@@ -46,13 +46,17 @@ fn settings(strategy: Strategy, k: DirectionSet, overlap: Overlap) -> CullSettin
         k,
         overlap,
         interest: Some(Interest::Bodies(vec![1, 5, 8])),
-        ..CullSettings::default()
+        ..CullSettings::all_pairs()
     }
 }
 
 fn cull(frame: &Frame, settings: &CullSettings, tier: Tier) -> PairList {
-    let mut culler = Culler::new(&frame.shapes.built, &frame.bodies, settings, tier).unwrap();
-    culler.cull(&frame.bodies).clone()
+    let mut culler = Culler::builder()
+        .settings(settings)
+        .tier(tier)
+        .build(&frame.shapes.built, &frame.bodies)
+        .unwrap();
+    culler.cull(&frame.bodies).unwrap().clone()
 }
 
 fn judge(frame: &Frame, settings: &CullSettings) -> Vec<[u32; 2]> {
@@ -189,18 +193,15 @@ fn lazy_updates_change_the_count_of_updates_and_nothing_else() {
             ..eager.clone()
         };
         let mut cullers = [eager, lazy].map(|settings| {
-            Culler::new(
-                &frame.shapes.built,
-                &frame.bodies,
-                &settings,
-                Tier::detect(),
-            )
-            .unwrap()
+            Culler::builder()
+                .settings(&settings)
+                .build(&frame.shapes.built, &frame.bodies)
+                .unwrap()
         });
         for _ in 0..2 {
             let [eager, lazy] = cullers
                 .each_mut()
-                .map(|culler| culler.cull(&frame.bodies).sorted());
+                .map(|culler| culler.cull(&frame.bodies).unwrap().sorted());
             assert_eq!(eager, lazy);
         }
         let [eager, lazy] = cullers.each_ref().map(|culler| culler.counters().ordop);

@@ -12,7 +12,6 @@ use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Interest, Order, Strategy, Updates};
-use sdop::simd::Tier;
 use sdop::volume::{Shape, ShapeSpec};
 
 /// The system's allocator, counting what each thread asks of it: tests run side by side.
@@ -84,12 +83,15 @@ impl Scene {
         self.set(&CullSettings {
             strategy,
             pairs: finder,
-            ..CullSettings::default()
+            ..CullSettings::all_pairs()
         })
     }
 
     fn set(&self, settings: &CullSettings) -> Culler {
-        Culler::new(&self.shapes, &self.bodies, settings, Tier::detect()).unwrap()
+        Culler::builder()
+            .settings(settings)
+            .build(&self.shapes, &self.bodies)
+            .unwrap()
     }
 
     /// Moves every body to and fro by a tenth of the smallest radius.
@@ -162,10 +164,10 @@ fn the_grid_tests_few_candidates_beyond_its_output() {
         let mut bodies = scene.bodies.clone();
         for frame in 0..24 {
             scene.sway(frame, &mut bodies);
-            culler.cull(&bodies);
+            culler.cull(&bodies).unwrap();
         }
         let before = culler.counters().sphere;
-        culler.cull(&bodies);
+        culler.cull(&bodies).unwrap();
         let after = culler.counters().sphere;
         let tests = after.tests - before.tests;
         // A cube needs 6 a body, half of them for the 27 cells around it; 1:1000 looks through levels.
@@ -187,7 +189,7 @@ fn no_finder_takes_a_hundred_bytes_a_body() {
             let mut bodies = scene.bodies.clone();
             for frame in 0..4 {
                 scene.sway(frame, &mut bodies);
-                culler.cull(&bodies);
+                culler.cull(&bodies).unwrap();
             }
             // A few kilobytes are there for any scene.
             let bytes = culler.finder_bytes();
@@ -207,7 +209,7 @@ fn assert_steady(scene: &Scene, mut culler: Culler, what: &str) {
     for frame in 0..140 {
         scene.sway(frame, &mut bodies);
         let before = ALLOCATIONS.get();
-        culler.cull(&bodies);
+        culler.cull(&bodies).unwrap();
         let more = ALLOCATIONS.get() - before;
         let name = scene.name;
         assert!(frame < 72 || more == 0, "{name}, {what}: frame {frame}");
@@ -239,7 +241,7 @@ fn no_strategy_allocates_in_steady_state() {
                     order,
                     interest: Some(Interest::Bodies((0..1000).collect())),
                     budget: Some(Budget::Tests(1500)),
-                    ..CullSettings::default()
+                    ..CullSettings::all_pairs()
                 });
                 assert_steady(scene, culler, &format!("{strategy}, {updates}, {order}"));
                 if strategy != Strategy::SDopTimeCritical {

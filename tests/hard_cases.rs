@@ -85,10 +85,14 @@ fn lists(
     tier: Tier,
 ) -> (Vec<Vec<[u32; 2]>>, sdop::counters::Counters) {
     let settings = settings(way.strategy, way, frames[0].len());
-    let mut culler = Culler::new(&cases.shapes.built, &frames[0], &settings, tier).unwrap();
+    let mut culler = Culler::builder()
+        .settings(&settings)
+        .tier(tier)
+        .build(&cases.shapes.built, &frames[0])
+        .unwrap();
     let lists = frames
         .iter()
-        .map(|frame| culler.cull(frame).iter().collect())
+        .map(|frame| culler.cull(frame).unwrap().iter().collect())
         .collect();
     (lists, *culler.counters())
 }
@@ -106,11 +110,14 @@ fn more_threads_report_the_same_lists() {
                 let alone = lists(&cases, frames, &way, Tier::detect());
                 let settings = settings(way.strategy, &way, frames[0].len());
                 let shapes = &cases.shapes.built;
-                let culler = Culler::new(shapes, &frames[0], &settings, Tier::detect()).unwrap();
-                let mut pool = culler.with_threads(3).unwrap();
+                let mut pool = Culler::builder()
+                    .settings(&settings)
+                    .threads(3)
+                    .build(shapes, &frames[0])
+                    .unwrap();
                 let shared: Vec<Vec<_>> = frames
                     .iter()
-                    .map(|frame| pool.cull(frame).iter().collect())
+                    .map(|frame| pool.cull(frame).unwrap().iter().collect())
                     .collect();
                 assert_eq!((shared, *pool.counters()), alone, "{name}: {way:?}");
             }

@@ -40,7 +40,7 @@ fn an_unknown_name_suggests_the_nearest() {
 #[test]
 fn defaults_are_the_papers_sequential_culling() {
     let settings: CullSettings = serde_json::from_str("{}").unwrap();
-    assert_eq!(settings, CullSettings::default());
+    assert_eq!(settings, CullSettings::all_pairs());
     assert_eq!(settings.strategy, Strategy::SDopSequential);
     assert_eq!(settings.k, DirectionSet::K18);
     assert_eq!(serde_json::to_value(&settings).unwrap()["k"], 18);
@@ -70,7 +70,7 @@ fn interest_reads_as_a_list_or_a_cone() {
 #[test]
 fn settings_that_cannot_be_carried_out_are_refused() {
     let problem = |change: fn(&mut CullSettings)| {
-        let mut settings = CullSettings::default();
+        let mut settings = CullSettings::all_pairs();
         change(&mut settings);
         settings.check(10).unwrap_err().to_string()
     };
@@ -89,7 +89,7 @@ fn settings_that_cannot_be_carried_out_are_refused() {
     let cone = |text: &str| {
         let settings = CullSettings {
             interest: Some(text.parse().unwrap()),
-            ..CullSettings::default()
+            ..CullSettings::all_pairs()
         };
         settings.check(10).unwrap_err().to_string()
     };

@@ -59,7 +59,7 @@ fn a_lying_ball_is_found_out_and_shrinks_to_two_bodies() {
 fn a_scene_without_a_miss_is_not_shrunk() {
     let (shapes, ledger) = lying_crowd();
     let honest = Failure {
-        settings: CullSettings::default(),
+        settings: CullSettings::all_pairs(),
         tier: Tier::SCALAR,
         shapes: shapes.built[1..].to_vec(),
         frames: vec![Default::default()],

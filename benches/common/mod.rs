@@ -15,7 +15,6 @@ use sdop::culler::Culler;
 use sdop::lab::cost::calibrate;
 use sdop::lab::scene::{Scene, SceneFile};
 use sdop::settings::{CullSettings, Strategy};
-use sdop::simd::Tier;
 
 /// Frames that a bench goes round in.
 pub const FRAMES: usize = 32;
@@ -70,10 +69,13 @@ pub fn stage(
         strategy,
         ..scene.cull.clone()
     };
-    let mut culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect()).unwrap();
+    let mut culler = Culler::builder()
+        .settings(&settings)
+        .build(&scene.shapes, &scene.bodies)
+        .unwrap();
     let frames = frames(scene);
     for bodies in &frames {
-        culler.cull(bodies);
+        culler.cull(bodies).unwrap();
     }
     group.throughput(Throughput::Elements(
         count(culler.counters()) / FRAMES as u64,
@@ -82,7 +84,7 @@ pub fn stage(
         bencher.iter_custom(|iterations| {
             let before = stage(culler.seconds());
             for i in 0..iterations as usize {
-                culler.cull(&frames[i % FRAMES]);
+                culler.cull(&frames[i % FRAMES]).unwrap();
             }
             Duration::from_secs_f64(stage(culler.seconds()) - before)
         });

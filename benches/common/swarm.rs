@@ -6,7 +6,6 @@ use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{CullSettings, Finder, Strategy};
-use sdop::simd::Tier;
 use sdop::volume::{Shape, ShapeSpec};
 
 /// Frames before anything is timed: the order of places has settled, and buffers have grown.
@@ -116,13 +115,16 @@ impl Swarm {
         let settings = CullSettings {
             strategy: Strategy::Sphere,
             pairs: finder,
-            ..CullSettings::default()
+            ..CullSettings::all_pairs()
         };
-        let culler = Culler::new(&self.shapes, &self.bodies, &settings, Tier::detect()).unwrap();
-        let mut culler = culler.with_threads(threads).unwrap();
+        let mut culler = Culler::builder()
+            .settings(&settings)
+            .threads(threads)
+            .build(&self.shapes, &self.bodies)
+            .unwrap();
         for _ in 0..WARM_UP {
             self.sway();
-            culler.cull(&self.bodies);
+            culler.cull(&self.bodies).unwrap();
         }
         culler
     }

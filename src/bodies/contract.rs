@@ -57,11 +57,23 @@ pub fn check_bodies(bodies: &Bodies, shapes: &[Shape]) -> Result<(), ContractErr
     Ok(())
 }
 
+/// Checks that the shape of every body is one of so many.
+pub(crate) fn check_numbers(numbers: &[u32], shapes: usize) -> Result<(), ContractError> {
+    match numbers.iter().position(|&number| number as usize >= shapes) {
+        None => Ok(()),
+        Some(body) => refuse_number(body, numbers[body], shapes),
+    }
+}
+
+fn refuse_number(body: usize, number: u32, shapes: usize) -> Result<(), ContractError> {
+    let value = format!("{number} of {shapes}");
+    refuse(body, "shape", value, "shapes are counted from 0")
+}
+
 /// Checks that a body's shape exists and is no larger than 2⁶⁰.
 pub(crate) fn check_shape(body: usize, number: u32, shapes: &[Shape]) -> Result<(), ContractError> {
     let Some(shape) = shapes.get(number as usize) else {
-        let value = format!("{number} of {}", shapes.len());
-        return refuse(body, "shape", value, "shapes are counted from 0");
+        return refuse_number(body, number, shapes.len());
     };
     if !has_sound_size(shape) {
         let Shape {
@@ -108,33 +120,33 @@ pub(crate) fn check_number(bodies: usize) -> Result<(), ContractError> {
     refuse(MOST_BODIES, "number", value, hint)
 }
 
-fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
+/// Checks that every column has one entry a body, and that so many bodies can be numbered.
+pub(crate) fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
     check_number(bodies.len())?;
-    let columns = [
+    for (name, length) in [
         ("dynamic", bodies.dynamic.len()),
         ("rotation", bodies.rotation.len()),
         ("translation", bodies.translation.len()),
         ("velocity", bodies.velocity.len()),
         ("spin", bodies.spin.len()),
-    ];
-    match columns
-        .into_iter()
-        .find(|&(_, length)| length != bodies.len())
-    {
-        None => Ok(()),
-        Some((name, length)) => {
-            let value = format!(
-                "is missing or too much: {length} entries for {} bodies",
-                bodies.len()
-            );
-            refuse(
-                length.min(bodies.len()),
-                name,
-                value,
-                "give every column one entry a body",
-            )
-        }
+    ] {
+        check_column(name, length, bodies.len())?;
     }
+    Ok(())
+}
+
+/// Checks that a column has one entry a body.
+pub(crate) fn check_column(
+    name: &'static str,
+    length: usize,
+    bodies: usize,
+) -> Result<(), ContractError> {
+    if length == bodies {
+        return Ok(());
+    }
+    let value = format!("is missing or too much: {length} entries for {bodies} bodies");
+    let hint = "give every column one entry a body";
+    refuse(length.min(bodies), name, value, hint)
 }
 
 fn check_vectors(

@@ -25,12 +25,19 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Appends a body at rest.
-    pub fn push(&mut self, shape: u32, dynamic: bool, rotation: [f32; 4], translation: [f32; 3]) {
+    /// Appends a body: the number of its shape, whether it may move, its orientation quaternion (x, y, z, w) of any non-zero
+    /// norm, and the translation of its origin, world frame.
+    pub fn push(
+        &mut self,
+        shape: u32,
+        dynamic: bool,
+        rotation: impl Into<[f32; 4]>,
+        translation: impl Into<[f32; 3]>,
+    ) {
         self.shape.push(shape);
         self.dynamic.push(dynamic);
-        self.rotation.push(rotation);
-        self.translation.push(translation);
+        self.rotation.push(rotation.into());
+        self.translation.push(translation.into());
         self.velocity.push([0.0; 3]);
         self.spin.push([0.0; 3]);
     }

@@ -86,7 +86,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     };
     let bar = progress(scene.frames.into(), &scene.name);
     let threads = usize::from(args.threads);
-    let simulation = Simulation::new(&scene, tier)?.with_threads(threads)?;
+    let simulation = Simulation::with_threads(&scene, tier, threads)?;
     let summary = simulation.run(|frame| -> miette::Result<()> {
         if let Some(recorder) = &mut recorder {
             recorder.frame(frame)?;
@@ -196,9 +196,10 @@ fn write_text(
     scene: &Scene,
     summary: &Summary,
 ) -> std::fmt::Result {
-    let pairs = match report.pairs == report.finder {
-        true => report.pairs.to_owned(),
-        false => format!("{} ({})", report.pairs, report.finder),
+    let pairs = if report.pairs == report.finder {
+        report.pairs.to_owned()
+    } else {
+        format!("{} ({})", report.pairs, report.finder)
     };
     let dynamic = scene.bodies.dynamic.iter().filter(|&&d| d).count();
     writeln!(

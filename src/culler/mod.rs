@@ -5,24 +5,30 @@
 //! A [`Culler`] is built once for a scene (the paper's Co) and then culls frame after frame. All buffers stay, so in steady
 //! state nothing is allocated.
 
+mod builder;
+mod error;
 pub(crate) mod models;
 mod needs;
+
+pub use builder::CullerBuilder;
+pub use error::CullError;
 
 use std::time::Instant;
 
 use self::models::Models;
 use self::needs::Needs;
-use crate::bodies::Bodies;
-use crate::bodies::Groups;
-use crate::bodies::Places;
+use crate::bodies::contract::{
+    check_bodies, check_column, check_columns, check_numbers, check_poses,
+};
+use crate::bodies::{Bodies, Groups, Places};
 use crate::broad_phase::{PairFinder, Reorder};
 use crate::counters::{Counters, Seconds};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
-use crate::settings::{CullSettings, Finder, Interest, Overlap, SettingsError, Strategy, Updates};
+use crate::settings::{CullSettings, Finder, Interest, Overlap, Strategy, Updates};
 use crate::simd::Tier;
 use crate::strategy::{self, Memory, Stage, Worker};
-use crate::threads::{Threads, ThreadsError};
+use crate::threads::Threads;
 use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
 use crate::volume::Shape;
 
@@ -56,20 +62,29 @@ pub struct Culler {
 }
 
 impl Culler {
-    /// Prepares culling of `bodies` in the tier `tier`, on the caller's thread. Static bodies' volumes are placed here, once.
-    ///
-    /// `bodies` must satisfy the contract (see [`check_bodies`](crate::bodies::contract::check_bodies)); shapes are in the
-    /// order that `bodies.shape` counts in. For [`Strategy::Obb`] each shape's own box replaces its or-DOP.
+    /// The culler of these bodies with every default: sequential S-DOP with the two-sided test, the finder that `auto`
+    /// picks, the fastest tier of this CPU, the caller's thread.
     ///
     /// # Errors
-    /// Settings that can't be carried out: a missing interest or budget, a body that doesn't exist.
-    pub fn new(
+    /// As [`CullerBuilder::build`].
+    pub fn new(shapes: &[Shape], bodies: &Bodies) -> Result<Self, CullError> {
+        Self::builder().build(shapes, bodies)
+    }
+
+    /// The choices that [`Self::new`] makes, to be made otherwise.
+    pub fn builder() -> CullerBuilder {
+        CullerBuilder::default()
+    }
+
+    fn build(
         shapes: &[Shape],
         bodies: &Bodies,
         settings: &CullSettings,
         tier: Tier,
-    ) -> Result<Self, SettingsError> {
-        settings.check(bodies.shape.len())?;
+        pool: Threads,
+    ) -> Result<Self, CullError> {
+        check_bodies(bodies, shapes)?;
+        settings.check(bodies.len())?;
         let start = Instant::now();
         let n = bodies.shape.len();
         let (models, places) = (Models::new(shapes, settings), Places::new(bodies));
@@ -81,7 +96,7 @@ impl Culler {
             settings: settings.clone(),
             needs,
             tier,
-            pool: Threads::default(),
+            pool,
             workers: Vec::new(),
             models,
             places,
@@ -108,26 +123,34 @@ impl Culler {
         Ok(culler)
     }
 
-    /// The same culler working on so many threads. Lists, counters and hashes don't depend on their number.
-    ///
-    /// # Errors
-    /// The system refuses to start the threads.
-    pub fn with_threads(mut self, threads: usize) -> Result<Self, ThreadsError> {
-        self.pool = Threads::new(threads)?;
-        Ok(self)
-    }
-
-    /// Adds a model: the shape grown by `margin` ≥ 0. Bodies wear it by the returned number in `bodies.shape`.
+    /// Adds a model: the shape grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the returned number.
     pub(crate) fn grow(&mut self, shape: u32, margin: f32) -> u32 {
         self.models.grow(shape, margin)
     }
 
-    /// Takes up bodies that wear another model since the last frame.
-    pub(crate) fn wear(&mut self, bodies: &Bodies) {
-        self.places.wear(bodies);
+    /// Re-reads `bodies.shape` after a change of margin class.
+    pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
+        self.places.reread_shapes(bodies);
     }
 
-    /// Takes up another set of bodies: those that are `present`. Volumes, static ones too, are placed anew; bodies that were
+    /// Re-reads what [`Self::cull`] takes as fixed: the number of bodies, their shapes, which of them may move, and where those
+    /// stand that may not. Costs about one more frame. Groups are forgotten when the number of bodies changes.
+    ///
+    /// # Errors
+    /// Bodies outside of the contract, an interest in a body that is no longer there; the culler stays as it was.
+    pub fn refresh(&mut self, bodies: &Bodies) -> Result<(), CullError> {
+        check_columns(bodies)?;
+        check_numbers(&bodies.shape, self.models.frames.len())?;
+        check_poses(bodies, 0..bodies.len())?;
+        self.settings.check(bodies.len())?;
+        if bodies.len() != self.interest.len() {
+            self.groups = None;
+        }
+        self.replace(bodies, &vec![true; bodies.len()]);
+        Ok(())
+    }
+
+    /// Replaces the set of bodies by those that are `present`. Volumes, static ones too, are placed anew; bodies that were
     /// there keep their neighbours.
     pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         self.places.replace(bodies, present);
@@ -146,15 +169,22 @@ impl Culler {
         self.arrange();
     }
 
-    /// From now on, only pairs of bodies that may collide are listed; `None`: all may.
+    /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a body.
     ///
     /// Pairs are filtered behind the first test, whose hits are few, and before anything else is done with them.
-    pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) {
+    ///
+    /// # Errors
+    /// A column that is shorter or longer than there are bodies; the groups stay as they were.
+    pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) -> Result<(), CullError> {
+        if let Some(groups) = &groups {
+            check_column("groups", groups.len(), self.interest.len())?;
+        }
         self.groups = groups;
+        Ok(())
     }
 
-    /// The bodies of interest from now on.
-    pub(crate) fn look_at(&mut self, bodies: Vec<u32>) {
+    /// From now on, these are the bodies of interest.
+    pub(crate) fn set_interest(&mut self, bodies: Vec<u32>) {
         self.settings.interest = Some(Interest::Bodies(bodies));
     }
 
@@ -172,8 +202,12 @@ impl Culler {
 
     /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
     /// finder and on the frames so far alone. Poses must satisfy the contract.
-    pub fn cull(&mut self, bodies: &Bodies) -> &PairList {
+    ///
+    /// # Errors
+    /// Fewer or more bodies than the culler was made for.
+    pub fn cull(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
         let start = Instant::now();
+        self.check_set(bodies)?;
         self.stamp += 1;
         self.pairs.clear();
         self.reorder(bodies);
@@ -192,7 +226,18 @@ impl Culler {
         let finding = (reordered - start) + updated.elapsed();
         self.seconds.pair_finding += finding.as_secs_f64() - refined;
         self.seconds.total += start.elapsed().as_secs_f64();
-        &self.pairs
+        Ok(&self.pairs)
+    }
+
+    /// Checks that there are as many bodies as there were.
+    fn check_set(&self, bodies: &Bodies) -> Result<(), CullError> {
+        check_columns(bodies)?;
+        let (made_for, given) = (self.interest.len(), bodies.len());
+        if given == made_for {
+            return Ok(());
+        }
+        let what = format!("{given} bodies in place of {made_for}");
+        Err(CullError::Changed { what })
     }
 
     /// The pairs of the last frame.
@@ -233,9 +278,10 @@ impl Culler {
             return;
         }
         let by_place = self.names_are_places();
-        let names = match by_place {
-            true => &self.numbers,
-            false => &self.places.body,
+        let names = if by_place {
+            &self.numbers
+        } else {
+            &self.places.body
         };
         let (balls, order) = (&self.balls, &mut self.order);
         let changed = self.finder.reorder(&self.places, balls, names, order);
@@ -248,7 +294,8 @@ impl Culler {
         }
     }
 
-    /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies wait until a pair asks for them.
+    /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies are left until a pair
+    /// needs them.
     fn update_volumes(&mut self, bodies: &Bodies, range: std::ops::Range<usize>) {
         let (frames, places) = (&self.models.frames, &self.places);
         if self.needs.balls {
@@ -307,9 +354,10 @@ impl Culler {
         if self.settings.strategy == Strategy::None {
             return;
         }
-        let names = match self.names_are_places() {
-            true => &self.numbers,
-            false => &self.places.body,
+        let names = if self.names_are_places() {
+            &self.numbers
+        } else {
+            &self.places.body
         };
         self.finder
             .arrange(self.tier, &self.pool, &self.places, &self.balls, names);

@@ -9,15 +9,14 @@ use thiserror::Error;
 use crate::bodies::Bodies;
 use crate::bodies::contract::ContractError;
 use crate::counters::{Counters, Seconds};
-use crate::culler::Culler;
+use crate::culler::{CullError, Culler};
 use crate::lab::effects::{EffectError, EffectReport, Effects};
 use crate::lab::hash::PairsHash;
 use crate::lab::hash::volumes_sha256;
 use crate::lab::scene::Scene;
 use crate::pairs::PairList;
-use crate::settings::{Finder, SettingsError, Strategy};
+use crate::settings::{Finder, Strategy};
 use crate::simd::Tier;
-use crate::threads::ThreadsError;
 
 /// A scene being run.
 pub struct Simulation<'a> {
@@ -59,18 +58,14 @@ pub struct Summary {
 /// Why a scene can't be run on.
 #[derive(Debug, Error, Diagnostic)]
 pub enum SimulationError {
-    /// Culling settings that can't be carried out.
+    /// A culler that can't be made, or bodies that it refuses.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Settings(#[from] SettingsError),
+    Cull(#[from] CullError),
     /// An effect that the scene can't have.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Effect(#[from] EffectError),
-    /// Threads that the system refused.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Threads(#[from] ThreadsError),
     /// A body left the contract.
     #[error("frame {frame}: {error}")]
     Contract {
@@ -83,27 +78,33 @@ pub enum SimulationError {
 }
 
 impl<'a> Simulation<'a> {
-    /// Prepares a run of the scene, culled as its `cull` says in the tier `tier`.
+    /// Prepares a run of the scene, culled as its `cull` says in the tier `tier` on the caller's thread.
     ///
     /// # Errors
     /// Effects or culling that the scene can't have; never for a scene just built.
     pub fn new(scene: &'a Scene, tier: Tier) -> Result<Self, SimulationError> {
+        Self::with_threads(scene, tier, 1)
+    }
+
+    /// The same culling on so many threads; nothing but seconds depends on their number.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and threads that the system refuses to start.
+    pub fn with_threads(
+        scene: &'a Scene,
+        tier: Tier,
+        threads: usize,
+    ) -> Result<Self, SimulationError> {
+        let culler = Culler::builder().settings(&scene.cull).tier(tier);
         Ok(Self {
             scene,
             bodies: scene.bodies.clone(),
             effects: scene.start_effects()?,
-            culler: Culler::new(&scene.shapes, &scene.bodies, &scene.cull, tier)?,
+            culler: culler
+                .threads(threads)
+                .build(&scene.shapes, &scene.bodies)?,
             frame: 0,
         })
-    }
-
-    /// The same simulation culling on so many threads; nothing but seconds depends on their number.
-    ///
-    /// # Errors
-    /// The system refuses to start the threads.
-    pub fn with_threads(mut self, threads: usize) -> Result<Self, SimulationError> {
-        self.culler = self.culler.with_threads(threads)?;
-        Ok(self)
     }
 
     /// Advances to the next frame (the first needs no step) and culls it; `None` after the last.
@@ -125,7 +126,7 @@ impl<'a> Simulation<'a> {
         self.frame += 1;
         Ok(Some(Frame {
             number,
-            pairs: self.culler.cull(&self.bodies),
+            pairs: self.culler.cull(&self.bodies)?,
             bodies: &self.bodies,
         }))
     }

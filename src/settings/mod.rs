@@ -130,12 +130,14 @@ pub enum Budget {
     Microseconds(u64),
 }
 
-/// The `[cull]` table of a scene.
+/// How a scene is culled: sequential S-DOP with the finder that `auto` picks unless said otherwise.
+///
+/// A scene file's `[cull]` table, where the finder is `all-pairs` unless said otherwise ([`Self::all_pairs`]).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "lab",
     derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields, default)
+    serde(deny_unknown_fields, default = "CullSettings::all_pairs")
 )]
 pub struct CullSettings {
     /// The culling strategy.
@@ -166,7 +168,7 @@ impl Default for CullSettings {
     fn default() -> Self {
         Self {
             strategy: Strategy::SDopSequential,
-            pairs: Finder::AllPairs,
+            pairs: Finder::Auto,
             k: DirectionSet::K18,
             axes: Axes::Principal,
             overlap: Overlap::TwoSided,
@@ -204,6 +206,15 @@ pub enum SettingsError {
 }
 
 impl CullSettings {
+    /// The defaults of a scene file: as [`Self::default`], but every pair is a candidate, as in the paper.
+    #[must_use]
+    pub fn all_pairs() -> Self {
+        Self {
+            pairs: Finder::AllPairs,
+            ..Self::default()
+        }
+    }
+
     /// Checks the settings against each other and against a scene of `bodies` bodies.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::BodyId;
 use crate::bodies::contract::ContractError;
-use crate::settings::SettingsError;
+use crate::culler::CullError;
 
 /// A request that a world can't carry out. The world is as it was before.
 #[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
@@ -18,10 +18,10 @@ pub enum WorldError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Contract(#[from] ContractError),
-    /// Culling settings that can't be carried out.
+    /// A culler that can't be made.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Settings(#[from] SettingsError),
+    Cull(#[from] CullError),
     /// Bodies too far from each other to be culled about one origin.
     #[error("bodies lie farther apart than 2^60: {0} is out of reach of the others")]
     #[diagnostic(help("keep separate worlds for what can't meet"))]

@@ -9,15 +9,10 @@
 //! margins and groups change at the price of a copy. Lists depend on the calls alone, never on the CPU or on threads.
 //!
 //! ```
-//! use sdop::mesh;
-//! use sdop::settings::CullSettings;
-//! use sdop::simd::Tier;
-//! use sdop::volume::{Shape, ShapeSpec};
-//! use sdop::world::{Body, World};
+//! use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};
 //!
-//! let cow = mesh::read("data/meshes/spot.tri", &mesh::ReadOptions::default())?;
-//! let shapes = vec![Shape::build(&cow, &ShapeSpec::default())?];
-//! let mut world = World::new(shapes, &CullSettings::default(), Tier::detect())?;
+//! let cube = ProceduralShape::Box { x: 1.0, y: 1.0, z: 1.0 }.build()?;
+//! let mut world = World::new(vec![Shape::build(&cube, &ShapeSpec::default())?])?;
 //! let still = world.insert(Body { dynamic: false, ..Body::default() })?;
 //! let moving = world.insert(Body { translation: [5.0, 0.0, 0.0], margin: 0.05, ..Body::default() })?;
 //! world.cull()?;
@@ -45,11 +40,9 @@ use self::margins::Margins;
 use crate::bodies::Bodies;
 use crate::bodies::contract::{ContractError, check_number, check_pose, check_shape, refuse};
 use crate::counters::{Counters, Seconds};
-use crate::culler::Culler;
+use crate::culler::{CullError, Culler, CullerBuilder};
 use crate::rounding::LIMIT;
-use crate::settings::{CullSettings, Interest, SettingsError};
-use crate::simd::Tier;
-use crate::threads::ThreadsError;
+use crate::settings::{Interest, SettingsError};
 use crate::volume::Shape;
 
 /// Bodies in slots, and their culler.
@@ -78,26 +71,30 @@ pub struct World {
 }
 
 impl World {
-    /// A world without bodies. Bodies of interest, where the strategy looks for them, are set by [`Self::set_interest`].
+    /// A world without bodies, culled with every default ([`Culler::new`]).
     ///
     /// # Errors
-    /// Settings that can't be carried out, a view cone, a shape beyond the contract.
-    pub fn new(
-        shapes: Vec<Shape>,
-        settings: &CullSettings,
-        tier: Tier,
-    ) -> Result<Self, WorldError> {
+    /// A shape beyond the contract.
+    pub fn new(shapes: Vec<Shape>) -> Result<Self, WorldError> {
+        Self::with(shapes, &Culler::builder())
+    }
+
+    /// A world without bodies, culled as the builder says. Bodies of interest, where the strategy needs them, are set by
+    /// [`Self::set_interest`].
+    ///
+    /// # Errors
+    /// Settings that can't be carried out, a view cone, a shape beyond the contract, threads that the system refuses.
+    pub fn with(shapes: Vec<Shape>, culler: &CullerBuilder) -> Result<Self, WorldError> {
+        let settings = &culler.settings;
         if let Some(interest) = &settings.interest {
-            return Err(WorldError::Settings(SettingsError::Interest {
+            let refused = SettingsError::Interest {
                 problem: format!("a world begins without bodies, {interest:?} has nothing to see"),
                 hint: "leave it out, and name bodies with `set_interest`",
-            }));
+            };
+            return Err(CullError::from(refused).into());
         }
-        let settings = CullSettings {
-            interest: Some(Interest::Bodies(Vec::new())),
-            ..settings.clone()
-        };
-        let culler = Culler::new(&shapes, &Bodies::default(), &settings, tier)?;
+        let culler = culler.clone().interest(Interest::Bodies(Vec::new()));
+        let culler = culler.build(&shapes, &Bodies::default())?;
         Ok(Self {
             shapes,
             bodies: Bodies::default(),
@@ -119,15 +116,6 @@ impl World {
         })
     }
 
-    /// The same world culled on so many threads. Lists don't depend on their number.
-    ///
-    /// # Errors
-    /// The system refuses to start the threads.
-    pub fn with_threads(mut self, threads: usize) -> Result<Self, ThreadsError> {
-        self.culler = self.culler.with_threads(threads)?;
-        Ok(self)
-    }
-
     /// Adds a body.
     ///
     /// # Errors
@@ -138,7 +126,7 @@ impl World {
         if self.free.pop().is_some() {
             self.generation[slot] += 1;
         } else {
-            self.bodies.push(0, true, [0.0; 4], [0.0; 3]);
+            self.bodies.push(0, true, [0.0f32; 4], [0.0f32; 3]);
             self.present.push(false);
             self.generation.push(0);
             self.shape.push(0);
@@ -213,9 +201,10 @@ impl World {
     pub fn set_pose(
         &mut self,
         id: BodyId,
-        rotation: [f32; 4],
-        translation: [f64; 3],
+        rotation: impl Into<[f32; 4]>,
+        translation: impl Into<[f64; 3]>,
     ) -> Result<(), WorldError> {
+        let (rotation, translation) = (rotation.into(), translation.into());
         let slot = self.slot(id)?;
         check_pose(slot, &rotation, &translation)?;
         self.replaced |= !self.bodies.dynamic[slot];
@@ -243,11 +232,6 @@ impl World {
     /// Bodies more than 2⁶⁰ apart.
     pub fn cull(&mut self) -> Result<(), WorldError> {
         self.place()?;
-        if self.regrouped {
-            let all = self.groups.iter().all(|&groups| groups == Groups::ALL);
-            self.culler.set_groups((!all).then(|| self.groups.clone()));
-            self.regrouped = false;
-        }
         if self.replaced {
             self.culler.replace(&self.bodies, &self.present);
             self.replaced = false;
@@ -255,8 +239,14 @@ impl World {
                 self.look(); // another body may have taken the slot of one that was of interest
             }
         }
+        if self.regrouped {
+            let all = self.groups.iter().all(|&groups| groups == Groups::ALL);
+            self.culler
+                .set_groups((!all).then(|| self.groups.clone()))?;
+            self.regrouped = false;
+        }
         self.free.append(&mut self.emptied);
-        self.culler.cull(&self.bodies);
+        self.culler.cull(&self.bodies)?;
         Ok(())
     }
 
@@ -332,7 +322,7 @@ impl World {
             self.bodies.translation[slot] = place;
         }
         if changed && !self.replaced {
-            self.culler.wear(&self.bodies);
+            self.culler.reread_shapes(&self.bodies);
         }
         Ok(())
     }
@@ -342,7 +332,7 @@ impl World {
         let living = |id: &BodyId| self.slot(*id).is_ok();
         let slots = self.interest.iter().filter(|id| living(id));
         let slots = slots.map(|id| id.slot).collect();
-        self.culler.look_at(slots);
+        self.culler.set_interest(slots);
     }
 
     fn id(&self, slot: u32) -> BodyId {

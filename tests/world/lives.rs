@@ -1,14 +1,18 @@
 //! What a world holds of its bodies: ids, interest and groups, from insertion to removal, and what it refuses.
 
+use sdop::culler::Culler;
 use sdop::settings::{CullSettings, Strategy};
-use sdop::simd::Tier;
 use sdop::world::{Body, Groups, World, WorldError};
 
 use super::shapes;
 
 #[test]
 fn what_breaks_the_contract_is_refused_and_changes_nothing() {
-    let mut world = World::new(shapes(), &CullSettings::default(), Tier::detect()).unwrap();
+    let mut world = World::with(
+        shapes(),
+        &Culler::builder().settings(&CullSettings::all_pairs()),
+    )
+    .unwrap();
     let id = world.insert(Body::default()).unwrap();
     let wrong = [
         (
@@ -71,14 +75,18 @@ fn what_breaks_the_contract_is_refused_and_changes_nothing() {
     assert_eq!((world.len(), world.body(id).unwrap()), (1, Body::default()));
     let cone = CullSettings {
         interest: Some("0".parse().unwrap()),
-        ..CullSettings::default()
+        ..CullSettings::all_pairs()
     };
-    assert!(World::new(shapes(), &cone, Tier::detect()).is_err());
+    assert!(World::with(shapes(), &Culler::builder().settings(&cone)).is_err());
 }
 
 #[test]
 fn ids_are_never_given_again() {
-    let mut world = World::new(shapes(), &CullSettings::default(), Tier::detect()).unwrap();
+    let mut world = World::with(
+        shapes(),
+        &Culler::builder().settings(&CullSettings::all_pairs()),
+    )
+    .unwrap();
     let [a, b] = [(); 2].map(|()| world.insert(Body::default()).unwrap());
     world.cull().unwrap();
     assert_eq!(world.events().begun, [[a, b]]);
@@ -101,9 +109,9 @@ fn ids_are_never_given_again() {
 fn interest_ends_with_its_body() {
     let way = CullSettings {
         strategy: Strategy::SDopObjectOfInterest,
-        ..CullSettings::default()
+        ..CullSettings::all_pairs()
     };
-    let mut world = World::new(shapes(), &way, Tier::detect()).unwrap();
+    let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
     // Two needles side by side: their spheres meet, their or-DOPs don't.
     let needle = Body {
         shape: 2,
@@ -130,7 +138,11 @@ fn interest_ends_with_its_body() {
 
 #[test]
 fn a_body_that_collides_with_all_joins_others_that_do_not() {
-    let mut world = World::new(shapes(), &CullSettings::default(), Tier::detect()).unwrap();
+    let mut world = World::with(
+        shapes(),
+        &Culler::builder().settings(&CullSettings::all_pairs()),
+    )
+    .unwrap();
     let apart = |member| Body {
         groups: Groups {
             member,

@@ -12,7 +12,6 @@ use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Strategy, Updates};
-use sdop::simd::Tier;
 use sdop::volume::{Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, Groups, World, WorldError};
 
@@ -77,7 +76,7 @@ fn ways() -> Vec<CullSettings> {
                     pairs,
                     updates,
                     budget: (strategy == Strategy::SDopTimeCritical).then_some(Budget::Tests(5)),
-                    ..CullSettings::default()
+                    ..CullSettings::all_pairs()
                 });
             }
         }
@@ -101,8 +100,11 @@ fn afresh(shapes: &[Shape], way: &CullSettings, bodies: &HashMap<BodyId, Body>) 
         interest: Some(sdop::settings::Interest::Bodies(Vec::new())),
         ..way.clone()
     };
-    let mut culler = Culler::new(shapes, &columns, &settings, Tier::detect()).unwrap();
-    let pairs = culler.cull(&columns).iter();
+    let mut culler = Culler::builder()
+        .settings(&settings)
+        .build(shapes, &columns)
+        .unwrap();
+    let pairs = culler.cull(&columns).unwrap().iter();
     pairs
         .map(|pair| pair.map(|i| order[i as usize]))
         .filter(|[a, b]| {
@@ -118,11 +120,9 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
     for way in ways() {
         let deterministic = way.strategy != Strategy::SDopTimeCritical;
         let mut random = Random(ChaCha8Rng::seed_from_u64(7));
-        let mut world = World::new(shapes.clone(), &way, Tier::detect()).unwrap();
-        let mut pool = World::new(shapes.clone(), &way, Tier::detect())
-            .unwrap()
-            .with_threads(3)
-            .unwrap();
+        let builder = Culler::builder().settings(&way);
+        let mut world = World::with(shapes.clone(), &builder).unwrap();
+        let mut pool = World::with(shapes.clone(), &builder.threads(3)).unwrap();
         let mut bodies = HashMap::new();
         let mut before = Pairs::new();
         let mut seen = 0;
@@ -221,9 +221,10 @@ fn margins_reach_as_far_as_they_say_and_little_farther() {
     for strategy in volumes {
         let way = CullSettings {
             strategy,
-            ..CullSettings::default()
+            ..CullSettings::all_pairs()
         };
-        let mut world = World::new(vec![shape.clone()], &way, Tier::detect()).unwrap();
+        let mut world =
+            World::with(vec![shape.clone()], &Culler::builder().settings(&way)).unwrap();
         let first = Body {
             margin: 0.3,
             ..Body::default()
@@ -290,9 +291,9 @@ fn touching_spheres_meet_wherever_f64_puts_them() {
         rounded += usize::from(away.map(|x| f64::from(x as f32)) != away);
         let settings = CullSettings {
             strategy: Strategy::Sphere,
-            ..CullSettings::default()
+            ..CullSettings::all_pairs()
         };
-        let mut world = World::new(vec![shape], &settings, Tier::detect()).unwrap();
+        let mut world = World::with(vec![shape], &Culler::builder().settings(&settings)).unwrap();
         world
             .insert(Body {
                 translation: base,

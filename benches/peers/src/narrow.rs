@@ -17,7 +17,6 @@ use sdop::lab::scene::{Scene, SceneFile};
 use sdop::lab::tradeoff::gjk::{HullGraph, PosedHull, may_touch};
 use sdop::lab::tradeoff::truth::samples;
 use sdop::settings::{CullSettings, Finder, Strategy};
-use sdop::simd::Tier;
 use sdop::volume::Shape;
 use sdop_reference::exact::{meeting, mesh::Mesh};
 use serde::Serialize;
@@ -38,7 +37,7 @@ pub struct Args {
 
 /// One method on what one strategy leaves.
 #[derive(Serialize)]
-struct Row {
+struct MethodTiming {
     scene: String,
     survivors_of: &'static str,
     method: &'static str,
@@ -78,18 +77,20 @@ pub fn run(args: &Args) -> miette::Result<()> {
     Ok(())
 }
 
-fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<Row>> {
+fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<MethodTiming>> {
     let settings = CullSettings {
         strategy,
         pairs: Finder::Grid,
         ..scene.cull.clone()
     };
-    let mut culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect())?;
+    let mut culler = Culler::builder()
+        .settings(&settings)
+        .build(&scene.shapes, &scene.bodies)?;
     let samples = samples(scene, frames)?;
     let survivors: Vec<_> = samples
         .iter()
-        .map(|sample| culler.cull(&sample.bodies).sorted())
-        .collect();
+        .map(|sample| Ok(culler.cull(&sample.bodies)?.sorted()))
+        .collect::<miette::Result<_>>()?;
     let bodies = || samples.iter().map(|sample| &sample.bodies);
     let ask = |judge: &Judge<'_>| -> miette::Result<Vec<Vec<bool>>> {
         let frames = bodies().zip(&survivors);
@@ -126,7 +127,7 @@ fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<R
             both.filter(|&(&truth, &given)| given == answer && truth != answer)
                 .count()
         };
-        rows.push(Row {
+        rows.push(MethodTiming {
             scene: scene.name.clone(),
             survivors_of: strategy.name(),
             method,

@@ -7,11 +7,11 @@ use std::time::Instant;
 
 use crate::bodies::Bodies;
 use crate::counters::{Counters, Seconds};
-use crate::culler::Culler;
+use crate::culler::{CullError, Culler};
 use crate::lab::scene::Scene;
 use crate::lab::simulate::SimulationError;
 use crate::pairs::PairList;
-use crate::settings::{CullSettings, SettingsError, Strategy};
+use crate::settings::{CullSettings, Strategy};
 use crate::simd::Tier;
 
 /// Bodies of the frames that are prepared at once: their poses stay in the second-level cache until they are culled.
@@ -30,14 +30,17 @@ impl Trial {
     ///
     /// # Errors
     /// Settings that can't be carried out.
-    pub fn new(scene: &Scene, strategy: Strategy, tier: Tier) -> Result<Self, SettingsError> {
+    pub fn new(scene: &Scene, strategy: Strategy, tier: Tier) -> Result<Self, CullError> {
         let settings = CullSettings {
             strategy,
             ..scene.cull.clone()
         };
         Ok(Self {
             strategy,
-            culler: Culler::new(&scene.shapes, &scene.bodies, &settings, tier)?,
+            culler: Culler::builder()
+                .settings(&settings)
+                .tier(tier)
+                .build(&scene.shapes, &scene.bodies)?,
             frames: Vec::new(),
         })
     }
@@ -49,11 +52,14 @@ impl Trial {
     }
 
     /// Culls and times one frame.
-    pub fn frame(&mut self, bodies: &Bodies) -> &PairList {
+    ///
+    /// # Errors
+    /// Bodies that the culler refuses.
+    pub fn frame(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
         let before = *self.culler.seconds();
-        self.culler.cull(bodies);
+        self.culler.cull(bodies)?;
         self.frames.push(self.culler.seconds().since(&before));
-        self.culler.pairs()
+        Ok(self.culler.pairs())
     }
 
     /// Counters summed over frames.
@@ -121,7 +127,7 @@ pub fn side_by_side(
         let begin = (first / turn) as usize % trials.len().max(1);
         for trial in (begin..trials.len()).chain(0..begin) {
             for (frame, bodies) in (first..).zip(&poses) {
-                let pairs = trials[trial].frame(bodies);
+                let pairs = trials[trial].frame(bodies)?;
                 reported(trial, frame, pairs);
             }
         }

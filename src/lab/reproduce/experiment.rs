@@ -305,7 +305,7 @@ impl Survival {
         scene.shapes = turned.collect();
         (scene.cull.k, scene.cull.overlap) = (self.k, self.overlap);
         let mut trial = Trial::new(&scene, Strategy::SDopBatch, tier)?;
-        trial.frame(&scene.bodies);
+        trial.frame(&scene.bodies)?;
         let ordop = trial.counters().ordop;
         Ok(ordop.hits as f64 / ordop.tests as f64)
     }

@@ -46,7 +46,7 @@ pub struct SceneSpec {
     #[serde(default)]
     pub effects: EffectsSpec,
     /// How it is culled.
-    #[serde(default)]
+    #[serde(default = "CullSettings::all_pairs")]
     pub cull: CullSettings,
 }
 

@@ -109,13 +109,16 @@ fn row(
     window: Window<'_>,
     truth: &[Vec<[u32; 2]>],
 ) -> Result<BudgetRow, TradeoffError> {
-    let mut culler = Culler::new(&scene.shapes, &scene.bodies, settings, tier)?;
+    let mut culler = Culler::builder()
+        .settings(settings)
+        .tier(tier)
+        .build(&scene.shapes, &scene.bodies)?;
     let mut starved = Starvation::default();
     let (mut reported, mut found, mut true_pairs) = (0, 0, 0);
     let mut truth = truth.iter();
     for (number, sample) in window.frames.iter().enumerate() {
         let before = culler.counters().untested;
-        let pairs = culler.cull(&sample.bodies);
+        let pairs = culler.cull(&sample.bodies)?;
         if number % window.stride == 0
             && let Some(truth) = truth.next()
         {
@@ -191,11 +194,14 @@ pub fn by_clock(
 ) -> Result<Vec<ClockRow>, TradeoffError> {
     let run = |budget| -> Result<(Vec<f64>, f64), TradeoffError> {
         let settings = settings(scene, budget, Order::AsFound);
-        let mut culler = Culler::new(&scene.shapes, &scene.bodies, &settings, tier)?;
+        let mut culler = Culler::builder()
+            .settings(&settings)
+            .tier(tier)
+            .build(&scene.shapes, &scene.bodies)?;
         let mut times = Vec::new();
         for sample in window.frames {
             let before = *culler.seconds();
-            culler.cull(&sample.bodies);
+            culler.cull(&sample.bodies)?;
             let spent = culler.seconds().since(&before);
             times.push(1e6 * (spent.total - spent.update));
         }

@@ -6,10 +6,9 @@ use super::gjk::{HullGraph, PosedHull, may_touch};
 use super::variant::Variant;
 use crate::bodies::Bodies;
 use crate::counters::{Counters, VolumeCounters};
-use crate::culler::Culler;
+use crate::culler::{CullError, Culler};
 use crate::lab::scene::Scene;
 use crate::pairs::PairList;
-use crate::settings::SettingsError;
 use crate::simd::Tier;
 
 /// A variant prepared for a scene's bodies.
@@ -25,27 +24,33 @@ impl Contender {
     ///
     /// # Errors
     /// Settings that can't be carried out.
-    pub fn new(scene: &Scene, variant: &Variant, tier: Tier) -> Result<Self, SettingsError> {
+    pub fn new(scene: &Scene, variant: &Variant, tier: Tier) -> Result<Self, CullError> {
         let scene = variant.apply(scene);
         Ok(Self {
-            culler: Culler::new(&scene.shapes, &scene.bodies, &scene.cull, tier)?,
+            culler: Culler::builder()
+                .settings(&scene.cull)
+                .tier(tier)
+                .build(&scene.shapes, &scene.bodies)?,
             hulls: variant.hulls.then(|| HullTest::new(&scene)),
             seconds: 0.0,
         })
     }
 
     /// Culls one frame; its seconds are added up.
-    pub fn frame(&mut self, bodies: &Bodies) -> &PairList {
+    ///
+    /// # Errors
+    /// Bodies that the culler refuses.
+    pub fn frame(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
         let start = Instant::now();
-        self.culler.cull(bodies);
+        self.culler.cull(bodies)?;
         if let Some(hulls) = &mut self.hulls {
             hulls.cull(bodies, self.culler.pairs());
         }
         self.seconds = start.elapsed().as_secs_f64();
-        match &self.hulls {
+        Ok(match &self.hulls {
             Some(hulls) => &hulls.kept,
             None => self.culler.pairs(),
-        }
+        })
     }
 
     /// Seconds of the last frame.

@@ -6,9 +6,9 @@ use super::contender::Contender;
 use super::truth::{Sample, Truth};
 use super::variant::Variant;
 use crate::counters::{Counters, VolumeCounters};
+use crate::culler::CullError;
 use crate::lab::hash::PairsHash;
 use crate::lab::scene::Scene;
-use crate::settings::SettingsError;
 use crate::simd::Tier;
 
 /// What a variant counted on the sample frames of one seed.
@@ -53,11 +53,11 @@ impl Tally {
         tier: Tier,
         samples: &[Sample],
         truth: &Truth,
-    ) -> Result<Self, SettingsError> {
+    ) -> Result<Self, CullError> {
         let mut contender = Contender::new(scene, variant, tier)?;
         let (mut reported, mut found, mut hash) = (0, 0, PairsHash::default());
         for (sample, truth) in samples.iter().zip(truth) {
-            let pairs = contender.frame(&sample.bodies).sorted();
+            let pairs = contender.frame(&sample.bodies)?.sorted();
             reported += pairs.len() as u64;
             found += shared(&pairs, truth);
             hash.frame(sample.frame, &pairs);

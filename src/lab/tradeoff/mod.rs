@@ -29,9 +29,9 @@ use std::path::PathBuf;
 use miette::Diagnostic;
 use thiserror::Error;
 
+use crate::culler::CullError;
 use crate::lab::scene::SceneError;
 use crate::lab::simulate::SimulationError;
-use crate::settings::SettingsError;
 
 /// Why there is no answer.
 #[derive(Debug, Error, Diagnostic)]
@@ -44,10 +44,10 @@ pub enum TradeoffError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
-    /// Culling settings that can't be carried out.
+    /// A culler that can't be made, or bodies that it refuses.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Settings(#[from] SettingsError),
+    Cull(#[from] CullError),
     /// A number that the exact reference refuses to judge.
     #[error("the exact reference refuses the scene: {0}")]
     Refused(#[from] sdop_reference::InvalidInput),

@@ -57,12 +57,15 @@ pub fn compare(scene: &Scene, samples: &[Sample]) -> Result<Vec<SafetyRow>, Trad
         let (plain, seconds) = in_f64(scene, &settings, samples)?;
         for tier in Tier::available() {
             for (arithmetic, shapes) in [("f32", &scene.shapes), ("f32, no margins", &bare)] {
-                let mut culler = Culler::new(shapes, &scene.bodies, &settings, tier)?;
+                let mut culler = Culler::builder()
+                    .settings(&settings)
+                    .tier(tier)
+                    .build(shapes, &scene.bodies)?;
                 let (mut frames, mut seconds) = (Vec::new(), Vec::new());
                 for sample in samples {
                     for _ in 0..3 {
                         let start = Instant::now();
-                        culler.cull(&sample.bodies);
+                        culler.cull(&sample.bodies)?;
                         seconds.push(start.elapsed().as_secs_f64());
                     }
                     frames.push(culler.pairs().sorted());

@@ -355,8 +355,11 @@ fn line(row: &Row) -> Line {
 fn narrow_phase(judge: &Judge, run: &Run, tier: Tier) -> Result<NarrowPhase, TradeoffError> {
     let settings = Variant::spheres(&run.scene.cull).settings;
     let bodies = &run.samples[0].bodies;
-    let mut culler = Culler::new(&run.scene.shapes, bodies, &settings, tier)?;
-    Ok(judge.price(bodies, culler.cull(bodies).iter(), 2000)?)
+    let mut culler = Culler::builder()
+        .settings(&settings)
+        .tier(tier)
+        .build(&run.scene.shapes, bodies)?;
+    Ok(judge.price(bodies, culler.cull(bodies)?.iter(), 2000)?)
 }
 
 /// One shape a mesh name: sizes of one mesh let the same shares through.

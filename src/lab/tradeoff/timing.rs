@@ -9,6 +9,7 @@ use super::contender::{Contender, HullTest};
 use super::counts::Tally;
 use super::truth::Sample;
 use super::variant::Variant;
+use crate::culler::CullError;
 use crate::lab::cost::VolumeCosts;
 use crate::lab::cost::calibrate::{Effort, calibrate, scenes};
 use crate::lab::cost::predict::{Prices, Volume};
@@ -17,7 +18,7 @@ use crate::lab::random::Stream;
 use crate::lab::scene::Scene;
 use crate::lab::simulate::SimulationError;
 use crate::pairs::PairList;
-use crate::settings::{CullSettings, SettingsError, Strategy, Updates};
+use crate::settings::{CullSettings, Strategy, Updates};
 use crate::simd::Tier;
 
 /// Where the draws of the order of turns start.
@@ -35,7 +36,7 @@ pub fn measure(
     samples: &[Sample],
     repeats: u32,
     mut done: impl FnMut(),
-) -> Result<Vec<f64>, SettingsError> {
+) -> Result<Vec<f64>, CullError> {
     let mut contenders = variants
         .iter()
         .map(|variant| Contender::new(scene, variant, tier))
@@ -47,7 +48,7 @@ pub fn measure(
         for &at in &order {
             // The first of a variant's repeats finds caches that the others left, as a frame finds those of the simulation.
             for _ in 0..repeats {
-                contenders[at].frame(&sample.bodies);
+                contenders[at].frame(&sample.bodies)?;
                 seconds[at].push(contenders[at].seconds());
             }
             done();
@@ -201,12 +202,12 @@ fn priced_as(settings: &CullSettings) -> CullSettings {
 }
 
 /// Hull prices on the calibration scenes: hits and misses are timed apart, so nothing needs fitting.
-fn hull_prices(scene: &Scene, tier: Tier) -> Result<VolumeCosts, SettingsError> {
+fn hull_prices(scene: &Scene, tier: Tier) -> Result<VolumeCosts, CullError> {
     let [mut misses, mut hits] = [(0.0, 0.0); 2];
     let mut hulls = HullTest::new(scene);
     for crowd in scenes(scene) {
         let mut culler = Contender::new(&crowd, &Variant::spheres(&scene.cull), tier)?;
-        let listed = culler.frame(&crowd.bodies);
+        let listed = culler.frame(&crowd.bodies)?;
         hulls.cull(&crowd.bodies, listed);
         let kept = hulls.kept.clone();
         let kept_sorted = kept.sorted();

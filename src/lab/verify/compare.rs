@@ -2,8 +2,8 @@
 
 use super::answers::{Answers, Predicate};
 use crate::bodies::Bodies;
-use crate::culler::Culler;
-use crate::settings::{Budget, CullSettings, Interest, SettingsError, Strategy};
+use crate::culler::{CullError, Culler};
+use crate::settings::{Budget, CullSettings, Interest, Strategy};
 use crate::simd::Tier;
 use crate::volume::Shape;
 
@@ -63,9 +63,12 @@ pub fn cull(
     bodies: &Bodies,
     settings: &CullSettings,
     tier: Tier,
-) -> Result<Vec<[u32; 2]>, SettingsError> {
-    Ok(Culler::new(shapes, bodies, settings, tier)?
-        .cull(bodies)
+) -> Result<Vec<[u32; 2]>, CullError> {
+    Ok(Culler::builder()
+        .settings(settings)
+        .tier(tier)
+        .build(shapes, bodies)?
+        .cull(bodies)?
         .sorted())
 }
 
@@ -125,7 +128,7 @@ mod tests {
         };
         let none = CullSettings {
             strategy: Strategy::None,
-            ..CullSettings::default()
+            ..CullSettings::all_pairs()
         };
         for (list, missed) in [
             (vec![], 0),

@@ -14,18 +14,18 @@ use super::forms::{self, Form, FormError};
 use super::hard::{Group, GroupError};
 use super::judged::{InvalidInput, Shapes};
 use crate::bodies::Bodies;
-use crate::culler::Culler;
+use crate::culler::{CullError, Culler};
 use crate::mesh::ProceduralShape;
-use crate::settings::{CullSettings, Finder, Overlap, SettingsError, Strategy, Updates};
+use crate::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
 use crate::simd::Tier;
 use crate::volume::{Axes, DirectionSet, Shape};
 
 /// Why a round can't be run.
 #[derive(Debug, thiserror::Error)]
 pub enum RoundError {
-    /// Settings that the bodies can't have.
+    /// A culler that can't be made, or bodies that it refuses.
     #[error(transparent)]
-    Settings(#[from] SettingsError),
+    Cull(#[from] CullError),
     /// Numbers that the reference refuses.
     #[error(transparent)]
     Input(#[from] InvalidInput),
@@ -147,7 +147,7 @@ pub fn ways(k: DirectionSet, axes: Axes) -> Vec<CullSettings> {
                     axes,
                     overlap,
                     updates: if lazy { Updates::Lazy } else { Updates::Eager },
-                    ..CullSettings::default()
+                    ..CullSettings::all_pairs()
                 });
             }
         }
@@ -171,9 +171,12 @@ pub fn check(
         return Ok(());
     };
     let settings = settings(way.strategy, way, first.len());
-    let mut culler = Culler::new(&shapes.built, first, &settings, tier)?;
+    let mut culler = Culler::builder()
+        .settings(&settings)
+        .tier(tier)
+        .build(&shapes.built, first)?;
     for (n, (frame, answers)) in frames.iter().zip(answers).enumerate() {
-        let (mut count, missed, extra) = compare(answers, &settings, &culler.cull(frame).sorted());
+        let (mut count, missed, extra) = compare(answers, &settings, &culler.cull(frame)?.sorted());
         if settings.strategy != Strategy::SDopTimeCritical {
             for pair in extra {
                 let margin = u64::from(explained_by_margins(shapes, frame, &settings, pair)?);

@@ -1,8 +1,7 @@
 //! The culler as a user has it: poses in, pairs out, found on the grid.
 
 use sdop::culler::Culler;
-use sdop::settings::{CullSettings, Finder, Strategy};
-use sdop::simd::Tier;
+use sdop::settings::{Finder, Strategy};
 
 use crate::boxes::Frame;
 use crate::peer::{Peer, Setup};
@@ -11,22 +10,21 @@ use crate::peer::{Peer, Setup};
 pub struct Culled(Culler);
 
 impl Culled {
-    /// With k = 18, two-sided, all volumes updated each frame: what [`CullSettings`] has by default.
+    /// With k = 18, two-sided, all volumes updated each frame: what a culler has by default.
     pub fn new(setup: &Setup<'_>, strategy: Strategy) -> miette::Result<Self> {
-        let settings = CullSettings {
-            strategy,
-            pairs: Finder::Grid,
-            ..CullSettings::default()
-        };
-        let bodies = &setup.first.bodies;
-        let culler = Culler::new(&setup.scene.shapes, bodies, &settings, Tier::detect())?;
-        Ok(Self(culler.with_threads(setup.threads)?))
+        let culler = Culler::builder()
+            .strategy(strategy)
+            .finder(Finder::Grid)
+            .threads(setup.threads)
+            .build(&setup.scene.shapes, &setup.first.bodies)?;
+        Ok(Self(culler))
     }
 }
 
 impl Peer for Culled {
     fn frame(&mut self, frame: &Frame) {
-        self.0.cull(&frame.bodies);
+        let pairs = self.0.cull(&frame.bodies);
+        assert!(pairs.is_ok(), "{pairs:?}: frames keep their bodies");
     }
 
     fn pairs(&self) -> Vec<[u32; 2]> {
