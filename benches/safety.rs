@@ -52,7 +52,7 @@ fn main() {
     }
 }
 
-/// Seconds a frame with margins, without, and their ratios in ascending order, round by round.
+/// Seconds per frame with margins, without, and their ratios in ascending order, round by round.
 fn compare(mut cullers: [Culler; 2], frames: &[Bodies]) -> [Vec<f64>; 3] {
     let mut seconds = [vec![], vec![]];
     for round in 0..=ROUNDS {

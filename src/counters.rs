@@ -2,6 +2,10 @@
 //!
 //! A test counts when a candidate pair is handed to it, so counts are equal on every CPU, tier and thread count.
 
+use std::ops::AddAssign;
+
+use crate::settings::TestedVolume;
+
 /// Work done on one volume. Sums over frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "lab", derive(serde::Serialize))]
@@ -12,6 +16,14 @@ pub struct VolumeCounters {
     pub tests: u64,
     /// Pairs that the test let through.
     pub hits: u64,
+}
+
+impl AddAssign for VolumeCounters {
+    fn add_assign(&mut self, more: Self) {
+        self.updates += more.updates;
+        self.tests += more.tests;
+        self.hits += more.hits;
+    }
 }
 
 /// All counters of a run.
@@ -33,6 +45,31 @@ pub struct Counters {
     pub reported: u64,
 }
 
+impl Counters {
+    /// Those of one volume.
+    #[must_use]
+    pub fn of(&self, volume: TestedVolume) -> &VolumeCounters {
+        match volume {
+            TestedVolume::Sphere => &self.sphere,
+            TestedVolume::OrDop => &self.ordop,
+            TestedVolume::Aabb => &self.aabb,
+            TestedVolume::KDop => &self.kdop,
+            TestedVolume::Obb => &self.obb,
+        }
+    }
+
+    /// The same, to count on.
+    pub fn of_mut(&mut self, volume: TestedVolume) -> &mut VolumeCounters {
+        match volume {
+            TestedVolume::Sphere => &mut self.sphere,
+            TestedVolume::OrDop => &mut self.ordop,
+            TestedVolume::Aabb => &mut self.aabb,
+            TestedVolume::KDop => &mut self.kdop,
+            TestedVolume::Obb => &mut self.obb,
+        }
+    }
+}
+
 /// Wall time by stage, in seconds. Sums over frames, except for `construct`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "lab", derive(serde::Serialize))]
@@ -45,7 +82,7 @@ pub struct Seconds {
     pub update: f64,
     /// Finding candidates and the first volume test.
     pub pair_finding: f64,
-    /// or-DOP tests (with `s-dop-sequential`, measured a block of pairs at a time).
+    /// or-DOP tests (with `s-dop-sequential`, timed block by block).
     pub ordop: f64,
     /// Culling: update, pair finding and or-DOP tests. Without construction and effects.
     pub total: f64,
@@ -66,7 +103,7 @@ impl Seconds {
     }
 }
 
-/// Unordered pairs of `bodies` bodies that are not both static: all-pairs' Nv a frame.
+/// Unordered pairs of `bodies` bodies that are not both static: all-pairs' Nv per frame.
 #[must_use]
 pub const fn pair_count(bodies: u64, statics: u64) -> u64 {
     (bodies * bodies.saturating_sub(1) - statics * statics.saturating_sub(1)) / 2

@@ -2,6 +2,9 @@
 
 use crate::simd::MAX_WIDTH;
 
+/// Room of the smallest list that has any.
+const SMALLEST: usize = 1024;
+
 /// A list of body pairs as two columns. It grows as needed: a pair is never dropped for want of room.
 ///
 /// Kernels write a whole vector and then advance by the lanes they kept, so the columns always have
@@ -68,11 +71,45 @@ impl PairList {
 
     /// Appends another list.
     pub fn append(&mut self, other: &Self) {
-        let n = other.len;
-        let (first, second) = self.room(n);
-        first[..n].copy_from_slice(other.first());
-        second[..n].copy_from_slice(other.second());
-        self.advance(n);
+        self.append_all(std::iter::once(other));
+    }
+
+    /// Appends other lists, one after the other. The list grows once, by what they take.
+    pub(crate) fn append_all<'a>(&mut self, others: impl Iterator<Item = &'a Self> + Clone) {
+        let pairs = others.clone().map(Self::len).sum::<usize>();
+        if pairs == 0 {
+            return;
+        }
+        let needed = self.len + pairs + MAX_WIDTH;
+        if needed > self.first.len() {
+            self.resize(needed);
+        }
+        for other in others {
+            let n = other.len;
+            let (first, second) = self.room(n);
+            first[..n].copy_from_slice(other.first());
+            second[..n].copy_from_slice(other.second());
+            self.advance(n);
+        }
+    }
+
+    /// Gives back the memory behind the last pair.
+    pub fn shrink_to_fit(&mut self) {
+        let size = if self.len == 0 {
+            0
+        } else {
+            self.len + MAX_WIDTH
+        };
+        for column in [&mut self.first, &mut self.second] {
+            column.truncate(size);
+            column.shrink_to_fit();
+        }
+    }
+
+    /// Bytes that the list has taken, used or not.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        (self.first.capacity() + self.second.capacity()) * size_of::<u32>()
     }
 
     /// Replaces every index from pair `start` on by its entry in `names`.
@@ -101,11 +138,17 @@ impl PairList {
         debug_assert!(self.len + MAX_WIDTH <= self.first.len());
     }
 
+    /// At least by an eighth, so that a list which grows pair by pair is seldom copied.
     #[cold]
     fn grow(&mut self, needed: usize) {
-        let size = needed.next_power_of_two().max(1024);
-        self.first.resize(size, 0);
-        self.second.resize(size, 0);
+        self.resize(needed.max(self.first.len() / 8 * 9).max(SMALLEST));
+    }
+
+    fn resize(&mut self, size: usize) {
+        for column in [&mut self.first, &mut self.second] {
+            column.reserve_exact(size.saturating_sub(column.len()));
+            column.resize(size, 0);
+        }
     }
 }
 
@@ -132,5 +175,28 @@ mod tests {
         twice.append(&list);
         assert_eq!(twice.len(), 10_000);
         assert_eq!(twice.first()[9_999], 4_999);
+    }
+
+    #[test]
+    fn a_list_takes_little_more_than_it_needs_and_gives_it_back() {
+        let mut list = PairList::default();
+        for pair in 0..100_000 {
+            list.push(pair, pair + 1);
+            let needed = 8 * (list.len() + MAX_WIDTH);
+            assert!(list.bytes() <= (needed / 8 * 9).max(8 * SMALLEST), "{pair}");
+        }
+        let mut joined = PairList::default();
+        joined.append_all([&list, &list].into_iter());
+        assert_eq!(joined.bytes(), 8 * (200_000 + MAX_WIDTH));
+        joined.clear();
+        joined.push(3, 4);
+        joined.shrink_to_fit();
+        assert_eq!(joined.bytes(), 8 * (1 + MAX_WIDTH));
+        assert_eq!(joined.iter().collect::<Vec<_>>(), [[3, 4]]);
+        joined.clear();
+        joined.shrink_to_fit();
+        assert_eq!(joined.bytes(), 0);
+        joined.append_all([&list].into_iter());
+        assert_eq!(joined.second(), list.second());
     }
 }

@@ -10,12 +10,23 @@ use std::sync::Mutex;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::simd::Tier;
+
 /// The fewest pieces of a column for which waking a thread pays.
 const FEWEST_PIECES: usize = 8;
 
 /// The caller's thread, or it and a pool of others.
 #[derive(Debug, Default)]
 pub struct Threads(Option<ThreadPool>);
+
+/// What work runs on: the CPU tier that kernels are compiled for, and the threads.
+#[derive(Clone, Copy, Debug)]
+pub struct Executor<'a> {
+    /// Of the kernels.
+    pub tier: Tier,
+    /// The calling thread, or it and a pool of others.
+    pub pool: &'a Threads,
+}
 
 /// Threads that the system refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, miette::Diagnostic)]
@@ -44,6 +55,12 @@ impl Threads {
                 reason: error.to_string(),
             }),
         }
+    }
+
+    /// These threads with kernels of a tier.
+    #[must_use]
+    pub fn executor(&self, tier: Tier) -> Executor<'_> {
+        Executor { tier, pool: self }
     }
 
     /// Number of threads.

@@ -1,4 +1,4 @@
-//! Bodies for pair finders: 1.5 sphere partners each, which move a tenth of the smallest radius a frame.
+//! Bodies for pair finders: 1.5 sphere partners each, which move a tenth of the smallest radius per frame.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

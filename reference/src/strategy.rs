@@ -27,7 +27,7 @@ pub enum Strategy<'a> {
     Sequential,
     /// The same from the listed sphere hits.
     Batch,
-    /// Spheres overlap and (neither body is of interest, or or-DOPs overlap). One flag a body.
+    /// Spheres overlap and (neither body is of interest, or or-DOPs overlap). One flag per body.
     ObjectOfInterest(&'a [bool]),
     /// Spheres overlap and (untested, or or-DOPs overlap). The sphere hits tested before the budget ended, sorted.
     TimeCritical(&'a [(u32, u32)]),
@@ -124,7 +124,7 @@ fn volumes(hit: bool, counters: &mut Counters) -> bool {
     hit
 }
 
-/// The plain f64 formulas over one frame of bodies. What a pose fixes is computed once a body, when first asked for.
+/// The plain f64 formulas over one frame of bodies. What a pose fixes is computed once per body, when first asked for.
 pub struct Plain<'a> {
     bodies: &'a [Body<'a>],
     overlap: Overlap,

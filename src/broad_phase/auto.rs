@@ -1,10 +1,10 @@
 //! `auto`: which finder suits a scene.
 //!
-//! Picked once, before the first frame, by numbers of the scene alone, so that counters depend on no machine. Measured on
-//! one thread at 1.5 sphere partners a body: the grid passes all pairs at 64 bodies of one size (both 1.2 µs) and, with a
-//! level for each size, at about 100 of radii 1 : 1000. The sweep stayed behind the grid at every number of bodies from 16
-//! to 10,000, in cubes, planes, lines and clusters, with one giant and with radii 1 : 1000 (1.4 to 9 times), so it is
-//! there to be compared with and never picked.
+//! Picked once, before the first frame, by numbers of the scene alone, so that counters depend on no machine. Measured
+//! on one thread at 1.5 sphere partners per body: the grid passes all pairs at 64 bodies of one size (both 1.2 µs) and,
+//! with a level for each size, at about 100 of radii 1 : 1000. The sweep stayed behind the grid at every number of
+//! bodies from 16 to 10,000, in cubes, planes, lines and clusters, with one giant and with radii 1 : 1000 (1.4 to 9
+//! times), so it is there to be compared with and never picked.
 
 use crate::settings::Finder;
 

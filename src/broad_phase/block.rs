@@ -1,7 +1,8 @@
 //! Scattered candidates: the short runs of sixteen neighbouring slots, gathered so that they fill vectors.
 //!
-//! At 1.5 sphere partners a body a run holds one candidate in the mean. A vector a run then leaves 15 of 16 lanes idle
-//! (90 cycles a body, measured); written one behind the other, the runs of sixteen bodies fill five vectors (19 cycles).
+//! At 1.5 sphere partners per body a run holds one candidate in the mean. A vector for each run then leaves 15 of 16
+//! lanes idle (90 cycles per body, measured); written one behind the other, the runs of sixteen bodies fill five
+//! vectors (19 cycles).
 
 use std::ops::Range;
 
@@ -91,7 +92,7 @@ impl Block {
 }
 
 /// Writes runs into a block. Its place is a pair of local numbers, which registers can hold: kept in the block, each run
-/// waits for the last one's store (25 cycles a body, measured).
+/// waits for the last one's store (25 cycles per body, measured).
 pub struct Pen<'a> {
     block: &'a mut Block,
     len: usize,

@@ -9,8 +9,8 @@ use std::ops::Range;
 
 use crate::bodies::Places;
 use crate::settings::Finder;
-use crate::simd::{Lanes, MAX_WIDTH, Tier};
-use crate::threads::Threads;
+use crate::simd::{Lanes, MAX_WIDTH};
+use crate::threads::Executor;
 
 mod all_pairs;
 mod auto;
@@ -172,15 +172,14 @@ impl PairFinder {
     /// reports lies outside two balls which meet.
     pub fn arrange(
         &mut self,
-        tier: Tier,
-        pool: &Threads,
+        executor: Executor<'_>,
         places: &Places,
         balls: &[[f32; 4]],
         names: &[u32],
     ) {
         match self {
             Self::AllPairs(finder) => finder.arrange(places, balls, names),
-            Self::Grid(finder) => finder.arrange(tier, pool, balls, names),
+            Self::Grid(finder) => finder.arrange(executor, balls, names),
             Self::Sweep(finder) => finder.arrange(places, balls, names),
         }
     }

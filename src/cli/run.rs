@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use sdop::counters::{Counters, Seconds, VolumeCounters};
+use sdop::counters::{Counters, Seconds};
 use sdop::lab::effects::EffectReport;
 use sdop::lab::scene::Scene;
 use sdop::lab::simulate::{Simulation, Summary};
-use sdop::settings::{Budget, CullSettings, Interest, Strategy};
+use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
 use sdop::simd::Tier;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -98,18 +98,14 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(recorder) = recorder {
         recorder.finish()?;
     }
-    let report = report(&scene, (tier, threads), &summary);
+    let report = report(&scene, tier, threads, &summary);
     emit(args.format, &report, |report| {
         text(report, &scene, &summary)
     })?;
     Ok(Outcome::Passed)
 }
 
-fn report<'a>(
-    scene: &'a Scene,
-    (tier, threads): (Tier, usize),
-    summary: &'a Summary,
-) -> Report<'a> {
+fn report<'a>(scene: &'a Scene, tier: Tier, threads: usize, summary: &'a Summary) -> Report<'a> {
     let CullSettings {
         strategy,
         pairs,
@@ -153,14 +149,10 @@ fn effect_line(effect: &EffectReport) -> EffectLine {
     }
 }
 
-/// The homogeneous volume of a strategy that has no or-DOP: its name in counters, and its counters.
-fn homogeneous(strategy: Strategy, counters: &Counters) -> Option<(&'static str, &VolumeCounters)> {
-    match strategy {
-        Strategy::Aabb => Some(("aabb", &counters.aabb)),
-        Strategy::KDop => Some(("kdop", &counters.kdop)),
-        Strategy::Obb => Some(("obb", &counters.obb)),
-        _ => None,
-    }
+/// The volume of a strategy that has neither spheres nor or-DOPs.
+fn other_volume(strategy: Strategy) -> Option<TestedVolume> {
+    let is_other = |volume: &_| !matches!(volume, TestedVolume::Sphere | TestedVolume::OrDop);
+    strategy.scheme().volumes().find(is_other)
 }
 
 fn counters(strategy: Strategy, counters: &Counters) -> Map<String, Value> {
@@ -175,7 +167,8 @@ fn counters(strategy: Strategy, counters: &Counters) -> Map<String, Value> {
     put("ordop_hits".into(), ordop.hits);
     put("untested".into(), counters.untested);
     put("reported".into(), counters.reported);
-    if let Some((volume, counters)) = homogeneous(strategy, counters) {
+    if let Some(volume) = other_volume(strategy) {
+        let counters = counters.of(volume);
         put(format!("{volume}_updates"), counters.updates);
         put(format!("{volume}_tests"), counters.tests);
         put(format!("{volume}_hits"), counters.hits);
@@ -262,7 +255,7 @@ fn volumes(strategy: Strategy, counters: &Counters) -> comfy_table::Table {
     let used = [
         Some(("sphere", &counters.sphere)),
         Some(("or-dop", &counters.ordop)),
-        homogeneous(strategy, counters),
+        other_volume(strategy).map(|volume| (volume.name(), counters.of(volume))),
     ];
     for (name, volume) in used.into_iter().flatten() {
         let share = match volume.tests {

@@ -22,6 +22,15 @@ pub enum CullError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Threads(#[from] ThreadsError),
+    /// More pairs than the caller allows.
+    #[error("{pairs} pairs, and at most {limit} are allowed")]
+    #[diagnostic(help("raise the limit, or take the pairs in portions with `cull_in_portions`"))]
+    TooManyPairs {
+        /// How many pairs the frame has.
+        pairs: u64,
+        /// How many it may have.
+        limit: usize,
+    },
     /// Another set of bodies than the culler was made for.
     #[error("{what}: a culler keeps the set of bodies that it was made for")]
     #[diagnostic(help(

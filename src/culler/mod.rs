@@ -9,6 +9,7 @@ mod builder;
 mod error;
 pub(crate) mod models;
 mod needs;
+mod portions;
 
 pub use builder::CullerBuilder;
 pub use error::CullError;
@@ -25,9 +26,9 @@ use crate::broad_phase::{PairFinder, Reorder};
 use crate::counters::{Counters, Seconds};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
-use crate::settings::{CullSettings, Finder, Interest, Overlap, Strategy, Updates};
+use crate::settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates};
 use crate::simd::Tier;
-use crate::strategy::{self, Memory, Stage, Worker};
+use crate::strategy::{self, Inputs, Output, Scratch, Totals};
 use crate::threads::Threads;
 use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
 use crate::volume::Shape;
@@ -36,10 +37,10 @@ use crate::volume::Shape;
 #[derive(Debug)]
 pub struct Culler {
     settings: CullSettings,
+    scheme: Scheme,
     needs: Needs,
     tier: Tier,
     pool: Threads,
-    workers: Vec<Worker>,
     models: Models,
     places: Places,
     groups: Option<Vec<Groups>>,
@@ -53,8 +54,7 @@ pub struct Culler {
     intervals: Option<Intervals>,
     interval_slots: IntervalSlots,
     interest: Vec<bool>,
-    memory: Memory,
-    candidates: PairList,
+    scratch: Scratch,
     pairs: PairList,
     stamp: u32,
     counters: Counters,
@@ -88,16 +88,17 @@ impl Culler {
         let start = Instant::now();
         let n = bodies.shape.len();
         let (models, places) = (Models::new(shapes, settings), Places::new(bodies));
-        let population = needs::population(settings.strategy, &models, &places);
+        let scheme = settings.strategy.scheme();
+        let population = needs::population(scheme, &models, &places);
         let finder = PairFinder::new(settings.pairs, &population);
-        let needs = Needs::of(settings, finder.name());
+        let needs = Needs::of(scheme, settings.k, finder.name());
         let directions = needs.intervals;
         let mut culler = Self {
             settings: settings.clone(),
+            scheme,
             needs,
             tier,
             pool,
-            workers: Vec::new(),
             models,
             places,
             groups: None,
@@ -109,8 +110,7 @@ impl Culler {
             intervals: directions.map(|directions| Intervals::new(directions, shapes, n)),
             interval_slots: IntervalSlots::default(),
             interest: vec![false; n],
-            memory: Memory::default(),
-            candidates: PairList::default(),
+            scratch: Scratch::default(),
             pairs: PairList::default(),
             stamp: 1,
             counters: Counters::default(),
@@ -162,7 +162,7 @@ impl Culler {
             intervals.resize(n);
         }
         self.interest.resize(bodies.len(), false);
-        let population = needs::population(self.settings.strategy, &self.models, &self.places);
+        let population = needs::population(self.scheme, &self.models, &self.places);
         self.finder = PairFinder::new(self.settings.pairs, &population);
         self.update_volumes(bodies, 0..n);
         self.reorder(bodies);
@@ -208,25 +208,31 @@ impl Culler {
     pub fn cull(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
         let start = Instant::now();
         self.check_set(bodies)?;
+        let mut pairs = std::mem::take(&mut self.pairs);
+        pairs.clear();
+        self.cull_into(bodies, Output::List(&mut pairs), start);
+        self.counters.reported += pairs.len() as u64;
+        self.pairs = pairs;
+        Ok(&self.pairs)
+    }
+
+    /// Culls one frame, which began at `start`, and hands its pairs to `output`.
+    fn cull_into(&mut self, bodies: &Bodies, output: Output<'_>, start: Instant) {
         self.stamp += 1;
-        self.pairs.clear();
         self.reorder(bodies);
         let reordered = Instant::now();
         self.update_volumes(bodies, 0..self.places.moving);
         self.count_updates();
         let updated = Instant::now();
-        self.seconds.update += (updated - reordered).as_secs_f64();
-        let before = (self.seconds.ordop, self.seconds.update);
-
         self.arrange();
-        self.run(bodies);
+        let totals = self.run(bodies, output);
 
-        self.counters.reported += self.pairs.len() as u64;
-        let refined = (self.seconds.ordop - before.0) + (self.seconds.update - before.1);
         let finding = (reordered - start) + updated.elapsed();
-        self.seconds.pair_finding += finding.as_secs_f64() - refined;
+        let refining = totals.refining_seconds + totals.update_seconds;
+        self.seconds.update += (updated - reordered).as_secs_f64() + totals.update_seconds;
+        self.seconds.ordop += totals.refining_seconds;
+        self.seconds.pair_finding += finding.as_secs_f64() - refining;
         self.seconds.total += start.elapsed().as_secs_f64();
-        Ok(&self.pairs)
     }
 
     /// Checks that there are as many bodies as there were.
@@ -248,7 +254,7 @@ impl Culler {
 
     /// For strategies that list it, the potentially colliding set of the last frame in the order of refinement.
     pub fn potentially_colliding(&self) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
-        self.candidates.iter().map(|pair| {
+        self.scratch.candidates.iter().map(|pair| {
             let [a, b] = pair.map(|place| self.places.body[place as usize]);
             [a.min(b), a.max(b)]
         })
@@ -273,8 +279,8 @@ impl Culler {
 
     /// Lets the finder put bodies in other places. What has moved is updated anyway, unless it is static.
     fn reorder(&mut self, bodies: &Bodies) {
-        if self.settings.strategy == Strategy::None {
-            // The control arranges nothing, so there is no order to follow.
+        if self.scheme.flow == Flow::Nothing {
+            // Nothing is arranged, so there is no order to follow.
             return;
         }
         let by_place = self.names_are_places();
@@ -298,6 +304,7 @@ impl Culler {
     /// needs them.
     fn update_volumes(&mut self, bodies: &Bodies, range: std::ops::Range<usize>) {
         let (frames, places) = (&self.models.frames, &self.places);
+        let executor = self.pool.executor(self.tier);
         if self.needs.balls {
             let balls = &mut self.balls;
             update_spheres(&self.pool, balls, frames, bodies, places, range.clone());
@@ -316,42 +323,28 @@ impl Culler {
             let eager = start.min(range.end)..range.end;
             let balls = if self.needs.balls { &*self.balls } else { &[] };
             let posed = Posed { balls, ..posed };
-            self.rows
-                .update(self.tier, &self.pool, posed, eager, self.stamp);
+            self.rows.update(executor, posed, eager, self.stamp);
         }
         if let Some(intervals) = &mut self.intervals {
-            intervals.update(self.tier, &self.pool, &mut self.balls, posed, range);
+            intervals.update(executor, &mut self.balls, posed, range);
         }
     }
 
     fn count_updates(&mut self) {
         let moved = self.places.moving as u64;
-        let spheres_first = self.needs.balls && !self.is_homogeneous();
-        self.counters.sphere.updates += if spheres_first { moved } else { 0 };
-        let eager = self.needs.rows && self.settings.updates == Updates::Eager;
-        let oriented = match self.settings.strategy {
-            Strategy::Obb => &mut self.counters.obb,
-            _ => &mut self.counters.ordop,
-        };
-        oriented.updates += if eager { moved } else { 0 };
-        match self.settings.strategy {
-            Strategy::Aabb => self.counters.aabb.updates += moved,
-            Strategy::KDop => self.counters.kdop.updates += moved,
-            _ => {}
+        if let Some(volume) = self.scheme.first {
+            self.counters.of_mut(volume).updates += moved;
         }
-    }
-
-    /// Whether one volume alone, and not the sphere, decides.
-    fn is_homogeneous(&self) -> bool {
-        matches!(
-            self.settings.strategy,
-            Strategy::OrDop | Strategy::Obb | Strategy::Aabb | Strategy::KDop
-        )
+        if let Some(volume) = self.scheme.refining
+            && self.settings.updates == Updates::Eager
+        {
+            self.counters.of_mut(volume).updates += moved;
+        }
     }
 
     /// Brings the bodies, and the volumes of the first test, into slot order.
     fn arrange(&mut self) {
-        if self.settings.strategy == Strategy::None {
+        if self.scheme.flow == Flow::Nothing {
             return;
         }
         let names = if self.names_are_places() {
@@ -359,15 +352,17 @@ impl Culler {
         } else {
             &self.places.body
         };
+        let executor = self.pool.executor(self.tier);
         self.finder
-            .arrange(self.tier, &self.pool, &self.places, &self.balls, names);
+            .arrange(executor, &self.places, &self.balls, names);
         if let Some(intervals) = &self.intervals {
             let order = &self.finder.slots().names[..self.places.len()];
             self.interval_slots.fill(order, &intervals.ends);
         }
     }
 
-    fn run(&mut self, bodies: &Bodies) {
+    /// Finds and tests pairs.
+    fn run(&mut self, bodies: &Bodies, output: Output<'_>) -> Totals {
         if let Some(interest) = &self.settings.interest {
             let frame = |body: usize| &self.models.frames[bodies.shape[body] as usize];
             let centre = |body: usize| {
@@ -377,50 +372,40 @@ impl Culler {
             };
             strategy::mark(interest, bodies, centre, &mut self.interest);
         }
-        let overlap = match self.settings.strategy {
-            Strategy::Obb => Overlap::Full,
-            _ => self.settings.overlap,
-        };
-        let (tests_before, names_are_places) = (self.first_tests(), self.names_are_places());
-        let mut stage = Stage {
-            tier: self.tier,
-            pool: &self.pool,
-            workers: &mut self.workers,
+        let inputs = Inputs {
+            executor: self.pool.executor(self.tier),
+            settings: &self.settings,
             finder: &self.finder,
-            names_are_places,
-            places: &self.places,
+            names_are_places: self.names_are_places(),
+            posed: Posed {
+                frames: &self.models.frames,
+                bodies,
+                places: &self.places,
+                balls: if self.needs.balls { &self.balls } else { &[] },
+            },
             groups: self.groups.as_deref(),
-            bodies,
             intervals: &self.interval_slots,
-            spheres: if self.needs.balls { &self.balls } else { &[] },
-            rows: &mut self.rows,
-            frames: &self.models.frames,
             tables: &self.models.tables,
-            overlap,
-            lazy: self.settings.updates == Updates::Lazy,
-            stamp: self.stamp,
             interest: &self.interest,
-            budget: self.settings.budget,
-            order: self.settings.order,
-            memory: &mut self.memory,
-            candidates: &mut self.candidates,
-            counters: &mut self.counters,
-            seconds: &mut self.seconds,
-            out: &mut self.pairs,
+            stamp: self.stamp,
         };
-        strategy::cull(self.settings.strategy, &mut stage);
-        self.finder.observe(self.first_tests() - tests_before);
+        let totals = strategy::cull(inputs, &mut self.rows, &mut self.scratch, output);
+        self.count(&totals);
+        totals
     }
 
-    /// How many candidates the first test has had.
-    fn first_tests(&self) -> u64 {
-        let counters = &self.counters;
-        match self.settings.strategy {
-            Strategy::OrDop => counters.ordop.tests,
-            Strategy::Obb => counters.obb.tests,
-            Strategy::Aabb => counters.aabb.tests,
-            Strategy::KDop => counters.kdop.tests,
-            _ => counters.sphere.tests,
+    fn count(&mut self, totals: &Totals) {
+        if let Some(volume) = self.scheme.first {
+            *self.counters.of_mut(volume) += totals.first;
         }
+        if let Some(volume) = self.scheme.refining {
+            *self.counters.of_mut(volume) += totals.refining;
+        }
+        self.counters.untested += totals.untested;
+        let candidates = match self.scheme.first {
+            Some(_) => totals.first.tests,
+            None => totals.refining.tests,
+        };
+        self.finder.observe(candidates);
     }
 }

@@ -6,7 +6,7 @@
 use crate::overlap::ordop::SlabTables;
 use crate::overlap::ordop::reach::reach;
 use crate::rounding::up;
-use crate::settings::{CullSettings, Strategy};
+use crate::settings::CullSettings;
 use crate::update::ShapeFrame;
 use crate::volume::{DirectionSet, Hull, OrDop, Shape};
 
@@ -22,9 +22,10 @@ pub(crate) struct Models {
 }
 
 impl Models {
-    /// One model a shape. For [`Strategy::Obb`] a box takes the place of the or-DOP.
+    /// One model per shape. For oriented boxes a box takes the place of the or-DOP.
     pub fn new(shapes: &[Shape], settings: &CullSettings) -> Self {
-        let boxes = settings.strategy == Strategy::Obb;
+        let scheme = settings.strategy.scheme();
+        let boxes = scheme.has_boxes();
         let slabs = |shape: &Shape| {
             if boxes {
                 shape.obb(&Hull::of(&shape.vertices))
@@ -42,7 +43,7 @@ impl Models {
             frames: Vec::new(),
             tables: SlabTables::new(directions, shapes.iter().zip(&ordops)),
             ordops,
-            alone: boxes || settings.strategy == Strategy::OrDop,
+            alone: scheme.is_oriented_alone(),
         };
         for (number, (shape, ordop)) in shapes.iter().zip(&models.ordops).enumerate() {
             let frame = ShapeFrame::new(shape, &ordop.basis).numbered(number as u32);

@@ -1,46 +1,37 @@
-//! What a strategy asks of the other rooms: which volumes it looks at, and by which finder.
+//! What a strategy needs of the other rooms: which volumes are updated, and by which finder pairs are found.
 
 use super::models::Models;
 use crate::bodies::Places;
 use crate::broad_phase::Population;
-use crate::settings::{CullSettings, Finder, Strategy};
+use crate::settings::{Finder, Scheme, TestedVolume};
 use crate::volume::DirectionSet;
 
-/// Which volumes a strategy looks at.
+/// Which volumes are updated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Needs {
     /// Balls by place.
     pub balls: bool,
-    /// or-DOPs.
+    /// Rows: or-DOPs, or boxes.
     pub rows: bool,
     /// World-aligned slabs.
     pub intervals: Option<DirectionSet>,
 }
 
 impl Needs {
-    pub fn of(settings: &CullSettings, finder: Finder) -> Self {
-        let (balls, rows, intervals) = match settings.strategy {
-            Strategy::None => (false, false, None),
-            Strategy::Sphere => (true, false, None),
-            // Binned by balls, which a finder that doesn't bin can do without.
-            Strategy::OrDop | Strategy::Obb => (finder != Finder::AllPairs, true, None),
-            Strategy::Aabb => (false, false, Some(DirectionSet::K6)),
-            Strategy::KDop => (false, false, Some(settings.k)),
-            Strategy::SDopSequential
-            | Strategy::SDopBatch
-            | Strategy::SDopObjectOfInterest
-            | Strategy::SDopTimeCritical => (true, true, None),
-        };
+    /// Of a row of the table of strategies; `k` are the directions of a k-DOP.
+    pub fn of(scheme: Scheme, k: DirectionSet, finder: Finder) -> Self {
+        // Oriented volumes are binned by balls, which a finder that doesn't bin can do without.
+        let binned = scheme.is_oriented_alone() && finder != Finder::AllPairs;
         Self {
-            balls,
-            rows,
-            intervals,
+            balls: binned || scheme.first == Some(TestedVolume::Sphere),
+            rows: scheme.refining.is_some(),
+            intervals: scheme.slabs(k),
         }
     }
 }
 
-/// What `auto` looks at.
-pub(super) fn population(strategy: Strategy, models: &Models, places: &Places) -> Population {
+/// What `auto` chooses a finder by.
+pub(super) fn population(scheme: Scheme, models: &Models, places: &Places) -> Population {
     let radii = places
         .shape
         .iter()
@@ -48,6 +39,6 @@ pub(super) fn population(strategy: Strategy, models: &Models, places: &Places) -
     Population {
         bodies: places.len(),
         radii: radii.fold([f32::INFINITY, 0.0], |[lo, hi], r| [r.min(lo), r.max(hi)]),
-        cheap_test: !matches!(strategy, Strategy::OrDop | Strategy::Obb),
+        cheap_test: !scheme.is_oriented_alone(),
     }
 }

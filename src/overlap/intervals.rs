@@ -8,7 +8,8 @@ use super::SlotTest;
 use crate::broad_phase::Block;
 use crate::simd::{LANES, Lanes, MAX_WIDTH};
 
-/// World-aligned slabs in the pair finder's slot order: one column a direction, each padded by [`MAX_WIDTH`] finite entries.
+/// World-aligned slabs in the pair finder's slot order: one column per direction, each padded by [`MAX_WIDTH`] finite
+/// entries.
 #[derive(Clone, Debug, Default)]
 pub struct IntervalSlots {
     /// Lower ends, `lo[direction][slot]`.

@@ -1,5 +1,6 @@
 //! How a scene is culled: the `[cull]` table, whose keys are also the flags of the command line (design, section 2).
 
+mod scheme;
 #[cfg(feature = "lab")]
 mod text;
 
@@ -9,6 +10,7 @@ use thiserror::Error;
 pub use crate::choice::UnknownChoice;
 use crate::choice::choices;
 pub use crate::volume::{Axes, DirectionSet};
+pub use scheme::{Flow, Scheme, TestedVolume};
 
 choices! {
     /// Which volumes are tested, and in which order.
@@ -158,7 +160,7 @@ pub struct CullSettings {
     pub updates: Updates,
     /// The bodies of interest.
     pub interest: Option<Interest>,
-    /// The budget a frame of time-critical culling.
+    /// The budget per frame of time-critical culling.
     pub budget: Option<Budget>,
     /// How time-critical culling spends it.
     pub order: Order,
@@ -225,15 +227,16 @@ impl CullSettings {
             key,
             hint,
         };
-        let looks = self.strategy == Strategy::SDopObjectOfInterest
-            || (self.strategy == Strategy::SDopTimeCritical && self.order == Order::InterestFirst);
-        if looks && self.interest.is_none() {
+        let flow = self.strategy.scheme().flow;
+        let needs_interest = flow == Flow::OfInterest
+            || (flow == Flow::TimeCritical && self.order == Order::InterestFirst);
+        if needs_interest && self.interest.is_none() {
             return Err(missing(
                 "interest",
                 "list body indices, interest = [0], or a cone, interest = { body = 0, direction = [0, 0, 1], half_angle = 30 }",
             ));
         }
-        if self.strategy == Strategy::SDopTimeCritical && self.budget.is_none() {
+        if flow == Flow::TimeCritical && self.budget.is_none() {
             return Err(missing(
                 "budget",
                 "give budget = { tests = 1000 } or budget = { microseconds = 500 }",

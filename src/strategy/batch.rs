@@ -1,36 +1,86 @@
 //! S-DOP in batches (paper, section 4b): the potentially colliding set is listed first, then its or-DOPs are tested.
 //!
-//! Lazy updates need the whole set, and so flow this way under every strategy that refines.
+//! Lazy updates need the pairs before rows are made, and so flow this way under every strategy that refines. Where the
+//! output is in portions, so is the list.
 
-use std::mem::take;
+use super::interest::InterestFilter;
+use super::listing::{Listed, list};
+use super::output::Output;
+use super::refine::Refiner;
+use super::tasks::Task;
+use super::{Inputs, Scratch, Totals};
+use crate::pairs::PairList;
+use crate::update::OrDopRows;
 
-use super::Stage;
-use super::interest::Chosen;
-use super::listing::First;
-use super::workers::Done;
-
-/// Candidates that pass `first` are listed, then refined; with `interest`, only those that have a body of interest.
-pub(super) fn flow(stage: &mut Stage<'_>, first: First<'_>, interest: Option<&[bool]>) -> Done {
-    let mut done = stage.list_candidates(first);
-    let (candidates, mut out) = (take(stage.candidates), take(stage.out));
-    done.refined = match interest {
-        None => stage.refine_list(&candidates, &mut out),
-        Some(interest) => {
-            let chosen = Chosen {
-                pairs: &candidates,
-                body: &stage.places.body,
-                interest,
+/// Candidates that pass the first test are listed, then refined; with `interest`, only those that have a body of interest.
+pub(super) fn flow(
+    inputs: Inputs<'_>,
+    rows: &mut OrDopRows,
+    scratch: &mut Scratch,
+    interest: Option<&[bool]>,
+    output: Output<'_>,
+) -> Totals {
+    let Scratch {
+        tasks,
+        candidates,
+        selected,
+        survivors,
+        ..
+    } = scratch;
+    candidates.clear();
+    let mut batch = Batch {
+        refiner: Refiner::new(inputs, rows),
+        body: inputs.bodies_by_place(),
+        interest,
+        selected,
+        survivors,
+    };
+    let listed = match output {
+        Output::List(out) => {
+            let listed = list(inputs, Listed::Places, tasks, Output::List(candidates));
+            batch.refine(candidates, Some(tasks), out);
+            listed
+        }
+        Output::Portions(sink) => {
+            let mut out = PairList::default();
+            let mut take = |portion: &mut PairList| {
+                out.clear();
+                batch.refine(portion, None, &mut out);
+                sink(&mut out);
             };
-            // Listing has made a worker; its buffers stay from frame to frame.
-            let mut worker = take(&mut stage.workers[0]);
-            chosen.select(&mut worker.selected);
-            worker.passed.clear();
-            let refined = stage.refine_list(&worker.selected, &mut worker.passed);
-            chosen.merge(&worker.passed, &mut out);
-            stage.workers[0] = worker;
-            refined
+            list(inputs, Listed::Places, tasks, Output::Portions(&mut take))
         }
     };
-    (*stage.candidates, *stage.out) = (candidates, out);
-    done
+    Totals {
+        first: listed.first,
+        ..batch.refiner.totals
+    }
+}
+
+/// Refines listed candidates.
+struct Batch<'a> {
+    refiner: Refiner<'a>,
+    /// The body in each place.
+    body: &'a [u32],
+    interest: Option<&'a [bool]>,
+    selected: &'a mut PairList,
+    survivors: &'a mut PairList,
+}
+
+impl Batch<'_> {
+    /// Appends what is reported of `candidates` to `out`, in their order; on all threads if their `tasks` are at hand.
+    fn refine(&mut self, candidates: &PairList, tasks: Option<&mut Vec<Task>>, out: &mut PairList) {
+        let Some(interest) = self.interest else {
+            return self.refiner.refine(candidates, tasks, out);
+        };
+        let filter = InterestFilter {
+            pairs: candidates,
+            body: self.body,
+            interest,
+        };
+        filter.select(self.selected);
+        self.survivors.clear();
+        self.refiner.refine(self.selected, tasks, self.survivors);
+        filter.merge(self.survivors, out);
+    }
 }

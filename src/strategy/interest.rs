@@ -28,29 +28,29 @@ pub(crate) fn mark(
     }
 }
 
-/// Pairs of places, some of which have a body of interest.
-pub(super) struct Chosen<'a> {
+/// Pairs of places, of which only those with a body of interest are refined.
+pub(super) struct InterestFilter<'a> {
     pub pairs: &'a PairList,
     /// The body in each place.
     pub body: &'a [u32],
     pub interest: &'a [bool],
 }
 
-impl Chosen<'_> {
+impl InterestFilter<'_> {
     /// Every pair with its bodies, and whether one of them is of interest.
-    fn judged(&self) -> impl Iterator<Item = ([u32; 2], [u32; 2], bool)> {
+    fn classified(&self) -> impl Iterator<Item = ([u32; 2], [u32; 2], bool)> {
         self.pairs.iter().map(|places| {
             let bodies = places.map(|place| self.body[place as usize]);
-            let chosen = bodies.iter().any(|&body| self.interest[body as usize]);
-            (places, bodies, chosen)
+            let of_interest = bodies.iter().any(|&body| self.interest[body as usize]);
+            (places, bodies, of_interest)
         })
     }
 
     /// Lists the pairs that are to be refined.
     pub fn select(&self, selected: &mut PairList) {
         selected.clear();
-        for ([i, j], _, chosen) in self.judged() {
-            if chosen {
+        for ([i, j], _, of_interest) in self.classified() {
+            if of_interest {
                 selected.push(i, j);
             }
         }
@@ -60,8 +60,8 @@ impl Chosen<'_> {
     /// must not show where blocks, and so threads, begin.
     pub fn merge(&self, passed: &PairList, out: &mut PairList) {
         let mut passed = passed.iter().peekable();
-        for (_, [a, b], chosen) in self.judged() {
-            if !chosen || passed.next_if_eq(&[a, b]).is_some() {
+        for (_, [a, b], of_interest) in self.classified() {
+            if !of_interest || passed.next_if_eq(&[a, b]).is_some() {
                 out.push(a, b);
             }
         }

@@ -2,13 +2,16 @@
 
 use std::ops::Range;
 
-use super::Stage;
-use super::workers::{Done, share};
+use super::output::{Outlet, Output};
+use super::tasks::{Task, split_work};
+use super::{Inputs, Scratch, Totals};
 use crate::bodies::Groups;
 use crate::broad_phase::{Block, FirstTest, MOST_CANDIDATES, PairFinder};
+use crate::counters::VolumeCounters;
 use crate::overlap::SlotTest;
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
+use crate::settings::TestedVolume;
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 
 /// Slots of a run that are tested before their hits are listed.
@@ -16,152 +19,149 @@ const PIECE: usize = MOST_CANDIDATES;
 
 /// The first volume test of a strategy.
 #[derive(Clone, Copy)]
-pub(super) enum First<'a> {
-    /// Spheres.
-    Sphere,
+enum First<'a> {
+    /// Spheres, which the finder has in its slots.
+    Spheres,
     /// World-aligned slabs.
     Intervals(&'a IntervalSlots),
-    /// None: every candidate goes on.
-    Every,
+    /// None: every candidate passes.
+    PassAll,
 }
 
-/// What is listed, from which part of the finder's work.
+/// What is listed of a pair of slots.
 #[derive(Clone, Copy)]
-pub(super) struct Source<'a> {
-    pub tier: Tier,
-    pub finder: &'a PairFinder,
-    pub first: First<'a>,
-    /// The body in each place where the slots' names are places.
-    pub body: Option<&'a [u32]>,
-    /// Each body's groups where not all collide with all.
-    pub groups: Option<&'a [Groups]>,
+pub(super) enum Listed {
+    /// Its bodies, the lower first: what is reported.
+    Bodies,
+    /// Its places, that of the lower body first: what is refined.
+    Places,
 }
 
-impl Source<'_> {
-    /// Lists the pairs of some parts that pass the first test. Returns the number of tests.
-    pub(super) fn list(&self, parts: Range<usize>, out: &mut PairList) -> u64 {
-        self.drained(parts, out, usize::MAX, &mut |_| {})
+/// The candidates of a frame, the test that they must pass, and what is listed of those that do.
+#[derive(Clone, Copy)]
+pub(super) struct Listing<'a> {
+    tier: Tier,
+    finder: &'a PairFinder,
+    first: First<'a>,
+    listed: Listed,
+    /// The body in each place where the slots' names are places.
+    body: Option<&'a [u32]>,
+    /// Each body's groups where not all collide with all.
+    groups: Option<&'a [Groups]>,
+}
+
+impl<'a> Listing<'a> {
+    pub(super) fn new(inputs: Inputs<'a>, listed: Listed) -> Self {
+        let first = match inputs.settings.strategy.scheme().first {
+            None => First::PassAll,
+            Some(TestedVolume::Sphere) => First::Spheres,
+            Some(_) => First::Intervals(inputs.intervals),
+        };
+        let body = &inputs.posed.places.body;
+        Self {
+            tier: inputs.executor.tier,
+            finder: inputs.finder,
+            first,
+            listed,
+            body: inputs.names_are_places.then_some(body),
+            groups: inputs.groups,
+        }
     }
 
-    /// As [`Self::list`]; `take` gets the list whenever it has reached `at` pairs, and empties it.
-    pub(super) fn drained(
+    /// Lists the pairs of some parts of the finder's work that pass the first test, and counts tests and hits. `flush`
+    /// gets the list whenever it has reached `enough` pairs.
+    pub(super) fn run(
         &self,
         parts: Range<usize>,
         out: &mut PairList,
-        at: usize,
-        take: &mut dyn FnMut(&mut PairList),
-    ) -> u64 {
-        let drain = Drain { at, take };
+        enough: usize,
+        flush: &mut dyn FnMut(&mut PairList),
+    ) -> VolumeCounters {
+        let flush = Flush {
+            enough,
+            call: flush,
+        };
         dispatch(
             self.tier,
             List {
-                source: *self,
+                listing: *self,
                 parts,
                 out,
-                drain,
+                flush,
             },
         )
     }
 }
 
-impl Stage<'_> {
-    /// Where this frame's candidates come from.
-    pub(super) fn source<'s>(&'s self, first: First<'s>) -> Source<'s> {
-        Source {
-            tier: self.tier,
-            finder: self.finder,
-            first,
-            body: self.names_are_places.then_some(&self.places.body),
-            groups: self.groups,
-        }
-    }
-
-    /// Reports the pairs that pass the first test.
-    pub(super) fn list(&mut self, first: First<'_>) -> Done {
-        let mut out = std::mem::take(self.out);
-        let done = self.list_into(first, &mut out);
-        if self.names_are_places {
-            out.rename(0, &self.places.body);
-        }
-        *self.out = out;
-        done
-    }
-
-    /// Lists the pairs that pass the first test as candidates, by places.
-    pub(super) fn list_candidates(&mut self, first: First<'_>) -> Done {
-        let mut candidates = std::mem::take(self.candidates);
-        candidates.clear();
-        let done = self.list_into(first, &mut candidates);
-        *self.candidates = candidates;
-        done
-    }
-
-    fn list_into(&mut self, first: First<'_>, list: &mut PairList) -> Done {
-        let mut workers = std::mem::take(self.workers);
-        let source = self.source(first);
-        let parts = self.finder.parts();
-        let mut done = share(self.pool, &mut workers, parts, list, |parts, worker| {
-            worker.first.tests = source.list(parts, &mut worker.out);
-        });
-        *self.workers = workers;
-        done.first.hits = list.len() as u64;
-        done
-    }
+/// Reports what passes the first test.
+pub(super) fn flow(inputs: Inputs<'_>, scratch: &mut Scratch, output: Output<'_>) -> Totals {
+    list(inputs, Listed::Bodies, &mut scratch.tasks, output)
 }
 
-struct Drain<'a> {
-    at: usize,
-    take: &'a mut dyn FnMut(&mut PairList),
+/// Lists what passes the first test, on all threads.
+pub(super) fn list(
+    inputs: Inputs<'_>,
+    listed: Listed,
+    tasks: &mut Vec<Task>,
+    output: Output<'_>,
+) -> Totals {
+    let listing = Listing::new(inputs, listed);
+    let work = |parts: Range<usize>, task: &mut Task, outlet: &Outlet<'_, '_>| {
+        let flush = &mut |out: &mut PairList| outlet.offer(out);
+        task.first = listing.run(parts, &mut task.out, outlet.worth(), flush);
+    };
+    let units = inputs.finder.parts();
+    split_work(inputs.executor.pool, tasks, units, output, work)
+}
+
+/// What is done with a list that has grown long enough.
+struct Flush<'a> {
+    enough: usize,
+    call: &'a mut dyn FnMut(&mut PairList),
 }
 
 struct List<'a> {
-    source: Source<'a>,
+    listing: Listing<'a>,
     parts: Range<usize>,
     out: &'a mut PairList,
-    drain: Drain<'a>,
+    flush: Flush<'a>,
 }
 
 impl Kernel for List<'_> {
-    type Output = u64;
+    type Output = VolumeCounters;
     #[inline(always)]
-    fn run<L: Lanes>(self, l: L) -> u64 {
-        let finder = self.source.finder;
-        match self.source.first {
-            First::Sphere => self.with(l, finder.slots()),
+    fn run<L: Lanes>(self, l: L) -> VolumeCounters {
+        let finder = self.listing.finder;
+        match self.listing.first {
+            First::Spheres => self.with(l, finder.slots()),
             First::Intervals(intervals) => self.with(l, intervals),
-            First::Every => self.with(l, &Every),
+            First::PassAll => self.with(l, &PassAll),
         }
     }
 }
 
 impl List<'_> {
     #[inline(always)]
-    fn with<L: Lanes>(self, l: L, test: &impl SlotTest) -> u64 {
-        let Source {
-            finder,
-            body,
-            groups,
-            ..
-        } = self.source;
+    fn with<L: Lanes>(self, l: L, test: &impl SlotTest) -> VolumeCounters {
+        let finder = self.listing.finder;
         let mut lister = Lister {
             test,
             names: &finder.slots().names,
-            body,
-            groups,
+            listing: self.listing,
             out: self.out,
-            drain: self.drain,
-            tests: 0,
+            flush: self.flush,
+            counters: VolumeCounters::default(),
             hits: [0; PIECE + MAX_WIDTH],
         };
         finder.find(l, self.parts, &mut lister);
-        lister.tests
+        lister.counters
     }
 }
 
-/// The test that nothing fails.
-struct Every;
+/// The test that every candidate passes.
+struct PassAll;
 
-impl SlotTest for Every {
+impl SlotTest for PassAll {
     #[inline(always)]
     fn run<L: Lanes>(&self, _: L, _: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
         for (hit, slot) in hits.iter_mut().zip(run.clone()) {
@@ -177,21 +177,23 @@ impl SlotTest for Every {
     }
 }
 
-struct Lister<'a, 'd, T> {
+/// A first test that lists what passes it.
+struct Lister<'a, 'f, T> {
     test: &'a T,
+    /// The name of each slot.
     names: &'a [u32],
-    body: Option<&'a [u32]>,
-    groups: Option<&'a [Groups]>,
-    out: &'d mut PairList,
-    drain: Drain<'d>,
-    tests: u64,
+    listing: Listing<'a>,
+    out: &'f mut PairList,
+    flush: Flush<'f>,
+    counters: VolumeCounters,
+    /// Of the piece or block at hand.
     hits: [u32; PIECE + MAX_WIDTH],
 }
 
 impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
     #[inline(always)]
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
-        self.tests += run.len() as u64;
+        self.counters.tests += run.len() as u64;
         let mut start = run.start;
         while start < run.end {
             let piece = start..run.end.min(start + PIECE);
@@ -203,7 +205,7 @@ impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
 
     #[inline(always)]
     fn block<L: Lanes>(&mut self, l: L, block: &Block) {
-        self.tests += block.codes().len() as u64;
+        self.counters.tests += block.codes().len() as u64;
         let found = self.test.block(l, block, &mut self.hits);
         let first = block.first();
         self.append(found, |code| {
@@ -213,35 +215,46 @@ impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
 }
 
 impl<T> Lister<'_, '_, T> {
-    /// Lists the first `found` hits by name, the lower body first.
+    /// Lists the first `found` hits.
     #[inline(always)]
     fn append(&mut self, found: usize, slots: impl Fn(u32) -> (usize, usize)) {
-        if let Some(groups) = self.groups {
+        let listed = self.out.len();
+        if let Some(groups) = self.listing.groups {
             self.append_colliding(found, slots, groups);
         } else {
             self.append_all(found, slots);
         }
-        if self.out.len() >= self.drain.at {
-            (self.drain.take)(self.out);
+        self.counters.hits += (self.out.len() - listed) as u64;
+        if self.out.len() >= self.flush.enough {
+            (self.flush.call)(self.out);
         }
     }
 
     #[inline(always)]
     fn append_all(&mut self, found: usize, slots: impl Fn(u32) -> (usize, usize)) {
+        let names = |hit: u32| {
+            let (i, j) = slots(hit);
+            (self.names[i], self.names[j])
+        };
         let (first, second) = self.out.room(found);
         let pairs = first.iter_mut().zip(second).zip(&self.hits[..found]);
-        match self.body {
-            None => {
+        match (self.listing.body, self.listing.listed) {
+            (None, _) => {
                 for ((first, second), &hit) in pairs {
-                    let (i, j) = slots(hit);
-                    let (i, j) = (self.names[i], self.names[j]);
-                    (*first, *second) = (i.min(j), i.max(j));
+                    let (a, b) = names(hit);
+                    (*first, *second) = (a.min(b), a.max(b));
                 }
             }
-            Some(body) => {
+            (Some(body), Listed::Bodies) => {
                 for ((first, second), &hit) in pairs {
-                    let (i, j) = slots(hit);
-                    let (i, j) = (self.names[i], self.names[j]);
+                    let (i, j) = names(hit);
+                    let (a, b) = (body[i as usize], body[j as usize]);
+                    (*first, *second) = (a.min(b), a.max(b));
+                }
+            }
+            (Some(body), Listed::Places) => {
+                for ((first, second), &hit) in pairs {
+                    let (i, j) = names(hit);
                     let swap = body[i as usize] > body[j as usize];
                     (*first, *second) = if swap { (j, i) } else { (i, j) };
                 }
@@ -258,12 +271,17 @@ impl<T> Lister<'_, '_, T> {
         slots: impl Fn(u32) -> (usize, usize),
         groups: &[Groups],
     ) {
-        let body = |name: u32| self.body.map_or(name, |body| body[name as usize]);
+        let Listing { body, listed, .. } = self.listing;
+        let body = |name: u32| body.map_or(name, |body| body[name as usize]);
         for &hit in &self.hits[..found] {
             let (i, j) = slots(hit);
             let (i, j) = (self.names[i], self.names[j]);
             let (a, b) = (body(i), body(j));
             if groups[a as usize].collide(groups[b as usize]) {
+                let [i, j] = match listed {
+                    Listed::Bodies => [a, b],
+                    Listed::Places => [i, j],
+                };
                 let (i, j) = if a > b { (j, i) } else { (i, j) };
                 self.out.push(i, j);
             }

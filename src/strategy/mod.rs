@@ -1,99 +1,131 @@
-//! The paper's strategies (section 4) and the homogeneous volumes they are judged against: [`cull`] says which tests each
-//! makes, and a file each how pairs flow through them.
+//! The paper's strategies (section 4) and the homogeneous volumes they are judged against: which tests each makes is a row
+//! of [`Strategy::scheme`](crate::settings::Strategy::scheme), and how pairs flow through them a file here.
 //!
 //! A strategy takes updated volumes and a pair finder and leaves the reported pairs. Strategies differ in false positives
 //! and time, never in misses: each reports every pair whose meshes meet, `none` excepted.
 
-use crate::bodies::Bodies;
 use crate::bodies::Groups;
-use crate::bodies::Places;
 use crate::broad_phase::PairFinder;
-use crate::counters::{Counters, Seconds};
+use crate::counters::VolumeCounters;
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::ordop::SlabTables;
 use crate::pairs::PairList;
-use crate::settings::{Budget, Order, Overlap, Strategy};
-use crate::simd::Tier;
-use crate::threads::Threads;
-use crate::update::{OrDopRows, ShapeFrame};
+use crate::settings::{CullSettings, Flow, Updates};
+use crate::threads::Executor;
+use crate::update::{OrDopRows, Posed};
 
 mod batch;
 mod interest;
 mod listing;
+mod output;
 mod refine;
 mod sequential;
+mod tasks;
 mod time_critical;
-mod workers;
 
 pub(crate) use interest::mark;
-pub(crate) use time_critical::Memory;
-pub(crate) use workers::Worker;
-
-use listing::First;
-use workers::add;
+pub(crate) use output::Output;
 
 /// Pairs that flow through the or-DOP test at once where no list is kept: few enough for the first-level cache, enough to
 /// make the clock's cost vanish.
 const BLOCK: usize = 256;
 
-/// One frame's work, after the eager updates.
-pub(crate) struct Stage<'a> {
-    pub tier: Tier,
-    pub pool: &'a Threads,
-    pub workers: &'a mut Vec<Worker>,
+/// What culling a frame reads, once volumes are updated and bodies arranged in slots.
+#[derive(Clone, Copy)]
+pub(crate) struct Inputs<'a> {
+    pub executor: Executor<'a>,
+    pub settings: &'a CullSettings,
     pub finder: &'a PairFinder,
     /// Whether the finder's slots are named by place, not by body.
     pub names_are_places: bool,
-    pub places: &'a Places,
+    /// The poses, and spheres by place where there are any.
+    pub posed: Posed<'a>,
     /// Each body's groups where not all collide with all.
     pub groups: Option<&'a [Groups]>,
-    pub bodies: &'a Bodies,
     pub intervals: &'a IntervalSlots,
-    /// Spheres by place.
-    pub spheres: &'a [[f32; 4]],
-    pub rows: &'a mut OrDopRows,
-    pub frames: &'a [ShapeFrame],
     pub tables: &'a SlabTables,
-    pub overlap: Overlap,
-    /// Whether rows are made on demand.
-    pub lazy: bool,
-    pub stamp: u32,
     /// Whether each body is of interest.
     pub interest: &'a [bool],
-    pub budget: Option<Budget>,
-    pub order: Order,
-    pub memory: &'a mut Memory,
-    /// The potentially colliding set by places, where a list of it is kept.
-    pub candidates: &'a mut PairList,
-    pub counters: &'a mut Counters,
-    pub seconds: &'a mut Seconds,
-    pub out: &'a mut PairList,
+    /// Counts frames from 1.
+    pub stamp: u32,
 }
 
-/// Runs a strategy on one frame.
-pub(crate) fn cull(strategy: Strategy, stage: &mut Stage<'_>) {
-    let (aligned, interest) = (First::Intervals(stage.intervals), Some(stage.interest));
-    let done = match strategy {
-        Strategy::None => return,
-        Strategy::Sphere => stage.list(First::Sphere),
-        Strategy::Aabb | Strategy::KDop => stage.list(aligned),
-        // The oriented box is an or-DOP of k = 6.
-        Strategy::OrDop | Strategy::Obb => sequential::flow(stage, First::Every, None),
-        Strategy::SDopSequential => sequential::flow(stage, First::Sphere, None),
-        Strategy::SDopBatch => batch::flow(stage, First::Sphere, None),
-        Strategy::SDopObjectOfInterest => sequential::flow(stage, First::Sphere, interest),
-        Strategy::SDopTimeCritical => time_critical::cull(stage),
-    };
-    let counters = &mut *stage.counters;
-    match strategy {
-        Strategy::Aabb => add(&mut counters.aabb, done.first),
-        Strategy::KDop => add(&mut counters.kdop, done.first),
-        // Nothing is tested before the or-DOPs.
-        Strategy::OrDop => add(&mut counters.ordop, done.refined),
-        Strategy::Obb => add(&mut counters.obb, done.refined),
-        _ => {
-            add(&mut counters.sphere, done.first);
-            add(&mut counters.ordop, done.refined);
+impl Inputs<'_> {
+    /// Whether rows are made when a pair needs them.
+    fn is_lazy(&self) -> bool {
+        self.settings.updates == Updates::Lazy
+    }
+
+    /// The body in each place.
+    fn bodies_by_place(&self) -> &[u32] {
+        &self.posed.places.body
+    }
+}
+
+/// What stays from frame to frame: buffers, and when time-critical culling refined which pair.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    tasks: Vec<tasks::Task>,
+    /// The potentially colliding set by places, where a list of it is kept.
+    pub candidates: PairList,
+    /// Those of them that have a body of interest, and which of those survived; or the survivors of a portion.
+    selected: PairList,
+    survivors: PairList,
+    history: time_critical::History,
+}
+
+impl Scratch {
+    /// Gives back the memory of lists of pairs, but for the last potentially colliding set.
+    pub fn shrink_to_fit(&mut self) {
+        self.candidates.shrink_to_fit();
+        self.history.shrink_to_fit();
+        (self.tasks, self.selected, self.survivors) = Default::default();
+    }
+
+    /// Bytes that lists of pairs hold.
+    pub fn pair_bytes(&self) -> usize {
+        let lists = [&self.candidates, &self.selected, &self.survivors];
+        let of_tasks = self.tasks.iter().flat_map(tasks::Task::lists);
+        lists.into_iter().chain(of_tasks).map(PairList::bytes).sum()
+    }
+}
+
+/// What culling a frame took.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Totals {
+    /// Of the first test.
+    pub first: VolumeCounters,
+    /// Of the refining test, with the rows made on demand as updates.
+    pub refining: VolumeCounters,
+    /// Pairs reported untested because the budget had ended.
+    pub untested: u64,
+    /// Wall time of the refining test: its seconds over the threads.
+    pub refining_seconds: f64,
+    /// Wall time of making rows on demand.
+    pub update_seconds: f64,
+}
+
+/// Culls one frame by the strategy of the settings.
+pub(crate) fn cull(
+    inputs: Inputs<'_>,
+    rows: &mut OrDopRows,
+    scratch: &mut Scratch,
+    output: Output<'_>,
+) -> Totals {
+    let (interest, lazy) = (Some(inputs.interest), inputs.is_lazy());
+    match inputs.settings.strategy.scheme().flow {
+        Flow::Nothing => Totals::default(),
+        Flow::FirstTest => listing::flow(inputs, scratch, output),
+        // Rows on demand need the whole set before its first test.
+        Flow::Sequential if lazy => batch::flow(inputs, rows, scratch, None, output),
+        Flow::OfInterest if lazy => batch::flow(inputs, rows, scratch, interest, output),
+        Flow::Sequential => sequential::flow(inputs, rows, scratch, None, output),
+        Flow::OfInterest => sequential::flow(inputs, rows, scratch, interest, output),
+        // The same pairs in the same order, and no list that grows with them.
+        Flow::Batch if output.is_in_portions() && !lazy => {
+            sequential::flow(inputs, rows, scratch, None, output)
         }
+        Flow::Batch => batch::flow(inputs, rows, scratch, None, output),
+        Flow::TimeCritical => time_critical::flow(inputs, rows, scratch, output),
     }
 }

@@ -3,25 +3,39 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use super::Stage;
-use super::workers::{Worker, share};
+use super::output::{Outlet, Output};
+use super::tasks::{Task, split_work};
+use super::{Inputs, Totals};
 use crate::counters::VolumeCounters;
 use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
 use crate::simd::{MAX_WIDTH, Tier};
-use crate::update::Posed;
+use crate::update::OrDopRows;
 
-/// The or-DOP test with made rows: takes pairs of places, leaves pairs of bodies.
+/// The or-DOP test with the rows as they are: takes pairs of places, leaves pairs of bodies.
 #[derive(Clone, Copy)]
 pub(super) struct Refine<'a> {
-    pub tier: Tier,
-    pub columns: OrDopColumns<'a>,
+    tier: Tier,
+    columns: OrDopColumns<'a>,
     /// The body in each place.
     pub body: &'a [u32],
 }
 
-impl Refine<'_> {
-    /// Tests pairs and appends the survivors to `out`, in list order. A block a call: the dispatch is paid once for all.
+impl<'a> Refine<'a> {
+    pub fn new(inputs: Inputs<'a>, rows: &'a OrDopRows) -> Self {
+        let settings = inputs.settings;
+        Self {
+            tier: inputs.executor.tier,
+            columns: OrDopColumns {
+                rows: &rows.rows,
+                tables: inputs.tables,
+                overlap: settings.strategy.scheme().overlap(settings.overlap),
+            },
+            body: &inputs.posed.places.body,
+        }
+    }
+
+    /// Tests pairs and appends the survivors to `out`, in list order. Called per block: the dispatch is paid once for all.
     pub fn test(
         &self,
         [first, second]: [&[u32]; 2],
@@ -39,65 +53,71 @@ impl Refine<'_> {
     }
 }
 
-impl<'a> Stage<'a> {
-    /// The test with the rows as they are.
-    pub(super) fn refine(&self) -> Refine<'_> {
-        Refine {
-            tier: self.tier,
-            columns: OrDopColumns {
-                rows: &self.rows.rows,
-                tables: self.tables,
-                overlap: self.overlap,
-            },
-            body: &self.places.body,
+/// The or-DOP test that makes rows first where updates are lazy, and sums up what it took.
+pub(super) struct Refiner<'a> {
+    inputs: Inputs<'a>,
+    rows: &'a mut OrDopRows,
+    pub totals: Totals,
+}
+
+impl<'a> Refiner<'a> {
+    pub fn new(inputs: Inputs<'a>, rows: &'a mut OrDopRows) -> Self {
+        Self {
+            inputs,
+            rows,
+            totals: Totals::default(),
         }
     }
 
-    /// With lazy updates: makes the rows of a range of the listed pairs that this frame lacks. Returns their number.
-    pub(super) fn make_rows(&mut self, list: &PairList, range: Range<usize>) -> u64 {
-        if !self.lazy {
-            return 0;
+    /// Tests all pairs of a list and appends the survivors to `out`; on all threads if their `tasks` are at hand.
+    pub fn refine(&mut self, list: &PairList, tasks: Option<&mut Vec<Task>>, out: &mut PairList) {
+        let Some(tasks) = tasks else {
+            return self.refine_range(list, 0..list.len(), out);
+        };
+        self.make_rows(list, 0..list.len());
+        let refine = Refine::new(self.inputs, self.rows);
+        let work = |vectors: Range<usize>, task: &mut Task, _: &Outlet<'_, '_>| {
+            let pairs = vectors.start * MAX_WIDTH..(vectors.end * MAX_WIDTH).min(list.len());
+            let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
+            refine.test(pairs, &mut task.refining, &mut task.seconds, &mut task.out);
+        };
+        let (pool, vectors) = (self.inputs.executor.pool, list.len().div_ceil(MAX_WIDTH));
+        let done = split_work(pool, tasks, vectors, Output::List(out), work);
+        self.totals.refining += done.refining;
+        self.totals.refining_seconds += done.refining_seconds;
+    }
+
+    /// Tests some pairs of a list on the calling thread and appends the survivors to `out`.
+    pub fn refine_range(&mut self, list: &PairList, range: Range<usize>, out: &mut PairList) {
+        self.make_rows(list, range.clone());
+        let pairs = [&list.first()[range.clone()], &list.second()[range]];
+        let Totals {
+            refining,
+            refining_seconds,
+            ..
+        } = &mut self.totals;
+        Refine::new(self.inputs, self.rows).test(pairs, refining, refining_seconds, out);
+    }
+
+    /// With lazy updates: makes the rows of some listed pairs that this frame lacks.
+    fn make_rows(&mut self, list: &PairList, range: Range<usize>) {
+        if !self.inputs.is_lazy() {
+            return;
         }
-        let begin = Instant::now();
-        let mut made = 0;
+        let start = Instant::now();
+        let Inputs {
+            executor,
+            posed,
+            stamp,
+            ..
+        } = self.inputs;
         for column in [list.first(), list.second()] {
             let wanted = &column[range.clone()];
-            let posed = Posed {
-                frames: self.frames,
-                bodies: self.bodies,
-                places: self.places,
-                balls: self.spheres,
-            };
-            made += self
+            let made = self
                 .rows
-                .update_missing(self.tier, posed, wanted, self.stamp);
+                .update_missing(executor.tier, posed, wanted, stamp);
+            self.totals.refining.updates += made;
         }
-        self.seconds.update += begin.elapsed().as_secs_f64();
-        made
-    }
-
-    /// Tests all pairs of a list, on all threads, and appends the survivors to `out`.
-    pub(super) fn refine_list(&mut self, list: &PairList, out: &mut PairList) -> VolumeCounters {
-        let updates = self.make_rows(list, 0..list.len());
-        let vectors = list.len().div_ceil(MAX_WIDTH);
-        let mut workers = std::mem::take(self.workers);
-        let refine = self.refine();
-        let done = share(self.pool, &mut workers, vectors, out, |range, worker| {
-            let pairs = range.start * MAX_WIDTH..(range.end * MAX_WIDTH).min(list.len());
-            let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
-            let Worker {
-                out,
-                refined,
-                refining,
-                ..
-            } = worker;
-            refine.test(pairs, refined, refining, out);
-        });
-        *self.workers = workers;
-        self.seconds.ordop += done.refining;
-        VolumeCounters {
-            updates,
-            ..done.refined
-        }
+        self.totals.update_seconds += start.elapsed().as_secs_f64();
     }
 }

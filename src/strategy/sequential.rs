@@ -6,73 +6,76 @@
 
 use std::ops::Range;
 
-use super::interest::Chosen;
-use super::listing::{First, Source};
+use super::interest::InterestFilter;
+use super::listing::{Listed, Listing};
+use super::output::{Outlet, Output};
 use super::refine::Refine;
-use super::workers::{Done, Worker, share};
-use super::{BLOCK, Stage, batch};
+use super::tasks::{Task, split_work};
+use super::{BLOCK, Inputs, Scratch, Totals};
 use crate::pairs::PairList;
+use crate::update::OrDopRows;
 
-/// Candidates that pass `first`, then or-DOPs block by block; with `interest`, only for pairs that have a body of interest.
-pub(super) fn flow(stage: &mut Stage<'_>, first: First<'_>, interest: Option<&[bool]>) -> Done {
-    if stage.lazy {
-        return batch::flow(stage, first, interest);
-    }
-    let mut out = std::mem::take(stage.out);
-    let mut workers = std::mem::take(stage.workers);
-    let (source, refine) = (stage.source(first), stage.refine());
-    let parts = stage.finder.parts();
-    let done = share(
-        stage.pool,
-        &mut workers,
-        parts,
-        &mut out,
-        |parts, worker| {
-            work(&source, parts, &refine, interest, worker);
-        },
-    );
-    (*stage.out, *stage.workers) = (out, workers);
-    stage.seconds.ordop += done.refining;
-    done
+/// Candidates that pass the first test, then or-DOPs block by block; with `interest`, only for pairs that have a body of
+/// interest.
+pub(super) fn flow(
+    inputs: Inputs<'_>,
+    rows: &OrDopRows,
+    scratch: &mut Scratch,
+    interest: Option<&[bool]>,
+    output: Output<'_>,
+) -> Totals {
+    let listing = Listing::new(inputs, Listed::Places);
+    let refine = Refine::new(inputs, rows);
+    let work = |parts: Range<usize>, task: &mut Task, outlet: &Outlet<'_, '_>| {
+        refine_blocks(&listing, parts, &refine, interest, task, outlet);
+    };
+    let units = inputs.finder.parts();
+    split_work(
+        inputs.executor.pool,
+        &mut scratch.tasks,
+        units,
+        output,
+        work,
+    )
 }
 
-/// One worker's share: its list is drained whenever a block is full.
-fn work(
-    source: &Source<'_>,
+/// One task: candidates are refined whenever they fill a block.
+fn refine_blocks(
+    listing: &Listing<'_>,
     parts: Range<usize>,
     refine: &Refine<'_>,
     interest: Option<&[bool]>,
-    worker: &mut Worker,
+    task: &mut Task,
+    outlet: &Outlet<'_, '_>,
 ) {
-    let Worker {
+    let Task {
         out,
         block,
         selected,
-        passed,
+        survivors,
         first,
-        refined,
         refining,
-    } = worker;
-    let mut drain = |block: &mut PairList| {
-        first.hits += block.len() as u64;
+        seconds,
+    } = task;
+    let mut flush = |block: &mut PairList| {
         match interest {
-            None => refine.test([block.first(), block.second()], refined, refining, out),
+            None => refine.test([block.first(), block.second()], refining, seconds, out),
             Some(interest) => {
-                let chosen = Chosen {
+                let filter = InterestFilter {
                     pairs: block,
                     body: refine.body,
                     interest,
                 };
-                chosen.select(selected);
-                passed.clear();
+                filter.select(selected);
+                survivors.clear();
                 let pairs = [selected.first(), selected.second()];
-                refine.test(pairs, refined, refining, passed);
-                chosen.merge(passed, out);
+                refine.test(pairs, refining, seconds, survivors);
+                filter.merge(survivors, out);
             }
         }
         block.clear();
+        outlet.offer(out);
     };
-    let tests = source.drained(parts, block, BLOCK, &mut drain);
-    drain(block);
-    first.tests += tests;
+    *first = listing.run(parts, block, BLOCK, &mut flush);
+    flush(block);
 }

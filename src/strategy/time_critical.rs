@@ -1,123 +1,212 @@
 //! S-DOP under a budget (the paper's third phase; Hubbard 1996): the potentially colliding set is refined in a chosen order
 //! until the budget ends, and what isn't refined counts as colliding (Dingliana & O'Sullivan 2000).
 //!
-//! A budget of tests gives the same pairs everywhere; a budget of time is looked at after every [`SLICE`] tests.
+//! A budget of tests gives the same pairs everywhere; a budget of time is compared with the clock after every [`SLICE`]
+//! tests.
 
 use std::collections::HashMap;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use super::Stage;
-use super::listing::First;
-use super::workers::Done;
-use crate::counters::VolumeCounters;
+use super::listing::{Listed, list};
+use super::output::{Output, PORTION};
+use super::refine::Refiner;
+use super::{Inputs, Scratch, Totals};
 use crate::pairs::PairList;
 use crate::settings::{Budget, Order};
+use crate::update::OrDopRows;
 
 /// Tests between two looks at the clock: some microseconds.
 const SLICE: usize = 128;
 
 /// What a frame leaves to the next: when pairs were refined, and buffers.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Memory {
+pub(super) struct History {
     /// For each pair that spheres reported in the last frame, the frame in which it was last refined (0: never).
     refined: HashMap<[u32; 2], u32>,
     before: HashMap<[u32; 2], u32>,
-    keyed: Vec<Keyed>,
+    ranked: Vec<RankedPair>,
 }
 
-/// A pair's rank, its bodies, its places: sorted, ties go by body, so the order is the same for every pair finder.
-type Keyed = (u32, [u32; 2], [u32; 2]);
+/// A pair in the order of refinement: by rank, then by body, so that the order is the same for every pair finder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct RankedPair {
+    rank: u32,
+    bodies: [u32; 2],
+    places: [u32; 2],
+}
 
-pub(super) fn cull(stage: &mut Stage<'_>) -> Done {
-    let start = Instant::now();
-    let mut done = stage.list_candidates(First::Sphere);
-    arrange(stage);
-    let (tests, deadline) = match stage.budget {
-        Some(Budget::Tests(tests)) => (usize::try_from(tests).unwrap_or(usize::MAX), None),
-        Some(Budget::Microseconds(us)) => (usize::MAX, Some(Duration::from_micros(us))),
-        None => (usize::MAX, None),
+/// Spheres first; then or-DOPs until the budget ends.
+pub(super) fn flow(
+    inputs: Inputs<'_>,
+    rows: &mut OrDopRows,
+    scratch: &mut Scratch,
+    output: Output<'_>,
+) -> Totals {
+    let mut spender = Spender::new(inputs, rows);
+    let Scratch {
+        tasks,
+        candidates,
+        history,
+        ..
+    } = scratch;
+    candidates.clear();
+    let order = inputs.settings.order;
+    let listed = match output {
+        Output::Portions(sink) if order == Order::AsFound => {
+            let mut out = PairList::default();
+            let mut take = |portion: &mut PairList| {
+                out.clear();
+                spender.report(portion, 0..portion.len(), &mut out);
+                sink(&mut out);
+            };
+            list(inputs, Listed::Places, tasks, Output::Portions(&mut take))
+        }
+        output => {
+            let listed = list(inputs, Listed::Places, tasks, Output::List(candidates));
+            arrange(inputs, history, candidates);
+            let all = 0..candidates.len();
+            match output {
+                Output::List(out) => spender.report(candidates, all, out),
+                Output::Portions(sink) => {
+                    let mut out = PairList::default();
+                    for start in all.step_by(PORTION) {
+                        out.clear();
+                        let end = candidates.len().min(start + PORTION);
+                        spender.report(candidates, start..end, &mut out);
+                        sink(&mut out);
+                    }
+                }
+            }
+            listed
+        }
     };
-    let candidates = std::mem::take(stage.candidates);
-    let limit = tests.min(candidates.len());
-    let slice = if deadline.is_some() { SLICE } else { limit };
-    let mut refined = 0;
-    while refined < limit && deadline.is_none_or(|deadline| start.elapsed() < deadline) {
-        let end = limit.min(refined + slice);
-        refine(stage, &candidates, refined..end, &mut done.refined);
-        refined = end;
+    if order == Order::OldestAnswer {
+        let tests = spender.refiner.totals.refining.tests as usize;
+        let bodies = inputs.bodies_by_place();
+        let pairs = candidates
+            .iter()
+            .map(|pair| pair.map(|place| bodies[place as usize]));
+        history.remember(pairs, tests, inputs.stamp);
     }
-    let body = |place: u32| stage.places.body[place as usize];
-    stage.counters.untested += (candidates.len() - refined) as u64;
-    for [i, j] in candidates.iter().skip(refined) {
-        stage.out.push(body(i), body(j));
+    Totals {
+        first: listed.first,
+        ..spender.refiner.totals
     }
-    if stage.order == Order::OldestAnswer {
-        let pairs = candidates.iter().map(|pair| pair.map(body));
-        stage.memory.remember(pairs, refined, stage.stamp);
-    }
-    *stage.candidates = candidates;
-    done
 }
 
-/// Refines a range of the candidates.
-fn refine(
-    stage: &mut Stage<'_>,
-    candidates: &PairList,
-    range: Range<usize>,
-    counters: &mut VolumeCounters,
-) {
-    counters.updates += stage.make_rows(candidates, range.clone());
-    let pairs = [
-        &candidates.first()[range.clone()],
-        &candidates.second()[range],
-    ];
-    let (mut out, mut seconds) = (std::mem::take(stage.out), 0.0);
-    stage.refine().test(pairs, counters, &mut seconds, &mut out);
-    *stage.out = out;
-    stage.seconds.ordop += seconds;
+/// Refines pairs until the budget is spent.
+struct Spender<'a> {
+    refiner: Refiner<'a>,
+    /// The body in each place.
+    body: &'a [u32],
+    tests_left: usize,
+    deadline: Option<Instant>,
+}
+
+impl<'a> Spender<'a> {
+    fn new(inputs: Inputs<'a>, rows: &'a mut OrDopRows) -> Self {
+        let (tests_left, deadline) = match inputs.settings.budget {
+            Some(Budget::Tests(tests)) => (usize::try_from(tests).unwrap_or(usize::MAX), None),
+            Some(Budget::Microseconds(us)) => (
+                usize::MAX,
+                Instant::now().checked_add(Duration::from_micros(us)),
+            ),
+            None => (usize::MAX, None),
+        };
+        Self {
+            refiner: Refiner::new(inputs, rows),
+            body: &inputs.posed.places.body,
+            tests_left,
+            deadline,
+        }
+    }
+
+    /// Appends what is reported of some candidates to `out`: those that survive the or-DOP test, and those that the budget
+    /// leaves untested.
+    fn report(&mut self, candidates: &PairList, range: Range<usize>, out: &mut PairList) {
+        let limit = range.end.min(range.start.saturating_add(self.tests_left));
+        let slice = if self.deadline.is_some() {
+            SLICE
+        } else {
+            limit.max(1)
+        };
+        let mut next = range.start;
+        while next < limit
+            && self
+                .deadline
+                .is_none_or(|deadline| Instant::now() < deadline)
+        {
+            let end = limit.min(next + slice);
+            self.refiner.refine_range(candidates, next..end, out);
+            next = end;
+        }
+        self.tests_left -= next - range.start;
+        self.refiner.totals.untested += (range.end - next) as u64;
+        for at in next..range.end {
+            let places = [candidates.first()[at], candidates.second()[at]];
+            let [a, b] = places.map(|place| self.body[place as usize]);
+            out.push(a, b);
+        }
+    }
 }
 
 /// Sorts the potentially colliding set into the order of refinement.
-fn arrange(stage: &mut Stage<'_>) {
-    if stage.order == Order::AsFound {
+fn arrange(inputs: Inputs<'_>, history: &mut History, candidates: &mut PairList) {
+    let order = inputs.settings.order;
+    if order == Order::AsFound {
         return;
     }
-    let Memory { refined, keyed, .. } = &mut *stage.memory;
-    let dull = |&body: &u32| !stage.interest[body as usize];
-    let rank = |bodies: [u32; 2], places: [u32; 2]| match stage.order {
+    let History {
+        refined, ranked, ..
+    } = history;
+    let body = inputs.bodies_by_place();
+    let of_no_interest = |&body: &u32| !inputs.interest[body as usize];
+    let rank = |bodies: [u32; 2], places: [u32; 2]| match order {
         Order::AsFound => 0,
-        Order::InterestFirst => u32::from(bodies.iter().all(dull)),
+        Order::InterestFirst => u32::from(bodies.iter().all(of_no_interest)),
         // Of numbers that aren't negative, the bits sort as the values do.
-        Order::LargestOverlap => gap(stage.spheres, places).to_bits(),
+        Order::LargestOverlap => relative_distance(inputs.posed.balls, places).to_bits(),
         Order::OldestAnswer => refined.get(&bodies).copied().unwrap_or(0),
     };
-    keyed.clear();
-    keyed.extend(stage.candidates.iter().map(|places| {
-        let bodies = places.map(|place| stage.places.body[place as usize]);
-        (rank(bodies, places), bodies, places)
+    ranked.clear();
+    ranked.extend(candidates.iter().map(|places| {
+        let bodies = places.map(|place| body[place as usize]);
+        RankedPair {
+            rank: rank(bodies, places),
+            bodies,
+            places,
+        }
     }));
-    keyed.sort_unstable();
-    stage.candidates.clear();
-    for &(_, _, [i, j]) in &*keyed {
-        stage.candidates.push(i, j);
+    ranked.sort_unstable();
+    candidates.clear();
+    for pair in &*ranked {
+        let [i, j] = pair.places;
+        candidates.push(i, j);
     }
 }
 
 /// d²/s² of a pair's inflated spheres: 0 when concentric, 1 when touching.
-fn gap(spheres: &[[f32; 4]], pair: [u32; 2]) -> f32 {
+fn relative_distance(spheres: &[[f32; 4]], pair: [u32; 2]) -> f32 {
     let [a, b] = pair.map(|place| spheres[place as usize]);
     let (dx, dy, dz, s) = (a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] + b[3]);
     (dx * dx + dy * dy + dz * dz) / (s * s)
 }
 
-impl Memory {
-    fn remember(&mut self, pairs: impl Iterator<Item = [u32; 2]>, done: usize, stamp: u32) {
+impl History {
+    /// Gives back the memory of buffers.
+    pub fn shrink_to_fit(&mut self) {
+        self.refined.shrink_to_fit();
+        (self.before, self.ranked) = Default::default();
+    }
+
+    /// Notes in which frame each of the sphere hits was last refined: the first `refined` of `pairs` in this one.
+    fn remember(&mut self, pairs: impl Iterator<Item = [u32; 2]>, refined: usize, stamp: u32) {
         std::mem::swap(&mut self.refined, &mut self.before);
         self.refined.clear();
         self.refined.extend(pairs.enumerate().map(|(at, pair)| {
             let before = self.before.get(&pair).copied().unwrap_or(0);
-            (pair, if at < done { stamp } else { before })
+            (pair, if at < refined { stamp } else { before })
         }));
     }
 }

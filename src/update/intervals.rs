@@ -11,8 +11,8 @@ use super::Posed;
 use super::eight::{EIGHT, Eight};
 use crate::rounding::pose::{Rotation, norm, refit, rotate_of, rotation};
 use crate::rounding::{down, up};
-use crate::simd::{Kernel, Lanes, Tier, dispatch};
-use crate::threads::Threads;
+use crate::simd::{Kernel, Lanes, dispatch};
+use crate::threads::Executor;
 use crate::volume::{DirectionSet, Hull, Shape};
 
 /// Bodies that one thread re-fits at a time.
@@ -48,12 +48,12 @@ impl Intervals {
     /// Re-fits the slabs of the bodies in a range of places, and the cubes about their boxes: centre and half side.
     pub fn update(
         &mut self,
-        tier: Tier,
-        pool: &Threads,
+        executor: Executor<'_>,
         cubes: &mut [[f32; 4]],
         posed: Posed<'_>,
         range: Range<usize>,
     ) {
+        let Executor { tier, pool } = executor;
         let coefficients = self.directions.coefficients();
         let slabs = coefficients.len();
         let (first, hulls) = (range.start, &self.hulls);

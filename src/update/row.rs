@@ -1,4 +1,4 @@
-//! What stands where in an or-DOP's row: one cache line a body, which the pair test reads as columns.
+//! What stands where in an or-DOP's row: one cache line per body, which the pair test reads as columns.
 
 /// Where Q begins: the world direction of basis axis j in numbers 3j to 3j + 2.
 pub const Q: usize = 0;

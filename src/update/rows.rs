@@ -14,7 +14,7 @@ use crate::rounding::pose::{axes_of, rotate_of, rotation_of};
 use crate::simd::{
     Kernel, Lanes, MAX_WIDTH, ROW, Tier, dispatch, prefetch, quads_in_columns, turn_rows,
 };
-use crate::threads::Threads;
+use crate::threads::Executor;
 
 /// Bodies whose rows one thread makes at a time: some microseconds.
 const ROWS: usize = 512;
@@ -25,7 +25,7 @@ const BODIES: usize = MAX_WIDTH;
 /// or-DOP rows by place, each with the frame in which it was last made.
 #[derive(Clone, Debug, Default)]
 pub struct OrDopRows {
-    /// One row a body.
+    /// One row per body.
     pub rows: Vec<[f32; ROW]>,
     made: Vec<u32>,
     missing: Vec<u32>,
@@ -63,12 +63,12 @@ impl OrDopRows {
     /// Updates the rows of the bodies in a range of places; `stamp` counts frames from 1.
     pub fn update(
         &mut self,
-        tier: Tier,
-        pool: &Threads,
+        executor: Executor<'_>,
         posed: Posed<'_>,
         range: Range<usize>,
         stamp: u32,
     ) {
+        let Executor { tier, pool } = executor;
         let first = range.start;
         self.made[range.clone()].fill(stamp);
         pool.pieces(&mut self.rows[range], ROWS, |start, rows| {
@@ -249,6 +249,7 @@ mod tests {
 
     use super::*;
     use crate::rounding::pose::{rotate, rotation, world_axes};
+    use crate::threads::Threads;
     use crate::volume::{Axes, Shape, ShapeSpec};
     use crate::{mesh::ProceduralShape, volume::Origin};
 
@@ -315,7 +316,8 @@ mod tests {
         };
         for tier in Tier::available() {
             let (mut eager, mut lazy) = (OrDopRows::new(61), OrDopRows::new(61));
-            eager.update(tier, &Threads::default(), posed, 0..61, 1);
+            let pool = Threads::default();
+            eager.update(pool.executor(tier), posed, 0..61, 1);
             let wanted: Vec<u32> = (0..61).chain(0..30).collect();
             assert_eq!(lazy.update_missing(tier, posed, &wanted, 1), 61);
             for body in 0..61 {

@@ -69,7 +69,7 @@ pub struct EngineTiming {
     pub work: &'static str,
     /// Pairs in the last frame.
     pub pairs: usize,
-    /// Milliseconds a frame: the lower quartile, the median and the upper quartile.
+    /// Milliseconds per frame: the lower quartile, the median and the upper quartile.
     pub ms_low: f64,
     /// See above.
     pub ms: f64,
@@ -79,13 +79,13 @@ pub struct EngineTiming {
     pub ns_a_body: f64,
     /// Median over frames of its time over ours for boxes.
     pub ratio: f64,
-    /// Bytes a body that it holds.
+    /// Bytes per body that it holds.
     pub bytes_a_body: f64,
-    /// The most bytes a body that it had at once; of C++ what it holds.
+    /// The most bytes per body that it had at once; of C++ what it holds.
     pub peak_bytes_a_body: f64,
 }
 
-/// Checks and times everyone who keeps to the limit, in milliseconds a frame.
+/// Checks and times everyone who keeps to the limit, in milliseconds per frame.
 ///
 /// # Errors
 /// An engine whose pairs are not the scene's, an engine that can't be built.

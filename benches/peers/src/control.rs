@@ -3,7 +3,7 @@
 //!
 //! speed-up = t(one thread) / t(several), the median over frames of the same frame's times; a control's is what the machine
 //! has to give at the time, and ours is quoted as a share of it. The loops run on the same pool, in as many pieces, with as
-//! much work or as many bytes a body as the culler, so that waking threads costs them what it costs us.
+//! much work or as many bytes per body as the culler, so that waking threads costs them what it costs us.
 
 use std::fmt::Write as _;
 use std::hint::black_box;
@@ -46,10 +46,10 @@ const MEMORY: &str = "memory";
 /// Pieces of a control's work, on any number of threads: as many as ours has on two.
 const PIECES: usize = 8;
 
-/// Bytes a body that the memory loop reads and writes each frame: what a culler holds.
+/// Bytes per body that the memory loop reads and writes each frame: what a culler holds.
 const BYTES: usize = 152;
 
-/// Steps a body of the arithmetic loop: some 50 ns, as S-DOP takes.
+/// Steps per body of the arithmetic loop: some 50 ns, as S-DOP takes.
 const STEPS: usize = 96;
 
 /// One work's speed-up.

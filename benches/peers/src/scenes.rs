@@ -1,6 +1,6 @@
 //! The scenes that everyone is measured on, made by the library's own scene code: the same frames for all.
 //!
-//! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a unit radius a frame,
+//! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a unit radius per frame,
 //! mirrored at walls. The paper's scene stands in for the smallest uniform one: 500 bodies in a box of 16.1.
 
 use std::path::Path;

@@ -10,7 +10,7 @@ use super::cells::{Cells, Layout};
 use crate::broad_phase::{Bounds, Slots};
 use crate::rounding::widen;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
-use crate::threads::Threads;
+use crate::threads::{Executor, Threads};
 
 /// Bodies whose cells have one size. Their slots are a range, and so are their places: sorting stays within it.
 #[derive(Clone, Debug)]
@@ -42,13 +42,14 @@ impl Level {
     /// `slot_cells` are columns over all places and all slots.
     pub fn sort(
         &mut self,
-        (tier, pool): (Tier, &Threads),
+        executor: Executor<'_>,
         balls: &[[f32; 4]],
         names: &[u32],
         place_cells: &mut [u32],
         slots: &mut Slots,
         slot_cells: &mut [u32],
     ) {
+        let Executor { tier, pool } = executor;
         let range = self.range.clone();
         let (balls, names) = (&balls[range.clone()], &names[range.clone()]);
         let bounds = bounds(tier, pool, balls);

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::VolumeCosts;
 use crate::choice::choices;
 use crate::counters::{Counters, VolumeCounters};
-use crate::settings::Strategy;
+use crate::settings::{Strategy, TestedVolume};
 
 choices! {
     /// What has prices of its own.
@@ -33,19 +33,17 @@ choices! {
 impl Volume {
     /// The volumes of a strategy, in the order of its tests.
     #[must_use]
-    pub fn of(strategy: Strategy) -> &'static [Self] {
-        match strategy {
-            Strategy::None => &[],
-            Strategy::Sphere => &[Self::Sphere],
-            Strategy::OrDop => &[Self::OrDop],
-            Strategy::SDopSequential
-            | Strategy::SDopBatch
-            | Strategy::SDopObjectOfInterest
-            | Strategy::SDopTimeCritical => &[Self::Sphere, Self::Refined],
-            Strategy::Aabb => &[Self::Aabb],
-            Strategy::KDop => &[Self::KDop],
-            Strategy::Obb => &[Self::Obb],
-        }
+    pub fn of(strategy: Strategy) -> Vec<Self> {
+        let scheme = strategy.scheme();
+        let priced = |volume| match volume {
+            TestedVolume::Sphere => Self::Sphere,
+            TestedVolume::OrDop if scheme.first.is_some() => Self::Refined,
+            TestedVolume::OrDop => Self::OrDop,
+            TestedVolume::Aabb => Self::Aabb,
+            TestedVolume::KDop => Self::KDop,
+            TestedVolume::Obb => Self::Obb,
+        };
+        scheme.volumes().map(priced).collect()
     }
 
     /// The volume's counters among those of a run.

@@ -274,7 +274,7 @@ pub fn run_scene(
 /// Seconds to build a strategy's volumes of all shapes, once.
 fn build(scene: &Scene, strategy: Strategy) -> f64 {
     let start = Instant::now();
-    for &volume in Volume::of(strategy) {
+    for volume in Volume::of(strategy) {
         for shape in &scene.shapes {
             construct(volume, shape, scene.cull.axes);
         }

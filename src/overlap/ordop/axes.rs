@@ -1,4 +1,4 @@
-//! Separating axes of one pair a lane: both bodies' slab normals, and edge × edge.
+//! Separating axes of one pair per lane: both bodies' slab normals, and edge × edge.
 
 use super::edges;
 use super::slabs::Slabs;

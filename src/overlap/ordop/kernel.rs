@@ -20,7 +20,7 @@ const ROWS_IN_CACHE: usize = 1 << 13;
 /// The or-DOPs of all bodies as the pair test reads them.
 #[derive(Clone, Copy)]
 pub struct OrDopColumns<'a> {
-    /// One row a body: Q, t, o, shape.
+    /// One row per body: Q, t, o, shape.
     pub rows: &'a [[f32; ROW]],
     /// Each shape's slabs.
     pub tables: &'a SlabTables,

@@ -38,7 +38,8 @@ impl PosedOrDops {
             places: &places,
             balls: &[],
         };
-        rows.update(tier, &Threads::default(), posed, 0..places.len(), 1);
+        let pool = Threads::default();
+        rows.update(pool.executor(tier), posed, 0..places.len(), 1);
         Self {
             rows,
             tables: SlabTables::new(directions.unwrap_or(DirectionSet::K6), shapes),

@@ -1,4 +1,4 @@
-//! Slab ends of a vector of or-DOPs, one a lane, as columns: an end is picked by signs, never fetched.
+//! Slab ends of a vector of or-DOPs, one per lane, as columns: an end is picked by signs, never fetched.
 //!
 //! A lane's shape is its own, so its ends can't be a broadcast, and fetching them look-up by look-up takes 144 gathers a
 //! vector at k = 18, which was two thirds of the test. Instead all ends of each lane's shape are loaded once, and every

@@ -94,7 +94,7 @@ impl Peer for Boxes {
         self.update(&frame.boxes);
         let (tier, pool) = (self.tier, &self.pool);
         self.finder
-            .arrange(tier, pool, &self.places, &self.cubes, &self.names);
+            .arrange(pool.executor(tier), &self.places, &self.cubes, &self.names);
         let (finder, parts, count) = (&self.finder, self.finder.parts(), self.shares.len());
         let gap = self.gap.twice();
         pool.each(&mut self.shares, |index, found| {

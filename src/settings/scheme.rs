@@ -1,0 +1,114 @@
+//! The strategies as one table: what each tests, and how pairs flow from test to test. Counters, updates, the choice of a
+//! finder and prices follow from a strategy's row.
+
+use super::{DirectionSet, Overlap, Strategy};
+use crate::choice::choices;
+
+choices! {
+    /// A volume that pairs are tested by; its updates, tests and hits are counted apart.
+    TestedVolume, "volume", {
+        /// Bounding spheres.
+        Sphere = "sphere",
+        /// or-DOPs.
+        OrDop = "ordop",
+        /// World-aligned boxes.
+        Aabb = "aabb",
+        /// World-aligned k-DOPs.
+        KDop = "kdop",
+        /// Oriented boxes.
+        Obb = "obb",
+    }
+}
+
+/// How pairs flow from the first test to the refining one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// No pair is looked at.
+    Nothing,
+    /// What passes the first test is reported.
+    FirstTest,
+    /// Blocks of candidates that passed the first test are refined at once; no list is kept (paper, section 4a).
+    Sequential,
+    /// All that passed the first test is listed, then refined (paper, section 4b).
+    Batch,
+    /// As `Sequential`, but only pairs with a body of interest are refined (paper, section 4c).
+    OfInterest,
+    /// As `Batch`, until a budget ends.
+    TimeCritical,
+}
+
+/// A row of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scheme {
+    /// The first test, of every candidate: spheres or world-aligned volumes.
+    pub first: Option<TestedVolume>,
+    /// The refining test, of what passed the first one, or of every candidate where there is none: oriented volumes.
+    pub refining: Option<TestedVolume>,
+    /// How pairs get from one to the other.
+    pub flow: Flow,
+}
+
+impl Strategy {
+    /// The strategy's row in the table of strategies.
+    #[must_use]
+    pub const fn scheme(self) -> Scheme {
+        use TestedVolume::{Aabb, KDop, Obb, OrDop, Sphere};
+        let (first, refining, flow) = match self {
+            Self::None => (None, None, Flow::Nothing),
+            Self::Sphere => (Some(Sphere), None, Flow::FirstTest),
+            Self::OrDop => (None, Some(OrDop), Flow::Sequential),
+            Self::SDopSequential => (Some(Sphere), Some(OrDop), Flow::Sequential),
+            Self::SDopBatch => (Some(Sphere), Some(OrDop), Flow::Batch),
+            Self::SDopObjectOfInterest => (Some(Sphere), Some(OrDop), Flow::OfInterest),
+            Self::SDopTimeCritical => (Some(Sphere), Some(OrDop), Flow::TimeCritical),
+            Self::Aabb => (Some(Aabb), None, Flow::FirstTest),
+            Self::KDop => (Some(KDop), None, Flow::FirstTest),
+            Self::Obb => (None, Some(Obb), Flow::Sequential),
+        };
+        Scheme {
+            first,
+            refining,
+            flow,
+        }
+    }
+}
+
+impl Scheme {
+    /// The volumes in the order of their tests.
+    pub fn volumes(self) -> impl Iterator<Item = TestedVolume> {
+        self.first.into_iter().chain(self.refining)
+    }
+
+    /// Whether candidates go to the oriented volumes untested: these are then binned by balls of their own, and hardly
+    /// cheaper to test than candidates are to find.
+    #[must_use]
+    pub fn is_oriented_alone(self) -> bool {
+        self.first.is_none() && self.refining.is_some()
+    }
+
+    /// Whether each shape's oriented box takes the place of its or-DOP.
+    #[must_use]
+    pub fn has_boxes(self) -> bool {
+        self.refining == Some(TestedVolume::Obb)
+    }
+
+    /// The directions of the world-aligned slabs, if there are any; `k` are those of a k-DOP.
+    #[must_use]
+    pub fn slabs(self, k: DirectionSet) -> Option<DirectionSet> {
+        match self.first {
+            Some(TestedVolume::Aabb) => Some(DirectionSet::K6),
+            Some(TestedVolume::KDop) => Some(k),
+            _ => None,
+        }
+    }
+
+    /// The axes of the refining test: `given`, but all 15 of two boxes.
+    #[must_use]
+    pub fn overlap(self, given: Overlap) -> Overlap {
+        if self.has_boxes() {
+            Overlap::Full
+        } else {
+            given
+        }
+    }
+}
