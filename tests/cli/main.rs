@@ -4,6 +4,7 @@
 
 mod mesh;
 mod recording;
+mod report;
 mod reproduce;
 mod run;
 
