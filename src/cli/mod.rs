@@ -6,6 +6,7 @@ mod advise;
 mod bench;
 mod cases;
 mod check;
+mod cmp;
 mod cost;
 mod files;
 mod judge;
@@ -13,6 +14,8 @@ mod mesh;
 mod output;
 mod palette;
 mod prices;
+mod record;
+mod report;
 mod reproduce;
 mod run;
 mod scene_args;
@@ -48,6 +51,9 @@ enum Command {
     Check(check::Args),
     Bench(bench::Args),
     View(view::Args),
+    Record(record::Args),
+    Cmp(cmp::Args),
+    Report(report::Args),
 }
 
 /// How a command ended when its input was good.
@@ -77,6 +83,9 @@ impl Cli {
             Command::Check(args) => check::run(&args),
             Command::Bench(args) => bench::run(&args),
             Command::View(args) => view::run(&args),
+            Command::Record(args) => record::run(&args),
+            Command::Cmp(args) => cmp::run(&args),
+            Command::Report(args) => report::run(&args),
         }
     }
 }

@@ -9,6 +9,7 @@ pub mod measure;
 pub mod number;
 pub mod random;
 pub mod record;
+pub mod report;
 pub mod reproduce;
 pub mod scene;
 pub mod simulate;

@@ -5,6 +5,7 @@
 mod files;
 mod mesh;
 mod recording;
+mod report;
 mod reproduce;
 mod run;
 mod view;

@@ -1,0 +1,66 @@
+//! What the columns of a recorded table are: what names a row, what is counted, what is measured.
+
+use serde_json::Value;
+
+use super::table::Table;
+
+/// Whole numbers that name a row instead of being counted in it.
+const NAMING: [&str; 15] = [
+    "bodies", "statics", "threads", "seed", "seeds", "frames", "k", "warm_up", "timed", "turn",
+    "checked", "elements", "samples", "frame", "rounds",
+];
+
+/// Text that differs between machines and versions without naming another row.
+const PASSING: [&str; 4] = ["version", "rustc", "cpu", "os"];
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Part of the row's name.
+    Name,
+    /// A whole number that every machine must find.
+    Count,
+    /// A measured number.
+    Measured,
+    /// An end or a width of a measured number's interval.
+    Interval,
+    /// Neither: left out of comparisons.
+    Passing,
+}
+
+/// The kind of each column of two tables that have the same columns.
+pub(super) fn kinds(a: &Table, b: &Table) -> Vec<Kind> {
+    let kind = |name: &String| {
+        let cells = || a.rows.iter().chain(&b.rows).filter_map(|row| row.get(name));
+        let last = name.rsplit('.').next().unwrap_or(name);
+        if PASSING.contains(&last) {
+            Kind::Passing
+        } else if NAMING.contains(&last) || cells().any(Value::is_string) {
+            Kind::Name
+        } else if last.ends_with("_low") || last.ends_with("_high") || last == "half_width" {
+            Kind::Interval
+        } else if cells().any(Value::is_f64) {
+            Kind::Measured
+        } else {
+            Kind::Count
+        }
+    };
+    a.columns.iter().map(kind).collect()
+}
+
+/// The interval of a measured cell, where its table has one: `x_low` and `x_high` beside `x`, or `x.half_width` beside `x.mean`.
+pub(super) fn interval(row: &serde_json::Map<String, Value>, column: &str) -> Option<[f64; 2]> {
+    let number = |name: String| row.get(&name)?.as_f64();
+    if let (Some(low), Some(high)) = (
+        number(format!("{column}_low")),
+        number(format!("{column}_high")),
+    ) {
+        return Some([low, high]);
+    }
+    let stem = column.strip_suffix(".mean")?;
+    let (mean, half) = (
+        number(column.to_owned())?,
+        number(format!("{stem}.half_width"))?,
+    );
+    Some([mean - half, mean + half])
+}

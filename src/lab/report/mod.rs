@@ -1,0 +1,23 @@
+//! Measurements that can be cited: what a record says of itself, how two records compare, and pages that take every number
+//! from a record.
+//!
+//! A record is a directory `data/record/<machine>/<experiment>` of tables and one [`Manifest`], which holds the command,
+//! the commit, the machine and a digest of every file. A page quotes a record through markers ([`pages`]); rendering again
+//! must change nothing.
+
+mod clock;
+mod columns;
+mod compare;
+mod experiment;
+mod manifest;
+pub mod pages;
+mod provenance;
+mod store;
+mod table;
+
+pub use compare::{Change, Comparison, compare};
+pub use experiment::{EXPERIMENTS, Experiment, Program};
+pub use manifest::{FILE, Manifest, ManifestError};
+pub use provenance::{Code, Load, caches};
+pub use store::{Store, StoreError};
+pub use table::{Table, TableError};

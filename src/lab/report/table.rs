@@ -1,0 +1,60 @@
+//! A recorded CSV table as rows of named values.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value};
+
+/// A table: its columns in order and its rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Names of the columns.
+    pub columns: Vec<String>,
+    /// One object per row: numbers as numbers, empty cells as null.
+    pub rows: Vec<Map<String, Value>>,
+}
+
+/// A table that can't be read.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[error("{}: {source}", path.display())]
+#[diagnostic(help("records hold comma-separated tables with one header line"))]
+pub struct TableError {
+    path: PathBuf,
+    source: csv::Error,
+}
+
+impl Table {
+    /// Reads a table.
+    ///
+    /// # Errors
+    /// The file can't be read, or a row has more or fewer cells than the header.
+    pub fn read(path: &Path) -> Result<Self, TableError> {
+        let failed = |source| TableError {
+            path: path.to_path_buf(),
+            source,
+        };
+        let mut reader = csv::Reader::from_path(path).map_err(failed)?;
+        let header = reader.headers().map_err(failed)?;
+        let columns: Vec<String> = header.iter().map(str::to_owned).collect();
+        let mut rows = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(failed)?;
+            let cells = columns.iter().cloned().zip(record.iter().map(value));
+            rows.push(cells.collect());
+        }
+        Ok(Self { columns, rows })
+    }
+}
+
+/// A cell: null if empty, a number if it reads as a finite one, text otherwise.
+fn value(cell: &str) -> Value {
+    if cell.is_empty() {
+        return Value::Null;
+    }
+    if let Ok(whole) = cell.parse::<i64>() {
+        return whole.into();
+    }
+    match cell.parse::<f64>() {
+        Ok(number) if number.is_finite() => number.into(),
+        _ => cell.into(),
+    }
+}
