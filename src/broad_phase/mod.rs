@@ -17,6 +17,8 @@ mod auto;
 mod block;
 mod bounds;
 mod grid;
+#[cfg(debug_assertions)]
+mod invariants;
 mod sweep;
 
 pub use all_pairs::AllPairs;
@@ -169,7 +171,7 @@ impl PairFinder {
     }
 
     /// Arranges the bodies for a frame. `balls` and `names` are in the order of places, and nothing that the first test
-    /// reports lies outside two balls which meet.
+    /// reports lies outside two cubes, about these balls, which meet.
     pub fn arrange(
         &mut self,
         executor: Executor<'_>,
@@ -182,6 +184,8 @@ impl PairFinder {
             Self::Grid(finder) => finder.arrange(executor, balls, names),
             Self::Sweep(finder) => finder.arrange(places, balls, names),
         }
+        #[cfg(debug_assertions)]
+        self.check(executor.tier, places);
     }
 
     /// The arranged bodies.

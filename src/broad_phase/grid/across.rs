@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use super::Grid;
-use super::cells::Layout;
 use super::level::Level;
 use super::near::hand_over;
 use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest};
@@ -28,11 +27,12 @@ pub fn plan(a: &Level, b: &Level) -> (bool, Search) {
     let mut best = (a.range.len() < b.range.len(), Search::All, all);
     for (seeker, target, is_a) in [(a, b, true), (b, a, false)] {
         let across = 2.0 * (seeker.widest + target.widest) / target.cells.size();
-        // A wrapped table serves only what spans at most three cells: there all rows are sure to differ.
-        if target.cells.layout() == Layout::Wrapped && across >= 2.0 {
+        // Nearly always: roundings and the place of the seeker may make it one more.
+        let span = across + 1.0;
+        if span >= f64::from(target.cells.most_span()) {
             continue;
         }
-        let cells = |axis: usize| (across + 1.0).min(f64::from(target.cells.count()[axis]));
+        let cells = |axis: usize| span.min(f64::from(target.cells.count()[axis]));
         let found = all
             * (0..3)
                 .map(|i| cells(i) / f64::from(target.cells.count()[i]))
@@ -57,7 +57,8 @@ impl Grid {
         test: &mut impl FirstTest,
     ) {
         let starts = target.starts.as_slice();
-        let table = target.cells.table_len();
+        let (table, most_span) = (target.cells.table_len(), target.cells.most_span());
+        let all = target.range.start as u32..target.range.end as u32;
         let mut first = seekers.start;
         while first < seekers.end {
             let mut pen = block.restart(first);
@@ -67,6 +68,15 @@ impl Grid {
                 let Some([lo, hi]) = target.cells.around(ball, reach) else {
                     continue;
                 };
+                if (0..3).any(|axis| hi[axis] - lo[axis] >= most_span) {
+                    if pen.is_full(1) {
+                        pen.done();
+                        hand_over(l, block, test);
+                        pen = block.restart(first);
+                    }
+                    pen.push(i - first, all.clone());
+                    continue;
+                }
                 for z in lo[2]..=hi[2] {
                     for y in lo[1]..=hi[1] {
                         if pen.is_full(2) {
@@ -86,6 +96,79 @@ impl Grid {
             pen.done();
             hand_over(l, block, test);
             first += BLOCK_BODIES;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cells::Layout;
+    use super::*;
+    use crate::simd::{Kernel, Tier, dispatch};
+
+    const TARGETS: usize = 24;
+    const SEEKERS: usize = 30;
+
+    /// How often each target is a candidate of each seeker.
+    struct Count([[u32; TARGETS]; SEEKERS]);
+
+    impl FirstTest for Count {
+        fn run<L: Lanes>(&mut self, _: L, i: usize, run: Range<usize>) {
+            run.for_each(|j| self.0[i - TARGETS][j] += 1);
+        }
+        fn block<L: Lanes>(&mut self, _: L, block: &Block) {
+            for &code in block.codes() {
+                let i = block.first() + (code & 15) as usize;
+                self.0[i - TARGETS][(code >> 4) as usize] += 1;
+            }
+        }
+    }
+
+    struct Look<'a>(&'a Grid);
+
+    impl Kernel for Look<'_> {
+        type Output = Count;
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> Count {
+            let mut count = Count([[0; TARGETS]; SEEKERS]);
+            let (seekers, mut block) = (self.0.levels[1].range.clone(), Block::new());
+            self.0
+                .across(l, seekers, &self.0.levels[0], &mut block, &mut count);
+            count
+        }
+    }
+
+    /// In a table this short the rows of a fourth cell overlap those of the first.
+    #[test]
+    fn a_look_that_spans_many_cells_of_a_short_table_finds_each_body_once() {
+        for radius in [0.9, 1.0, 1.5, 2.1, 3.0, 40.0] {
+            let balls: Vec<[f32; 4]> = (0..TARGETS + SEEKERS)
+                .map(|i| {
+                    let (x, y, z) = (i % 3, i / 3 % 8, i % 2);
+                    let radius = if i < TARGETS { 1.0 } else { radius };
+                    [1.7 * x as f32, 2.3 * y as f32, 1e5 * z as f32, radius]
+                })
+                .collect();
+            let names: Vec<u32> = (0..balls.len() as u32).collect();
+            let mut grid = Grid::default();
+            grid.levels = [0..TARGETS, TARGETS..balls.len()]
+                .map(|range| Level::new(range, Layout::Wrapped))
+                .to_vec();
+            (grid.moving_levels, grid.fixed_sorted) = (2, false);
+            let pool = crate::threads::Threads::default();
+            let executor = crate::threads::Executor {
+                tier: Tier::SCALAR,
+                pool: &pool,
+            };
+            grid.arrange(executor, &balls, &names);
+            let Count(found) = dispatch(Tier::SCALAR, Look(&grid));
+            for (i, found) in (TARGETS..).zip(found) {
+                for (j, times) in found.into_iter().enumerate() {
+                    let [a, b] = [i, j].map(|slot| grid.slots.balls[slot]);
+                    let meet = (0..3).all(|k| (a[k] - b[k]).abs() <= a[3] + b[3]);
+                    assert!(times <= 1 && times >= u32::from(meet), "{radius}: {times}");
+                }
+            }
         }
     }
 }

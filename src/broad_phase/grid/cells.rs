@@ -28,6 +28,10 @@ const FEW_CELLS: f64 = 512.0;
 /// Rows that a body looks at besides its own: (0, +1, 0) and (0, −1…+1, +1). The other half finds it in turn.
 const FORWARD: [[i32; 2]; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
 
+/// Cells each way that one look into a wrapped table may span: there all rows lie apart, in every length of table, and rows
+/// of a fourth cell would overlap in short ones and give some bodies twice.
+pub const WRAPPED_SPAN: u32 = 3;
+
 /// How cells find their place in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
@@ -192,6 +196,15 @@ impl Cells {
         }
     }
 
+    /// How many cells each way a look may span.
+    #[inline(always)]
+    pub fn most_span(&self) -> u32 {
+        match self.layout() {
+            Layout::Box => u32::MAX,
+            Layout::Wrapped => WRAPPED_SPAN,
+        }
+    }
+
     /// Table index of a cell.
     #[inline(always)]
     pub fn index(&self, [x, y, z]: [u32; 3]) -> u32 {
@@ -259,4 +272,93 @@ impl Cells {
 /// The number itself, or the nearest finite one.
 fn finite(x: f32) -> f64 {
     f64::from(x.max(f32::MIN).min(f32::MAX))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows that one body looks through, its own and the others' views of it included, differ by up to two each way; three
+    /// cells of each must not share a place.
+    #[test]
+    fn rows_of_a_wrapped_table_lie_apart() {
+        let bounds = Bounds {
+            lo: [0.0; 3],
+            hi: [1e6; 3],
+            widest: 1.0,
+        };
+        for bodies in (0..=28).map(|e| 1usize << e) {
+            let cells = Cells::fit(&bounds, bodies, Layout::Wrapped);
+            let (table, most) = (cells.table_len() as u32, WRAPPED_SPAN as i32 - 1);
+            for y in -most..=most {
+                for z in -most..=most {
+                    let at = cells.index([0, y as u32, z as u32]);
+                    let apart = at.min(table - at);
+                    assert!(
+                        (y, z) == (0, 0) || apart >= WRAPPED_SPAN,
+                        "{table}: {y}, {z}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bounds_beyond_the_contract_get_some_cells() {
+        let ends = [
+            0.0,
+            -0.0,
+            1e-45,
+            7.5,
+            f32::MAX,
+            f32::MIN,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::NAN,
+        ];
+        for [lo, hi, widest] in (0..9 * 9 * 9).map(|i| [i % 9, i / 9 % 9, i / 81]) {
+            let bounds = Bounds {
+                lo: [ends[lo], 0.0, 1.0],
+                hi: [ends[hi], ends[hi], 2.0],
+                widest: ends[widest].max(0.0),
+            };
+            for layout in [Layout::Box, Layout::Wrapped] {
+                let cells = Cells::fit(&bounds, 10, layout);
+                assert!(cells.count().iter().all(|&n| n > 0), "{bounds:?}");
+                assert!(cells.table_len() < 2000, "{bounds:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_farthest_centre_falls_in_the_last_cell() {
+        for (n, radius) in (1..200u16).zip([0.954, 1.0, 1e-9, 7.0].into_iter().cycle()) {
+            let widest = Bounds {
+                widest: radius,
+                ..Bounds::EMPTY
+            };
+            let size = Cells::fit(&widest, 1000, Layout::Box).size();
+            let far = ((f64::from(n) + 0.5) * size) as f32;
+            for lo in [0.0, (f64::from(far) - (f64::from(n) + 0.5) * size) as f32] {
+                let bounds = Bounds {
+                    lo: [lo; 3],
+                    hi: [far, lo, lo],
+                    widest: radius,
+                };
+                let cells = Cells::fit(&bounds, 1000, Layout::Box);
+                let mut found = [0; 2];
+                let balls = [[lo, lo, lo, radius], [far, lo, lo, radius]];
+                let (tier, to) = (crate::simd::Tier::SCALAR, &mut found);
+                crate::simd::dispatch(
+                    tier,
+                    super::super::level::Assign {
+                        cells: &cells,
+                        balls: &balls,
+                        to,
+                    },
+                );
+                assert_eq!(found, [0, cells.count()[0] - 1], "{n} cells and a half");
+            }
+        }
+    }
 }

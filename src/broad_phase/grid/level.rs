@@ -60,11 +60,6 @@ impl Level {
             let balls = &balls[start..start + to.len()];
             dispatch(tier, Assign { cells, balls, to });
         });
-        let from = Columns {
-            balls,
-            names,
-            cells: place_cells,
-        };
         let entries = self.cells.table_len() + 1;
         if entries > self.starts.capacity() {
             // An eighth to spare, so that a box that breathes allocates nothing and doubles nothing.
@@ -73,15 +68,59 @@ impl Level {
         }
         self.starts.resize(entries, 0);
         self.starts[0] = range.start as u32;
-        let to = Share {
-            first_cell: 0,
-            ends: &mut self.starts[1..],
-            first_slot: range.start as u32,
-            balls: &mut slots.balls[range.clone()],
-            names: &mut slots.names[range.clone()],
-            cells: &mut slot_cells[range],
+        let last = self.cells.table_len() as u32 - 1;
+        loop {
+            let from = Columns {
+                balls,
+                names,
+                cells: place_cells,
+            };
+            let to = Share {
+                first_cell: 0,
+                ends: &mut self.starts[1..],
+                first_slot: range.start as u32,
+                balls: &mut slots.balls[range.clone()],
+                names: &mut slots.names[range.clone()],
+                cells: &mut slot_cells[range.clone()],
+            };
+            if to.sort(pool, &from) {
+                break;
+            }
+            debug_assert!(
+                balls.as_flattened().iter().any(|x| x.is_nan()),
+                "a body's cell lies beyond the table"
+            );
+            // A centre that is NaN, of a body outside the contract, has any number for a cell.
+            for cell in &mut *place_cells {
+                *cell = (*cell).min(last);
+            }
+        }
+        self.check(slots, balls, names);
+    }
+
+    /// What debug builds, and so tests, check of every sort.
+    fn check(&self, slots: &Slots, balls: &[[f32; 4]], names: &[u32]) {
+        if !cfg!(debug_assertions) {
+            return;
+        }
+        let range = self.range.clone();
+        // Sums that any other set of names hardly has, since sorting would allocate.
+        let sums = |names: &[u32]| {
+            let sums = names
+                .iter()
+                .map(|&name| u64::from(name))
+                .map(|x| (x, x * x));
+            sums.fold((0u64, 0u64), |a, b| (a.0 + b.0, a.1.wrapping_add(b.1)))
         };
-        to.sort(pool, &from);
+        let slotted = &slots.names[range.clone()];
+        debug_assert_eq!(sums(slotted), sums(names), "each body has one slot");
+        let ends = [self.starts.first(), self.starts.last()];
+        let [start, end] = [range.start as u32, range.end as u32];
+        debug_assert_eq!(ends, [Some(&start), Some(&end)], "cells hold all slots");
+        debug_assert!(self.starts.is_sorted(), "cells follow each other");
+        let wider = |ball: &[f32; 4]| f64::from(widen(ball[3])) > self.widest;
+        debug_assert!(!balls.iter().any(wider), "the widest ball is the widest");
+        debug_assert!(self.cells.size() >= 2.0 * self.widest, "cells hold a ball");
     }
 }
 
@@ -125,18 +164,23 @@ struct Share<'a> {
 
 impl<'a> Share<'a> {
     /// Sorts all cells, split among the threads: each reads all bodies and takes those of its own cells, so that the order is
-    /// that of one thread.
-    fn sort(mut self, pool: &Threads, from: &Columns<'_>) {
+    /// that of one thread. False, and nothing is sorted, if a body's cell isn't in the table.
+    fn sort(mut self, pool: &Threads, from: &Columns<'_>) -> bool {
         let threads = pool.threads();
         if threads == 1 || from.cells.len() < WORTH_SHARING {
-            self.count(from.cells);
-            self.place(from);
-            return;
+            let counted = count(from.cells, self.first_cell, self.ends);
+            let all = counted == from.cells.len();
+            if all {
+                self.place(from);
+            }
+            return all;
         }
         let mut shares = Vec::with_capacity(threads);
         for k in 1..threads {
             // Places are nearly in the order of cells, so this splits the bodies evenly.
-            let middle = from.cells[from.cells.len() * k / threads].max(self.first_cell);
+            let middle = from.cells[from.cells.len() * k / threads];
+            let end = self.first_cell + self.ends.len() as u32;
+            let middle = middle.clamp(self.first_cell, end);
             let (ends, rest) = self.ends.split_at_mut((middle - self.first_cell) as usize);
             shares.push((self.first_cell, ends, 0));
             (self.first_cell, self.ends) = (middle, rest);
@@ -145,6 +189,9 @@ impl<'a> Share<'a> {
         pool.each(&mut shares, |_, (first_cell, ends, bodies)| {
             *bodies = count(from.cells, *first_cell, ends);
         });
+        if shares.iter().map(|(_, _, bodies)| bodies).sum::<usize>() < from.cells.len() {
+            return false;
+        }
         let mut shares: Vec<Share<'_>> = shares
             .into_iter()
             .map(|(first_cell, ends, bodies)| {
@@ -167,10 +214,7 @@ impl<'a> Share<'a> {
             })
             .collect();
         pool.each(&mut shares, |_, share| share.place(from));
-    }
-
-    fn count(&mut self, cells: &[u32]) {
-        count(cells, self.first_cell, self.ends);
+        true
     }
 
     /// Puts the counted bodies into their slots. Each cell's entry is its count, then its start, and moves to its end.

@@ -34,9 +34,11 @@ pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec
         let wide = |place: &u32| balls[*place as usize][3] > half;
         let crowded = crowd > CROWD * rest.len() as u64 && levels.len() + 1 < MOST_LEVELS;
         let mut count = rest.len();
-        if crowded && !rest.iter().all(wide) {
+        // None is wide where the widest radius is infinite.
+        let wide_count = rest.iter().filter(|place| wide(place)).count();
+        if crowded && (1..count).contains(&wide_count) {
             rest.sort_by_key(|place| !wide(place));
-            count = rest.iter().filter(|place| wide(place)).count();
+            count = wide_count;
             level = gather(balls, &rest[..count]);
             layout = fit(&level).0;
         }
@@ -72,7 +74,10 @@ fn crowd(cells: &Cells, balls: &[[f32; 4]]) -> u64 {
     dispatch(simd::Tier::SCALAR, Assign { cells, balls, to });
     let mut counts = vec![0u64; cells.table_len()];
     for &cell in &cell_of {
-        counts[cell as usize] += 1;
+        // A centre that is NaN has no cell.
+        if let Some(count) = counts.get_mut(cell as usize) {
+            *count += 1;
+        }
     }
     counts.iter().map(|n| n * n).sum()
 }

@@ -26,7 +26,8 @@ pub struct Borders {
     pub radii: [f32; 2],
     /// The bodies.
     pub bodies: Bodies,
-    /// Whether a division rounded half away from zero gives another number of cells than the grid has.
+    /// Whether the extent along some axis is so near to a border that a division rounded half away from zero gives another
+    /// number of cells than a product rounded half to even.
     pub divides: bool,
 }
 
@@ -203,7 +204,7 @@ impl Draw<'_> {
 
     /// Moves a positive number by a few of its last places.
     fn nudge(&mut self, x: f64) -> f64 {
-        let ulps = i64::from(self.below(7)) - 3;
+        let ulps = self.pick(&[-1, -1, -1, 0, 0, 1, 1, -2, 2, -3, 3]);
         f64::from_bits(x.to_bits().wrapping_add_signed(ulps))
     }
 
@@ -227,7 +228,7 @@ impl Draw<'_> {
             other = self.nudge_f32(other);
         }
         let radii = [radius, other];
-        let fill = self.pick(&[0, 4, 30, 30, 200]);
+        let fill = self.pick(&[0, 4, 40, 40, 200]);
         let joint = target_moves == seeker_moves && self.below(2) == 0;
         let plan = Plan {
             radii,
@@ -257,6 +258,8 @@ impl Draw<'_> {
         let on: [On; 3] = std::array::from_fn(|_| {
             self.pick(&[
                 On::Nothing,
+                On::Nothing,
+                On::Extent,
                 On::Extent,
                 On::Extent,
                 On::Centre,
@@ -281,12 +284,12 @@ impl Draw<'_> {
             let number = (f64::from(rough[k].hi) / size).floor();
             self.axis(plan, on[k], number, size)
         });
-        let fitted = plan.cells(&axes);
-        let by_division = |k: usize| {
+        let fitted = plan.cells(&axes).size();
+        let divides = (0..3).any(|k| {
             let extent = f64::from(axes[k].hi) - f64::from(axes[k].lo);
-            (extent / fitted.size()).round() + 1.0
-        };
-        let divides = (0..3).any(|k| by_division(k) != f64::from(fitted.count()[k]));
+            let (by_division, by_product) = (extent / fitted, extent * (1.0 / fitted));
+            by_division.round() != by_product.round_ties_even()
+        });
         (axes, size, divides)
     }
 

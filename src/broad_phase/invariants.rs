@@ -1,0 +1,98 @@
+//! What debug builds, and so tests, check of every finder in every small frame: each pair is a candidate at most once, and
+//! each pair whose cubes meet once, unless both bodies are static.
+//!
+//! Cubes, since some first tests compare world-aligned volumes: there balls stand for the cubes about them.
+
+use std::ops::Range;
+
+use super::{Block, FirstTest, PairFinder};
+use crate::bodies::Places;
+use crate::simd::{Kernel, Lanes, Tier, dispatch};
+
+/// The most bodies of a frame that is checked: it takes the time of all pairs.
+const MOST_BODIES: usize = 64;
+
+/// 1 + 4u: how far beyond the sum of their radii balls may be reported.
+const REPORTED: f64 = 1.0 + 4.0 * crate::rounding::U;
+
+impl PairFinder {
+    /// Checks the candidates of a frame that has just been arranged, without allocating.
+    pub(super) fn check(&self, tier: Tier, places: &Places) {
+        let n = places.len();
+        if n > MOST_BODIES {
+            return;
+        }
+        let seen = dispatch(tier, Record { finder: self });
+        let finite = |slot| self.slots().ball(slot).iter().all(|x| x.is_finite());
+        if !(0..n).all(finite) {
+            return; // outside the contract
+        }
+        // Slots of moving bodies come first, as their places do.
+        for i in 0..n {
+            let fixed = seen.0[i] & u64::MAX.checked_shl(places.moving as u32).unwrap_or(0);
+            assert!(
+                i < places.moving || fixed == 0,
+                "static slots are candidates: {i}"
+            );
+            for j in i + 1..n {
+                let may_lack = i >= places.moving || !self.cubes_meet(i, j);
+                assert!(
+                    may_lack || seen.has(i, j),
+                    "slots {i} and {j} meet and are no candidates"
+                );
+            }
+        }
+    }
+
+    fn cubes_meet(&self, i: usize, j: usize) -> bool {
+        let [a, b] = [i, j].map(|slot| self.slots().ball(slot).map(f64::from));
+        let reach = (a[3] + b[3]) * REPORTED;
+        (0..3).all(|axis| (a[axis] - b[axis]).abs() <= reach)
+    }
+}
+
+/// Marks the candidates of all parts.
+struct Record<'a> {
+    finder: &'a PairFinder,
+}
+
+impl Kernel for Record<'_> {
+    type Output = Seen;
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> Seen {
+        let mut seen = Seen([0; MOST_BODIES]);
+        self.finder.find(l, 0..self.finder.parts(), &mut seen);
+        seen
+    }
+}
+
+/// Pairs of slots: bit j of number i for i < j.
+struct Seen([u64; MOST_BODIES]);
+
+impl Seen {
+    fn has(&self, i: usize, j: usize) -> bool {
+        self.0[i.min(j)] >> i.max(j) & 1 == 1
+    }
+
+    fn take(&mut self, i: usize, j: usize) {
+        assert!(
+            !self.has(i, j) && i != j,
+            "slots {i} and {j} are candidates twice"
+        );
+        self.0[i.min(j)] |= 1 << i.max(j);
+    }
+}
+
+impl FirstTest for Seen {
+    #[inline(always)]
+    fn run<L: Lanes>(&mut self, _: L, i: usize, run: Range<usize>) {
+        run.for_each(|j| self.take(i, j));
+    }
+
+    #[inline(always)]
+    fn block<L: Lanes>(&mut self, _: L, block: &Block) {
+        for &code in block.codes() {
+            self.take(block.first() + (code & 15) as usize, (code >> 4) as usize);
+        }
+    }
+}
