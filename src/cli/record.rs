@@ -134,7 +134,10 @@ fn execute(experiment: &Experiment, more: &[String], out: &Path) -> miette::Resu
         return Err(miette!("{} failed: {}", experiment.name, output.status));
     }
     match experiment.program {
-        Program::Bench { file } => write(&out.join(file), &String::from_utf8_lossy(&output.stdout)),
+        Program::Bench { file } => write(
+            &out.join(file),
+            String::from_utf8_lossy(&output.stdout).as_bytes(),
+        ),
         Program::Sdop | Program::Peers => Ok(()),
     }
 }

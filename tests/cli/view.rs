@@ -82,10 +82,7 @@ fn a_page_of_a_scene_holds_its_run() {
     let runs = header["runs"].as_array().unwrap();
     assert_eq!(runs.len(), 1);
     assert_eq!(runs[0]["name"], "s-dop-sequential");
-    assert_eq!(
-        runs[0]["volumes"],
-        serde_json::json!(["sphere", "or-dop"])
-    );
+    assert_eq!(runs[0]["volumes"], serde_json::json!(["sphere", "or-dop"]));
     assert_eq!(runs[0]["construct"], Value::Null);
     let on = |name: &str| {
         header["effects"]

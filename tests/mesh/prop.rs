@@ -30,7 +30,10 @@ fn mesh() -> impl Strategy<Value = TriangleMesh> {
         let vertices = prop::collection::vec([coordinate(), coordinate(), coordinate()], count);
         let triangles = prop::collection::vec([index.clone(), index.clone(), index], 1..12);
         (vertices, triangles).prop_map(|(vertices, triangles)| {
-            let vertices = vertices.into_iter().map(Vec3::from_array).collect();
+            let vertices = vertices
+                .into_iter()
+                .map(Vec3::from_array)
+                .collect::<Vec<_>>();
             TriangleMesh::new("mesh", vertices, triangles).unwrap()
         })
     })

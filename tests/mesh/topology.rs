@@ -7,7 +7,9 @@ use sdop::mesh::{MAX_COORDINATE, ReadOptions, TriangleMesh, read};
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
 fn topology(vertices: usize, triangles: &[[u32; 3]]) -> Topology {
-    let vertices = (0..vertices).map(|i| Vec3::splat(i as f32)).collect();
+    let vertices = (0..vertices)
+        .map(|i| Vec3::splat(i as f32))
+        .collect::<Vec<_>>();
     Topology::of(&TriangleMesh::new("mesh", vertices, triangles.to_vec()).unwrap())
 }
 
@@ -113,7 +115,11 @@ fn the_shipped_meshes_are_what_their_table_says() {
 #[test]
 fn a_mesh_keeps_its_contract() {
     let message = |vertices: &[[f32; 3]], triangles: &[[u32; 3]]| {
-        let vertices = vertices.iter().copied().map(Vec3::from_array).collect();
+        let vertices = vertices
+            .iter()
+            .copied()
+            .map(Vec3::from_array)
+            .collect::<Vec<_>>();
         TriangleMesh::new("knob", vertices, triangles.to_vec())
             .unwrap_err()
             .to_string()

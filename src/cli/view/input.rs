@@ -5,10 +5,10 @@ use std::io::Read as _;
 use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop::Tier;
 use sdop::lab::record::RecordError;
 use sdop::lab::verify::hard::Group;
 use sdop::lab::view::Show;
-use sdop::simd::Tier;
 
 use crate::cli::output::progress;
 use crate::cli::scene_args::SceneArgs;

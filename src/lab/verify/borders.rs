@@ -9,10 +9,10 @@
 
 use crate::bodies::Bodies;
 use crate::broad_phase::{Bounds, Cells, Layout};
-use crate::culler::Culler;
+use crate::culler::{CullError, Culler};
 use crate::mesh::TriangleMesh;
 use crate::rounding::{sphere::inflate_radius, widen};
-use crate::settings::{CullSettings, Finder, SettingsError, Strategy};
+use crate::settings::{CullSettings, Finder, Strategy};
 use crate::simd::Tier;
 use crate::volume::{Origin, Shape, ShapeSpec, VolumeError};
 
@@ -74,26 +74,29 @@ impl Borders {
     /// The first difference, and how many pairs there are.
     ///
     /// # Errors
-    /// Settings that lack something.
+    /// Settings that lack something, bodies outside of the contract.
     pub fn judge(
         &self,
         shapes: &[Shape],
         settings: &CullSettings,
         tier: Tier,
         frames: usize,
-    ) -> Result<(usize, Option<Difference>), SettingsError> {
+    ) -> Result<(usize, Option<Difference>), CullError> {
         let culler = |pairs: Finder| {
             let settings = CullSettings {
                 pairs,
                 ..settings.clone()
             };
-            Culler::new(shapes, &self.bodies, &settings, tier)
+            Culler::builder()
+                .settings(&settings)
+                .tier(tier)
+                .build(shapes, &self.bodies)
         };
-        let wanted = culler(Finder::AllPairs)?.cull(&self.bodies).sorted();
+        let wanted = culler(Finder::AllPairs)?.cull(&self.bodies)?.sorted();
         for &finder in Finder::ALL {
             let mut culler = culler(finder)?;
             for frame in 0..frames {
-                let found = culler.cull(&self.bodies).sorted();
+                let found = culler.cull(&self.bodies)?.sorted();
                 if found != wanted {
                     let lost: Vec<_> = wanted.iter().filter(|pair| !found.contains(pair)).collect();
                     let surplus = found.len() + lost.len() - wanted.len();

@@ -31,11 +31,7 @@ pub struct TermCourse {
 ///
 /// # Errors
 /// Settings that can't be carried out.
-pub fn prices(
-    show: &Show,
-    culled: &Culled,
-    tier: Tier,
-) -> Result<Option<Prices>, SimulationError> {
+pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>, SimulationError> {
     let culls = |cull: &CullSettings| cull.strategy != Strategy::None;
     let Some(cull) = culled.settings.clone().filter(culls) else {
         return Ok(None);
