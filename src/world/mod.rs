@@ -32,12 +32,14 @@ mod body;
 mod error;
 mod events;
 mod local;
+mod lookup;
 mod margins;
 
 pub use crate::broad_phase::Groups;
 pub use body::{Body, BodyId};
 pub use error::WorldError;
 pub use events::Events;
+pub use lookup::PairLookup;
 
 use self::events::Watch;
 use self::local::Local;

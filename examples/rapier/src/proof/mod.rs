@@ -1,0 +1,4 @@
+//! The proof by running.
+
+pub mod calls;
+pub mod scenes;
