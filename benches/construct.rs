@@ -3,8 +3,8 @@
 mod common;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use sdop::cost::calibrate::construct;
-use sdop::cost::predict::Volume;
+use sdop::lab::cost::calibrate::construct;
+use sdop::lab::cost::predict::Volume;
 
 fn constructions(criterion: &mut Criterion) {
     let scene = common::scene("paper-500");

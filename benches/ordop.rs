@@ -5,12 +5,12 @@
 mod common;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use sdop::culler::Culler;
+use sdop::lab::scene::Scene;
 use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
-use sdop::pipeline::Culler;
-use sdop::scene::Scene;
-use sdop::scene::settings::{CullSettings, Overlap, Strategy};
-use sdop::simd::Level;
+use sdop::settings::{CullSettings, Overlap, Strategy};
+use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
 
 fn pairs(scene: &Scene, strategy: Strategy) -> PairList {
@@ -18,7 +18,7 @@ fn pairs(scene: &Scene, strategy: Strategy) -> PairList {
         strategy,
         ..scene.cull.clone()
     };
-    let culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Level::detect());
+    let culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect());
     culler
         .map(|mut culler| culler.cull(&scene.bodies).clone())
         .unwrap_or_default()
@@ -45,17 +45,17 @@ fn ordop(criterion: &mut Criterion) {
                 .filter(|pair| sorted.binary_search(pair).is_err())
                 .collect();
             let shapes = scene.shapes.iter().map(|shape| (shape, &shape.ordop));
-            let posed = PosedOrDops::new(shapes, &scene.bodies, Level::detect());
+            let posed = PosedOrDops::new(shapes, &scene.bodies, Tier::detect());
             let columns = posed.columns(overlap);
             for (name, list) in [("hits", &hits), ("misses", &misses), ("as listed", &listed)] {
                 group.throughput(Throughput::Elements(list.len() as u64));
-                for level in Level::available() {
-                    let id = BenchmarkId::new(format!("k = {k}, {overlap}, {level}"), name);
+                for tier in Tier::available() {
+                    let id = BenchmarkId::new(format!("k = {k}, {overlap}, {tier}"), name);
                     let mut out = PairList::default();
                     group.bench_function(id, |bencher| {
                         bencher.iter(|| {
                             out.clear();
-                            columns.test_pairs(level, list.first(), list.second(), &mut out)
+                            columns.test_pairs(tier, list.first(), list.second(), &mut out)
                         });
                     });
                 }

@@ -15,7 +15,7 @@ use criterion::measurement::WallTime;
 use criterion::{
     BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
 };
-use sdop::scene::settings::{Finder, Strategy};
+use sdop::settings::{Finder, Strategy};
 
 use common::swarm::{Kind, Swarm};
 

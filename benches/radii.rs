@@ -6,9 +6,9 @@
 mod common;
 
 use common::swarm::{Kind, Swarm};
-use sdop::cost::measure::median;
-use sdop::pipeline::Culler;
-use sdop::scene::settings::Finder;
+use sdop::culler::Culler;
+use sdop::lab::measure::turns::median;
+use sdop::settings::Finder;
 
 /// Turns that everyone has.
 const ROUNDS: usize = 15;

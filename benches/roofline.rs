@@ -10,12 +10,12 @@ mod common;
 use std::hint::black_box;
 use std::time::Instant;
 
-use sdop::cost::measure::median;
-use sdop::cost::{Counters, Seconds};
-use sdop::pipeline::Culler;
-use sdop::scene::Scene;
-use sdop::scene::settings::{CullSettings, Finder, Strategy};
-use sdop::simd::{Kernel, Lanes, Level, dispatch};
+use sdop::counters::{Counters, Seconds};
+use sdop::culler::Culler;
+use sdop::lab::measure::turns::median;
+use sdop::lab::scene::Scene;
+use sdop::settings::{CullSettings, Finder, Strategy};
+use sdop::simd::{Kernel, Lanes, Tier, dispatch};
 
 /// Samples of every measurement.
 const SAMPLES: usize = 15;
@@ -99,9 +99,9 @@ const KERNELS: [Work; 4] = [
 ];
 
 fn main() {
-    let level = Level::detect();
-    let (operations, bytes) = (operations_a_nanosecond(level), bytes_a_nanosecond());
-    println!("{level}: {operations:.0} f32 operations and {bytes:.1} bytes a nanosecond at most\n");
+    let tier = Tier::detect();
+    let (operations, bytes) = (operations_a_nanosecond(tier), bytes_a_nanosecond());
+    println!("{tier}: {operations:.0} f32 operations and {bytes:.1} bytes a nanosecond at most\n");
     println!("| kernel | operations | bytes | floor, ns | measured, ns | share |");
     println!("|---|---:|---:|---:|---:|---:|");
     let mut loaded: Option<(&str, Scene)> = None;
@@ -110,7 +110,7 @@ fn main() {
             loaded = Some((work.scene, common::scene(work.scene)));
         }
         let Some((_, scene)) = &loaded else { continue };
-        let measured = nanoseconds(&work, scene, level);
+        let measured = nanoseconds(&work, scene, tier);
         let floor = (work.operations / operations).max(work.bytes / bytes);
         println!(
             "| {} | {:.0} | {:.0} | {floor:.2} | {measured:.2} | {:.0} % |",
@@ -123,14 +123,14 @@ fn main() {
 }
 
 /// The median over samples of a stage's time an element.
-fn nanoseconds(work: &Work, scene: &Scene, level: Level) -> f64 {
+fn nanoseconds(work: &Work, scene: &Scene, tier: Tier) -> f64 {
     let (strategy, pairs) = work.culling;
     let settings = CullSettings {
         strategy,
         pairs,
         ..scene.cull.clone()
     };
-    let mut culler = match Culler::new(&scene.shapes, &scene.bodies, &settings, level) {
+    let mut culler = match Culler::new(&scene.shapes, &scene.bodies, &settings, tier) {
         Ok(culler) => culler,
         Err(error) => panic!("{error}"),
     };
@@ -149,7 +149,7 @@ fn nanoseconds(work: &Work, scene: &Scene, level: Level) -> f64 {
 }
 
 /// Multiplications and additions in equal parts, on sixteen vectors that don't wait for one another.
-fn operations_a_nanosecond(level: Level) -> f64 {
+fn operations_a_nanosecond(tier: Tier) -> f64 {
     struct Spin;
     impl Kernel for Spin {
         type Output = f64;
@@ -169,7 +169,7 @@ fn operations_a_nanosecond(level: Level) -> f64 {
             (ROUNDS * chains.len() * 2 * L::WIDTH) as f64 / (1e9 * elapsed)
         }
     }
-    median((0..SAMPLES).map(|_| dispatch(level, Spin)).collect())
+    median((0..SAMPLES).map(|_| dispatch(tier, Spin)).collect())
 }
 
 /// Reading a column of 256 MiB from end to end.

@@ -9,12 +9,12 @@ mod common;
 use std::hint::black_box;
 use std::time::Instant;
 
-use sdop::cost::measure::median;
-use sdop::pipeline::Culler;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::{CullSettings, Strategy};
-use sdop::simd::Level;
-use sdop::tradeoff::safety::without_margins;
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
+use sdop::lab::measure::turns::median;
+use sdop::lab::tradeoff::safety::without_margins;
+use sdop::settings::{CullSettings, Strategy};
+use sdop::simd::Tier;
 
 /// Rounds over all frames.
 const ROUNDS: usize = 101;
@@ -30,15 +30,15 @@ fn main() {
             strategy,
             ..scene.cull.clone()
         };
-        for level in Level::available() {
+        for tier in Tier::available() {
             let cullers = [&scene.shapes, &bare].map(|shapes| {
-                Culler::new(shapes, &scene.bodies, &settings, level)
+                Culler::new(shapes, &scene.bodies, &settings, tier)
                     .unwrap_or_else(|error| panic!("{error}"))
             });
             let [on, off, ratios] = compare(cullers, &frames);
             let quartile = |q: usize| ratios[ratios.len() * q / 4];
             println!(
-                "| {strategy} | {level} | {:.1} | {:.1} | {:.4} | {:.3} to {:.3} |",
+                "| {strategy} | {tier} | {:.1} | {:.1} | {:.4} | {:.3} to {:.3} |",
                 1e6 * median(on),
                 1e6 * median(off),
                 quartile(2),

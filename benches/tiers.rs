@@ -9,10 +9,10 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::Criterion;
-use sdop::cost::measure::median;
-use sdop::pipeline::Culler;
-use sdop::simd::Level;
-use sdop::verify::{Shapes, judged};
+use sdop::culler::Culler;
+use sdop::lab::measure::turns::median;
+use sdop::lab::verify::{Shapes, judged};
+use sdop::simd::Tier;
 use sdop_reference as reference;
 
 /// Seconds an iteration, sample by sample.
@@ -40,13 +40,13 @@ fn main() {
     let scene = common::scene("paper-500");
     let frames = common::frames(&scene);
     let mut rows = Vec::new();
-    for level in Level::available() {
-        let culler = Culler::new(&scene.shapes, &scene.bodies, &scene.cull, level);
+    for tier in Tier::available() {
+        let culler = Culler::new(&scene.shapes, &scene.bodies, &scene.cull, tier);
         let mut culler = culler.unwrap_or_else(|error| panic!("{error}"));
-        let seconds = measure(&mut criterion, &format!("s-dop, {level}"), |i| {
+        let seconds = measure(&mut criterion, &format!("s-dop, {tier}"), |i| {
             black_box(culler.cull(&frames[i % frames.len()]).len());
         });
-        rows.push((level.name(), seconds));
+        rows.push((tier.name(), seconds));
     }
     let overlap = judged::overlap(scene.cull.overlap);
     let shapes = Shapes::new(scene.shapes.clone()).unwrap_or_else(|error| panic!("{error}"));

@@ -3,7 +3,7 @@
 mod common;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use sdop::scene::settings::Strategy;
+use sdop::settings::Strategy;
 
 fn updates(criterion: &mut Criterion) {
     let scene = common::scene("paper-500");

@@ -1,7 +1,5 @@
 //! Named choices: one list of names serves scene files, command-line flags, tables and JSON.
 
-use std::fmt;
-
 use miette::Diagnostic;
 use thiserror::Error;
 
@@ -88,12 +86,14 @@ macro_rules! choices {
             }
         }
 
+        #[cfg(feature = "lab")]
         impl serde::Serialize for $name {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 serializer.serialize_str(self.name())
             }
         }
 
+        #[cfg(feature = "lab")]
         impl<'de> serde::Deserialize<'de> for $name {
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 deserializer.deserialize_str($crate::choice::NameVisitor {
@@ -107,6 +107,7 @@ macro_rules! choices {
 }
 pub(crate) use choices;
 
+#[cfg(feature = "lab")]
 /// Reads one of `names` as the value in the same place.
 pub(crate) struct NameVisitor<T: 'static> {
     pub(crate) what: &'static str,
@@ -114,10 +115,11 @@ pub(crate) struct NameVisitor<T: 'static> {
     pub(crate) values: &'static [T],
 }
 
+#[cfg(feature = "lab")]
 impl<T: Copy> serde::de::Visitor<'_> for NameVisitor<T> {
     type Value = T;
 
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "a {} ({})", self.what, self.names.join(", "))
     }
 

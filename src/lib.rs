@@ -1,38 +1,27 @@
 //! Sphere-encapsulated or-DOP (S-DOP) collision culling that never misses a pair.
 //!
-//! Data flows one way: mesh → volume → scene → effects → update → broad_phase → overlap → pairs → cost.
+//! Data flows one way: mesh → volume → bodies → update → broad_phase → overlap → pairs.
 
-#[cfg(feature = "proptest")]
-pub mod arbitrary;
+pub mod bodies;
 pub mod broad_phase;
-pub mod choice;
-pub mod cost;
-pub mod crew;
-pub mod effects;
-#[cfg(feature = "cli")]
-pub mod estimate;
+mod choice;
+pub mod counters;
+pub mod culler;
+#[cfg(feature = "lab")]
+pub mod lab;
 pub mod mesh;
-mod models;
 pub mod overlap;
 pub mod pairs;
-pub mod pipeline;
-pub mod places;
-#[cfg(feature = "cli")]
-pub mod reproduce;
 pub mod rounding;
-pub mod scene;
+pub mod settings;
 pub mod simd;
-pub mod simulate;
 mod strategy;
-#[cfg(feature = "cli")]
-pub mod tradeoff;
+pub mod threads;
 pub mod update;
-#[cfg(feature = "verify")]
-pub mod verify;
 pub mod volume;
 pub mod world;
 
 /// The README's example compiles and runs.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "lab"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

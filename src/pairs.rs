@@ -1,8 +1,4 @@
-//! Lists of candidate or reported pairs, and the hash that makes two lists comparable across machines.
-
-use std::fmt::Write as _;
-
-use sha2::{Digest, Sha256};
+//! Lists of candidate or reported pairs.
 
 use crate::simd::MAX_WIDTH;
 
@@ -123,38 +119,6 @@ impl FromIterator<[u32; 2]> for PairList {
     }
 }
 
-/// `pairs_sha256` of a run: for each frame u32 frame, u64 count, then u32 i, u32 j sorted, all little endian.
-#[derive(Clone, Default)]
-pub struct PairsHash(Sha256);
-
-impl PairsHash {
-    /// Adds one frame's sorted pairs.
-    pub fn frame(&mut self, frame: u32, sorted: &[[u32; 2]]) {
-        self.0.update(frame.to_le_bytes());
-        self.0.update((sorted.len() as u64).to_le_bytes());
-        for [i, j] in sorted {
-            self.0.update(i.to_le_bytes());
-            self.0.update(j.to_le_bytes());
-        }
-    }
-
-    /// The hash of all frames so far, in hexadecimal.
-    #[must_use]
-    pub fn finish(self) -> String {
-        hex(&self.0.finalize())
-    }
-}
-
-/// Bytes in lower-case hexadecimal.
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    let mut text = String::with_capacity(2 * bytes.len());
-    for byte in bytes {
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{byte:02x}");
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -168,18 +132,5 @@ mod tests {
         twice.append(&list);
         assert_eq!(twice.len(), 10_000);
         assert_eq!(twice.first()[9_999], 4_999);
-    }
-
-    #[test]
-    fn hash_is_sha256_of_the_documented_bytes() {
-        let mut hash = PairsHash::default();
-        hash.frame(7, &[[1, 2], [1, 300]]);
-        let mut bytes = Vec::new();
-        bytes.extend(7u32.to_le_bytes());
-        bytes.extend(2u64.to_le_bytes());
-        for number in [1u32, 2, 1, 300] {
-            bytes.extend(number.to_le_bytes());
-        }
-        assert_eq!(hash.finish(), hex(&Sha256::digest(&bytes)));
     }
 }

@@ -5,12 +5,12 @@
 
 mod support;
 
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
+use sdop::lab::verify::{Shapes, judged};
 use sdop::pairs::PairList;
-use sdop::pipeline::Culler;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::{Axes, CullSettings, Interest, Overlap, Strategy, Updates};
-use sdop::simd::Level;
-use sdop::verify::{Shapes, judged};
+use sdop::settings::{Axes, CullSettings, Interest, Overlap, Strategy, Updates};
+use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
 use sdop_reference as reference;
 use support::{random_bodies, shapes};
@@ -50,8 +50,8 @@ fn settings(strategy: Strategy, k: DirectionSet, overlap: Overlap) -> CullSettin
     }
 }
 
-fn cull(frame: &Frame, settings: &CullSettings, level: Level) -> PairList {
-    let mut culler = Culler::new(&frame.shapes.built, &frame.bodies, settings, level).unwrap();
+fn cull(frame: &Frame, settings: &CullSettings, tier: Tier) -> PairList {
+    let mut culler = Culler::new(&frame.shapes.built, &frame.bodies, settings, tier).unwrap();
     culler.cull(&frame.bodies).clone()
 }
 
@@ -82,7 +82,7 @@ fn no_strategy_misses_a_pair_of_the_reference() {
             for overlap in [Overlap::OneSided, Overlap::TwoSided, Overlap::Full] {
                 for strategy in STRATEGIES {
                     let settings = settings(strategy, k, overlap);
-                    let found = cull(&frame, &settings, Level::detect()).sorted();
+                    let found = cull(&frame, &settings, Tier::detect()).sorted();
                     let wanted = judge(&frame, &settings);
                     let missed: Vec<_> = wanted
                         .iter()
@@ -112,10 +112,10 @@ fn every_tier_reports_the_same_list() {
         for overlap in [Overlap::OneSided, Overlap::TwoSided, Overlap::Full] {
             for strategy in STRATEGIES {
                 let settings = settings(strategy, k, overlap);
-                let scalar: Vec<_> = cull(&frame, &settings, Level::SCALAR).iter().collect();
-                for level in Level::available() {
-                    let list: Vec<_> = cull(&frame, &settings, level).iter().collect();
-                    assert_eq!(list, scalar, "{level} {strategy} k={k} {overlap}");
+                let scalar: Vec<_> = cull(&frame, &settings, Tier::SCALAR).iter().collect();
+                for tier in Tier::available() {
+                    let list: Vec<_> = cull(&frame, &settings, tier).iter().collect();
+                    assert_eq!(list, scalar, "{tier} {strategy} k={k} {overlap}");
                 }
             }
         }
@@ -138,9 +138,9 @@ fn the_number_of_shapes_changes_no_list() {
         let many = Frame { shapes, bodies };
         for overlap in [Overlap::OneSided, Overlap::TwoSided, Overlap::Full] {
             let settings = settings(Strategy::SDopBatch, k, overlap);
-            for level in Level::available() {
-                let lists = [&few, &many].map(|frame| cull(frame, &settings, level).sorted());
-                assert_eq!(lists[0], lists[1], "{level} k={k} {overlap}");
+            for tier in Tier::available() {
+                let lists = [&few, &many].map(|frame| cull(frame, &settings, tier).sorted());
+                assert_eq!(lists[0], lists[1], "{tier} k={k} {overlap}");
                 assert!(!lists[0].is_empty());
             }
         }
@@ -153,7 +153,7 @@ fn strategies_relate_as_the_paper_says() {
         let frame = frame(seed, DirectionSet::K18, Axes::Principal);
         let run = |strategy| {
             let settings = settings(strategy, DirectionSet::K18, Overlap::TwoSided);
-            cull(&frame, &settings, Level::detect()).sorted()
+            cull(&frame, &settings, Tier::detect()).sorted()
         };
         let (sphere, ordop) = (run(Strategy::Sphere), run(Strategy::OrDop));
         let both: Vec<_> = sphere
@@ -193,7 +193,7 @@ fn lazy_updates_change_the_count_of_updates_and_nothing_else() {
                 &frame.shapes.built,
                 &frame.bodies,
                 &settings,
-                Level::detect(),
+                Tier::detect(),
             )
             .unwrap()
         });

@@ -5,13 +5,13 @@
 
 use std::path::Path;
 
-use sdop::cost::calibrate::{Effort, calibrate, scenes};
-use sdop::cost::measure::{Trial, side_by_side};
-use sdop::cost::predict::Volume;
-use sdop::cost::{Counters, pair_count};
-use sdop::scene::settings::Strategy;
-use sdop::scene::{Scene, SceneFile};
-use sdop::simd::Level;
+use sdop::counters::{Counters, pair_count};
+use sdop::lab::cost::calibrate::{Effort, calibrate, scenes};
+use sdop::lab::cost::predict::Volume;
+use sdop::lab::measure::turns::{Trial, side_by_side};
+use sdop::lab::scene::{Scene, SceneFile};
+use sdop::settings::Strategy;
+use sdop::simd::Tier;
 
 const STRATEGIES: [Strategy; 9] = [
     Strategy::None,
@@ -31,8 +31,8 @@ fn scene() -> Scene {
     SceneFile::read(&path).unwrap().build().unwrap()
 }
 
-fn counters(scene: &Scene, level: Level) -> Vec<Counters> {
-    let trial = |&strategy: &Strategy| Trial::new(scene, strategy, level).unwrap();
+fn counters(scene: &Scene, tier: Tier) -> Vec<Counters> {
+    let trial = |&strategy: &Strategy| Trial::new(scene, strategy, tier).unwrap();
     let mut trials: Vec<Trial> = STRATEGIES.iter().map(trial).collect();
     let mut reported = vec![0; trials.len()];
     side_by_side(scene, &mut trials, FRAMES, |trial, _, pairs| {
@@ -58,7 +58,7 @@ fn counts_follow_the_formula_and_are_equal_on_every_tier() {
         .count() as u64;
     let all = scene.bodies.len() as u64;
     let pairs = u64::from(FRAMES) * pair_count(all, all - moving);
-    let counted = counters(&scene, Level::SCALAR);
+    let counted = counters(&scene, Tier::SCALAR);
     for (strategy, run) in STRATEGIES.iter().zip(&counted) {
         for &volume in Volume::ALL {
             let (used, own) = (
@@ -85,8 +85,8 @@ fn counts_follow_the_formula_and_are_equal_on_every_tier() {
     assert_eq!(sequential, batch);
     assert_eq!(sequential.ordop.tests, sequential.sphere.hits);
     assert_eq!(by(Strategy::None), Counters::default());
-    for level in Level::available() {
-        assert_eq!(counters(&scene, level), counted, "{level}");
+    for tier in Tier::available() {
+        assert_eq!(counters(&scene, tier), counted, "{tier}");
     }
 }
 
@@ -122,7 +122,7 @@ fn every_volume_gets_prices() {
         builds: 1,
     };
     let mut heard = Vec::new();
-    let prices = calibrate(&scene(), &STRATEGIES, Level::detect(), effort, |done| {
+    let prices = calibrate(&scene(), &STRATEGIES, Tier::detect(), effort, |done| {
         heard.push(done)
     })
     .unwrap();

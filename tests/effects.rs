@@ -3,9 +3,9 @@
 
 use std::path::Path;
 
-use sdop::effects::{Effects, NAMES};
-use sdop::scene::bodies::Bodies;
-use sdop::scene::{Scene, SceneFile};
+use sdop::bodies::Bodies;
+use sdop::lab::effects::NAMES;
+use sdop::lab::scene::{Scene, SceneFile};
 
 fn scene(text: &str) -> Scene {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
@@ -36,7 +36,7 @@ fn single(pose: &str, velocity: &str, effects: &str) -> Scene {
 
 fn after(scene: &Scene, steps: usize) -> Bodies {
     let mut bodies = scene.bodies.clone();
-    let mut effects = Effects::new(scene).unwrap();
+    let mut effects = scene.start_effects().unwrap();
     for _ in 0..steps {
         effects.step(&mut bodies).unwrap();
     }
@@ -57,7 +57,7 @@ fn only_listed_effects_run() {
     for (listed, (line, name)) in ALL.iter().zip(NAMES).enumerate() {
         assert!(line.starts_with(name));
         let scene = crowd(line);
-        let mut effects = Effects::new(&scene).unwrap();
+        let mut effects = scene.start_effects().unwrap();
         let mut bodies = scene.bodies.clone();
         for _ in 0..3 {
             effects.step(&mut bodies).unwrap();
@@ -93,7 +93,7 @@ fn only_listed_effects_run() {
 #[test]
 fn nothing_listed_is_nothing_done() {
     let scene = crowd("");
-    let mut effects = Effects::new(&scene).unwrap();
+    let mut effects = scene.start_effects().unwrap();
     let mut bodies = scene.bodies.clone();
     effects.step(&mut bodies).unwrap();
     assert_eq!(bodies, scene.bodies);
@@ -162,7 +162,7 @@ fn bounding_spheres_stay_inside_and_speeds_stay() {
             "motion = true\nwalls = \"{walls}\"\nspin = {{ rate = 2 }}"
         ));
         let mut bodies = scene.bodies.clone();
-        let mut effects = Effects::new(&scene).unwrap();
+        let mut effects = scene.start_effects().unwrap();
         for step in 0..400 {
             effects.step(&mut bodies).unwrap();
             for body in 0..bodies.len() {
@@ -252,7 +252,7 @@ fn gravity_accelerates_and_turns() {
 fn brownian_kicks_its_share() {
     let scene = crowd("brownian = { share = 0.1, speed = [5, 6] }");
     let mut bodies = scene.bodies.clone();
-    let mut effects = Effects::new(&scene).unwrap();
+    let mut effects = scene.start_effects().unwrap();
     for _ in 0..500 {
         effects.step(&mut bodies).unwrap();
     }
@@ -366,7 +366,7 @@ fn response_keeps_momentum_and_energy() {
         (momentum, energy)
     };
     let mut bodies = scene.bodies.clone();
-    let mut effects = Effects::new(&scene).unwrap();
+    let mut effects = scene.start_effects().unwrap();
     let (momentum, energy) = totals(&bodies);
     for _ in 0..100 {
         effects.step(&mut bodies).unwrap();
@@ -390,7 +390,7 @@ fn response_keeps_momentum_and_energy() {
 fn a_body_that_leaves_the_contract_is_named_at_its_step() {
     let scene = crowd("motion = true");
     let mut bodies = scene.bodies.clone();
-    let mut effects = Effects::new(&scene).unwrap();
+    let mut effects = scene.start_effects().unwrap();
     bodies.velocity[37] = [0.0, f32::NAN, 0.0];
     let error = effects.step(&mut bodies).unwrap_err();
     assert_eq!(error.body, 37);
@@ -400,7 +400,7 @@ fn a_body_that_leaves_the_contract_is_named_at_its_step() {
     );
     let runaway = single("[0, 0, 0, 1, 0, 0, 0]", "[1e18, 0, 0]", "motion = true");
     let mut bodies = runaway.bodies.clone();
-    let mut effects = Effects::new(&runaway).unwrap();
+    let mut effects = runaway.start_effects().unwrap();
     let failed = (1..=20).find(|_| effects.step(&mut bodies).is_err());
     assert_eq!(
         failed,

@@ -8,11 +8,11 @@ use std::cell::Cell;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
 use sdop::mesh::shapes::ProceduralShape;
-use sdop::pipeline::Culler;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::{Budget, CullSettings, Finder, Interest, Order, Strategy, Updates};
-use sdop::simd::Level;
+use sdop::settings::{Budget, CullSettings, Finder, Interest, Order, Strategy, Updates};
+use sdop::simd::Tier;
 use sdop::volume::{Shape, ShapeSpec};
 
 /// The system's allocator, counting what each thread asks of it: tests run side by side.
@@ -89,7 +89,7 @@ impl Scene {
     }
 
     fn set(&self, settings: &CullSettings) -> Culler {
-        Culler::new(&self.shapes, &self.bodies, settings, Level::detect()).unwrap()
+        Culler::new(&self.shapes, &self.bodies, settings, Tier::detect()).unwrap()
     }
 
     /// Moves every body to and fro by a tenth of the smallest radius.

@@ -7,10 +7,10 @@
 
 use std::path::Path;
 
-use sdop::scene::settings::{Budget, Overlap, Strategy, Updates};
-use sdop::scene::{Scene, SceneFile};
-use sdop::simd::Level;
-use sdop::simulate::{self, SimulationError};
+use sdop::lab::scene::{Scene, SceneFile};
+use sdop::lab::simulate::{self, SimulationError};
+use sdop::settings::{Budget, Overlap, Strategy, Updates};
+use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
 
 fn scene(name: &str, frames: u32, k: DirectionSet) -> Scene {
@@ -22,8 +22,8 @@ fn scene(name: &str, frames: u32, k: DirectionSet) -> Scene {
     scene
 }
 
-fn summary(scene: &Scene, level: Level) -> simulate::Summary {
-    simulate::run(scene, level, |_| -> Result<(), SimulationError> { Ok(()) }).unwrap()
+fn summary(scene: &Scene, tier: Tier) -> simulate::Summary {
+    simulate::run(scene, tier, |_| -> Result<(), SimulationError> { Ok(()) }).unwrap()
 }
 
 #[test]
@@ -32,11 +32,11 @@ fn every_strategy_reports_what_was_recorded() {
     scene.cull.budget = Some(Budget::Tests(40));
     for (strategy, reported, golden) in STRATEGIES {
         scene.cull.strategy = strategy;
-        for level in Level::available() {
-            let summary = summary(&scene, level);
+        for tier in Tier::available() {
+            let summary = summary(&scene, tier);
             let hash = summary.pairs_sha256.as_deref().unwrap();
             let seen = (summary.counters.reported, &hash[..16]);
-            assert_eq!(seen, (reported, golden), "{strategy} in {level}");
+            assert_eq!(seen, (reported, golden), "{strategy} in {tier}");
         }
     }
 }
@@ -48,14 +48,14 @@ fn every_ordop_test_reports_what_was_recorded() {
         scene.cull.overlap = overlap;
         for updates in [Updates::Eager, Updates::Lazy] {
             scene.cull.updates = updates;
-            for level in Level::available() {
-                let summary = summary(&scene, level);
+            for tier in Tier::available() {
+                let summary = summary(&scene, tier);
                 let hash = summary.pairs_sha256.as_deref().unwrap();
                 let seen = (summary.counters.reported, &hash[..16]);
                 assert_eq!(
                     seen,
                     (reported, golden),
-                    "{k} {overlap} {updates} in {level}"
+                    "{k} {overlap} {updates} in {tier}"
                 );
             }
         }

@@ -6,16 +6,16 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use rayon::prelude::*;
-use sdop::mesh::ReadOptions;
-use sdop::pipeline::Culler;
-use sdop::scene::settings::{CullSettings, Finder, Overlap, Strategy};
-use sdop::simd::Level;
-use sdop::verify::compare::settings;
-use sdop::verify::hard::{
+use sdop::culler::Culler;
+use sdop::lab::verify::compare::settings;
+use sdop::lab::verify::hard::{
     Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name, variants,
 };
-use sdop::verify::rounds::{Ledger, check, refines, ways};
-use sdop::verify::{Answers, Predicate};
+use sdop::lab::verify::rounds::{Ledger, check, refines, ways};
+use sdop::lab::verify::{Answers, Predicate};
+use sdop::mesh::ReadOptions;
+use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
+use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 
 type Variant = (DirectionSet, Axes);
@@ -36,10 +36,10 @@ fn for_all(test: impl Fn(&str, &Group, Variant, &Cases, &[Vec<Answers>]) + Sync)
 
 #[test]
 fn no_way_to_cull_misses_a_pair_on_the_scalar_tier_and_kernels_agree_on_all() {
-    let faster = Level::available()
+    let faster = Tier::available()
         .into_iter()
-        .filter(|level| *level != Level::SCALAR);
-    let faster: Vec<Level> = faster.collect();
+        .filter(|tier| *tier != Tier::SCALAR);
+    let faster: Vec<Tier> = faster.collect();
     for_all(|name, group, (k, axes), cases, answers| {
         let recorded = group.answers.get(&variant_name(k, axes));
         assert_eq!(
@@ -53,23 +53,23 @@ fn no_way_to_cull_misses_a_pair_on_the_scalar_tier_and_kernels_agree_on_all() {
             for (frames, answers) in cases.runs.iter().zip(answers) {
                 let shapes = &cases.shapes;
                 // Flush-to-zero decides otherwise here and there, but never misses.
-                for level in [Level::SCALAR, Level::SCALAR_FLUSH] {
-                    check(shapes, frames, answers, &way, level, &mut ledger).unwrap();
+                for tier in [Tier::SCALAR, Tier::SCALAR_FLUSH] {
+                    check(shapes, frames, answers, &way, tier, &mut ledger).unwrap();
                 }
                 let failure = ledger.failures.first();
                 assert!(
                     failure.is_none(),
                     "{name}: {:?} on {:?}, pair {:?}",
                     failure.unwrap().settings,
-                    failure.unwrap().level,
+                    failure.unwrap().tier,
                     failure.unwrap().pair
                 );
-                let scalar = lists(cases, frames, &way, Level::SCALAR);
-                for &level in &faster {
+                let scalar = lists(cases, frames, &way, Tier::SCALAR);
+                for &tier in &faster {
                     assert_eq!(
-                        lists(cases, frames, &way, level),
+                        lists(cases, frames, &way, tier),
                         scalar,
-                        "{name}: {way:?} on {level}"
+                        "{name}: {way:?} on {tier}"
                     );
                 }
             }
@@ -80,12 +80,12 @@ fn no_way_to_cull_misses_a_pair_on_the_scalar_tier_and_kernels_agree_on_all() {
 /// The lists of a run in list order, and its counters.
 fn lists(
     cases: &Cases,
-    frames: &[sdop::scene::bodies::Bodies],
+    frames: &[sdop::bodies::Bodies],
     way: &CullSettings,
-    level: Level,
-) -> (Vec<Vec<[u32; 2]>>, sdop::cost::Counters) {
+    tier: Tier,
+) -> (Vec<Vec<[u32; 2]>>, sdop::counters::Counters) {
     let settings = settings(way.strategy, way, frames[0].len());
-    let mut culler = Culler::new(&cases.shapes.built, &frames[0], &settings, level).unwrap();
+    let mut culler = Culler::new(&cases.shapes.built, &frames[0], &settings, tier).unwrap();
     let lists = frames
         .iter()
         .map(|frame| culler.cull(frame).iter().collect())
@@ -103,16 +103,16 @@ fn more_threads_report_the_same_lists() {
         let cases = Group::parse(text).unwrap().cases(k, axes).unwrap();
         for way in ways(k, axes) {
             for frames in &cases.runs {
-                let alone = lists(&cases, frames, &way, Level::detect());
+                let alone = lists(&cases, frames, &way, Tier::detect());
                 let settings = settings(way.strategy, &way, frames[0].len());
                 let shapes = &cases.shapes.built;
-                let culler = Culler::new(shapes, &frames[0], &settings, Level::detect()).unwrap();
-                let mut crew = culler.with_threads(3).unwrap();
+                let culler = Culler::new(shapes, &frames[0], &settings, Tier::detect()).unwrap();
+                let mut pool = culler.with_threads(3).unwrap();
                 let shared: Vec<Vec<_>> = frames
                     .iter()
-                    .map(|frame| crew.cull(frame).iter().collect())
+                    .map(|frame| pool.cull(frame).iter().collect())
                     .collect();
-                assert_eq!((shared, *crew.counters()), alone, "{name}: {way:?}");
+                assert_eq!((shared, *pool.counters()), alone, "{name}: {way:?}");
             }
         }
     }
@@ -214,7 +214,7 @@ fn the_grid_has_every_strategy_finder_overlap_volume_and_tier() {
     assert!(seen.is_empty());
     let tiers = ["scalar", "sse2", "avx2", "avx512", "neon"];
     assert_eq!(
-        Level::NAMES,
+        Tier::NAMES,
         tiers,
         "a new tier: have it in this suite and in near_misses.rs"
     );
@@ -254,9 +254,12 @@ fn what_must_be_refused_is_refused() {
     let text = std::fs::read_to_string("data/hard_cases/refused.toml").unwrap();
     let refused: Refused = toml::from_str(&text).unwrap();
     for case in refused.scene {
-        let scene =
-            sdop::scene::SceneFile::parse(&case.text, "refused.toml", Path::new("data/scenes"))
-                .and_then(|file| file.build());
+        let scene = sdop::lab::scene::SceneFile::parse(
+            &case.text,
+            "refused.toml",
+            Path::new("data/scenes"),
+        )
+        .and_then(|file| file.build());
         case.assert_refused(scene);
     }
     for case in refused.mesh {

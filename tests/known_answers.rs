@@ -7,12 +7,12 @@
 
 use std::f64::consts::PI;
 
+use sdop::lab::random::Stream;
+use sdop::lab::tradeoff::Estimate;
+use sdop::lab::tradeoff::shapes::{Crowd, share};
 use sdop::mesh::ProceduralShape;
-use sdop::scene::random::Stream;
-use sdop::scene::settings::{Axes, DirectionSet, Overlap};
-use sdop::simd::Level;
-use sdop::tradeoff::Estimate;
-use sdop::tradeoff::shapes::{Crowd, share};
+use sdop::settings::{Axes, DirectionSet, Overlap};
+use sdop::simd::Tier;
 use sdop::volume::{OrDop, Shape, ShapeSpec};
 
 const PAIRS: u32 = 40_000;
@@ -45,14 +45,14 @@ fn minkowski([x, y, z]: [f64; 3]) -> f64 {
 
 #[test]
 fn boxes_meet_as_often_as_their_mean_minkowski_volume_says() {
-    let level = Level::detect();
+    let tier = Tier::detect();
     for (sizes, known) in [([1.0, 1.0, 1.0], 0.505), ([1.0, 1.0, 2.0], 0.390)] {
         let exact = minkowski(sizes);
         assert!((exact - known).abs() < 0.003, "{sizes:?}: {exact}");
         let shapes = [cuboid(sizes.map(|x| x as f32))];
         let crowds = crowds(&shapes, 1.0, PAIRS);
         let boxes = ordops(&shapes, DirectionSet::K6);
-        let hits = |crowd: &Crowd, overlap| crowd.ordop_hits(&shapes, &boxes, overlap, level).len();
+        let hits = |crowd: &Crowd, overlap| crowd.ordop_hits(&shapes, &boxes, overlap, tier).len();
         let full = share(&crowds, |crowd| hits(crowd, Overlap::Full));
         let hulls = share(&crowds, |crowd| crowd.hull_hits(&shapes));
         assert!(full.covers(exact), "{sizes:?}: {full:?} for {exact}");
@@ -74,11 +74,11 @@ fn dropping_the_last_nine_axes_of_an_obb_pair_keeps_six_or_seven_percent_of_disj
         .map(|_| cuboid([(); 3].map(|()| draws.between(0.05, 1.0))))
         .collect();
     let boxes = ordops(&shapes, DirectionSet::K6);
-    let level = Level::detect();
+    let tier = Tier::detect();
     let kept: Vec<f64> = crowds(&shapes, 1.0, 2 * PAIRS)
         .iter()
         .map(|crowd| {
-            let hits = |overlap| crowd.ordop_hits(&shapes, &boxes, overlap, level).len() as f64;
+            let hits = |overlap| crowd.ordop_hits(&shapes, &boxes, overlap, tier).len() as f64;
             let (normals, full) = (hits(Overlap::TwoSided), hits(Overlap::Full));
             (normals - full) / (crowd.pairs().len() as f64 - full)
         })
@@ -107,7 +107,7 @@ fn ordops_hardly_ever_meet_outside_of_their_spheres() {
 }
 
 fn outside(name: &str) -> f64 {
-    let mut shapes = sdop::tradeoff::shapes::builtin().unwrap();
+    let mut shapes = sdop::lab::tradeoff::shapes::builtin().unwrap();
     shapes.retain(|shape| shape.name == name);
-    sdop::tradeoff::shapes::outside(&shapes, 8 * PAIRS, Level::detect())
+    sdop::lab::tradeoff::shapes::outside(&shapes, 8 * PAIRS, Tier::detect())
 }

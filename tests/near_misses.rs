@@ -9,16 +9,16 @@ use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, TestRunner};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use sdop::arbitrary;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::Strategy;
-use sdop::simd::Level;
-use sdop::verify::contact::{Contact, Placed};
-use sdop::verify::draw::add;
-use sdop::verify::forms::{self, Form};
-use sdop::verify::hard::variants;
-use sdop::verify::rounds::{Ledger, check, ways};
-use sdop::verify::{Answers, Predicate, Shapes, compare};
+use sdop::bodies::Bodies;
+use sdop::lab::verify::arbitrary;
+use sdop::lab::verify::contact::{Contact, Placed};
+use sdop::lab::verify::draw::add;
+use sdop::lab::verify::forms::{self, Form};
+use sdop::lab::verify::hard::variants;
+use sdop::lab::verify::rounds::{Ledger, check, ways};
+use sdop::lab::verify::{Answers, Predicate, Shapes, compare};
+use sdop::settings::Strategy;
+use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 
 /// Forms and sizes that the draws choose from: round and flat, long and short, centred and not.
@@ -80,7 +80,7 @@ fn runner() -> TestRunner {
 }
 
 /// Every strategy, overlap test and finder on one tier. Returns what was judged.
-fn never_misses(level: Level) -> Ledger {
+fn never_misses(tier: Tier) -> Ledger {
     let mut all = Ledger::default();
     for (variant, shapes) in &*SHAPES {
         let ledger = std::cell::RefCell::new(Ledger::default());
@@ -91,10 +91,10 @@ fn never_misses(level: Level) -> Ledger {
             ledger.note(&answers[0]);
             let frames = [bodies];
             for way in ways(variant.0, variant.1) {
-                check(shapes, &frames, &answers, &way, level, &mut ledger).unwrap();
+                check(shapes, &frames, &answers, &way, tier, &mut ledger).unwrap();
                 if let Some(failure) = ledger.failures.pop() {
                     return Err(TestCaseError::fail(format!(
-                        "{:?} missed by {:?} on {level}",
+                        "{:?} missed by {:?} on {tier}",
                         failure.pair, failure.settings
                     )));
                 }
@@ -110,17 +110,17 @@ fn never_misses(level: Level) -> Ledger {
 
 /// Stamps the suite on a tier. A tier that this CPU lacks has nothing to test.
 macro_rules! on_tiers {
-    ($($module:ident = $level:expr,)+) => {$(
+    ($($module:ident = $tier:expr,)+) => {$(
         mod $module {
             use super::*;
 
             #[test]
             fn near_contacts_are_never_missed() {
-                let level: Option<Level> = $level;
-                let Some(level) = level else {
+                let tier: Option<Tier> = $tier;
+                let Some(tier) = tier else {
                     return eprintln!("{} is not on this CPU", stringify!($module));
                 };
-                let ledger = never_misses(level);
+                let ledger = never_misses(tier);
                 // Beyond the margins only the slabs' bound of a support reports more; spheres and boxes have none.
                 for (row, count) in &ledger.rows {
                     let volume = row.strategy;
@@ -142,8 +142,8 @@ macro_rules! on_tiers {
 }
 
 on_tiers! {
-    scalar = Some(Level::SCALAR),
-    scalar_flush = Some(Level::SCALAR_FLUSH),
+    scalar = Some(Tier::SCALAR),
+    scalar_flush = Some(Tier::SCALAR_FLUSH),
     sse2 = "sse2".parse().ok(),
     avx2 = "avx2".parse().ok(),
     avx512 = "avx512".parse().ok(),
@@ -153,11 +153,8 @@ on_tiers! {
 #[test]
 fn the_suite_is_stamped_on_every_tier() {
     let stamped = ["scalar", "sse2", "avx2", "avx512", "neon"];
-    assert_eq!(stamped, Level::NAMES);
-    let names: Vec<_> = Level::available()
-        .iter()
-        .map(|level| level.name())
-        .collect();
+    assert_eq!(stamped, Tier::NAMES);
+    let names: Vec<_> = Tier::available().iter().map(|tier| tier.name()).collect();
     assert!(names.iter().all(|name| stamped.contains(name)), "{names:?}");
 }
 
@@ -165,12 +162,12 @@ fn the_suite_is_stamped_on_every_tier() {
 fn a_list_that_lacks_one_required_pair_is_caught() {
     let (variant, shapes) = &SHAPES[0];
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    let spec = sdop::verify::draw::ContactSpec::default();
-    let bodies = sdop::verify::draw::probe(shapes, &spec, 0, 32, &mut rng);
+    let spec = sdop::lab::verify::draw::ContactSpec::default();
+    let bodies = sdop::lab::verify::draw::probe(shapes, &spec, 0, 32, &mut rng);
     let answers = Answers::judge(shapes, &bodies, variant.0, &Predicate::ALL).unwrap();
     for way in ways(variant.0, variant.1) {
         let settings = compare::settings(way.strategy, &way, bodies.len());
-        let list = compare::cull(&shapes.built, &bodies, &settings, Level::SCALAR).unwrap();
+        let list = compare::cull(&shapes.built, &bodies, &settings, Tier::SCALAR).unwrap();
         let (count, missed, _) = compare(&answers, &settings, &list);
         assert_eq!((count.missed, missed), (0, vec![]));
         if count.required == 0 {

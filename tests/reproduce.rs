@@ -4,26 +4,28 @@
 
 use std::path::{Path, PathBuf};
 
-use sdop::cost::calibrate::{self, Effort};
-use sdop::reproduce::check::Verdict;
-use sdop::reproduce::closed_form::{probability, relative_reach};
-use sdop::reproduce::readings::{Reading, cell, table};
-use sdop::reproduce::{Estimate, Plan, Results, Shard, claims, rates, run_scene, study, terms};
-use sdop::scene::SceneFile;
-use sdop::scene::settings::Strategy;
-use sdop::simd::Level;
+use sdop::lab::cost::calibrate::{self, Effort};
+use sdop::lab::reproduce::check::Verdict;
+use sdop::lab::reproduce::closed_form::{probability, relative_reach};
+use sdop::lab::reproduce::readings::{Reading, cell, table};
+use sdop::lab::reproduce::{
+    Estimate, Plan, Results, Shard, claims, rates, run_scene, study, terms,
+};
+use sdop::lab::scene::SceneFile;
+use sdop::settings::Strategy;
+use sdop::simd::Tier;
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes")
 }
 
 /// A few frames of the smallest scene and of the crowded one.
-fn plan(seeds: u64, level: Level) -> Plan {
+fn plan(seeds: u64, tier: Tier) -> Plan {
     let effort = Effort {
         frames: 4,
         builds: 1,
     };
-    let mut plan = Plan::new(&scenes(), seeds, 5, effort, level);
+    let mut plan = Plan::new(&scenes(), seeds, 5, effort, tier);
     plan.names = ["paper-50", "crowded-500"].map(str::to_owned).to_vec();
     plan
 }
@@ -37,8 +39,8 @@ fn run(plan: &Plan) -> Results {
 
 #[test]
 fn counts_and_hashes_are_golden() {
-    let results = run(&plan(1, Level::detect()));
-    let line = |run: &sdop::reproduce::Run| {
+    let results = run(&plan(1, Tier::detect()));
+    let line = |run: &sdop::lab::reproduce::Run| {
         let [sphere, ordop] =
             [run.counters.sphere, run.counters.ordop].map(|v| [v.updates, v.tests, v.hits]);
         let hash = run.pairs_sha256.as_deref().map_or("-", |hash| &hash[..16]);
@@ -58,21 +60,21 @@ fn every_tier_counts_the_same() {
         .unwrap()
         .build()
         .unwrap();
-    let of = |level| {
-        let runs = run_scene(&scene, Strategy::ALL.split_at(6).0, 6, level).unwrap();
+    let of = |tier| {
+        let runs = run_scene(&scene, Strategy::ALL.split_at(6).0, 6, tier).unwrap();
         runs.into_iter()
             .map(|run| (run.strategy, run.counters, run.pairs_sha256))
             .collect::<Vec<_>>()
     };
-    let scalar = of(Level::SCALAR);
-    for level in Level::available() {
-        assert_eq!(of(level), scalar, "{level}");
+    let scalar = of(Tier::SCALAR);
+    for tier in Tier::available() {
+        assert_eq!(of(tier), scalar, "{tier}");
     }
 }
 
 #[test]
 fn shards_share_out_the_seeds() {
-    let whole = plan(7, Level::SCALAR);
+    let whole = plan(7, Tier::SCALAR);
     let mut seeds: Vec<u64> = (1..=3)
         .flat_map(|index| whole.clone().shard(Shard { index, of: 3 }).unwrap().seeds)
         .collect();
@@ -103,7 +105,7 @@ fn sphere_percentage_is_the_closed_form_s() {
                 &file.build().unwrap(),
                 &[Strategy::Sphere],
                 240,
-                Level::detect(),
+                Tier::detect(),
             )
             .unwrap()
             .remove(0);
@@ -129,7 +131,7 @@ fn sphere_percentage_is_the_closed_form_s() {
 
 #[test]
 fn tables_and_verdicts_follow_from_the_runs() {
-    let results = run(&plan(3, Level::detect()));
+    let results = run(&plan(3, Tier::detect()));
     assert_eq!(table(&results).len(), 2 * 4 * Reading::ALL.len());
     assert_eq!(rates::table(&results).len(), 2 * 6 * 2);
     assert_eq!(terms::table(&results).len(), 2 * 5);

@@ -3,8 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use sdop::effects::Effects;
-use sdop::scene::SceneFile;
+use sdop::lab::scene::SceneFile;
 
 fn shipped() -> Vec<PathBuf> {
     let directory =
@@ -28,7 +27,7 @@ fn every_shipped_scene_builds_and_steps() {
             Some(scene.name.as_str()),
             path.file_stem().and_then(|stem| stem.to_str())
         );
-        let mut effects = Effects::new(&scene).unwrap();
+        let mut effects = scene.start_effects().unwrap();
         let mut bodies = scene.bodies.clone();
         for _ in 0..2 {
             effects.step(&mut bodies).unwrap();

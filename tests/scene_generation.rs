@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use sdop::scene::bodies::Bodies;
-use sdop::scene::{Scene, SceneFile};
+use sdop::bodies::Bodies;
+use sdop::lab::scene::{Scene, SceneFile};
 
 fn build(text: &str) -> Scene {
     SceneFile::parse(text, "a.toml", Path::new("data/scenes"))

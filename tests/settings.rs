@@ -1,7 +1,7 @@
 //! The culling settings by name: flags, scene files and JSON spell them alike, and what can't be carried out is refused.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use sdop::scene::settings::*;
+use sdop::settings::*;
 
 #[test]
 fn every_name_reads_back_as_its_choice() {

@@ -4,14 +4,14 @@
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use sdop::scene::SceneFile;
-use sdop::scene::settings::{CullSettings, Strategy};
-use sdop::simd::Level;
-use sdop::verify::draw::crowd;
-use sdop::verify::forms::{self, Form};
-use sdop::verify::rounds::{Failure, Ledger, judge_and_check};
-use sdop::verify::shrink::Smallest;
-use sdop::verify::{Predicate, Shapes};
+use sdop::lab::scene::SceneFile;
+use sdop::lab::verify::draw::crowd;
+use sdop::lab::verify::forms::{self, Form};
+use sdop::lab::verify::rounds::{Failure, Ledger, judge_and_check};
+use sdop::lab::verify::shrink::Smallest;
+use sdop::lab::verify::{Predicate, Shapes};
+use sdop::settings::{CullSettings, Strategy};
+use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 
 fn lying_crowd() -> (Shapes, Ledger) {
@@ -26,7 +26,7 @@ fn lying_crowd() -> (Shapes, Ledger) {
         &[vec![frame]],
         variant,
         &Predicate::ALL,
-        &[Level::SCALAR],
+        &[Tier::SCALAR],
     );
     (shapes, ledger.unwrap())
 }
@@ -60,7 +60,7 @@ fn a_scene_without_a_miss_is_not_shrunk() {
     let (shapes, ledger) = lying_crowd();
     let honest = Failure {
         settings: CullSettings::default(),
-        level: Level::SCALAR,
+        tier: Tier::SCALAR,
         shapes: shapes.built[1..].to_vec(),
         frames: vec![Default::default()],
         pair: ledger.failures[0].pair,

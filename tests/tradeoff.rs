@@ -9,15 +9,15 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use sdop::lab::scene::{Scene, SceneFile};
+use sdop::lab::tradeoff::counts::Tally;
+use sdop::lab::tradeoff::gjk::{HullGraph, PosedHull, may_touch};
+use sdop::lab::tradeoff::safety::without_margins;
+use sdop::lab::tradeoff::shapes::{Crowd, builtin};
+use sdop::lab::tradeoff::truth::{Judge, samples};
+use sdop::lab::tradeoff::variant::{self, Variant};
 use sdop::rounding::sphere::inflate_radius;
-use sdop::scene::{Scene, SceneFile};
-use sdop::simd::Level;
-use sdop::tradeoff::counts::Tally;
-use sdop::tradeoff::gjk::{HullGraph, PosedHull, may_touch};
-use sdop::tradeoff::safety::without_margins;
-use sdop::tradeoff::shapes::{Crowd, builtin};
-use sdop::tradeoff::truth::{Judge, samples};
-use sdop::tradeoff::variant::{self, Variant};
+use sdop::simd::Tier;
 use sdop::volume::Hull;
 use sdop_reference::Pose;
 use sdop_reference::exact::{meeting, mesh::Mesh};
@@ -147,8 +147,8 @@ fn every_variant_finds_every_true_pair_and_finer_ones_report_fewer() {
         .unwrap()
         .truth(&samples, None)
         .unwrap();
-    let level = Level::detect();
-    let tally = |variant: &Variant| Tally::of(&scene, variant, level, &samples, &truth).unwrap();
+    let tier = Tier::detect();
+    let tally = |variant: &Variant| Tally::of(&scene, variant, tier, &samples, &truth).unwrap();
     let variants = variant::all(&scene, 30);
     let tallies: Vec<Tally> = variants.iter().map(tally).collect();
     for (variant, found) in variants.iter().zip(&tallies) {

@@ -5,14 +5,13 @@
 
 use std::path::Path;
 
-use sdop::effects::Effects;
-use sdop::scene::{Scene, SceneFile};
+use sdop::lab::scene::{Scene, SceneFile};
 use sha2::{Digest, Sha256};
 
 /// SHA-256 over q and t of all bodies, little endian, for the initial state and each of `steps` steps.
 fn trajectory(scene: &Scene, steps: usize) -> String {
     let mut bodies = scene.bodies.clone();
-    let mut effects = Effects::new(scene).unwrap();
+    let mut effects = scene.start_effects().unwrap();
     let mut hash = Sha256::new();
     for step in 0..=steps {
         if step > 0 {

@@ -9,13 +9,13 @@ use std::path::Path;
 use std::time::Duration;
 
 use criterion::{BenchmarkGroup, BenchmarkId, Throughput, measurement::WallTime};
-use sdop::cost::{Counters, Seconds, calibrate};
-use sdop::effects::Effects;
-use sdop::pipeline::Culler;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::{CullSettings, Strategy};
-use sdop::scene::{Scene, SceneFile};
-use sdop::simd::Level;
+use sdop::bodies::Bodies;
+use sdop::counters::{Counters, Seconds};
+use sdop::culler::Culler;
+use sdop::lab::cost::calibrate;
+use sdop::lab::scene::{Scene, SceneFile};
+use sdop::settings::{CullSettings, Strategy};
+use sdop::simd::Tier;
 
 /// Frames that a bench goes round in.
 pub const FRAMES: usize = 32;
@@ -47,7 +47,7 @@ pub fn calibration_scenes() -> Vec<(String, Scene)> {
 
 /// The first frames of a scene.
 pub fn frames(scene: &Scene) -> Vec<Bodies> {
-    let mut effects = Effects::new(scene).unwrap();
+    let mut effects = scene.start_effects().unwrap();
     let mut bodies = scene.bodies.clone();
     let mut frames = vec![bodies.clone()];
     while frames.len() < FRAMES {
@@ -70,7 +70,7 @@ pub fn stage(
         strategy,
         ..scene.cull.clone()
     };
-    let mut culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Level::detect()).unwrap();
+    let mut culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect()).unwrap();
     let frames = frames(scene);
     for bodies in &frames {
         culler.cull(bodies);

@@ -2,11 +2,11 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
 use sdop::mesh::shapes::ProceduralShape;
-use sdop::pipeline::Culler;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::{CullSettings, Finder, Strategy};
-use sdop::simd::Level;
+use sdop::settings::{CullSettings, Finder, Strategy};
+use sdop::simd::Tier;
 use sdop::volume::{Shape, ShapeSpec};
 
 /// Frames before anything is timed: the order of places has settled, and buffers have grown.
@@ -118,7 +118,7 @@ impl Swarm {
             pairs: finder,
             ..CullSettings::default()
         };
-        let culler = Culler::new(&self.shapes, &self.bodies, &settings, Level::detect()).unwrap();
+        let culler = Culler::new(&self.shapes, &self.bodies, &settings, Tier::detect()).unwrap();
         let mut culler = culler.with_threads(threads).unwrap();
         for _ in 0..WARM_UP {
             self.sway();

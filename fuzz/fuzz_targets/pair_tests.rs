@@ -6,13 +6,13 @@ use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
 use sdop::mesh::ProceduralShape;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::contract::check_bodies;
-use sdop::simd::Level;
-use sdop::verify::contact::{Contact, Kind, Placed};
-use sdop::verify::draw::add;
-use sdop::verify::rounds::{Ledger, check, ways};
-use sdop::verify::{Answers, Predicate, Shapes};
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::check_bodies;
+use sdop::simd::Tier;
+use sdop::lab::verify::contact::{Contact, Kind, Placed};
+use sdop::lab::verify::draw::add;
+use sdop::lab::verify::rounds::{Ledger, check, ways};
+use sdop::lab::verify::{Answers, Predicate, Shapes};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 const NAMES: [&str; 4] = ["box", "l-shape", "needle", "plate"];
@@ -92,10 +92,10 @@ fuzz_target!(|data: &[u8]| {
     ];
     let mut ledger = Ledger::default();
     for (n, way) in ways(SETS[set], Axes::Principal).iter().enumerate() {
-        let levels = Level::available();
-        let level = levels[n % levels.len()];
+        let tiers = Tier::available();
+        let tier = tiers[n % tiers.len()];
         let frames = [bodies.clone()];
-        check(shapes, &frames, &answers, way, level, &mut ledger).expect("settings fit");
+        check(shapes, &frames, &answers, way, tier, &mut ledger).expect("settings fit");
     }
     assert_eq!(
         ledger.missed(),

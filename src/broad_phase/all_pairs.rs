@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{FirstTest, Slots};
-use crate::places::Places;
+use crate::bodies::Places;
 use crate::simd::{Lanes, MAX_WIDTH};
 
 /// Slots whose pairs make one part of the work.

@@ -6,7 +6,7 @@
 //! to 10,000, in cubes, planes, lines and clusters, with one giant and with radii 1 : 1000 (1.4 to 9 times), so it is
 //! there to be compared with and never picked.
 
-use crate::scene::settings::Finder;
+use crate::settings::Finder;
 
 /// The most bodies for all pairs.
 const FEW: usize = 64;

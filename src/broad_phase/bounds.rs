@@ -1,6 +1,6 @@
 //! The box of ball centres and the widest ball: what a finder sizes its cells by.
 
-use crate::simd::{Kernel, Lanes, Level, dispatch};
+use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
 /// Extremes over a set of balls. Without any, `lo` is above `hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,8 +23,8 @@ impl Bounds {
 
     /// Of some balls.
     #[must_use]
-    pub fn of(level: Level, balls: &[[f32; 4]]) -> Self {
-        dispatch(level, Extremes(balls))
+    pub fn of(tier: Tier, balls: &[[f32; 4]]) -> Self {
+        dispatch(tier, Extremes(balls))
     }
 
     /// Of both sets.
@@ -88,9 +88,9 @@ mod tests {
             for extreme in 0..n {
                 let mut balls = vec![[0.5, 0.25, -0.5, 1.0]; n];
                 balls[extreme] = [3.0, -4.0, 5.0, 6.0];
-                for level in Level::available() {
-                    let bounds = Bounds::of(level, &balls);
-                    let alone = Bounds::of(level, &balls[extreme..=extreme]);
+                for tier in Tier::available() {
+                    let bounds = Bounds::of(tier, &balls);
+                    let alone = Bounds::of(tier, &balls[extreme..=extreme]);
                     let [lo, hi] = match n {
                         1 => [[3.0, -4.0, 5.0]; 2],
                         _ => [[0.5, -4.0, -0.5], [3.0, 0.25, 5.0]],
@@ -99,13 +99,13 @@ mod tests {
                     assert_eq!(
                         bounds,
                         Bounds { lo, hi, widest },
-                        "{level}, {extreme} of {n}"
+                        "{tier}, {extreme} of {n}"
                     );
                     assert_eq!(bounds.union(alone), bounds);
                     assert_eq!(Bounds::EMPTY.union(bounds), bounds);
                 }
             }
         }
-        assert_eq!(Bounds::of(Level::SCALAR, &[]), Bounds::EMPTY);
+        assert_eq!(Bounds::of(Tier::SCALAR, &[]), Bounds::EMPTY);
     }
 }

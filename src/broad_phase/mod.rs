@@ -7,17 +7,16 @@
 
 use std::ops::Range;
 
-use crate::crew::Crew;
-use crate::places::Places;
-use crate::scene::settings::Finder;
-use crate::simd::{Lanes, Level, MAX_WIDTH};
+use crate::bodies::Places;
+use crate::settings::Finder;
+use crate::simd::{Lanes, MAX_WIDTH, Tier};
+use crate::threads::Threads;
 
 mod all_pairs;
 mod auto;
 mod block;
 mod bounds;
 mod grid;
-mod groups;
 mod sweep;
 
 pub use all_pairs::AllPairs;
@@ -25,7 +24,6 @@ pub use auto::Population;
 pub use block::{BLOCK_BODIES, Block, MOST_CANDIDATES, Pen};
 pub use bounds::Bounds;
 pub use grid::Grid;
-pub use groups::Groups;
 pub use sweep::Sweep;
 
 /// The strategy's first volume test.
@@ -174,15 +172,15 @@ impl PairFinder {
     /// reports lies outside two balls which meet.
     pub fn arrange(
         &mut self,
-        level: Level,
-        crew: &Crew,
+        tier: Tier,
+        pool: &Threads,
         places: &Places,
         balls: &[[f32; 4]],
         names: &[u32],
     ) {
         match self {
             Self::AllPairs(finder) => finder.arrange(places, balls, names),
-            Self::Grid(finder) => finder.arrange(level, crew, balls, names),
+            Self::Grid(finder) => finder.arrange(tier, pool, balls, names),
             Self::Sweep(finder) => finder.arrange(places, balls, names),
         }
     }

@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use super::{FirstTest, Reorder, Slots, bytes};
-use crate::places::Places;
+use crate::bodies::Places;
 use crate::rounding::{down, up, widen};
 use crate::simd::{Lanes, MAX_WIDTH};
 

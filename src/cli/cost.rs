@@ -4,12 +4,12 @@ use std::fmt::Write as _;
 
 use comfy_table::Table;
 use miette::miette;
-use sdop::cost::calibrate::{self, Effort, calibrate};
-use sdop::cost::predict::{Price, Prices};
-use sdop::reproduce::terms::{self, Cost};
-use sdop::reproduce::{Run, run_scene};
-use sdop::scene::Scene;
-use sdop::scene::settings::{CullSettings, Strategy};
+use sdop::lab::cost::calibrate::{self, Effort, calibrate};
+use sdop::lab::cost::predict::{Price, Prices};
+use sdop::lab::reproduce::terms::{self, Cost};
+use sdop::lab::reproduce::{Run, run_scene};
+use sdop::lab::scene::Scene;
+use sdop::settings::{CullSettings, Strategy};
 use serde::Serialize;
 
 use super::output::{Format, emit, progress, rows, table};
@@ -79,7 +79,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 fn measure(args: &Args) -> miette::Result<Report> {
     let mut file = args.scene.read()?;
     let scene = file.build()?;
-    let level = args.machine.level();
+    let tier = args.machine.tier();
     let frames = args.scene.frames().unwrap_or(FRAMES.min(scene.frames));
     let strategies = match args.scene.strategy() {
         Some(Strategy::None) => {
@@ -92,13 +92,13 @@ fn measure(args: &Args) -> miette::Result<Report> {
         None => possible(&scene),
     };
     let bar = progress(calibrate::SCENES as u64 + args.seeds, &scene.name);
-    let prices = calibrate(&scene, &strategies, level, EFFORT, |_| bar.inc(1))?;
+    let prices = calibrate(&scene, &strategies, tier, EFFORT, |_| bar.inc(1))?;
     let seed = |n| scene.seed.wrapping_add(n);
     let seeds: Vec<u64> = (0..args.seeds).map(seed).collect();
     let mut runs = Vec::new();
     for &seed in &seeds {
         file.spec.seed = seed;
-        runs.extend(run_scene(&file.build()?, &strategies, frames, level)?);
+        runs.extend(run_scene(&file.build()?, &strategies, frames, tier)?);
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -112,7 +112,7 @@ fn measure(args: &Args) -> miette::Result<Report> {
         bodies: scene.bodies.len(),
         frames,
         seeds,
-        simd: level.name(),
+        simd: tier.name(),
         prices,
     })
 }

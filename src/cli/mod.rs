@@ -8,7 +8,6 @@ mod mesh;
 mod output;
 mod palette;
 mod prices;
-mod recording;
 mod reproduce;
 mod run;
 mod scene_args;

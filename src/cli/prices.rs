@@ -1,6 +1,6 @@
 //! A volume's prices as a row of a table.
 
-use sdop::cost::predict::Price;
+use sdop::lab::cost::predict::Price;
 
 /// The columns, each with its unit.
 pub const COLUMNS: [&str; 7] = [

@@ -3,19 +3,19 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use sdop::cost::{Counters, Seconds, VolumeCounters};
-use sdop::effects::EffectReport;
-use sdop::scene::Scene;
-use sdop::scene::settings::{Budget, CullSettings, Interest, Strategy};
-use sdop::simd::Level;
-use sdop::simulate::{Simulation, Summary};
+use sdop::counters::{Counters, Seconds, VolumeCounters};
+use sdop::lab::effects::EffectReport;
+use sdop::lab::scene::Scene;
+use sdop::lab::simulate::{Simulation, Summary};
+use sdop::settings::{Budget, CullSettings, Interest, Strategy};
+use sdop::simd::Tier;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::Outcome;
 use super::output::{Format, emit, progress, table};
-use super::recording::Recorder;
 use super::scene_args::{MachineArgs, SceneArgs};
+use sdop::lab::record::Recorder;
 
 /// Simulate and cull one scene
 ///
@@ -79,14 +79,14 @@ struct EffectLine {
 /// A bad scene, settings that it can't have, a body that leaves the contract, a recording that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let scene = args.scene.build()?;
-    let level = args.machine.level();
+    let tier = args.machine.tier();
     let mut recorder = match &args.record {
         Some(path) => Some(Recorder::create(path, &scene)?),
         None => None,
     };
     let bar = progress(scene.frames.into(), &scene.name);
     let threads = usize::from(args.threads);
-    let simulation = Simulation::new(&scene, level)?.with_threads(threads)?;
+    let simulation = Simulation::new(&scene, tier)?.with_threads(threads)?;
     let summary = simulation.run(|frame| -> miette::Result<()> {
         if let Some(recorder) = &mut recorder {
             recorder.frame(frame)?;
@@ -98,7 +98,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(recorder) = recorder {
         recorder.finish()?;
     }
-    let report = report(&scene, (level, threads), &summary);
+    let report = report(&scene, (tier, threads), &summary);
     emit(args.format, &report, |report| {
         text(report, &scene, &summary)
     })?;
@@ -107,7 +107,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 
 fn report<'a>(
     scene: &'a Scene,
-    (level, threads): (Level, usize),
+    (tier, threads): (Tier, usize),
     summary: &'a Summary,
 ) -> Report<'a> {
     let CullSettings {
@@ -135,7 +135,7 @@ fn report<'a>(
         updates: updates.name(),
         interest: interest.as_ref(),
         budget: *budget,
-        simd: level.name(),
+        simd: tier.name(),
         threads,
         counters: counters(*strategy, &summary.counters),
         seconds: summary.seconds,

@@ -4,11 +4,11 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use miette::Diagnostic as _;
-use sdop::scene::settings::{
+use sdop::lab::scene::{Scene, SceneFile};
+use sdop::settings::{
     Axes, Budget, CullSettings, Finder, Interest, Order, Overlap, Strategy, Updates,
 };
-use sdop::scene::{Scene, SceneFile};
-use sdop::simd::Level;
+use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
 
 use super::one_of;
@@ -70,7 +70,7 @@ pub struct CullArgs {
 pub struct MachineArgs {
     /// SIMD level: scalar, sse2, avx2, avx512 or neon [default: the fastest that this CPU has]
     #[arg(long, value_name = "LEVEL")]
-    simd: Option<Level>,
+    simd: Option<Tier>,
 }
 
 impl SceneArgs {
@@ -151,7 +151,7 @@ fn interest(text: &str) -> Result<Interest, String> {
 
 impl MachineArgs {
     /// The SIMD level: the one asked for, or the fastest.
-    pub fn level(&self) -> Level {
-        self.simd.unwrap_or_else(Level::detect)
+    pub fn tier(&self) -> Tier {
+        self.simd.unwrap_or_else(Tier::detect)
     }
 }

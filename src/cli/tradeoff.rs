@@ -8,8 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
-use sdop::cost::machine::Machine;
-use sdop::tradeoff::{self, Plan, Tradeoff};
+use sdop::lab::measure::machine::Machine;
+use sdop::lab::tradeoff::{self, Plan, Tradeoff};
 use serde::{Deserialize, Serialize};
 
 use super::Outcome;
@@ -68,7 +68,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         Some(path) => read(path)?,
         None => Recorded {
             command: command(),
-            machine: Machine::here(args.machine.level()),
+            machine: Machine::here(args.machine.tier()),
             result: compare(args)?,
         },
     };
@@ -113,7 +113,7 @@ fn plan(args: &Args) -> Plan {
         pairs: quick(8_000, 80_000) as u32,
         window: quick(30, 120) as u32,
         stride: 10,
-        level: args.machine.level(),
+        tier: args.machine.tier(),
         cache: Some(args.cache.clone()),
     }
 }

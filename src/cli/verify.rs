@@ -8,12 +8,12 @@ use std::time::{Duration, Instant};
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
 use rayon::prelude::*;
-use sdop::scene::SceneFile;
-use sdop::simd::Level;
-use sdop::verify::hard::{FILES, Group, page, variants};
-use sdop::verify::rounds::{Failure, Ledger, RoundError, Source, group, round};
-use sdop::verify::scenes::scene;
-use sdop::verify::shrink::Smallest;
+use sdop::lab::scene::SceneFile;
+use sdop::lab::verify::hard::{FILES, Group, page, variants};
+use sdop::lab::verify::rounds::{Failure, Ledger, RoundError, Source, group, round};
+use sdop::lab::verify::scenes::scene;
+use sdop::lab::verify::shrink::Smallest;
+use sdop::simd::Tier;
 
 use super::Outcome;
 use super::output::{Format, emit, print, progress};
@@ -45,7 +45,7 @@ pub struct Args {
     frames: usize,
     /// One SIMD tier alone, instead of all that the CPU has
     #[arg(long, value_name = "LEVEL")]
-    simd: Option<Level>,
+    simd: Option<Tier>,
     /// Where the scene that shows a missed pair is written
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
@@ -73,26 +73,26 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         .iter()
         .map(build)
         .collect::<Result<Vec<_>, _>>()?;
-    let levels = match args.simd {
-        Some(level) => vec![level],
-        None => [Level::available(), vec![Level::SCALAR_FLUSH]].concat(),
+    let tiers = match args.simd {
+        Some(tier) => vec![tier],
+        None => [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat(),
     };
-    let mut report = Report::new(&levels);
+    let mut report = Report::new(&tiers);
     let mut failures = Vec::new();
     let mut add = |name: String, ledger: Ledger| {
         report.add(name, &ledger);
         failures.extend(ledger.failures);
     };
-    add("hard cases".to_owned(), hard_cases(&levels)?);
+    add("hard cases".to_owned(), hard_cases(&tiers)?);
     // A time beyond the clock's end is none.
     let deadline = args.time.map(Duration::from_secs);
     let deadline = deadline.and_then(|time| start.checked_add(time));
-    let [near, random] = rounds(args, &levels, deadline)?;
+    let [near, random] = rounds(args, &tiers, deadline)?;
     add("near pairs".to_owned(), near);
     add("random pairs".to_owned(), random);
     for built in &scenes {
         let bar = progress(args.frames as u64, &built.name);
-        let ledger = scene(built, args.frames, &levels, |n| bar.set_position(n as u64))?;
+        let ledger = scene(built, args.frames, &tiers, |n| bar.set_position(n as u64))?;
         bar.finish_and_clear();
         let (name, bodies, frames) = (&built.name, built.bodies.len(), args.frames);
         add(format!("{name}, {bodies} bodies, {frames} frames"), ledger);
@@ -108,7 +108,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     Ok(Outcome::Failed)
 }
 
-fn hard_cases(levels: &[Level]) -> miette::Result<Ledger> {
+fn hard_cases(tiers: &[Tier]) -> miette::Result<Ledger> {
     let jobs: Vec<_> = FILES
         .iter()
         .flat_map(|file| variants().map(move |variant| (file.1, variant)))
@@ -117,7 +117,7 @@ fn hard_cases(levels: &[Level]) -> miette::Result<Ledger> {
     let judged: Result<Vec<Ledger>, RoundError> = jobs
         .par_iter()
         .map(|(text, variant)| {
-            let ledger = group(&Group::parse(text)?, *variant, levels);
+            let ledger = group(&Group::parse(text)?, *variant, tiers);
             bar.inc(1);
             ledger
         })
@@ -127,7 +127,7 @@ fn hard_cases(levels: &[Level]) -> miette::Result<Ledger> {
 }
 
 /// Near and random rounds. With a deadline, as many as it allows.
-fn rounds(args: &Args, levels: &[Level], deadline: Option<Instant>) -> miette::Result<[Ledger; 2]> {
+fn rounds(args: &Args, tiers: &[Tier], deadline: Option<Instant>) -> miette::Result<[Ledger; 2]> {
     let variants: Vec<_> = variants().collect();
     let jobs = args.seeds * variants.len() as u64;
     let bar = progress(jobs, "seeded rounds");
@@ -143,7 +143,7 @@ fn rounds(args: &Args, levels: &[Level], deadline: Option<Instant>) -> miette::R
             let seed = args.first_seed.wrapping_add(n / variants.len() as u64);
             let variant = variants[n as usize % variants.len()];
             for (source, ledger) in [Source::Near, Source::Random].into_iter().zip(&mut ledgers) {
-                let judged = round(source, seed, variant, levels)
+                let judged = round(source, seed, variant, tiers)
                     .inspect_err(|_| failed.store(true, Ordering::Relaxed))?;
                 ledger.add(judged);
             }
@@ -179,7 +179,7 @@ fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
         failure.settings.k,
         failure.settings.axes,
         failure.settings.overlap,
-        failure.level
+        failure.tier
     );
     let Some(smallest) = Smallest::of(failure) else {
         return print(&format!(

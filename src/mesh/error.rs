@@ -114,6 +114,7 @@ pub enum Problem {
 
 impl Problem {
     /// A format violation with its remedy.
+    #[cfg(feature = "readers")]
     pub(super) fn malformed(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Malformed {
             message: message.into(),

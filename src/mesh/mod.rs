@@ -8,22 +8,15 @@
 
 pub mod decimate;
 mod error;
-mod obj;
-mod ply;
-mod read;
+#[cfg(feature = "readers")]
+mod files;
 pub mod shapes;
-mod stl;
-mod text;
 pub mod topology;
-mod tri;
-mod weld;
-mod write;
 
 pub use error::{MeshError, Problem};
-pub use read::{MeshFormat, ReadOptions, read, read_bytes};
+#[cfg(feature = "readers")]
+pub use files::{MeshFormat, ReadOptions, TriFormat, read, read_bytes, write, write_bytes};
 pub use shapes::ProceduralShape;
-pub use tri::TriFormat;
-pub use write::{write, write_bytes};
 
 use glam::Vec3;
 

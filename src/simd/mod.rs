@@ -1,7 +1,7 @@
 //! The one room with `unsafe`: vectors of f32 in every tier of the CPU behind one sealed trait.
 //!
 //! A kernel is written once, generic over [`Lanes`], with plain `+ − ×`, comparisons and table look-ups and never a
-//! fused multiply-add, so that every tier computes the same bits (design, section 4). [`Level`] says which tiers this
+//! fused multiply-add, so that every tier computes the same bits (design, section 4). [`Tier`] says which tiers this
 //! CPU has; holding one proves it. [`dispatch`] compiles the kernel once a tier, inside a function with that tier's
 //! target features, and calls the one that the level names.
 //!
@@ -15,8 +15,8 @@
 
 mod columns;
 mod lanes;
-mod level;
 mod scalar;
+mod tier;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -29,7 +29,7 @@ mod sse2;
 
 pub use columns::{quads_in_columns, turn_rows};
 pub use lanes::Lanes;
-pub use level::{Level, LevelError};
+pub use tier::{Tier, TierError};
 
 /// The widest tier's lanes: columns are padded by this much so that any tier may load past their end.
 pub const MAX_WIDTH: usize = 16;
@@ -65,19 +65,19 @@ pub trait Kernel {
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }
 
-/// Runs `kernel` in the tier that `level` names.
-pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
-    match level.tier() {
-        level::Tier::Scalar => kernel.run(scalar::Scalar::<false>::new()),
-        level::Tier::ScalarFlush => kernel.run(scalar::Scalar::<true>::new()),
+/// Runs `kernel` in the tier that `tier` names.
+pub fn dispatch<K: Kernel>(tier: Tier, kernel: K) -> K::Output {
+    match tier.tier() {
+        tier::Isa::Scalar => kernel.run(scalar::Scalar::<false>::new()),
+        tier::Isa::ScalarFlush => kernel.run(scalar::Scalar::<true>::new()),
         #[cfg(target_arch = "x86_64")]
-        level::Tier::Sse2(token) => sse2::run(token, kernel),
+        tier::Isa::Sse2(token) => sse2::run(token, kernel),
         #[cfg(target_arch = "x86_64")]
-        level::Tier::Avx2(token) => avx2::run(token, kernel),
+        tier::Isa::Avx2(token) => avx2::run(token, kernel),
         #[cfg(target_arch = "x86_64")]
-        level::Tier::Avx512(token) => avx512::run(token, kernel),
+        tier::Isa::Avx512(token) => avx512::run(token, kernel),
         #[cfg(target_arch = "aarch64")]
-        level::Tier::Neon(token) => neon::run(token, kernel),
+        tier::Isa::Neon(token) => neon::run(token, kernel),
     }
 }
 

@@ -239,8 +239,8 @@ fn quads<L: Lanes>(l: L, start: usize) {
 
 #[test]
 fn every_tier_does_plain_arithmetic() {
-    for level in Level::available() {
-        dispatch(level, Check);
+    for tier in Tier::available() {
+        dispatch(tier, Check);
     }
 }
 
@@ -259,9 +259,9 @@ impl Kernel for GatherFromNothing {
 
 #[test]
 fn an_empty_table_is_refused_in_every_tier() {
-    for level in Level::available() {
-        let read = std::panic::catch_unwind(|| dispatch(level, GatherFromNothing));
-        assert!(read.is_err(), "{level}");
+    for tier in Tier::available() {
+        let read = std::panic::catch_unwind(|| dispatch(tier, GatherFromNothing));
+        assert!(read.is_err(), "{tier}");
     }
 }
 
@@ -277,30 +277,30 @@ fn the_flushing_tier_drops_denormals() {
             [tiny * half, tiny - tiny * l.splat(0.75), denormal].map(|v| l.bits(l.gt(v, zero)) & 1)
         }
     }
-    assert_eq!(dispatch(Level::SCALAR, Flush), [1; 3]);
-    assert_eq!(dispatch(Level::SCALAR_FLUSH, Flush), [0, 1, 0]);
+    assert_eq!(dispatch(Tier::SCALAR, Flush), [1; 3]);
+    assert_eq!(dispatch(Tier::SCALAR_FLUSH, Flush), [0, 1, 0]);
 }
 
 #[test]
 fn levels_are_there_and_go_by_their_names() {
-    let available = Level::available();
-    assert_eq!(available.first(), Some(&Level::SCALAR));
-    assert!(available.contains(&Level::detect()));
-    for level in available {
-        assert!(Level::NAMES.contains(&level.name()), "{level}");
-        assert_eq!(level.to_string(), level.name());
-        assert_eq!(format!("{level:?}"), format!("Level({})", level.name()));
+    let available = Tier::available();
+    assert_eq!(available.first(), Some(&Tier::SCALAR));
+    assert!(available.contains(&Tier::detect()));
+    for tier in available {
+        assert!(Tier::NAMES.contains(&tier.name()), "{tier}");
+        assert_eq!(tier.to_string(), tier.name());
+        assert_eq!(format!("{tier:?}"), format!("Tier({})", tier.name()));
     }
 }
 
 #[test]
 fn an_unknown_level_is_told_from_a_missing_one() {
-    let unknown = "avx1024".parse::<Level>();
-    assert_eq!(unknown, Err(LevelError::Unknown("avx1024".into())));
-    for name in Level::NAMES {
-        match name.parse::<Level>() {
-            Ok(level) => assert_eq!(level.name(), name),
-            Err(error) => assert!(matches!(error, LevelError::Unavailable { .. }), "{error}"),
+    let unknown = "avx1024".parse::<Tier>();
+    assert_eq!(unknown, Err(TierError::Unknown("avx1024".into())));
+    for name in Tier::NAMES {
+        match name.parse::<Tier>() {
+            Ok(tier) => assert_eq!(tier.name(), name),
+            Err(error) => assert!(matches!(error, TierError::Unavailable { .. }), "{error}"),
         }
     }
 }

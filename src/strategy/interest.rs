@@ -1,9 +1,9 @@
 //! Which bodies are of interest in a frame (a list, or those whose sphere centres lie in a view cone), and which pairs.
 
+use crate::bodies::Bodies;
 use crate::pairs::PairList;
 use crate::rounding::pose::rotation;
-use crate::scene::bodies::Bodies;
-use crate::scene::settings::{Interest, ViewCone};
+use crate::settings::{Interest, ViewCone};
 
 /// Marks the bodies of interest. `centre` gives a body's sphere centre in the world frame.
 pub(crate) fn mark(

@@ -4,11 +4,12 @@ use std::ops::Range;
 
 use super::Stage;
 use super::workers::{Done, share};
-use crate::broad_phase::{Block, FirstTest, Groups, MOST_CANDIDATES, PairFinder};
+use crate::bodies::Groups;
+use crate::broad_phase::{Block, FirstTest, MOST_CANDIDATES, PairFinder};
 use crate::overlap::SlotTest;
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
-use crate::simd::{Kernel, Lanes, Level, MAX_WIDTH, dispatch};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 
 /// Slots of a run that are tested before their hits are listed.
 const PIECE: usize = MOST_CANDIDATES;
@@ -27,7 +28,7 @@ pub(super) enum First<'a> {
 /// What is listed, from which part of the finder's work.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
-    pub level: Level,
+    pub tier: Tier,
     pub finder: &'a PairFinder,
     pub first: First<'a>,
     /// The body in each place where the slots' names are places.
@@ -52,7 +53,7 @@ impl Source<'_> {
     ) -> u64 {
         let drain = Drain { at, take };
         dispatch(
-            self.level,
+            self.tier,
             List {
                 source: *self,
                 parts,
@@ -67,7 +68,7 @@ impl Stage<'_> {
     /// Where this frame's candidates come from.
     pub(super) fn source<'s>(&'s self, first: First<'s>) -> Source<'s> {
         Source {
-            level: self.level,
+            tier: self.tier,
             finder: self.finder,
             first,
             body: self.names_are_places.then_some(&self.places.body),
@@ -99,7 +100,7 @@ impl Stage<'_> {
         let mut workers = std::mem::take(self.workers);
         let source = self.source(first);
         let parts = self.finder.parts();
-        let mut done = share(self.crew, &mut workers, parts, list, |parts, worker| {
+        let mut done = share(self.pool, &mut workers, parts, list, |parts, worker| {
             worker.first.tests = source.list(parts, &mut worker.out);
         });
         *self.workers = workers;

@@ -4,16 +4,17 @@
 //! A strategy takes updated volumes and a pair finder and leaves the reported pairs. Strategies differ in false positives
 //! and time, never in misses: each reports every pair whose meshes meet, `none` excepted.
 
-use crate::broad_phase::{Groups, PairFinder};
-use crate::cost::{Counters, Seconds};
-use crate::crew::Crew;
+use crate::bodies::Bodies;
+use crate::bodies::Groups;
+use crate::bodies::Places;
+use crate::broad_phase::PairFinder;
+use crate::counters::{Counters, Seconds};
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::ordop::SlabTables;
 use crate::pairs::PairList;
-use crate::places::Places;
-use crate::scene::bodies::Bodies;
-use crate::scene::settings::{Budget, Order, Overlap, Strategy};
-use crate::simd::Level;
+use crate::settings::{Budget, Order, Overlap, Strategy};
+use crate::simd::Tier;
+use crate::threads::Threads;
 use crate::update::{OrDopRows, ShapeFrame};
 
 mod batch;
@@ -37,8 +38,8 @@ const BLOCK: usize = 256;
 
 /// One frame's work, after the eager updates.
 pub(crate) struct Stage<'a> {
-    pub level: Level,
-    pub crew: &'a Crew,
+    pub tier: Tier,
+    pub pool: &'a Threads,
     pub workers: &'a mut Vec<Worker>,
     pub finder: &'a PairFinder,
     /// Whether the finder's slots are named by place, not by body.

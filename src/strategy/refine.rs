@@ -5,16 +5,16 @@ use std::time::Instant;
 
 use super::Stage;
 use super::workers::{Worker, share};
-use crate::cost::VolumeCounters;
+use crate::counters::VolumeCounters;
 use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
-use crate::simd::{Level, MAX_WIDTH};
+use crate::simd::{MAX_WIDTH, Tier};
 use crate::update::Posed;
 
 /// The or-DOP test with made rows: takes pairs of places, leaves pairs of bodies.
 #[derive(Clone, Copy)]
 pub(super) struct Refine<'a> {
-    pub level: Level,
+    pub tier: Tier,
     pub columns: OrDopColumns<'a>,
     /// The body in each place.
     pub body: &'a [u32],
@@ -31,7 +31,7 @@ impl Refine<'_> {
     ) {
         let start = Instant::now();
         let listed = out.len();
-        let tested = self.columns.test_pairs(self.level, first, second, out);
+        let tested = self.columns.test_pairs(self.tier, first, second, out);
         out.rename(listed, self.body);
         counters.tests += tested.tests;
         counters.hits += tested.hits;
@@ -43,7 +43,7 @@ impl<'a> Stage<'a> {
     /// The test with the rows as they are.
     pub(super) fn refine(&self) -> Refine<'_> {
         Refine {
-            level: self.level,
+            tier: self.tier,
             columns: OrDopColumns {
                 rows: &self.rows.rows,
                 tables: self.tables,
@@ -70,7 +70,7 @@ impl<'a> Stage<'a> {
             };
             made += self
                 .rows
-                .update_missing(self.level, posed, wanted, self.stamp);
+                .update_missing(self.tier, posed, wanted, self.stamp);
         }
         self.seconds.update += begin.elapsed().as_secs_f64();
         made
@@ -82,7 +82,7 @@ impl<'a> Stage<'a> {
         let vectors = list.len().div_ceil(MAX_WIDTH);
         let mut workers = std::mem::take(self.workers);
         let refine = self.refine();
-        let done = share(self.crew, &mut workers, vectors, out, |range, worker| {
+        let done = share(self.pool, &mut workers, vectors, out, |range, worker| {
             let pairs = range.start * MAX_WIDTH..(range.end * MAX_WIDTH).min(list.len());
             let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
             let Worker {

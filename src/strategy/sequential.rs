@@ -23,7 +23,7 @@ pub(super) fn flow(stage: &mut Stage<'_>, first: First<'_>, interest: Option<&[b
     let (source, refine) = (stage.source(first), stage.refine());
     let parts = stage.finder.parts();
     let done = share(
-        stage.crew,
+        stage.pool,
         &mut workers,
         parts,
         &mut out,

@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 use super::Stage;
 use super::listing::First;
 use super::workers::Done;
-use crate::cost::VolumeCounters;
+use crate::counters::VolumeCounters;
 use crate::pairs::PairList;
-use crate::scene::settings::{Budget, Order};
+use crate::settings::{Budget, Order};
 
 /// Tests between two looks at the clock: some microseconds.
 const SLICE: usize = 128;

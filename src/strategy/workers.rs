@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::cost::VolumeCounters;
-use crate::crew::Crew;
+use crate::counters::VolumeCounters;
 use crate::pairs::PairList;
+use crate::threads::Threads;
 
 /// Workers a thread: whoever is done early takes another's.
 const WORKERS_PER_THREAD: usize = 4;
@@ -33,13 +33,13 @@ pub(super) struct Done {
 
 /// Splits `units` of work among workers and appends their lists to `out`, in the order of the work.
 pub(super) fn share(
-    crew: &Crew,
+    pool: &Threads,
     workers: &mut Vec<Worker>,
     units: usize,
     out: &mut PairList,
     work: impl Fn(Range<usize>, &mut Worker) + Sync,
 ) -> Done {
-    let threads = crew.threads();
+    let threads = pool.threads();
     let count = match threads {
         1 => 1,
         _ => (WORKERS_PER_THREAD * threads).min(units).max(1),
@@ -55,7 +55,7 @@ pub(super) fn share(
     }
     // The first worker's list is the common one: with a single worker nothing is copied.
     std::mem::swap(out, &mut workers[0].out);
-    crew.each(workers, |index, worker| {
+    pool.each(workers, |index, worker| {
         work(index * units / count..(index + 1) * units / count, worker);
     });
     std::mem::swap(out, &mut workers[0].out);

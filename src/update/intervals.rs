@@ -9,10 +9,10 @@ use std::ops::Range;
 
 use super::Posed;
 use super::eight::{EIGHT, Eight};
-use crate::crew::Crew;
 use crate::rounding::pose::{Rotation, norm, refit, rotate_of, rotation};
 use crate::rounding::{down, up};
-use crate::simd::{Kernel, Lanes, Level, dispatch};
+use crate::simd::{Kernel, Lanes, Tier, dispatch};
+use crate::threads::Threads;
 use crate::volume::{DirectionSet, Hull, Shape};
 
 /// Bodies that one thread re-fits at a time.
@@ -48,8 +48,8 @@ impl Intervals {
     /// Re-fits the slabs of the bodies in a range of places, and the cubes about their boxes: centre and half side.
     pub fn update(
         &mut self,
-        level: Level,
-        crew: &Crew,
+        tier: Tier,
+        pool: &Threads,
         cubes: &mut [[f32; 4]],
         posed: Posed<'_>,
         range: Range<usize>,
@@ -58,7 +58,7 @@ impl Intervals {
         let slabs = coefficients.len();
         let (first, hulls) = (range.start, &self.hulls);
         let ends = &mut self.ends[range.start * slabs..range.end * slabs];
-        crew.pieces(ends, BODIES * slabs, |start, ends| {
+        pool.pieces(ends, BODIES * slabs, |start, ends| {
             let refit = Refit {
                 posed,
                 hulls,
@@ -66,7 +66,7 @@ impl Intervals {
                 first: first + start / slabs,
                 ends,
             };
-            dispatch(level, refit);
+            dispatch(tier, refit);
         });
         let ends = self.ends[range.start * slabs..].chunks_exact(slabs);
         for (cube, ends) in cubes[range].iter_mut().zip(ends) {

@@ -13,13 +13,13 @@ pub use rows::{OrDopRows, Posed};
 
 use std::ops::Range;
 
-use crate::crew::Crew;
-use crate::places::Places;
+use crate::bodies::Bodies;
+use crate::bodies::Places;
 use crate::rounding::pose::{norm, rotation};
 use crate::rounding::sphere::{inflate_radius, world_ball};
 use crate::rounding::up;
-use crate::scene::bodies::Bodies;
 use crate::simd::{ROW, prefetch};
+use crate::threads::Threads;
 use crate::volume::{Basis, Shape};
 
 /// Where the centre stands in a frame's row.
@@ -135,7 +135,7 @@ const SPHERES: usize = 4096;
 
 /// Updates the spheres (x, y, z, R) of the bodies in a range of places.
 pub fn update_spheres(
-    crew: &Crew,
+    pool: &Threads,
     spheres: &mut [[f32; 4]],
     frames: &[ShapeFrame],
     bodies: &Bodies,
@@ -143,7 +143,7 @@ pub fn update_spheres(
     range: Range<usize>,
 ) {
     let first = range.start;
-    crew.pieces(&mut spheres[range], SPHERES, |start, spheres| {
+    pool.pieces(&mut spheres[range], SPHERES, |start, spheres| {
         let start = first + start;
         let who = places.body[start..].iter().zip(&places.shape[start..]);
         for (place, (sphere, (&body, &shape))) in (start..).zip(spheres.iter_mut().zip(who)) {

@@ -8,13 +8,13 @@ use std::ops::Range;
 use super::eight::{EIGHT, Eight};
 use super::row::{O, Q, S, SHAPE, T};
 use super::{AHEAD, CENTRE, ShapeFrame};
-use crate::crew::Crew;
-use crate::places::Places;
+use crate::bodies::Bodies;
+use crate::bodies::Places;
 use crate::rounding::pose::{axes_of, rotate_of, rotation_of};
-use crate::scene::bodies::Bodies;
 use crate::simd::{
-    Kernel, Lanes, Level, MAX_WIDTH, ROW, dispatch, prefetch, quads_in_columns, turn_rows,
+    Kernel, Lanes, MAX_WIDTH, ROW, Tier, dispatch, prefetch, quads_in_columns, turn_rows,
 };
+use crate::threads::Threads;
 
 /// Bodies whose rows one thread makes at a time: some microseconds.
 const ROWS: usize = 512;
@@ -63,17 +63,17 @@ impl OrDopRows {
     /// Updates the rows of the bodies in a range of places; `stamp` counts frames from 1.
     pub fn update(
         &mut self,
-        level: Level,
-        crew: &Crew,
+        tier: Tier,
+        pool: &Threads,
         posed: Posed<'_>,
         range: Range<usize>,
         stamp: u32,
     ) {
         let first = range.start;
         self.made[range.clone()].fill(stamp);
-        crew.pieces(&mut self.rows[range], ROWS, |start, rows| {
+        pool.pieces(&mut self.rows[range], ROWS, |start, rows| {
             let first = first + start;
-            dispatch(level, InTurn { posed, first, rows });
+            dispatch(tier, InTurn { posed, first, rows });
         });
     }
 
@@ -81,7 +81,7 @@ impl OrDopRows {
     /// how many were made.
     pub fn update_missing(
         &mut self,
-        level: Level,
+        tier: Tier,
         posed: Posed<'_>,
         wanted: &[u32],
         stamp: u32,
@@ -96,7 +96,7 @@ impl OrDopRows {
         }
         let (places, rows) = (self.missing.as_slice(), self.rows.as_mut_slice());
         dispatch(
-            level,
+            tier,
             Listed {
                 posed,
                 places,
@@ -313,22 +313,22 @@ mod tests {
             row[S] = f32::from_bits(SHAPE + shape as u32);
             row
         };
-        for level in Level::available() {
+        for tier in Tier::available() {
             let (mut eager, mut lazy) = (OrDopRows::new(61), OrDopRows::new(61));
-            eager.update(level, &Crew::default(), posed, 0..61, 1);
+            eager.update(tier, &Threads::default(), posed, 0..61, 1);
             let wanted: Vec<u32> = (0..61).chain(0..30).collect();
-            assert_eq!(lazy.update_missing(level, posed, &wanted, 1), 61);
+            assert_eq!(lazy.update_missing(tier, posed, &wanted, 1), 61);
             for body in 0..61 {
                 let bits = |row: &[f32; ROW]| row.map(f32::to_bits);
                 assert_eq!(
                     bits(&eager.rows[body]),
                     bits(&expected(body)),
-                    "{level}: {body}"
+                    "{tier}: {body}"
                 );
                 assert_eq!(
                     bits(&lazy.rows[body]),
                     bits(&expected(body)),
-                    "{level}: {body}"
+                    "{tier}: {body}"
                 );
             }
         }

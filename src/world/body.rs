@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::broad_phase::Groups;
+use crate::bodies::Groups;
 
 /// A body of a world. Stays the same until the body is removed, and is never given to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -4,8 +4,8 @@ use miette::Diagnostic;
 use thiserror::Error;
 
 use super::BodyId;
-use crate::scene::contract::ContractError;
-use crate::scene::settings::SettingsError;
+use crate::bodies::contract::ContractError;
+use crate::settings::SettingsError;
 
 /// A request that a world can't carry out. The world is as it was before.
 #[derive(Clone, Debug, PartialEq, Error, Diagnostic)]

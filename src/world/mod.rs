@@ -10,14 +10,14 @@
 //!
 //! ```
 //! use sdop::mesh;
-//! use sdop::scene::settings::CullSettings;
-//! use sdop::simd::Level;
+//! use sdop::settings::CullSettings;
+//! use sdop::simd::Tier;
 //! use sdop::volume::{Shape, ShapeSpec};
 //! use sdop::world::{Body, World};
 //!
 //! let cow = mesh::read("data/meshes/spot.tri", &mesh::ReadOptions::default())?;
 //! let shapes = vec![Shape::build(&cow, &ShapeSpec::default())?];
-//! let mut world = World::new(shapes, &CullSettings::default(), Level::detect())?;
+//! let mut world = World::new(shapes, &CullSettings::default(), Tier::detect())?;
 //! let still = world.insert(Body { dynamic: false, ..Body::default() })?;
 //! let moving = world.insert(Body { translation: [5.0, 0.0, 0.0], margin: 0.05, ..Body::default() })?;
 //! world.cull()?;
@@ -35,7 +35,7 @@ mod local;
 mod lookup;
 mod margins;
 
-pub use crate::broad_phase::Groups;
+pub use crate::bodies::Groups;
 pub use body::{Body, BodyId};
 pub use error::WorldError;
 pub use events::Events;
@@ -44,14 +44,14 @@ pub use lookup::PairLookup;
 use self::events::Watch;
 use self::local::Local;
 use self::margins::Margins;
-use crate::cost::{Counters, Seconds};
-use crate::crew::CrewError;
-use crate::pipeline::Culler;
+use crate::bodies::Bodies;
+use crate::bodies::contract::{ContractError, check_number, check_pose, check_shape, refuse};
+use crate::counters::{Counters, Seconds};
+use crate::culler::Culler;
 use crate::rounding::LIMIT;
-use crate::scene::bodies::Bodies;
-use crate::scene::contract::{ContractError, check_number, check_pose, check_shape, refuse};
-use crate::scene::settings::{CullSettings, Interest, SettingsError};
-use crate::simd::Level;
+use crate::settings::{CullSettings, Interest, SettingsError};
+use crate::simd::Tier;
+use crate::threads::ThreadsError;
 use crate::volume::Shape;
 
 /// Bodies in slots, and their culler.
@@ -87,7 +87,7 @@ impl World {
     pub fn new(
         shapes: Vec<Shape>,
         settings: &CullSettings,
-        level: Level,
+        tier: Tier,
     ) -> Result<Self, WorldError> {
         if let Some(interest) = &settings.interest {
             return Err(WorldError::Settings(SettingsError::Interest {
@@ -99,7 +99,7 @@ impl World {
             interest: Some(Interest::Bodies(Vec::new())),
             ..settings.clone()
         };
-        let culler = Culler::new(&shapes, &Bodies::default(), &settings, level)?;
+        let culler = Culler::new(&shapes, &Bodies::default(), &settings, tier)?;
         Ok(Self {
             shapes,
             bodies: Bodies::default(),
@@ -125,7 +125,7 @@ impl World {
     ///
     /// # Errors
     /// The system refuses to start the threads.
-    pub fn with_threads(mut self, threads: usize) -> Result<Self, CrewError> {
+    pub fn with_threads(mut self, threads: usize) -> Result<Self, ThreadsError> {
         self.culler = self.culler.with_threads(threads)?;
         Ok(self)
     }

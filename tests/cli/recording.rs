@@ -1,9 +1,9 @@
 //! `sdop run --record`: read back by a stranger who knows the format alone, to the same bits as in the library, and judged
 //! by the reference from the recorded numbers alone.
 
-use sdop::scene::SceneFile;
-use sdop::simd::Level;
-use sdop::simulate::{self, SimulationError};
+use sdop::lab::scene::SceneFile;
+use sdop::lab::simulate::{self, SimulationError};
+use sdop::simd::Tier;
 use sdop_reference as reference;
 use serde::Deserialize;
 
@@ -127,7 +127,7 @@ fn a_recording_reads_back_to_the_same_bits() {
     let mut next = 0;
     simulate::run(
         &scene,
-        Level::SCALAR,
+        Tier::SCALAR,
         |frame| -> Result<(), SimulationError> {
             let recorded = &frames[next];
             let poses = frame.bodies.rotation.iter().zip(&frame.bodies.translation);

@@ -1,6 +1,6 @@
 //! `sdop run`: the object it prints, that it depends on scene and flags alone, and what it refuses.
 
-use sdop::simd::Level;
+use sdop::simd::Tier;
 use serde_json::Value;
 
 use crate::{json, refusal, scene_file, sdop, stdout, text};
@@ -52,11 +52,11 @@ fn json_is_the_documented_object() {
 #[test]
 fn counters_and_hashes_are_the_same_twice_and_in_every_simd_level() {
     let expected = run(&["--simd", "scalar"]);
-    for level in Level::available() {
-        let report = run(&["--simd", level.name()]);
-        assert_eq!(report["simd"], level.name());
+    for tier in Tier::available() {
+        let report = run(&["--simd", tier.name()]);
+        assert_eq!(report["simd"], tier.name());
         for key in ["counters", "volumes_sha256", "pairs_sha256"] {
-            assert_eq!(report[key], expected[key], "{key} in {level}");
+            assert_eq!(report[key], expected[key], "{key} in {tier}");
         }
     }
     let other_seed = run(&["--seed", "2"]);
@@ -251,11 +251,8 @@ fn bad_flags_are_refused_with_what_would_do() {
 
 #[test]
 fn a_level_that_this_cpu_lacks_is_refused_with_those_it_has() {
-    let available: Vec<_> = Level::available()
-        .iter()
-        .map(|level| level.name())
-        .collect();
-    let lacking = Level::NAMES.iter().find(|name| !available.contains(name));
+    let available: Vec<_> = Tier::available().iter().map(|tier| tier.name()).collect();
+    let lacking = Tier::NAMES.iter().find(|name| !available.contains(name));
     // No CPU has both AVX and NEON.
     let lacking = lacking.unwrap();
     let message = refusal(&[&FAST[..], &["--simd", lacking]].concat());

@@ -3,37 +3,37 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod borders;
 mod scenes;
 #[path = "../support/mod.rs"]
 mod support;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sdop::broad_phase::Groups;
-use sdop::cost::Counters;
-use sdop::pipeline::Culler;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::{CullSettings, Finder, Strategy};
-use sdop::simd::Level;
+use sdop::bodies::Bodies;
+use sdop::bodies::Groups;
+use sdop::counters::Counters;
+use sdop::culler::Culler;
+use sdop::settings::{Budget, CullSettings, Finder, Interest, Strategy, ViewCone};
+use sdop::simd::Tier;
 
 use scenes::{Scene, hard_scenes, near_touching, unequal_near_touching, uniform};
 
-const FINDERS: [Finder; 2] = [Finder::Grid, Finder::Sweep];
-
-/// Strategies with each first test.
-const STRATEGIES: [Strategy; 6] = [
-    Strategy::Sphere,
-    Strategy::SDopSequential,
-    Strategy::OrDop,
-    Strategy::Obb,
-    Strategy::Aabb,
-    Strategy::KDop,
-];
-
+/// Whatever a strategy needs: a cone that holds some bodies, and a budget that doesn't run out, since what is refined before
+/// it does depends on the order of candidates.
 fn settings(strategy: Strategy, pairs: Finder) -> CullSettings {
+    let cone = ViewCone {
+        body: None,
+        apex: Some([-1.0, -2.0, 1.0]),
+        direction: [1.0, 1.0, 1.0],
+        half_angle: 30.0,
+        range: None,
+    };
     CullSettings {
         strategy,
         pairs,
+        interest: Some(Interest::Cone(cone)),
+        budget: Some(Budget::Tests(u64::MAX)),
         ..CullSettings::default()
     }
 }
@@ -42,14 +42,14 @@ fn settings(strategy: Strategy, pairs: Finder) -> CullSettings {
 fn run(
     scene: &Scene,
     settings: &CullSettings,
-    level: Level,
+    tier: Tier,
     threads: usize,
     frames: usize,
     mut take: impl FnMut(&Culler),
 ) {
     let mut rng = ChaCha8Rng::seed_from_u64(99);
     let mut bodies = scene.bodies.clone();
-    let culler = Culler::new(&scene.shapes, &bodies, settings, level).unwrap();
+    let culler = Culler::new(&scene.shapes, &bodies, settings, tier).unwrap();
     let mut culler = culler.with_threads(threads).unwrap();
     for _ in 0..frames {
         culler.cull(&bodies);
@@ -74,7 +74,7 @@ fn found(scene: &Scene, strategy: Strategy, finder: Finder, frames: usize) -> Ve
     run(
         scene,
         &settings(strategy, finder),
-        Level::detect(),
+        Tier::detect(),
         1,
         frames,
         |culler| {
@@ -105,9 +105,9 @@ fn compare(found: &[Vec<[u32; 2]>], wanted: &[Vec<[u32; 2]>], what: &str) {
 #[test]
 fn every_finder_reports_what_all_pairs_reports() {
     for scene in hard_scenes() {
-        for strategy in STRATEGIES {
+        for &strategy in Strategy::ALL {
             let wanted = found(&scene, strategy, Finder::AllPairs, 4);
-            for finder in FINDERS {
+            for &finder in Finder::ALL {
                 let found = found(&scene, strategy, finder, 4);
                 compare(
                     &found,
@@ -127,7 +127,7 @@ fn no_finder_loses_a_near_touching_pair() {
         let wanted = found(&scene, Strategy::Sphere, Finder::AllPairs, 1);
         assert!(wanted[0].len() > 300, "about half of them touch");
         let unequal = unequal_near_touching(seed);
-        for finder in FINDERS {
+        for &finder in Finder::ALL {
             let found = |scene| found(scene, Strategy::Sphere, finder, 1);
             compare(&found(&scene), &wanted, &format!("{finder}, seed {seed}"));
             let wanted = self::found(&unequal, Strategy::Sphere, Finder::AllPairs, 1);
@@ -162,7 +162,7 @@ fn no_pair_is_lost_across_a_cell() {
         scene.bodies.translation[0] = [0.0; 3];
         let wanted = found(&scene, Strategy::Sphere, Finder::AllPairs, 1);
         assert_eq!(wanted[0].len(), 399);
-        for finder in FINDERS {
+        for &finder in Finder::ALL {
             let found = found(&scene, Strategy::Sphere, finder, 1);
             compare(&found, &wanted, &format!("across a cell, {finder}"));
         }
@@ -223,11 +223,11 @@ fn giants_meet_the_tiny_ones_of_far_clusters_once() {
 fn trace(
     scene: &Scene,
     settings: &CullSettings,
-    level: Level,
+    tier: Tier,
     threads: usize,
 ) -> Vec<(Vec<[u32; 2]>, Counters)> {
     let mut trace = Vec::new();
-    run(scene, settings, level, threads, 3, |culler| {
+    run(scene, settings, tier, threads, 3, |culler| {
         trace.push((culler.pairs().iter().collect(), *culler.counters()));
     });
     trace
@@ -248,8 +248,11 @@ fn groups_leave_of_every_list_the_pairs_that_may_collide() {
         let (a, b) = (groups[a as usize], groups[b as usize]);
         a.member & b.mask != 0 && b.member & a.mask != 0
     };
-    for strategy in STRATEGIES {
+    for &strategy in Strategy::ALL {
         let mut wanted = found(&scene, strategy, Finder::AllPairs, 3);
+        if strategy == Strategy::None {
+            continue;
+        }
         let all: usize = wanted.iter().map(Vec::len).sum();
         wanted.iter_mut().for_each(|pairs| pairs.retain(may));
         let kept: usize = wanted.iter().map(Vec::len).sum();
@@ -257,7 +260,7 @@ fn groups_leave_of_every_list_the_pairs_that_may_collide() {
         for &finder in Finder::ALL {
             for threads in [1, 3] {
                 let settings = settings(strategy, finder);
-                let culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Level::detect());
+                let culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect());
                 let mut culler = culler.unwrap().with_threads(threads).unwrap();
                 culler.set_groups(Some(groups.clone()));
                 let (mut rng, mut bodies) = (ChaCha8Rng::seed_from_u64(99), scene.bodies.clone());
@@ -278,10 +281,10 @@ fn many_bodies_give_the_list_of_one_thread_on_any_number() {
     let scene = Scene::new("many", &[1.0], 40_000, |_, rng| uniform(rng, 96.0));
     for strategy in [Strategy::Sphere, Strategy::SDopSequential] {
         let settings = settings(strategy, Finder::Grid);
-        let wanted = trace(&scene, &settings, Level::detect(), 1);
+        let wanted = trace(&scene, &settings, Tier::detect(), 1);
         assert!(wanted[2].0.len() > 10_000);
         for threads in [2, 3] {
-            let found = trace(&scene, &settings, Level::detect(), threads);
+            let found = trace(&scene, &settings, Tier::detect(), threads);
             // Lists of this length are not worth printing.
             assert!(found == wanted, "{strategy}, {threads} threads");
         }
@@ -294,10 +297,10 @@ fn auto_is_one_of_the_others_in_list_and_count() {
         let scene = Scene::new("auto", &[1.0], n, |_, rng| uniform(rng, side));
         let [auto, named] = [Finder::Auto, wanted].map(|finder| {
             let settings = settings(Strategy::SDopSequential, finder);
-            run(&scene, &settings, Level::detect(), 1, 1, |culler| {
+            run(&scene, &settings, Tier::detect(), 1, 1, |culler| {
                 assert_eq!(culler.finder(), wanted);
             });
-            trace(&scene, &settings, Level::detect(), 1)
+            trace(&scene, &settings, Tier::detect(), 1)
         });
         assert_eq!(auto, named);
     }
@@ -309,19 +312,19 @@ fn lists_and_counts_are_the_same_in_every_tier_and_on_every_number_of_threads() 
         .iter()
         .filter(|scene| scene.bodies.shape.len() >= 300)
     {
-        for finder in FINDERS {
-            for strategy in STRATEGIES {
+        for &finder in Finder::ALL {
+            for &strategy in Strategy::ALL {
                 let settings = settings(strategy, finder);
-                let wanted = trace(scene, &settings, Level::SCALAR, 1);
-                for level in Level::available() {
-                    let found = trace(scene, &settings, level, 1);
+                let wanted = trace(scene, &settings, Tier::SCALAR, 1);
+                for tier in Tier::available() {
+                    let found = trace(scene, &settings, tier, 1);
                     assert!(
                         found == wanted,
-                        "{}, {finder}, {strategy}, {level}",
+                        "{}, {finder}, {strategy}, {tier}",
                         scene.name
                     );
                 }
-                let found = trace(scene, &settings, Level::detect(), 3);
+                let found = trace(scene, &settings, Tier::detect(), 3);
                 assert!(
                     found == wanted,
                     "{}, {finder}, {strategy}, threads",
@@ -341,9 +344,9 @@ fn bodies_may_gather_and_part_over_many_frames() {
     scene.bodies.dynamic.fill(true);
     scene.bodies.dynamic[7] = false;
     let start = scene.bodies.translation.clone();
-    let cullers = [Finder::AllPairs].iter().chain(&FINDERS).map(|&finder| {
+    let cullers = [Finder::AllPairs].iter().chain(Finder::ALL).map(|&finder| {
         let settings = settings(Strategy::SDopSequential, finder);
-        Culler::new(&scene.shapes, &scene.bodies, &settings, Level::detect()).unwrap()
+        Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect()).unwrap()
     });
     let mut cullers: Vec<Culler> = cullers.collect();
     for frame in 0..120 {

@@ -2,9 +2,9 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use sdop::bodies::Bodies;
+use sdop::lab::verify::draw::rotation;
 use sdop::mesh::shapes::ProceduralShape;
-use sdop::scene::bodies::Bodies;
-use sdop::verify::draw::rotation;
 use sdop::volume::{DirectionSet, Shape, ShapeSpec};
 
 use crate::support::{self, shapes};

@@ -1,7 +1,7 @@
 //! Bodies outside of the contract, from a file or from a caller.
 
-use sdop::scene::bodies::Bodies;
-use sdop::scene::contract::check_bodies;
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::check_bodies;
 
 use super::{SOUND, build, posed, refusal};
 

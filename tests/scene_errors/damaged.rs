@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use proptest::prelude::*;
-use sdop::scene::SceneFile;
-use sdop::scene::contract::check_bodies;
+use sdop::bodies::contract::check_bodies;
+use sdop::lab::scene::SceneFile;
 
 use super::SOUND;
 

@@ -1,7 +1,7 @@
 //! Scenes whose parts don't go together: box and bodies, meshes, effects, culling.
 
 use miette::Diagnostic;
-use sdop::scene::SceneFile;
+use sdop::lab::scene::SceneFile;
 
 use super::{SOUND, changed, posed, refusal};
 

@@ -8,9 +8,9 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use sdop::bodies::Bodies;
+use sdop::lab::verify::draw::rotation;
 use sdop::mesh::shapes::ProceduralShape;
-use sdop::scene::bodies::Bodies;
-use sdop::verify::draw::rotation;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 /// Every procedural shape at bounding radius 1, and an L-shape about its file's own origin, far off its ball's centre.

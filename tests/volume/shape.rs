@@ -2,8 +2,9 @@
 
 use glam::{DQuat, Vec3};
 use sdop::{
+    lab::hash::volumes_sha256,
     mesh::TriangleMesh,
-    volume::{Axes, DirectionSet, Hull, Origin, Shape, ShapeSpec, volumes_sha256},
+    volume::{Axes, DirectionSet, Hull, Origin, Shape, ShapeSpec},
 };
 
 use crate::meshes::{box_corners, mesh, rotated};

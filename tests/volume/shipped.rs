@@ -1,11 +1,10 @@
 //! The shipped meshes: contained exactly, the same volumes on every CPU, and as tight as recorded.
 
 use sdop::{
+    lab::hash::volumes_sha256,
+    lab::tightness::mean_world_aligned_volume,
     mesh::{ReadOptions, read},
-    volume::{
-        Axes, Ball, Basis, DirectionSet, Hull, OrDop, Shape, ShapeSpec, mean_world_aligned_volume,
-        volumes_sha256,
-    },
+    volume::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, Shape, ShapeSpec},
 };
 
 use crate::{

@@ -5,8 +5,9 @@ use std::f64::consts::PI;
 use glam::Vec3;
 use proptest::prelude::*;
 use sdop::{
+    lab::tightness::mean_world_aligned_volume,
     mesh::shapes::ProceduralShape,
-    volume::{Ball, Basis, DirectionSet, Hull, OrDop, mean_world_aligned_volume},
+    volume::{Ball, Basis, DirectionSet, Hull, OrDop},
 };
 
 use crate::meshes::{box_corners, rotation, vertices};

@@ -1,14 +1,14 @@
 //! What a world holds of its bodies: ids, interest and groups, from insertion to removal, and what it refuses.
 
-use sdop::scene::settings::{CullSettings, Strategy};
-use sdop::simd::Level;
+use sdop::settings::{CullSettings, Strategy};
+use sdop::simd::Tier;
 use sdop::world::{Body, Groups, World, WorldError};
 
 use super::shapes;
 
 #[test]
 fn what_breaks_the_contract_is_refused_and_changes_nothing() {
-    let mut world = World::new(shapes(), &CullSettings::default(), Level::detect()).unwrap();
+    let mut world = World::new(shapes(), &CullSettings::default(), Tier::detect()).unwrap();
     let id = world.insert(Body::default()).unwrap();
     let wrong = [
         (
@@ -73,12 +73,12 @@ fn what_breaks_the_contract_is_refused_and_changes_nothing() {
         interest: Some("0".parse().unwrap()),
         ..CullSettings::default()
     };
-    assert!(World::new(shapes(), &cone, Level::detect()).is_err());
+    assert!(World::new(shapes(), &cone, Tier::detect()).is_err());
 }
 
 #[test]
 fn ids_are_never_given_again() {
-    let mut world = World::new(shapes(), &CullSettings::default(), Level::detect()).unwrap();
+    let mut world = World::new(shapes(), &CullSettings::default(), Tier::detect()).unwrap();
     let [a, b] = [(); 2].map(|()| world.insert(Body::default()).unwrap());
     world.cull().unwrap();
     assert_eq!(world.events().begun, [[a, b]]);
@@ -103,7 +103,7 @@ fn interest_ends_with_its_body() {
         strategy: Strategy::SDopObjectOfInterest,
         ..CullSettings::default()
     };
-    let mut world = World::new(shapes(), &way, Level::detect()).unwrap();
+    let mut world = World::new(shapes(), &way, Tier::detect()).unwrap();
     // Two needles side by side: their spheres meet, their or-DOPs don't.
     let needle = Body {
         shape: 2,
@@ -130,7 +130,7 @@ fn interest_ends_with_its_body() {
 
 #[test]
 fn a_body_that_collides_with_all_joins_others_that_do_not() {
-    let mut world = World::new(shapes(), &CullSettings::default(), Level::detect()).unwrap();
+    let mut world = World::new(shapes(), &CullSettings::default(), Tier::detect()).unwrap();
     let apart = |member| Body {
         groups: Groups {
             member,

@@ -8,11 +8,11 @@ use std::collections::{BTreeSet, HashMap};
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
-use sdop::pipeline::Culler;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::{Budget, CullSettings, Finder, Strategy, Updates};
-use sdop::simd::Level;
+use sdop::settings::{Budget, CullSettings, Finder, Strategy, Updates};
+use sdop::simd::Tier;
 use sdop::volume::{Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, Groups, World, WorldError};
 
@@ -98,10 +98,10 @@ fn afresh(shapes: &[Shape], way: &CullSettings, bodies: &HashMap<BodyId, Body>) 
         columns.push(body.shape, body.dynamic, body.rotation, t);
     }
     let settings = CullSettings {
-        interest: Some(sdop::scene::settings::Interest::Bodies(Vec::new())),
+        interest: Some(sdop::settings::Interest::Bodies(Vec::new())),
         ..way.clone()
     };
-    let mut culler = Culler::new(shapes, &columns, &settings, Level::detect()).unwrap();
+    let mut culler = Culler::new(shapes, &columns, &settings, Tier::detect()).unwrap();
     let pairs = culler.cull(&columns).iter();
     pairs
         .map(|pair| pair.map(|i| order[i as usize]))
@@ -118,8 +118,8 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
     for way in ways() {
         let deterministic = way.strategy != Strategy::SDopTimeCritical;
         let mut random = Random(ChaCha8Rng::seed_from_u64(7));
-        let mut world = World::new(shapes.clone(), &way, Level::detect()).unwrap();
-        let mut crew = World::new(shapes.clone(), &way, Level::detect())
+        let mut world = World::new(shapes.clone(), &way, Tier::detect()).unwrap();
+        let mut pool = World::new(shapes.clone(), &way, Tier::detect())
             .unwrap()
             .with_threads(3)
             .unwrap();
@@ -131,14 +131,14 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
             change(
                 &mut random,
                 &mut bodies,
-                [&mut world, &mut crew],
+                [&mut world, &mut pool],
                 come_and_go,
             );
             world.cull().unwrap();
-            crew.cull().unwrap();
+            pool.cull().unwrap();
             let now: Pairs = world.pairs().collect();
             assert_eq!(now.len(), world.pairs().len(), "each pair once");
-            assert!(world.pairs().eq(crew.pairs()), "{way:?}: threads");
+            assert!(world.pairs().eq(pool.pairs()), "{way:?}: threads");
             if deterministic {
                 let expected = afresh(&shapes, &way, &bodies);
                 assert_eq!(now, expected, "{way:?}, frame {frame}");
@@ -164,19 +164,19 @@ fn change(
 ) {
     let mut ids: Vec<BodyId> = bodies.keys().copied().collect();
     ids.sort();
-    let [world, crew] = worlds;
+    let [world, pool] = worlds;
     for id in ids {
         match random.below(10) {
             0 if come_and_go => {
                 world.remove(id).unwrap();
-                crew.remove(id).unwrap();
+                pool.remove(id).unwrap();
                 assert_eq!(world.remove(id), Err(WorldError::Gone(id)));
                 bodies.remove(&id);
             }
             1 if come_and_go => {
                 let body = random.body(3);
                 world.set(id, body).unwrap();
-                crew.set(id, body).unwrap();
+                pool.set(id, body).unwrap();
                 bodies.insert(id, body);
             }
             2..5 => {
@@ -186,7 +186,7 @@ fn change(
                     ..
                 } = random.body(3);
                 world.set_pose(id, rotation, translation).unwrap();
-                crew.set_pose(id, rotation, translation).unwrap();
+                pool.set_pose(id, rotation, translation).unwrap();
                 let body = bodies.get_mut(&id).unwrap();
                 (body.rotation, body.translation) = (rotation, translation);
                 assert_eq!(world.body(id).unwrap(), *body);
@@ -197,7 +197,7 @@ fn change(
     for _ in 0..if come_and_go { random.below(30) } else { 0 } {
         let body = random.body(3);
         let id = world.insert(body).unwrap();
-        assert_eq!(crew.insert(body).unwrap(), id);
+        assert_eq!(pool.insert(body).unwrap(), id);
         assert_eq!(bodies.insert(id, body), None, "{id} is new");
     }
 }
@@ -223,7 +223,7 @@ fn margins_reach_as_far_as_they_say_and_little_farther() {
             strategy,
             ..CullSettings::default()
         };
-        let mut world = World::new(vec![shape.clone()], &way, Level::detect()).unwrap();
+        let mut world = World::new(vec![shape.clone()], &way, Tier::detect()).unwrap();
         let first = Body {
             margin: 0.3,
             ..Body::default()
@@ -292,7 +292,7 @@ fn touching_spheres_meet_wherever_f64_puts_them() {
             strategy: Strategy::Sphere,
             ..CullSettings::default()
         };
-        let mut world = World::new(vec![shape], &settings, Level::detect()).unwrap();
+        let mut world = World::new(vec![shape], &settings, Tier::detect()).unwrap();
         world
             .insert(Body {
                 translation: base,

@@ -10,8 +10,8 @@ use sdop::overlap::ordop::table::members_of;
 use sdop::overlap::ordop::{OrDopColumns, SlabTables};
 use sdop::pairs::PairList;
 use sdop::rounding::pose::{rotate, rotation, world_axes};
-use sdop::scene::settings::Overlap;
-use sdop::simd::{Kernel, Lanes, Level, ROW, dispatch};
+use sdop::settings::Overlap;
+use sdop::simd::{Kernel, Lanes, ROW, Tier, dispatch};
 use sdop::update::row::{O, Q, S, SHAPE, T};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
@@ -52,7 +52,7 @@ impl Kernel for Equals<'_> {
     }
 }
 
-pub fn supports_agree<const FLUSH: bool>(level: Level) {
+pub fn supports_agree<const FLUSH: bool>(tier: Tier) {
     let mut random = Random::new(7);
     for step in 0..20_000 {
         let (k, _) = SETS[step % SETS.len()];
@@ -66,7 +66,7 @@ pub fn supports_agree<const FLUSH: bool>(level: Level) {
         let expected = ordop::support(k, &table, e.map(F::<FLUSH>::new)).get();
         assert!(
             dispatch(
-                level,
+                tier,
                 Equals {
                     k,
                     ends: &ends,
@@ -80,7 +80,7 @@ pub fn supports_agree<const FLUSH: bool>(level: Level) {
 }
 
 /// The culler decides as the searches' arithmetic does at the last f32 distance that overlaps and at the next one.
-pub fn decisions_agree<const FLUSH: bool>(level: Level) {
+pub fn decisions_agree<const FLUSH: bool>(tier: Tier) {
     for (k, directions) in SETS {
         let shapes: Vec<Shape> = (0..6).map(|seed| shape(seed, directions)).collect();
         let tables = SlabTables::new(directions, shapes.iter().map(|shape| (shape, &shape.ordop)));
@@ -100,7 +100,7 @@ pub fn decisions_agree<const FLUSH: bool>(level: Level) {
                 overlap,
             };
             let mut kept = PairList::default();
-            columns.test_pairs(level, &first, &second, &mut kept);
+            columns.test_pairs(tier, &first, &second, &mut kept);
             // Pairs come in twos: overlapping, then an ulp farther.
             let expected: Vec<u32> = first.iter().copied().step_by(2).collect();
             assert_eq!(kept.first(), expected, "k = {k}, {overlap:?}");

@@ -13,7 +13,7 @@ mod poses;
 mod slabs;
 mod spheres;
 
-use sdop::simd::Level;
+use sdop::simd::Tier;
 
 /// Steps of each short search.
 const EVALUATIONS: u64 = 400_000;
@@ -53,8 +53,8 @@ fn a_lower_floor_or_factor_misses() {
 
 #[test]
 fn the_searches_attack_the_cullers_own_arithmetic() {
-    kernel::supports_agree::<false>(Level::SCALAR);
-    kernel::supports_agree::<true>(Level::SCALAR_FLUSH);
-    kernel::decisions_agree::<false>(Level::detect());
-    kernel::decisions_agree::<true>(Level::SCALAR_FLUSH);
+    kernel::supports_agree::<false>(Tier::SCALAR);
+    kernel::supports_agree::<true>(Tier::SCALAR_FLUSH);
+    kernel::decisions_agree::<false>(Tier::detect());
+    kernel::decisions_agree::<true>(Tier::SCALAR_FLUSH);
 }

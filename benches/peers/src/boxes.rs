@@ -2,7 +2,7 @@
 //!
 //! Intervals are closed: boxes that touch are a pair. The ends are fl(t − r) and fl(t + r), the same bits for everyone.
 
-use sdop::scene::bodies::Bodies;
+use sdop::bodies::Bodies;
 use sdop::volume::Shape;
 
 /// The slabs [lo, hi] of a box on the world axes.

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use miette::miette;
-use sdop::crew::Crew;
+use sdop::threads::Threads;
 use serde::Serialize;
 
 use crate::boxes::Frame;
@@ -194,7 +194,7 @@ fn rows(bodies: usize, threads: usize, racers: &mut [Racer]) -> miette::Result<V
 
 /// A control loop over columns of numbers.
 struct Loop {
-    crew: Crew,
+    pool: Threads,
     pieces: Vec<Vec<f32>>,
     work: fn(&mut [f32]),
 }
@@ -202,7 +202,7 @@ struct Loop {
 impl Loop {
     fn new(threads: usize, numbers: usize, work: fn(&mut [f32])) -> miette::Result<Self> {
         Ok(Self {
-            crew: Crew::new(threads)?,
+            pool: Threads::new(threads)?,
             pieces: vec![vec![1.0; numbers / PIECES]; PIECES],
             work,
         })
@@ -212,7 +212,7 @@ impl Loop {
 impl Peer for Loop {
     fn frame(&mut self, _: &Frame) {
         let work = self.work;
-        self.crew
+        self.pool
             .each(&mut self.pieces, |_, piece| work(black_box(piece)));
     }
 

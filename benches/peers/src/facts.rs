@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
-use sdop::cost::machine::Machine;
-use sdop::simd::Level;
+use sdop::lab::measure::machine::Machine;
+use sdop::simd::Tier;
 use serde::Serialize;
 
 /// The flag that compiles the same engines in.
@@ -39,7 +39,7 @@ impl Facts {
                 "cargo run --release -p sdop-peers{FEATURES} -- {}",
                 arguments.join(" ")
             ),
-            machine: Machine::here(Level::detect()),
+            machine: Machine::here(Tier::detect()),
             compiled_for: match (
                 cfg!(target_feature = "avx512f"),
                 cfg!(target_feature = "avx2"),

@@ -11,13 +11,13 @@ use miette::{IntoDiagnostic as _, miette};
 use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::query::intersection_test;
 use parry3d::shape::{ConvexPolyhedron, Shape as Solid, TriMesh};
-use sdop::pipeline::Culler;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::settings::{CullSettings, Finder, Strategy};
-use sdop::scene::{Scene, SceneFile};
-use sdop::simd::Level;
-use sdop::tradeoff::gjk::{HullGraph, PosedHull, may_touch};
-use sdop::tradeoff::truth::samples;
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
+use sdop::lab::scene::{Scene, SceneFile};
+use sdop::lab::tradeoff::gjk::{HullGraph, PosedHull, may_touch};
+use sdop::lab::tradeoff::truth::samples;
+use sdop::settings::{CullSettings, Finder, Strategy};
+use sdop::simd::Tier;
 use sdop::volume::Shape;
 use sdop_reference::exact::{meeting, mesh::Mesh};
 use serde::Serialize;
@@ -84,7 +84,7 @@ fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<R
         pairs: Finder::Grid,
         ..scene.cull.clone()
     };
-    let mut culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Level::detect())?;
+    let mut culler = Culler::new(&scene.shapes, &scene.bodies, &settings, Tier::detect())?;
     let samples = samples(scene, frames)?;
     let survivors: Vec<_> = samples
         .iter()

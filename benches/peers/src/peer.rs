@@ -2,7 +2,7 @@
 //!
 //! A new engine is a file with a `Peer`, and its line in [`roster`].
 
-use sdop::scene::Scene;
+use sdop::lab::scene::Scene;
 
 use crate::boxes::Frame;
 #[cfg(feature = "physx")]

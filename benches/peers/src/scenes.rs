@@ -6,9 +6,9 @@
 use std::path::Path;
 
 use clap::ValueEnum;
-use sdop::effects::Effects;
-use sdop::scene::bodies::Bodies;
-use sdop::scene::{Scene, SceneFile};
+use sdop::bodies::Bodies;
+use sdop::lab::effects::Effects;
+use sdop::lab::scene::{Scene, SceneFile};
 use serde::Serialize;
 
 use crate::boxes::Frame;
@@ -117,7 +117,7 @@ impl Course {
 
     fn start(scene: Scene) -> miette::Result<Self> {
         Ok(Self {
-            effects: Effects::new(&scene)?,
+            effects: scene.start_effects()?,
             bodies: scene.bodies.clone(),
             started: false,
             scene,

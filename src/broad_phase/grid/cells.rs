@@ -37,12 +37,40 @@ pub enum Layout {
     Wrapped,
 }
 
+/// Where the cells of one size lie. The one place that tells the cell of a coordinate: which a body falls in, how many there
+/// are and where a body of another level looks. Each step rounds, but none of them reverses an order: a coordinate between
+/// two others falls in a cell between theirs, whatever the roundings, and none falls beyond the cell of the farthest.
+#[derive(Clone, Copy, Debug)]
+struct Rule {
+    origin: [f64; 3],
+    inverse: f64,
+}
+
+impl Rule {
+    /// The number of a coordinate's cell along an axis, plus [`TO_INTEGER`]: an exact f64 in order, whose low 32 bits are
+    /// the number.
+    #[inline(always)]
+    fn cell(&self, axis: usize, x: f64) -> f64 {
+        (x - self.origin[axis]) * self.inverse + TO_INTEGER
+    }
+
+    /// How many cells there are up to that of `hi`, the farthest centre's coordinates.
+    fn count(&self, hi: [f64; 3]) -> [u32; 3] {
+        std::array::from_fn(|axis| number(self.cell(axis, hi[axis]).max(TO_INTEGER)) + 1)
+    }
+}
+
+/// The number of a cell.
+#[inline(always)]
+fn number(cell: f64) -> u32 {
+    cell.to_bits() as u32
+}
+
 /// The cells of one level.
 #[derive(Clone, Debug)]
 pub struct Cells {
-    origin: [f64; 3],
+    rule: Rule,
     size: f64,
-    inverse: f64,
     count: [u32; 3],
     row: u32,
     layer: u32,
@@ -56,15 +84,21 @@ impl Cells {
     /// Cells for `bodies` balls within the bounds, of the size that the widest needs; in a box, larger ones where the table
     /// would grow too long.
     pub fn fit(bounds: &Bounds, bodies: usize, layout: Layout) -> Self {
-        let lo = bounds.lo.map(f64::from);
-        let extent: [f64; 3] = std::array::from_fn(|i| (f64::from(bounds.hi[i]) - lo[i]).max(0.0));
-        let longest = extent.into_iter().fold(0.0, f64::max);
+        // Bounds that aren't finite come of bodies outside the contract. They get some cells, so that nothing here runs on.
+        let [lo, hi] = [bounds.lo, bounds.hi].map(|end| end.map(finite));
+        let longest = (0..3).map(|i| hi[i] - lo[i]).fold(0.0, f64::max);
         let needed = 2.0 * f64::from(widen(bounds.widest)) * (1.0 + 1.0 / 65536.0);
         let mut size = needed.max(longest / MOST_CELLS);
-        let counts = |size: f64| extent.map(|e| (e / size).round() + 1.0);
+        let rule = |size: f64| Rule {
+            origin: lo,
+            inverse: 1.0 / size,
+        };
         if layout == Layout::Box {
             let most = CELLS_PER_BODY * bodies as f64 + FEW_CELLS;
-            let fits = |size: f64| counts(size).iter().map(|n| n + 1.0).product::<f64>() <= most;
+            let fits = |size: f64| {
+                let count = rule(size).count(hi);
+                count.map(|n| f64::from(n) + 1.0).iter().product::<f64>() <= most
+            };
             while !fits(2.0 * size) {
                 size *= 2.0;
             }
@@ -72,11 +106,11 @@ impl Cells {
                 size *= 1.0625;
             }
         }
-        let count = counts(size).map(|n| n as u32);
+        let rule = rule(size);
+        let count = rule.count(hi);
         let mut cells = Self {
-            origin: lo,
+            rule,
             size,
-            inverse: 1.0 / size,
             count,
             row: 0,
             layer: 0,
@@ -189,7 +223,7 @@ impl Cells {
         let mut cells = [0u32; BLOCK_BODIES];
         for (axis, stride) in [1, self.row, self.layer].into_iter().enumerate() {
             for (cell, &x) in cells.iter_mut().zip(&columns[axis]) {
-                let k = self.round(self.along(axis, f64::from(x)));
+                let k = number(self.rule.cell(axis, f64::from(x)));
                 *cell = cell.wrapping_add(k.wrapping_mul(stride));
             }
         }
@@ -205,24 +239,24 @@ impl Cells {
     pub fn around(&self, ball: &[f32; 4], reach: f64) -> Option<[[u32; 3]; 2]> {
         let (mut lowest, mut highest) = ([0; 3], [0; 3]);
         for axis in 0..3 {
-            let (x, last) = (f64::from(ball[axis]), f64::from(self.count[axis]) - 1.0);
-            let (lo, hi) = (self.along(axis, x - reach), self.along(axis, x + reach));
-            if lo > last + 0.5 || hi < -0.5 {
+            let x = f64::from(ball[axis]);
+            let last = TO_INTEGER + f64::from(self.count[axis] - 1);
+            let (lo, hi) = (
+                self.rule.cell(axis, x - reach),
+                self.rule.cell(axis, x + reach),
+            );
+            if lo > last || hi < TO_INTEGER {
                 return None;
             }
-            lowest[axis] = self.round(lo.clamp(0.0, last));
-            highest[axis] = self.round(hi.clamp(0.0, last));
+            // In this order NaN, which a body outside the contract may bring, turns to a cell.
+            lowest[axis] = number(lo.max(TO_INTEGER).min(last));
+            highest[axis] = number(hi.max(TO_INTEGER).min(last));
         }
         Some([lowest, highest])
     }
+}
 
-    #[inline(always)]
-    fn along(&self, axis: usize, x: f64) -> f64 {
-        (x - self.origin[axis]) * self.inverse
-    }
-
-    #[inline(always)]
-    fn round(&self, quotient: f64) -> u32 {
-        (quotient + TO_INTEGER).to_bits() as u32
-    }
+/// The number itself, or the nearest finite one.
+fn finite(x: f32) -> f64 {
+    f64::from(x.max(f32::MIN).min(f32::MAX))
 }

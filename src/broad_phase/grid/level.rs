@@ -8,9 +8,9 @@ use std::ops::Range;
 
 use super::cells::{Cells, Layout};
 use crate::broad_phase::{Bounds, Slots};
-use crate::crew::Crew;
 use crate::rounding::widen;
-use crate::simd::{Kernel, Lanes, Level as Tier, dispatch};
+use crate::simd::{Kernel, Lanes, Tier, dispatch};
+use crate::threads::Threads;
 
 /// Bodies whose cells have one size. Their slots are a range, and so are their places: sorting stays within it.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ impl Level {
     /// `slot_cells` are columns over all places and all slots.
     pub fn sort(
         &mut self,
-        (tier, crew): (Tier, &Crew),
+        (tier, pool): (Tier, &Threads),
         balls: &[[f32; 4]],
         names: &[u32],
         place_cells: &mut [u32],
@@ -51,11 +51,11 @@ impl Level {
     ) {
         let range = self.range.clone();
         let (balls, names) = (&balls[range.clone()], &names[range.clone()]);
-        let bounds = bounds(tier, crew, balls);
+        let bounds = bounds(tier, pool, balls);
         self.widest = f64::from(widen(bounds.widest));
         self.cells = Cells::fit(&bounds, range.len(), self.layout);
         let (cells, place_cells) = (&self.cells, &mut place_cells[range.clone()]);
-        crew.pieces(place_cells, PIECE, |start, to| {
+        pool.pieces(place_cells, PIECE, |start, to| {
             let balls = &balls[start..start + to.len()];
             dispatch(tier, Assign { cells, balls, to });
         });
@@ -80,7 +80,7 @@ impl Level {
             names: &mut slots.names[range.clone()],
             cells: &mut slot_cells[range],
         };
-        to.sort(crew, &from);
+        to.sort(pool, &from);
     }
 }
 
@@ -91,13 +91,13 @@ const PIECE: usize = 4096;
 const WORTH_SHARING: usize = 1 << 15;
 
 /// The bounds of some balls, found by all threads: extremes don't depend on who finds them.
-fn bounds(tier: Tier, crew: &Crew, balls: &[[f32; 4]]) -> Bounds {
-    if crew.threads() == 1 || balls.len() < WORTH_SHARING {
+fn bounds(tier: Tier, pool: &Threads, balls: &[[f32; 4]]) -> Bounds {
+    if pool.threads() == 1 || balls.len() < WORTH_SHARING {
         return Bounds::of(tier, balls);
     }
-    let piece = balls.len().div_ceil(crew.threads());
-    let mut found = vec![Bounds::EMPTY; crew.threads()];
-    crew.each(&mut found, |k, found| {
+    let piece = balls.len().div_ceil(pool.threads());
+    let mut found = vec![Bounds::EMPTY; pool.threads()];
+    pool.each(&mut found, |k, found| {
         let end = balls.len().min((k + 1) * piece);
         *found = Bounds::of(tier, &balls[end.min(k * piece)..end]);
     });
@@ -125,8 +125,8 @@ struct Share<'a> {
 impl<'a> Share<'a> {
     /// Sorts all cells, split among the threads: each reads all bodies and takes those of its own cells, so that the order is
     /// that of one thread.
-    fn sort(mut self, crew: &Crew, from: &Columns<'_>) {
-        let threads = crew.threads();
+    fn sort(mut self, pool: &Threads, from: &Columns<'_>) {
+        let threads = pool.threads();
         if threads == 1 || from.cells.len() < WORTH_SHARING {
             self.count(from.cells);
             self.place(from);
@@ -141,7 +141,7 @@ impl<'a> Share<'a> {
             (self.first_cell, self.ends) = (middle, rest);
         }
         shares.push((self.first_cell, self.ends, 0));
-        crew.each(&mut shares, |_, (first_cell, ends, bodies)| {
+        pool.each(&mut shares, |_, (first_cell, ends, bodies)| {
             *bodies = count(from.cells, *first_cell, ends);
         });
         let mut shares: Vec<Share<'_>> = shares
@@ -165,7 +165,7 @@ impl<'a> Share<'a> {
                 }
             })
             .collect();
-        crew.each(&mut shares, |_, share| share.place(from));
+        pool.each(&mut shares, |_, share| share.place(from));
     }
 
     fn count(&mut self, cells: &[u32]) {

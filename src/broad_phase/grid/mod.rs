@@ -16,8 +16,8 @@ use std::ops::Range;
 use self::across::Search;
 use self::level::Level;
 use super::{Block, FirstTest, Reorder, Slots, bytes};
-use crate::crew::Crew;
-use crate::simd::{Lanes, Level as Tier};
+use crate::simd::{Lanes, Tier};
+use crate::threads::Threads;
 
 /// Frames after which places take the order of slots. Bodies that move a tenth of their radius a frame are then in their cell
 /// still, or beside it; each frame would spare the sort no more than following the order costs.
@@ -115,7 +115,13 @@ impl Grid {
     }
 
     /// Sorts the moving levels into their slots, and the static ones after a plan.
-    pub(super) fn arrange(&mut self, tier: Tier, crew: &Crew, balls: &[[f32; 4]], names: &[u32]) {
+    pub(super) fn arrange(
+        &mut self,
+        tier: Tier,
+        pool: &Threads,
+        balls: &[[f32; 4]],
+        names: &[u32],
+    ) {
         self.slots.resize(balls.len());
         self.slot_cells.resize(balls.len(), 0);
         self.place_cells.resize(balls.len(), 0);
@@ -125,7 +131,7 @@ impl Grid {
         };
         for level in &mut self.levels[..changed] {
             level.sort(
-                (tier, crew),
+                (tier, pool),
                 balls,
                 names,
                 &mut self.place_cells,

@@ -30,7 +30,7 @@ pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec
         let rest = &mut order[from..];
         let mut level = gather(balls, rest);
         let (mut layout, crowd) = fit(&level);
-        let half = 0.5 * Bounds::of(simd::Level::SCALAR, &level).widest;
+        let half = 0.5 * Bounds::of(simd::Tier::SCALAR, &level).widest;
         let wide = |place: &u32| balls[*place as usize][3] > half;
         let crowded = crowd > CROWD * rest.len() as u64 && levels.len() + 1 < MOST_LEVELS;
         let mut count = rest.len();
@@ -53,7 +53,7 @@ fn gather(balls: &[[f32; 4]], places: &[u32]) -> Vec<[f32; 4]> {
 
 /// The better layout for some balls, and how crowded its cells are: the sum over balls of the balls in the same cell.
 fn fit(balls: &[[f32; 4]]) -> (Layout, u64) {
-    let bounds = Bounds::of(simd::Level::SCALAR, balls);
+    let bounds = Bounds::of(simd::Tier::SCALAR, balls);
     let [in_box, wrapped] =
         [Layout::Box, Layout::Wrapped].map(|layout| Cells::fit(&bounds, balls.len(), layout));
     let crowd_in_box = crowd(&in_box, balls);
@@ -69,7 +69,7 @@ fn fit(balls: &[[f32; 4]]) -> (Layout, u64) {
 fn crowd(cells: &Cells, balls: &[[f32; 4]]) -> u64 {
     let mut cell_of = vec![0; balls.len()];
     let to = &mut cell_of;
-    dispatch(simd::Level::SCALAR, Assign { cells, balls, to });
+    dispatch(simd::Tier::SCALAR, Assign { cells, balls, to });
     let mut counts = vec![0u64; cells.table_len()];
     for &cell in &cell_of {
         counts[cell as usize] += 1;

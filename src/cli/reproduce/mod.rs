@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use miette::{IntoDiagnostic as _, miette};
-use sdop::cost::calibrate::Effort;
-use sdop::cost::machine::Machine;
-use sdop::reproduce::{Plan, Results, Shard};
-use sdop::scene::settings::Strategy;
+use sdop::lab::cost::calibrate::Effort;
+use sdop::lab::measure::machine::Machine;
+use sdop::lab::reproduce::{Plan, Results, Shard};
+use sdop::settings::Strategy;
 
 use super::Outcome;
 use super::files::{command, write};
@@ -95,7 +95,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         bar.inc(1);
     })?;
     bar.finish_and_clear();
-    let machine = Machine::here(plan.level);
+    let machine = Machine::here(plan.tier);
     let tables = Tables::new(&results, &machine, args.shard, command());
     let paper = args.paper.as_ref().unwrap_or(&args.out);
     write_tables(&args.out, &tables)?;
@@ -138,7 +138,7 @@ fn plan(args: &Args) -> miette::Result<Plan> {
         seeds,
         frames,
         size.effort,
-        args.machine.level(),
+        args.machine.tier(),
     );
     Ok(match args.shard {
         Some(shard) => plan.shard(shard)?,

@@ -3,15 +3,15 @@
 //! Of those, `counts` has what is equal on every machine, and its hash stands in the summary; `times` has what is not.
 
 use miette::IntoDiagnostic as _;
-use sdop::cost::machine::Machine;
-use sdop::cost::predict::Prices;
-use sdop::reproduce::check::{Claim, Verdict};
-use sdop::reproduce::closed_form::{probability, relative_reach};
-use sdop::reproduce::rates::{self, Rate};
-use sdop::reproduce::readings::{self, Cell};
-use sdop::reproduce::terms::{self, Cost};
-use sdop::reproduce::{Estimate, Results, Run, Shard, claims, study};
-use sdop::scene::settings::Strategy;
+use sdop::lab::cost::predict::Prices;
+use sdop::lab::measure::machine::Machine;
+use sdop::lab::reproduce::check::{Claim, Verdict};
+use sdop::lab::reproduce::closed_form::{probability, relative_reach};
+use sdop::lab::reproduce::rates::{self, Rate};
+use sdop::lab::reproduce::readings::{self, Cell};
+use sdop::lab::reproduce::terms::{self, Cost};
+use sdop::lab::reproduce::{Estimate, Results, Run, Shard, claims, study};
+use sdop::settings::Strategy;
 use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -117,7 +117,7 @@ impl Tables {
         command: String,
     ) -> Self {
         let counts: Vec<CountRow> = results.runs.iter().map(count_row).collect();
-        let survival = |row: &sdop::reproduce::Survival| SurvivalRow {
+        let survival = |row: &sdop::lab::reproduce::Survival| SurvivalRow {
             k: row.k.k(),
             overlap: row.overlap.name(),
             percent: Estimate::of(&row.shares).scaled(100.0),

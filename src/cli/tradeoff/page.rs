@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use comfy_table::Table;
-use sdop::scene::settings::Overlap;
-use sdop::tradeoff::{Row, Tradeoff};
+use sdop::lab::tradeoff::{Row, Tradeoff};
+use sdop::settings::Overlap;
 
 use super::{Recorded, tables};
 

@@ -7,7 +7,7 @@ use std::ops::Range;
 use miette::miette;
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use sdop::tradeoff::Tradeoff;
+use sdop::lab::tradeoff::Tradeoff;
 
 use crate::cli::palette::{BLUE, GREEN, ORANGE, PALE, PURPLE, SKY, VERMILION};
 

@@ -1,11 +1,11 @@
 //! The result as tables: what a terminal shows, and what the page quotes.
 
 use comfy_table::Table;
-use sdop::cost::measure::median;
-use sdop::scene::settings::Overlap;
-use sdop::tradeoff::shapes::ShapeSurvival;
-use sdop::tradeoff::timing::VolumeTerms;
-use sdop::tradeoff::{Estimate, Row, Tradeoff};
+use sdop::lab::measure::turns::median;
+use sdop::lab::tradeoff::shapes::ShapeSurvival;
+use sdop::lab::tradeoff::timing::VolumeTerms;
+use sdop::lab::tradeoff::{Estimate, Row, Tradeoff};
+use sdop::settings::Overlap;
 
 use crate::cli::output::{rows, table};
 
@@ -214,7 +214,7 @@ pub fn survivors<'a>(
     axes: &str,
     overlap: Overlap,
 ) -> Option<&'a Estimate> {
-    let fits = |s: &&sdop::tradeoff::shapes::Survival| {
+    let fits = |s: &&sdop::lab::tradeoff::shapes::Survival| {
         s.k == k && s.axes == axes && s.overlap == overlap.name()
     };
     shape.ordops.iter().find(fits).map(|s| &s.share)

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use sdop::simd::Level;
-use sdop::verify::Predicate;
-use sdop::verify::rounds::{Ledger, Row};
+use sdop::lab::verify::Predicate;
+use sdop::lab::verify::rounds::{Ledger, Row};
+use sdop::simd::Tier;
 use serde::Serialize;
 
 use crate::cli::output::table;
@@ -56,9 +56,9 @@ struct StrategyReport {
 }
 
 impl Report {
-    pub fn new(levels: &[Level]) -> Self {
+    pub fn new(tiers: &[Tier]) -> Self {
         Self {
-            simd: levels.iter().map(|level| level.name()).collect(),
+            simd: tiers.iter().map(|tier| tier.name()).collect(),
             seconds: 0.0,
             missed: 0,
             sources: Vec::new(),
@@ -142,10 +142,10 @@ impl Report {
     }
 }
 
-fn strategy((row, count): (&Row, &sdop::verify::Count)) -> StrategyReport {
+fn strategy((row, count): (&Row, &sdop::lab::verify::Count)) -> StrategyReport {
     let rate = |part: u64, of: u64| (of > 0).then(|| 1e6 * part as f64 / of as f64);
     // What a budget leaves untested is no rounding margin.
-    let budgeted = row.strategy == sdop::scene::settings::Strategy::SDopTimeCritical;
+    let budgeted = row.strategy == sdop::settings::Strategy::SDopTimeCritical;
     let overlap = row.overlap.map(|overlap| format!(" {overlap}"));
     StrategyReport {
         name: format!("{}{}", row.strategy, overlap.unwrap_or_default()),

@@ -4,8 +4,8 @@ use super::axes::{FRAMES, Frames};
 use super::slabs::Slabs;
 use super::table::SlabTables;
 use crate::pairs::PairList;
-use crate::scene::settings::Overlap;
-use crate::simd::{Kernel, Lanes, Level, MAX_WIDTH, ROW, dispatch, prefetch};
+use crate::settings::Overlap;
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, ROW, Tier, dispatch, prefetch};
 use crate::volume::DirectionSet;
 
 /// Pairs that go through the first bodies' normals before the rest: their survivors' frames fit the first-level cache.
@@ -36,10 +36,10 @@ pub struct Tested {
 }
 
 impl OrDopColumns<'_> {
-    /// Tests the listed pairs in the tier `level` and appends the ones that may overlap to `out`, in list order.
+    /// Tests the listed pairs in the tier `tier` and appends the ones that may overlap to `out`, in list order.
     pub fn test_pairs(
         &self,
-        level: Level,
+        tier: Tier,
         first: &[u32],
         second: &[u32],
         out: &mut PairList,
@@ -52,7 +52,7 @@ impl OrDopColumns<'_> {
                 self.0.test(l, self.1, self.2, self.3)
             }
         }
-        dispatch(level, Test(self, first, second, out))
+        dispatch(tier, Test(self, first, second, out))
     }
 
     #[inline(always)]

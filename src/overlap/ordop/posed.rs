@@ -2,11 +2,11 @@
 
 use super::kernel::OrDopColumns;
 use super::table::SlabTables;
-use crate::crew::Crew;
-use crate::places::Places;
-use crate::scene::bodies::Bodies;
-use crate::scene::settings::Overlap;
-use crate::simd::Level;
+use crate::bodies::Bodies;
+use crate::bodies::Places;
+use crate::settings::Overlap;
+use crate::simd::Tier;
+use crate::threads::Threads;
 use crate::update::{OrDopRows, Posed, ShapeFrame};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
@@ -23,7 +23,7 @@ impl PosedOrDops {
     pub fn new<'a>(
         shapes: impl Iterator<Item = (&'a Shape, &'a OrDop)> + Clone,
         bodies: &Bodies,
-        level: Level,
+        tier: Tier,
     ) -> Self {
         let directions = shapes.clone().next().map(|(_, ordop)| ordop.directions);
         let frames: Vec<_> = shapes
@@ -38,7 +38,7 @@ impl PosedOrDops {
             places: &places,
             balls: &[],
         };
-        rows.update(level, &Crew::default(), posed, 0..places.len(), 1);
+        rows.update(tier, &Threads::default(), posed, 0..places.len(), 1);
         Self {
             rows,
             tables: SlabTables::new(directions.unwrap_or(DirectionSet::K6), shapes),

@@ -6,10 +6,10 @@
 
 mod cubes;
 
+use sdop::bodies::Places;
 use sdop::broad_phase::{Grid, PairFinder, Reorder};
-use sdop::crew::Crew;
-use sdop::places::Places;
-use sdop::simd::{Level, dispatch};
+use sdop::simd::{Tier, dispatch};
+use sdop::threads::Threads;
 
 use self::cubes::{Find, Found, Gap, Test, cube_about};
 use crate::boxes::{Frame, Slabs};
@@ -24,8 +24,8 @@ const SHARES: usize = 4;
 
 /// Boxes in a grid.
 pub struct Boxes {
-    level: Level,
-    crew: Crew,
+    tier: Tier,
+    pool: Threads,
     finder: PairFinder,
     places: Places,
     /// The body in each place.
@@ -46,8 +46,8 @@ impl Boxes {
             threads => SHARES * threads,
         };
         let mut boxes = Self {
-            level: Level::detect(),
-            crew: Crew::new(setup.threads)?,
+            tier: Tier::detect(),
+            pool: Threads::new(setup.threads)?,
             finder: PairFinder::Grid(Grid::default()),
             names: places.body.clone(),
             order: Vec::new(),
@@ -64,7 +64,7 @@ impl Boxes {
         let names = &self.names;
         self.gap = Gap::default();
         let frame_gap = &self.gap;
-        self.crew.pieces(&mut self.cubes, CUBES, |start, piece| {
+        self.pool.pieces(&mut self.cubes, CUBES, |start, piece| {
             let mut most = 0.0;
             let mut near = [Slabs::default(); TOGETHER];
             for (cubes, names) in piece
@@ -92,12 +92,12 @@ impl Peer for Boxes {
             self.names.copy_from_slice(order);
         }
         self.update(&frame.boxes);
-        let (level, crew) = (self.level, &self.crew);
+        let (tier, pool) = (self.tier, &self.pool);
         self.finder
-            .arrange(level, crew, &self.places, &self.cubes, &self.names);
+            .arrange(tier, pool, &self.places, &self.cubes, &self.names);
         let (finder, parts, count) = (&self.finder, self.finder.parts(), self.shares.len());
         let gap = self.gap.twice();
-        crew.each(&mut self.shares, |index, found| {
+        pool.each(&mut self.shares, |index, found| {
             let test = Test::new(finder.slots(), &frame.boxes, gap, found);
             let parts = index * parts / count..(index + 1) * parts / count;
             let find = Find {
@@ -105,7 +105,7 @@ impl Peer for Boxes {
                 parts,
                 test,
             };
-            dispatch(level, find);
+            dispatch(tier, find);
         });
         let candidates = self.shares.iter().map(Found::candidates).sum();
         self.finder.observe(candidates);

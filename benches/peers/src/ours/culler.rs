@@ -1,8 +1,8 @@
 //! The culler as a user has it: poses in, pairs out, found on the grid.
 
-use sdop::pipeline::Culler;
-use sdop::scene::settings::{CullSettings, Finder, Strategy};
-use sdop::simd::Level;
+use sdop::culler::Culler;
+use sdop::settings::{CullSettings, Finder, Strategy};
+use sdop::simd::Tier;
 
 use crate::boxes::Frame;
 use crate::peer::{Peer, Setup};
@@ -19,7 +19,7 @@ impl Culled {
             ..CullSettings::default()
         };
         let bodies = &setup.first.bodies;
-        let culler = Culler::new(&setup.scene.shapes, bodies, &settings, Level::detect())?;
+        let culler = Culler::new(&setup.scene.shapes, bodies, &settings, Tier::detect())?;
         Ok(Self(culler.with_threads(setup.threads)?))
     }
 }

@@ -3,7 +3,7 @@
 mod boxes;
 mod culler;
 
-use sdop::scene::settings::Strategy;
+use sdop::settings::Strategy;
 
 use crate::peer::{Entry, OURS, Work};
 

@@ -4,8 +4,8 @@ use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
-use sdop::reproduce::paper_name;
-use sdop::reproduce::rates::{ELSEWHERE, Rate};
+use sdop::lab::reproduce::paper_name;
+use sdop::lab::reproduce::rates::{ELSEWHERE, Rate};
 
 use super::style::{anchored, colour, ends, label, quiet, text, titled};
 use super::{Area, Drawn};

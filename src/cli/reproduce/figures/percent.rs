@@ -3,8 +3,8 @@
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
-use sdop::reproduce::readings::{Cell, Reading};
-use sdop::scene::settings::Strategy;
+use sdop::lab::reproduce::readings::{Cell, Reading};
+use sdop::settings::Strategy;
 
 use super::style::{ends, quiet};
 use super::{Area, Drawn, Failure};

@@ -3,8 +3,8 @@
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
-use sdop::reproduce::paper_name;
-use sdop::reproduce::terms::Cost;
+use sdop::lab::reproduce::paper_name;
+use sdop::lab::reproduce::terms::Cost;
 
 use super::style::{anchored, colour, ends, label, legend, quiet, titled};
 use super::{Area, Drawn};

@@ -1,7 +1,7 @@
 //! The sphere percentage over N beside the closed form for its one box, and the paper's row.
 
 use plotters::prelude::*;
-use sdop::scene::settings::Strategy;
+use sdop::settings::Strategy;
 
 use super::percent::{cells, chart, marks, right};
 use super::style::{colour, legend, titled};

@@ -5,9 +5,9 @@ use plotters::coord::CoordTranslate;
 use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use sdop::cost::predict::{Terms, Volume};
-use sdop::reproduce::Estimate;
-use sdop::scene::settings::Strategy;
+use sdop::lab::cost::predict::{Terms, Volume};
+use sdop::lab::reproduce::Estimate;
+use sdop::settings::Strategy;
 
 use super::Area;
 use crate::cli::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};

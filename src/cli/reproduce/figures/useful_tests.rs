@@ -1,8 +1,8 @@
 //! The paper's Fig. 14, the percentages of Table 1, with the paper's own as hollow marks.
 
 use plotters::prelude::*;
-use sdop::reproduce::paper_name;
-use sdop::reproduce::readings::TABLE_1_STRATEGIES;
+use sdop::lab::reproduce::paper_name;
+use sdop::lab::reproduce::readings::TABLE_1_STRATEGIES;
 
 use super::percent::{cells, chart, marks, point};
 use super::style::{colour, legend, titled};

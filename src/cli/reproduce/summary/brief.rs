@@ -2,9 +2,9 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::reproduce::paper_name;
-use sdop::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
-use sdop::reproduce::terms::Cost;
+use sdop::lab::reproduce::paper_name;
+use sdop::lab::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
+use sdop::lab::reproduce::terms::Cost;
 
 use super::text::{interval, number};
 use crate::cli::output::table;

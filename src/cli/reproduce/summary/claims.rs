@@ -2,8 +2,8 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::reproduce::Estimate;
-use sdop::reproduce::check::{Check, Claim, Verdict};
+use sdop::lab::reproduce::Estimate;
+use sdop::lab::reproduce::check::{Check, Claim, Verdict};
 
 use super::text::{header, interval};
 

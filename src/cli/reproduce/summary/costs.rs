@@ -2,8 +2,8 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::reproduce::paper_name;
-use sdop::reproduce::terms::Cost;
+use sdop::lab::reproduce::paper_name;
+use sdop::lab::reproduce::terms::Cost;
 
 use super::text::{header, interval, number};
 use crate::cli::prices;

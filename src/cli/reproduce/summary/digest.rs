@@ -2,10 +2,10 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::reproduce::check::{Claim, Verdict};
-use sdop::reproduce::paper_name;
-use sdop::reproduce::rates::{ELSEWHERE, Rate};
-use sdop::reproduce::terms::Cost;
+use sdop::lab::reproduce::check::{Claim, Verdict};
+use sdop::lab::reproduce::paper_name;
+use sdop::lab::reproduce::rates::{ELSEWHERE, Rate};
+use sdop::lab::reproduce::terms::Cost;
 
 use super::table_1;
 use super::text::number;

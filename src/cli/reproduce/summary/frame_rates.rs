@@ -2,8 +2,8 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::reproduce::paper_name;
-use sdop::reproduce::rates::ELSEWHERE;
+use sdop::lab::reproduce::paper_name;
+use sdop::lab::reproduce::rates::ELSEWHERE;
 
 use super::text::{header, interval};
 use crate::cli::reproduce::rows::Tables;

@@ -2,9 +2,9 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
-use sdop::reproduce::{paper, paper_name};
-use sdop::scene::settings::Strategy;
+use sdop::lab::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
+use sdop::lab::reproduce::{paper, paper_name};
+use sdop::settings::Strategy;
 
 use super::text::{header, interval};
 use crate::cli::reproduce::rows::Tables;

@@ -2,7 +2,7 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::reproduce::Estimate;
+use sdop::lab::reproduce::Estimate;
 
 /// Mean ± half-width: two significant digits of the half-width, but no more than six of the mean.
 pub fn interval(estimate: &Estimate) -> String {

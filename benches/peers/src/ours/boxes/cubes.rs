@@ -234,7 +234,7 @@ impl FirstTest for Test<'_> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use sdop::simd::{Level, dispatch};
+    use sdop::simd::{Tier, dispatch};
 
     /// Boxes within a few units, whose sides may differ and be nothing; lengths that don't round and lengths that do.
     fn slabs() -> impl Strategy<Value = Slabs> {
@@ -277,7 +277,7 @@ mod tests {
     proptest! {
         #[test]
         fn cubes_answer_as_their_boxes_do(a in slabs(), b in slabs()) {
-            if let Some(answer) = dispatch(Level::detect(), Say(&a, &b)) {
+            if let Some(answer) = dispatch(Tier::detect(), Say(&a, &b)) {
                 prop_assert_eq!(answer, meet(&a, &b));
             }
         }
@@ -286,7 +286,7 @@ mod tests {
     #[test]
     fn cubes_of_balls_know_nearly_always() {
         let cube = |x: f32| [[x - 1.0, x + 1.0], [-1.0, 1.0], [300.0, 302.0]];
-        let knows = |x: f32| dispatch(Level::detect(), Say(&cube(0.1), &cube(x)));
+        let knows = |x: f32| dispatch(Tier::detect(), Say(&cube(0.1), &cube(x)));
         assert_eq!(knows(2.099), Some(true));
         assert_eq!(knows(2.101), Some(false));
     }

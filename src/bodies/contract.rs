@@ -1,0 +1,188 @@
+//! The contract between bodies and culling (design, section 4): within it, no strategy misses a pair.
+//!
+//! Checked where bodies enter and again after every effects step, so that a NaN is reported with its body's
+//! number at the step that made it, and not as a wrong pair list frames later.
+
+use std::ops::Range;
+
+use miette::Diagnostic;
+use thiserror::Error;
+
+use super::Bodies;
+use crate::rounding::LIMIT;
+use crate::simd::{MAX_WIDTH, MOST_QUADS};
+use crate::volume::Shape;
+
+/// A body outside of the contract.
+#[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
+#[error("body {body}: {quantity} {value}")]
+pub struct ContractError {
+    /// The body's index.
+    pub body: usize,
+    /// The quantity at fault: a column of [`Bodies`].
+    pub quantity: &'static str,
+    /// Its impossible value.
+    pub value: String,
+    /// How to mend it.
+    #[help]
+    pub hint: &'static str,
+}
+
+/// The most bodies that a culler can number: one a quad of its table of balls, and a vector of padding.
+pub const MOST_BODIES: usize = MOST_QUADS - MAX_WIDTH;
+
+/// How to mend a rotation.
+const INVERTIBLE: &str = "a quaternion (x, y, z, w) has a finite norm above zero";
+
+/// How to mend a vector.
+const WITHIN_LIMIT: &str = "coordinates are finite and at most 2^60 in size";
+
+/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, velocity and spin likewise within 2⁶⁰, a shape
+/// that exists and is no larger than 2⁶⁰, no more than [`MOST_BODIES`].
+///
+/// # Errors
+/// A body that breaks it, the first in the first column at fault; columns of unequal length.
+pub fn check_bodies(bodies: &Bodies, shapes: &[Shape]) -> Result<(), ContractError> {
+    check_columns(bodies)?;
+    let sound: Vec<bool> = shapes.iter().map(has_sound_size).collect();
+    for (body, &number) in bodies.shape.iter().enumerate() {
+        if sound.get(number as usize) != Some(&true) {
+            return check_shape(body, number, shapes);
+        }
+    }
+    check_poses(bodies, 0..bodies.len())?;
+    for (name, column) in [("velocity", &bodies.velocity), ("spin", &bodies.spin)] {
+        check_vectors(name, column, 0)?;
+    }
+    Ok(())
+}
+
+/// Checks that a body's shape exists and is no larger than 2⁶⁰.
+pub(crate) fn check_shape(body: usize, number: u32, shapes: &[Shape]) -> Result<(), ContractError> {
+    let Some(shape) = shapes.get(number as usize) else {
+        let value = format!("{number} of {}", shapes.len());
+        return refuse(body, "shape", value, "shapes are counted from 0");
+    };
+    if !has_sound_size(shape) {
+        let Shape {
+            name, reach, ball, ..
+        } = shape;
+        let value = format!("{name} with reach {reach} and {ball:?}");
+        return refuse(body, "shape", value, "sizes are finite and at most 2^60");
+    }
+    Ok(())
+}
+
+/// Checks one pose with a translation in f64.
+pub(crate) fn check_pose(body: usize, q: &[f32; 4], t: &[f64; 3]) -> Result<(), ContractError> {
+    if !is_invertible(q) {
+        return refuse(body, "rotation", format!("{q:?}"), INVERTIBLE);
+    }
+    if !t.iter().all(|x| x.abs() <= f64::from(LIMIT)) {
+        return refuse(body, "translation", format!("{t:?}"), WITHIN_LIMIT);
+    }
+    Ok(())
+}
+
+/// Checks the poses of the bodies `range`: what an effects step may have changed.
+pub(crate) fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), ContractError> {
+    let first = range.start;
+    check_vectors("translation", &bodies.translation[range.clone()], first)?;
+    let rotations = &bodies.rotation[range];
+    match rotations.iter().position(|q| !is_invertible(q)) {
+        None => Ok(()),
+        Some(at) => {
+            let value = format!("{:?}", rotations[at]);
+            refuse(first + at, "rotation", value, INVERTIBLE)
+        }
+    }
+}
+
+/// Checks that so many bodies can be numbered.
+pub(crate) fn check_number(bodies: usize) -> Result<(), ContractError> {
+    if bodies <= MOST_BODIES {
+        return Ok(());
+    }
+    let value = format!("{bodies} of {MOST_BODIES} at most");
+    let hint = "keep separate cullers for what can't meet";
+    refuse(MOST_BODIES, "number", value, hint)
+}
+
+fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
+    check_number(bodies.len())?;
+    let columns = [
+        ("dynamic", bodies.dynamic.len()),
+        ("rotation", bodies.rotation.len()),
+        ("translation", bodies.translation.len()),
+        ("velocity", bodies.velocity.len()),
+        ("spin", bodies.spin.len()),
+    ];
+    match columns
+        .into_iter()
+        .find(|&(_, length)| length != bodies.len())
+    {
+        None => Ok(()),
+        Some((name, length)) => {
+            let value = format!(
+                "is missing or too much: {length} entries for {} bodies",
+                bodies.len()
+            );
+            refuse(
+                length.min(bodies.len()),
+                name,
+                value,
+                "give every column one entry a body",
+            )
+        }
+    }
+}
+
+fn check_vectors(
+    name: &'static str,
+    column: &[[f32; 3]],
+    first: usize,
+) -> Result<(), ContractError> {
+    // One flag over the whole column, without an early exit: it vectorises, and a column that fails is the last one.
+    if column
+        .iter()
+        .fold(true, |fine, v| fine & is_within_limit(v))
+    {
+        return Ok(());
+    }
+    let at = column.iter().position(|v| !is_within_limit(v)).unwrap_or(0);
+    refuse(first + at, name, format!("{:?}", column[at]), WITHIN_LIMIT)
+}
+
+pub(crate) fn refuse(
+    body: usize,
+    quantity: &'static str,
+    value: String,
+    hint: &'static str,
+) -> Result<(), ContractError> {
+    Err(ContractError {
+        body,
+        quantity,
+        value,
+        hint,
+    })
+}
+
+// All limits are written as `x ≤ limit`, and what isn't so is refused: a NaN fails.
+
+fn has_sound_size(shape: &Shape) -> bool {
+    // The reach bounds the ball's centre and radius; a NaN in them it does not.
+    [shape.reach, shape.ball.radius, shape.ball.centre.length()]
+        .iter()
+        .all(|size| (0.0..=LIMIT).contains(size))
+}
+
+fn is_within_limit(v: &[f32; 3]) -> bool {
+    (v[0].abs() <= LIMIT) & (v[1].abs() <= LIMIT) & (v[2].abs() <= LIMIT)
+}
+
+fn is_invertible(q: &[f32; 4]) -> bool {
+    // In f64, where the square of no f32 underflows or overflows.
+    let [x, y, z, w] = q.map(f64::from);
+    let norm2 = x * x + y * y + z * z + w * w;
+    norm2 > 0.0 && norm2 < f64::INFINITY
+}

@@ -1,0 +1,96 @@
+//! The order in which bodies are stored inside a culler.
+//!
+//! A body has a place: all volumes stand in columns by place. Moving bodies come first, then static ones, so that
+//! updates and static pairs need no look at a flag; a pair finder sorts places by location now and then, so that
+//! neighbours in space are neighbours in memory, whatever the order of the user's columns.
+
+use crate::bodies::Bodies;
+
+/// Which body stands where. All columns have one length.
+#[derive(Clone, Debug, Default)]
+pub struct Places {
+    /// The body in each place.
+    pub body: Vec<u32>,
+    /// Its shape.
+    pub shape: Vec<u32>,
+    /// How many bodies move: theirs are the first places.
+    pub moving: usize,
+}
+
+impl Places {
+    /// Moving bodies, then static ones, each in the order of the user's columns.
+    #[must_use]
+    pub fn new(bodies: &Bodies) -> Self {
+        let everyone = 0..bodies.shape.len() as u32;
+        let (mut body, fixed): (Vec<u32>, Vec<u32>) =
+            everyone.partition(|&body| bodies.dynamic[body as usize]);
+        let moving = body.len();
+        body.extend(fixed);
+        let shape = body.iter().map(|&b| bodies.shape[b as usize]).collect();
+        Self {
+            body,
+            shape,
+            moving,
+        }
+    }
+
+    /// The order of the user's columns, every body taken as moving: what times a stage apart from a culler.
+    #[must_use]
+    pub fn as_given(bodies: &Bodies) -> Self {
+        let n = bodies.shape.len();
+        Self {
+            body: (0..n as u32).collect(),
+            shape: bodies.shape.clone(),
+            moving: n,
+        }
+    }
+
+    /// Number of bodies.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.body.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.body.is_empty()
+    }
+
+    /// Takes up the bodies that are `present`. Those that were there keep their order; the others follow.
+    pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
+        let mut is_new = present.to_vec();
+        let mut order = Vec::with_capacity(present.len());
+        for &body in self.body.iter().filter(|&&body| present[body as usize]) {
+            is_new[body as usize] = false;
+            order.push(body);
+        }
+        order.extend((0..present.len() as u32).filter(|&body| is_new[body as usize]));
+        let (moving, fixed): (Vec<u32>, Vec<u32>) = order
+            .into_iter()
+            .partition(|&body| bodies.dynamic[body as usize]);
+        self.moving = moving.len();
+        self.body = [moving, fixed].concat();
+        self.shape.resize(self.body.len(), 0);
+        self.wear(bodies);
+    }
+
+    /// Takes up the bodies' shapes.
+    pub(crate) fn wear(&mut self, bodies: &Bodies) {
+        for (shape, &body) in self.shape.iter_mut().zip(&self.body) {
+            *shape = bodies.shape[body as usize];
+        }
+    }
+
+    /// Puts the bodies in another order: `order` names the body that takes each place, by its present place or by itself,
+    /// and is left with the former order.
+    pub(crate) fn reorder(&mut self, bodies: &Bodies, order: &mut Vec<u32>, by_place: bool) {
+        if by_place {
+            for place in order.iter_mut() {
+                *place = self.body[*place as usize];
+            }
+        }
+        std::mem::swap(&mut self.body, order);
+        self.wear(bodies);
+    }
+}

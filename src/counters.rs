@@ -1,0 +1,87 @@
+//! What is counted and timed of culling: the Nu and Nv of the paper's formula, and seconds by stage.
+//!
+//! A test counts when a candidate pair is handed to it, so counts are equal on every CPU, tier and thread count.
+
+/// Work done on one volume. Sums over frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "lab", derive(serde::Serialize))]
+pub struct VolumeCounters {
+    /// Nu: volumes updated.
+    pub updates: u64,
+    /// Nv: pairs tested.
+    pub tests: u64,
+    /// Pairs that the test let through.
+    pub hits: u64,
+}
+
+/// All counters of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Bounding spheres.
+    pub sphere: VolumeCounters,
+    /// or-DOPs.
+    pub ordop: VolumeCounters,
+    /// World-aligned boxes.
+    pub aabb: VolumeCounters,
+    /// World-aligned k-DOPs.
+    pub kdop: VolumeCounters,
+    /// Oriented boxes.
+    pub obb: VolumeCounters,
+    /// Pairs reported untested because the budget had ended.
+    pub untested: u64,
+    /// Pairs reported.
+    pub reported: u64,
+}
+
+/// Wall time by stage, in seconds. Sums over frames, except for `construct`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "lab", derive(serde::Serialize))]
+pub struct Seconds {
+    /// Co: building every volume, once.
+    pub construct: f64,
+    /// The scene's effects; not part of culling.
+    pub effects: f64,
+    /// World-space updates.
+    pub update: f64,
+    /// Finding candidates and the first volume test.
+    pub pair_finding: f64,
+    /// or-DOP tests (with `s-dop-sequential`, measured a block of pairs at a time).
+    pub ordop: f64,
+    /// Culling: update, pair finding and or-DOP tests. Without construction and effects.
+    pub total: f64,
+}
+
+impl Seconds {
+    /// What was added since `before`.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Self {
+        Self {
+            construct: self.construct - before.construct,
+            effects: self.effects - before.effects,
+            update: self.update - before.update,
+            pair_finding: self.pair_finding - before.pair_finding,
+            ordop: self.ordop - before.ordop,
+            total: self.total - before.total,
+        }
+    }
+}
+
+/// Unordered pairs of `bodies` bodies that are not both static: all-pairs' Nv a frame.
+#[must_use]
+pub const fn pair_count(bodies: u64, statics: u64) -> u64 {
+    (bodies * bodies.saturating_sub(1) - statics * statics.saturating_sub(1)) / 2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_of_two_statics_do_not_count() {
+        assert_eq!(pair_count(0, 0), 0);
+        assert_eq!(pair_count(5, 0), 10);
+        assert_eq!(pair_count(5, 2), 9);
+        assert_eq!(pair_count(5, 5), 0);
+        assert_eq!(pair_count(1_000_000, 1), 499_999_500_000);
+    }
+}

@@ -1,0 +1,5 @@
+//! Measuring: contestants in turns, the machine they ran on, and estimates with their uncertainty.
+
+pub mod estimate;
+pub mod machine;
+pub mod turns;

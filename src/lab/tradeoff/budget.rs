@@ -1,0 +1,222 @@
+//! Time-critical culling: precision against the budget, for each order of refinement.
+//!
+//! A budget of tests gives reproducible counts; one of microseconds shows by how much the clock is overrun. A pair that
+//! spheres report and the budget doesn't reach is starved: its age counts the frames since it was last refined, or
+//! since its spheres first met.
+
+use std::collections::HashMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::TradeoffError;
+use super::counts::{share, shared};
+use super::truth::{Judge, Sample};
+use crate::culler::Culler;
+use crate::lab::scene::Scene;
+use crate::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
+use crate::simd::Tier;
+
+/// Budgets as shares of what refining everything takes.
+const SHARES: [f64; 7] = [0.0, 0.125, 0.25, 0.5, 0.75, 1.0, 1.25];
+
+/// One order under one budget of tests.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BudgetRow {
+    /// Order of refinement.
+    pub order: String,
+    /// Tests a frame.
+    pub tests: u64,
+    /// Refined pairs / pairs whose spheres overlap.
+    pub refined: f64,
+    /// True pairs / reported pairs, on the frames with a truth.
+    pub precision: f64,
+    /// True pairs found / true pairs.
+    pub recall: f64,
+    /// Mean age, in frames, of the pairs that are not refined in a frame.
+    pub mean_age: f64,
+    /// The oldest.
+    pub oldest: u32,
+}
+
+/// How far a budget by the clock is overrun.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ClockRow {
+    /// The budget, microseconds a frame, from the start of the strategy.
+    pub microseconds: u64,
+    /// Refined pairs / pairs whose spheres overlap.
+    pub refined: f64,
+    /// Median of the time past the budget, microseconds; negative when it is not used up.
+    pub p50: f64,
+    /// 99th percentile of it.
+    pub p99: f64,
+}
+
+/// Poses of consecutive frames, some with the truth.
+#[derive(Clone, Copy, Debug)]
+pub struct Window<'a> {
+    /// Consecutive frames.
+    pub frames: &'a [Sample],
+    /// Every so many frames are judged.
+    pub stride: usize,
+}
+
+/// Every order under every budget. `tests` is the mean number of sphere hits a frame.
+///
+/// # Errors
+/// What culling or judging may meet.
+pub fn by_tests(
+    scene: &Scene,
+    tier: Tier,
+    window: Window<'_>,
+    judge: &Judge,
+    cache: Option<&std::path::Path>,
+    tests: f64,
+) -> Result<Vec<BudgetRow>, TradeoffError> {
+    let judged: Vec<Sample> = window
+        .frames
+        .iter()
+        .step_by(window.stride)
+        .cloned()
+        .collect();
+    let truth = judge.truth(&judged, cache)?;
+    let mut rows = Vec::new();
+    for &order in Order::ALL {
+        for share in SHARES {
+            let budget = (share * tests).round() as u64;
+            let settings = settings(scene, Budget::Tests(budget), order);
+            rows.push(row(scene, &settings, tier, window, &truth)?);
+        }
+    }
+    Ok(rows)
+}
+
+fn settings(scene: &Scene, budget: Budget, order: Order) -> CullSettings {
+    let own = &scene.cull;
+    CullSettings {
+        strategy: Strategy::SDopTimeCritical,
+        updates: Updates::Eager,
+        budget: Some(budget),
+        interest: Some(own.interest.clone().unwrap_or(Interest::Bodies(vec![0]))),
+        order,
+        ..own.clone()
+    }
+}
+
+fn row(
+    scene: &Scene,
+    settings: &CullSettings,
+    tier: Tier,
+    window: Window<'_>,
+    truth: &[Vec<[u32; 2]>],
+) -> Result<BudgetRow, TradeoffError> {
+    let mut culler = Culler::new(&scene.shapes, &scene.bodies, settings, tier)?;
+    let mut starved = Starvation::default();
+    let (mut reported, mut found, mut true_pairs) = (0, 0, 0);
+    let mut truth = truth.iter();
+    for (number, sample) in window.frames.iter().enumerate() {
+        let before = culler.counters().untested;
+        let pairs = culler.cull(&sample.bodies);
+        if number % window.stride == 0
+            && let Some(truth) = truth.next()
+        {
+            let pairs = pairs.sorted();
+            reported += pairs.len() as u64;
+            found += shared(&pairs, truth);
+            true_pairs += truth.len() as u64;
+        }
+        let untested = (culler.counters().untested - before) as usize;
+        starved.frame(sample.frame, culler.potentially_colliding(), untested);
+    }
+    let counters = culler.counters();
+    Ok(BudgetRow {
+        order: settings.order.to_string(),
+        tests: match settings.budget {
+            Some(Budget::Tests(tests)) => tests,
+            _ => 0,
+        },
+        refined: share(counters.ordop.tests, counters.sphere.hits),
+        precision: share(found, reported),
+        recall: share(found, true_pairs),
+        mean_age: starved.sum as f64 / starved.count.max(1) as f64,
+        oldest: starved.oldest,
+    })
+}
+
+/// Ages of unrefined pairs.
+#[derive(Default)]
+struct Starvation {
+    /// For each pair of the last frame: when it was last refined, or first listed.
+    since: HashMap<[u32; 2], u32>,
+    sum: u64,
+    count: u64,
+    oldest: u32,
+}
+
+impl Starvation {
+    /// Takes one frame's pairs in the order of refinement; the last `untested` were not refined.
+    fn frame(
+        &mut self,
+        frame: u32,
+        pairs: impl ExactSizeIterator<Item = [u32; 2]>,
+        untested: usize,
+    ) {
+        let refined = pairs.len() - untested;
+        let before = std::mem::take(&mut self.since);
+        for (place, pair) in pairs.enumerate() {
+            let since = if place < refined {
+                frame
+            } else {
+                before.get(&pair).copied().unwrap_or(frame)
+            };
+            if place >= refined {
+                // A pair first listed now has waited for this frame.
+                let age = frame - since + 1;
+                self.sum += u64::from(age);
+                self.count += 1;
+                self.oldest = self.oldest.max(age);
+            }
+            self.since.insert(pair, since);
+        }
+    }
+}
+
+/// Clock budgets: shares of the median seconds that culling without a budget takes after its updates.
+///
+/// # Errors
+/// Settings that can't be carried out.
+pub fn by_clock(
+    scene: &Scene,
+    tier: Tier,
+    window: Window<'_>,
+) -> Result<Vec<ClockRow>, TradeoffError> {
+    let run = |budget| -> Result<(Vec<f64>, f64), TradeoffError> {
+        let settings = settings(scene, budget, Order::AsFound);
+        let mut culler = Culler::new(&scene.shapes, &scene.bodies, &settings, tier)?;
+        let mut times = Vec::new();
+        for sample in window.frames {
+            let before = *culler.seconds();
+            culler.cull(&sample.bodies);
+            let spent = culler.seconds().since(&before);
+            times.push(1e6 * (spent.total - spent.update));
+        }
+        times.sort_by(f64::total_cmp);
+        let counters = culler.counters();
+        let refined = counters.ordop.tests as f64 / counters.sphere.hits.max(1) as f64;
+        Ok((times, refined))
+    };
+    let (unlimited, _) = run(Budget::Tests(u64::MAX))?;
+    let whole = unlimited[unlimited.len() / 2];
+    let mut rows = Vec::new();
+    for share in SHARES {
+        let microseconds = (share * whole).round() as u64;
+        let (times, refined) = run(Budget::Microseconds(microseconds))?;
+        let at = |quantile: f64| times[((times.len() - 1) as f64 * quantile).round() as usize];
+        rows.push(ClockRow {
+            microseconds,
+            refined,
+            p50: at(0.5) - microseconds as f64,
+            p99: at(0.99) - microseconds as f64,
+        });
+    }
+    Ok(rows)
+}

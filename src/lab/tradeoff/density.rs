@@ -1,0 +1,132 @@
+//! The same scene in other boxes: how the break-even of S-DOP moves with density.
+//!
+//! Crowding raises Np in proportion while finding pairs stays what it is, so an or-DOP test pays the sooner the denser a
+//! scene. Only counts of reported pairs and times are needed here, no truth.
+
+use serde::{Deserialize, Serialize};
+
+use super::TradeoffError;
+use super::counts::Tally;
+use super::pays::{Line, Stretch, break_even, envelope};
+use super::timing::measure;
+use super::truth::samples;
+use super::variant::{Variant, s_dops};
+use crate::lab::number::Positive;
+use crate::lab::scene::SceneFile;
+use crate::settings::{CullSettings, Overlap, Strategy};
+use crate::simd::Tier;
+
+/// Densities as multiples of the scene's.
+const FACTORS: [f32; 7] = [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
+
+/// Break-evens at one density.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Density {
+    /// Multiple of the scene's own density.
+    pub factor: f32,
+    /// Mean sphere overlaps a body.
+    pub partners: f64,
+    /// T and Np of every variant that takes part.
+    pub lines: Vec<Line>,
+    /// The cheapest variant as Cp grows.
+    pub cheapest: Vec<Stretch>,
+    /// For each S-DOP that takes part: the Cp, in seconds, above which it is cheaper than spheres alone.
+    pub break_even: Vec<BreakEven>,
+}
+
+/// Where an S-DOP begins to pay.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BreakEven {
+    /// The variant.
+    pub name: String,
+    /// Seconds a pair.
+    pub cp: f64,
+}
+
+/// Runs the scene at every density that its box has room for; none when it has no box.
+///
+/// # Errors
+/// What running a scene may meet.
+pub fn sweep(
+    file: &SceneFile,
+    tier: Tier,
+    count: u32,
+    mut done: impl FnMut(),
+) -> Result<Vec<Density>, TradeoffError> {
+    let mut densities = Vec::new();
+    for factor in FACTORS {
+        // Spheres larger than the box: there is no such density.
+        let Some(Ok(scene)) = crowded(file, factor).map(|file| file.build()) else {
+            done();
+            continue;
+        };
+        let samples = samples(&scene, count)?;
+        let variants = variants(&scene.cull);
+        let truth = vec![Vec::new(); samples.len()];
+        let times = measure(&scene, &variants, tier, &samples, 3, || ())?;
+        let mut lines = Vec::new();
+        for (variant, time) in variants.iter().zip(times) {
+            let tally = Tally::of(&scene, variant, tier, &samples, &truth)?;
+            lines.push(Line {
+                name: variant.name.clone(),
+                time,
+                pairs: tally.reported as f64 / f64::from(tally.frames),
+            });
+        }
+        densities.push(density(factor, scene.bodies.len(), lines));
+        done();
+    }
+    Ok(densities)
+}
+
+/// How many steps [`sweep`] reports.
+#[must_use]
+pub fn steps() -> u64 {
+    FACTORS.len() as u64
+}
+
+fn density(factor: f32, bodies: usize, lines: Vec<Line>) -> Density {
+    let spheres = &lines[0];
+    Density {
+        factor,
+        partners: 2.0 * spheres.pairs / bodies as f64,
+        cheapest: envelope(&lines),
+        break_even: lines
+            .iter()
+            .filter(|line| line.pairs < spheres.pairs && line.name.starts_with("s-dop"))
+            .map(|line| BreakEven {
+                name: line.name.clone(),
+                cp: break_even(spheres, line),
+            })
+            .collect(),
+        lines,
+    }
+}
+
+/// The scene at another density: the volume of its box, or its partners, scaled.
+fn crowded(file: &SceneFile, factor: f32) -> Option<SceneFile> {
+    let mut file = file.clone();
+    let bounds = file.spec.bounds.as_mut()?.get_mut();
+    if let Some(side) = &mut bounds.side {
+        side.get_mut().0 /= libm::cbrtf(factor);
+    }
+    if let Some(Positive(partners)) = bounds.partners.as_mut().map(toml::Spanned::get_mut) {
+        *partners *= factor;
+    }
+    Some(file)
+}
+
+/// Spheres first, boxes, S-DOP at each k with the scene's axes, and hulls.
+fn variants(own: &CullSettings) -> Vec<Variant> {
+    let boxes = CullSettings {
+        strategy: Strategy::Aabb,
+        ..own.clone()
+    };
+    let mut list = vec![Variant::spheres(own), Variant::of("aabb".into(), boxes)];
+    list.extend(s_dops(own).into_iter().filter(|variant| {
+        let CullSettings { axes, overlap, .. } = variant.settings;
+        axes == own.axes && overlap != Overlap::Full
+    }));
+    list.push(Variant::hulls(own));
+    list
+}

@@ -1,0 +1,71 @@
+//! What accuracy costs in time: every volume and strategy on one scene, judged by the exact truth.
+//!
+//! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`] (when does it pay?)
+//!
+//! Counts come first and reproduce to the bit; time is measured afterwards and never decides a count. Every variant must
+//! report every true pair: a recall below 1 is a failed check.
+
+pub mod budget;
+pub mod counts;
+pub mod density;
+pub mod gjk;
+pub mod interest;
+pub mod pays;
+pub mod safety;
+pub mod shapes;
+mod study;
+pub mod timing;
+pub mod truth;
+pub mod variant;
+
+mod contender;
+
+pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate};
+pub use contender::{Contender, HullTest};
+pub use study::{Plan, Row, Tradeoff, steps, study};
+
+use std::path::PathBuf;
+
+use miette::Diagnostic;
+use thiserror::Error;
+
+use crate::lab::scene::SceneError;
+use crate::lab::simulate::SimulationError;
+use crate::settings::SettingsError;
+
+/// Why there is no answer.
+#[derive(Debug, Error, Diagnostic)]
+pub enum TradeoffError {
+    /// The scene can't be built.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneError),
+    /// The scene can't be run on.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Simulation(#[from] SimulationError),
+    /// Culling settings that can't be carried out.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Settings(#[from] SettingsError),
+    /// A number that the exact reference refuses to judge.
+    #[error("the exact reference refuses the scene: {0}")]
+    Refused(#[from] sdop_reference::InvalidInput),
+    /// A shape can't be made.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Form(#[from] crate::mesh::shapes::ShapeError),
+    /// A shape can't be bounded.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Volume(#[from] crate::volume::VolumeError),
+    /// The truth can't be kept.
+    #[error("cannot write {}", file.display())]
+    #[diagnostic(help("choose a writable directory with --cache"))]
+    Cache {
+        /// The file.
+        file: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}

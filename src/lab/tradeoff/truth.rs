@@ -1,0 +1,276 @@
+//! The truth: which pairs' meshes meet, decided by the exact reference on sample frames of a run.
+//!
+//! A precision needs a denominator that no culler had a hand in. Candidates are therefore all pairs whose bodies' reaches
+//! overlap, found here in f64 from the poses alone, and [`sdop_reference::exact::meeting`] decides each. That takes a
+//! thousand times as long as culling, so answers are kept in a file named by the hash of everything that they depend on.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use rayon::prelude::*;
+use sdop_reference::exact::{meeting, mesh::Mesh};
+use sdop_reference::{InvalidInput, Pose};
+use sha2::{Digest, Sha256};
+
+use super::TradeoffError;
+use crate::bodies::Bodies;
+use crate::lab::hash::{PairsHash, hex};
+use crate::lab::scene::Scene;
+use crate::lab::simulate::SimulationError;
+use crate::volume::Shape;
+
+/// First word of a cache file; the number changes with its layout.
+const HEADER: &str = "sdop-truth-1";
+
+/// One frame that was kept.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// Its number in the run.
+    pub frame: u32,
+    /// Its poses.
+    pub bodies: Bodies,
+}
+
+/// The pairs i < j, sorted, whose meshes meet, sample by sample.
+pub type Truth = Vec<Vec<[u32; 2]>>;
+
+/// Simulates the scene and keeps `count` frames (all, if it has fewer) at equal distances.
+///
+/// # Errors
+/// Effects that the scene can't have, a body that leaves the contract.
+pub fn samples(scene: &Scene, count: u32) -> Result<Vec<Sample>, SimulationError> {
+    let count = count.clamp(1, scene.frames);
+    let wanted = |i: u32| (u64::from(i) * u64::from(scene.frames) / u64::from(count)) as u32;
+    let mut effects = scene.start_effects()?;
+    let mut bodies = scene.bodies.clone();
+    let mut kept: Vec<Sample> = Vec::new();
+    for frame in 0..=wanted(count - 1) {
+        if frame > 0 {
+            let step = effects.step(&mut bodies);
+            step.map_err(|error| SimulationError::Contract { frame, error })?;
+        }
+        if frame == wanted(kept.len() as u32) {
+            kept.push(Sample {
+                frame,
+                bodies: bodies.clone(),
+            });
+        }
+    }
+    Ok(kept)
+}
+
+/// A scene's meshes, prepared for exact judgement.
+#[derive(Debug)]
+pub struct Judge {
+    meshes: Vec<Mesh>,
+    reaches: Vec<f64>,
+    key: Sha256,
+}
+
+impl Judge {
+    /// Prepares the shapes' meshes.
+    ///
+    /// # Errors
+    /// A mesh that the reference refuses; none that [`Shape::build`] made is.
+    pub fn new(shapes: &[Shape]) -> Result<Self, InvalidInput> {
+        let mut key = Sha256::new_with_prefix(HEADER);
+        let mut meshes = Vec::new();
+        for shape in shapes {
+            let vertices: Vec<_> = shape.vertices.iter().map(|v| v.to_array()).collect();
+            key.update((vertices.len() as u64).to_le_bytes());
+            key.update((shape.triangles.len() as u64).to_le_bytes());
+            vertices
+                .iter()
+                .flatten()
+                .for_each(|x| key.update(x.to_le_bytes()));
+            let corners = shape.triangles.iter().flatten();
+            corners.for_each(|i| key.update(i.to_le_bytes()));
+            meshes.push(Mesh::new(&vertices, &shape.triangles)?);
+        }
+        let reaches = shapes.iter().map(|shape| f64::from(shape.reach)).collect();
+        Ok(Self {
+            meshes,
+            reaches,
+            key,
+        })
+    }
+
+    /// The meetings of every sample, from the file in `cache` when an earlier call left one there.
+    ///
+    /// # Errors
+    /// A pose that the reference refuses; a cache that can't be written.
+    pub fn truth(&self, samples: &[Sample], cache: Option<&Path>) -> Result<Truth, TradeoffError> {
+        let file = cache.map(|directory| directory.join(self.file_name(samples)));
+        if let Some(truth) = file.as_deref().and_then(|file| read(file, samples)) {
+            return Ok(truth);
+        }
+        let truth = samples
+            .par_iter()
+            .map(|sample| self.meetings(&sample.bodies))
+            .collect::<Result<Truth, _>>()?;
+        if let Some(file) = file {
+            write(&file, samples, &truth)
+                .map_err(|source| TradeoffError::Cache { file, source })?;
+        }
+        Ok(truth)
+    }
+
+    /// The pairs, not both static, whose meshes meet.
+    ///
+    /// # Errors
+    /// A pose that the reference refuses.
+    pub fn meetings(&self, bodies: &Bodies) -> Result<Vec<[u32; 2]>, InvalidInput> {
+        let poses = poses(bodies)?;
+        let mut pairs = Vec::new();
+        for i in 0..bodies.len() {
+            for j in i + 1..bodies.len() {
+                let moving = bodies.dynamic[i] || bodies.dynamic[j];
+                if moving && self.near(bodies, i, j) && self.meet(bodies, &poses, i, j) {
+                    pairs.push([i as u32, j as u32]);
+                }
+            }
+        }
+        Ok(pairs)
+    }
+
+    /// How many of the listed pairs' meshes meet.
+    ///
+    /// # Errors
+    /// A pose that the reference refuses.
+    pub fn count(
+        &self,
+        bodies: &Bodies,
+        pairs: impl Iterator<Item = [u32; 2]>,
+    ) -> Result<usize, InvalidInput> {
+        let poses = poses(bodies)?;
+        let meet = |&[i, j]: &[u32; 2]| self.meet(bodies, &poses, i as usize, j as usize);
+        Ok(pairs.filter(meet).count())
+    }
+
+    /// Mean seconds of an exact narrow phase, for pairs that meet and for pairs that don't: Cp. At most `most` pairs are
+    /// timed, one after the other.
+    ///
+    /// # Errors
+    /// A pose that the reference refuses.
+    pub fn price(
+        &self,
+        bodies: &Bodies,
+        pairs: impl Iterator<Item = [u32; 2]>,
+        most: usize,
+    ) -> Result<NarrowPhase, InvalidInput> {
+        let poses = poses(bodies)?;
+        let mut sums = [(0.0, 0_u32); 2];
+        for [i, j] in pairs.take(most) {
+            let start = Instant::now();
+            let meets = self.meet(bodies, &poses, i as usize, j as usize);
+            let (seconds, count) = &mut sums[usize::from(meets)];
+            *seconds += start.elapsed().as_secs_f64();
+            *count += 1;
+        }
+        let [miss, hit] = sums.map(|(seconds, count)| seconds / f64::from(count.max(1)));
+        Ok(NarrowPhase { miss, hit })
+    }
+
+    fn meet(&self, bodies: &Bodies, poses: &[Pose], i: usize, j: usize) -> bool {
+        let posed = |body: usize| (&self.meshes[bodies.shape[body] as usize], &poses[body]);
+        meeting::meet(posed(i), posed(j)).meets
+    }
+
+    /// Both meshes lie within their reaches of the body origins; the slack is far above f64's rounding.
+    fn near(&self, bodies: &Bodies, i: usize, j: usize) -> bool {
+        let [a, b] = [i, j].map(|body| bodies.translation[body].map(f64::from));
+        let squared: f64 = a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum();
+        let reach: f64 = [i, j]
+            .iter()
+            .map(|&body| self.reaches[bodies.shape[body] as usize])
+            .sum();
+        squared <= (1.000_001 * reach).powi(2)
+    }
+
+    fn file_name(&self, samples: &[Sample]) -> PathBuf {
+        let mut key = self.key.clone();
+        for sample in samples {
+            let Bodies {
+                shape,
+                dynamic,
+                rotation,
+                translation,
+                ..
+            } = &sample.bodies;
+            key.update(sample.frame.to_le_bytes());
+            for body in 0..shape.len() {
+                key.update(shape[body].to_le_bytes());
+                key.update([u8::from(dynamic[body])]);
+                rotation[body]
+                    .iter()
+                    .chain(&translation[body])
+                    .for_each(|x| key.update(x.to_le_bytes()));
+            }
+        }
+        format!("{}.pairs", hex(&key.finalize())).into()
+    }
+}
+
+/// Cp: seconds that the exact narrow phase takes for a pair.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct NarrowPhase {
+    /// A pair that doesn't meet: what culling saves.
+    pub miss: f64,
+    /// A pair that meets.
+    pub hit: f64,
+}
+
+fn poses(bodies: &Bodies) -> Result<Vec<Pose>, InvalidInput> {
+    let pose = |(q, t): (&[f32; 4], &[f32; 3])| Pose::new(*q, *t);
+    bodies
+        .rotation
+        .iter()
+        .zip(&bodies.translation)
+        .map(pose)
+        .collect()
+}
+
+/// Header, a line of numbers a sample, the hash of all pairs. Anything else in the file counts as no file.
+fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
+    let text = fs::read_to_string(file).ok()?;
+    let mut lines = text.lines();
+    if lines.next()? != HEADER {
+        return None;
+    }
+    let mut truth = Truth::new();
+    for _ in samples {
+        let numbers: Vec<u32> = lines
+            .next()?
+            .split_whitespace()
+            .map(|number| number.parse().ok())
+            .collect::<Option<_>>()?;
+        truth.push(numbers.as_chunks().0.to_vec());
+    }
+    (lines.next()? == hash(samples, &truth)).then_some(truth)
+}
+
+/// Written beside its place and moved there, so that nobody reads half a file.
+fn write(file: &Path, samples: &[Sample], truth: &Truth) -> io::Result<()> {
+    let mut text = format!("{HEADER}\n");
+    for pairs in truth {
+        let numbers: Vec<String> = pairs.iter().flatten().map(u32::to_string).collect();
+        text += &format!("{}\n", numbers.join(" "));
+    }
+    text += &hash(samples, truth);
+    if let Some(directory) = file.parent() {
+        fs::create_dir_all(directory)?;
+    }
+    let unfinished = file.with_extension(format!("{}.part", std::process::id()));
+    fs::write(&unfinished, text)?;
+    fs::rename(&unfinished, file)
+}
+
+fn hash(samples: &[Sample], truth: &Truth) -> String {
+    let mut hash = PairsHash::default();
+    for (sample, pairs) in samples.iter().zip(truth) {
+        hash.frame(sample.frame, pairs);
+    }
+    hash.finish()
+}

@@ -1,0 +1,24 @@
+//! The optimised culler against the exact reference: `optimised ⊇ reference predicate ⊇ exact mesh intersection`.
+//!
+//! [`answers`] are the reference's, pair by pair; [`compare()`] holds a culler's list against them. What is judged comes
+//! from seeds ([`draw`]: random crowds, and contacts put together on purpose), from the corpus of [`hard`] cases, and
+//! from scenes. When a pair is missed, [`shrink`] makes the smallest scene that shows it.
+
+pub mod answers;
+#[cfg(feature = "proptest")]
+pub mod arbitrary;
+pub mod compare;
+pub mod contact;
+pub mod draw;
+pub mod forms;
+pub mod hard;
+pub mod judged;
+pub mod naive;
+pub mod rounds;
+pub mod scenes;
+pub mod shrink;
+
+pub use answers::{Answers, Predicate};
+pub use compare::{Count, compare};
+pub use contact::Contact;
+pub use judged::Shapes;

@@ -1,0 +1,14 @@
+//! Mesh files: a reader and a writer per format. Feature `readers`.
+
+mod obj;
+mod ply;
+mod read;
+mod stl;
+mod text;
+mod tri;
+mod weld;
+mod write;
+
+pub use read::{MeshFormat, ReadOptions, read, read_bytes};
+pub use tri::TriFormat;
+pub use write::{write, write_bytes};

@@ -1,0 +1,93 @@
+//! Reading a mesh: the extension names the format, the format's reader makes the parts, validation makes the mesh.
+
+use std::path::Path;
+
+use super::{TriFormat, obj, ply, stl, tri};
+use crate::mesh::{MeshError, Problem, TriangleMesh};
+
+/// A file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshFormat {
+    /// `.tri` in one of its dialects.
+    Tri,
+    /// Wavefront OBJ.
+    Obj,
+    /// STL, text or binary.
+    Stl,
+    /// PLY, text or binary.
+    Ply,
+}
+
+/// What a file cannot say about itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ReadOptions {
+    /// The dialect of a `.tri` file; without it, the one that fits.
+    pub tri_format: Option<TriFormat>,
+}
+
+impl MeshFormat {
+    /// The format that the extension names, in either case.
+    pub fn from_path(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "tri" => Some(Self::Tri),
+            "obj" => Some(Self::Obj),
+            "stl" => Some(Self::Stl),
+            "ply" => Some(Self::Ply),
+            _ => None,
+        }
+    }
+
+    /// The same, or the problem that the extension is; `action` is what was to be done, "read" or "written".
+    pub(super) fn of_path(path: &Path, action: &'static str) -> Result<Self, Problem> {
+        Self::from_path(path).ok_or_else(|| Problem::UnknownFormat {
+            found: path
+                .extension()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
+            action,
+        })
+    }
+}
+
+/// Reads a mesh file; the mesh is named after the file's stem.
+///
+/// # Errors
+/// An extension that names no format, a file that cannot be read, or any problem that [`read_bytes`] finds.
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TriangleMesh, MeshError> {
+    let path = path.as_ref();
+    let file = path.display().to_string();
+    let format = MeshFormat::of_path(path, "read").map_err(|problem| problem.at(&file, None))?;
+    let bytes = std::fs::read(path).map_err(|source| {
+        Problem::Io {
+            action: "read",
+            source,
+        }
+        .at(&file, None)
+    })?;
+    read_bytes(&file, format, &bytes, options)
+}
+
+/// Reads a mesh from a file's contents; `file` is what messages call it, its stem the mesh's name.
+///
+/// # Errors
+/// Anything that breaks the format or the mesh contract, with the line in a text file. Never panics, whatever the bytes.
+pub fn read_bytes(
+    file: &str,
+    format: MeshFormat,
+    bytes: &[u8],
+    options: &ReadOptions,
+) -> Result<TriangleMesh, MeshError> {
+    let parts = match format {
+        MeshFormat::Tri => tri::read(bytes, options.tri_format),
+        MeshFormat::Obj => obj::read(bytes),
+        MeshFormat::Stl => stl::read(bytes),
+        MeshFormat::Ply => ply::read(bytes),
+    };
+    let (vertices, triangles) = parts.map_err(|(line, problem)| problem.at(file, line))?;
+    let stem = Path::new(file)
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy();
+    TriangleMesh::new(stem, vertices, triangles).map_err(|error| error.problem.at(file, error.line))
+}

@@ -1,0 +1,349 @@
+//! `.tri` files: one extension, many formats, told apart by structure and counts.
+//!
+//! | name | header | vertex | face | described by |
+//! |---|---|---|---|---|
+//! | `bourke` | `nv nt` | position, normal, colour | 3 indices from 0 | P. Bourke, "TRI file format", 2001 |
+//! | `indexed` | `nv nt` | position | 3 indices from 0 | SINTEF parametrization, NOTES_DATA_FORMAT |
+//! | `cart3d` | `nv nt` | position | 3 indices from 1, then perhaps nt component numbers | NASA Cart3D triangulations |
+//! | `labelled`, `labelled-1` | `nv nt` | position | count or label, 3 indices from 0 (from 1) | no description found; a leading count or number as in OFF and FreeSurfer |
+//! | `openmeeg` | `- nv` | position, normal | after a line `- nt nt nt`: 3 indices from 0 | OpenMEEG, BrainVISA |
+//! | `soup` | none | | 9 coordinates, perhaps a colour 0x… | POV-Ray raw triangles; AC3D as OpenFOAM reads it |
+//!
+//! A dialect *fits* when every number is what it should be, every index is in range and nothing is left over. Fits with
+//! one record a line come first. Only when none comes to a triangle may records run over line ends, which Fortran's
+//! list-directed output and the raw format allow; each section must start a line even then, or a file that was cut off could
+//! pass for one of another dialect. One fit is the answer, two are refused with both names.
+//! When nothing fits, the message comes from the dialect that got furthest into the file.
+
+use glam::Vec3;
+
+use super::text::{self, Cursor, Fault, Token};
+use super::weld::Welder;
+use crate::choice::choices;
+use crate::mesh::{Problem, check_triangle};
+
+choices! {
+    /// A `.tri` dialect.
+    TriFormat, ".tri dialect", {
+        /// Position, normal and colour a vertex; indices from 0.
+        Bourke = "bourke",
+        /// Positions; faces of three indices from 0.
+        Indexed = "indexed",
+        /// Positions; faces of three indices from 1, perhaps followed by a component number for each face.
+        Cart3d = "cart3d",
+        /// Positions; faces of a count or label and three indices from 0.
+        Labelled = "labelled",
+        /// Positions; faces of a count or label and three indices from 1.
+        LabelledFromOne = "labelled-1",
+        /// Headers that start with a dash; position and normal a vertex; indices from 0.
+        OpenMeeg = "openmeeg",
+        /// No header; nine coordinates a triangle.
+        Soup = "soup",
+    }
+}
+
+/// How the counted dialects differ.
+struct Layout {
+    dashed: bool,
+    vertex_numbers: usize,
+    face_numbers: usize,
+    first_index: u32,
+    components: bool,
+}
+
+/// Vertices and triangles as read.
+pub(super) type Parts = (Vec<Vec3>, Vec<[u32; 3]>);
+
+impl TriFormat {
+    /// The dialect in words.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Bourke => "Bourke's format (position, normal and colour a vertex)",
+            Self::Indexed => "indexed (faces of three indices from 0)",
+            Self::Cart3d => "Cart3D (faces of three indices from 1)",
+            Self::Labelled => "labelled (faces of a count or label and three indices from 0)",
+            Self::LabelledFromOne => {
+                "labelled (faces of a count or label and three indices from 1)"
+            }
+            Self::OpenMeeg => "OpenMEEG (headers that start with a dash)",
+            Self::Soup => "triangle soup (nine coordinates a triangle, no header)",
+        }
+    }
+
+    fn layout(self) -> Option<Layout> {
+        let (vertex_numbers, face_numbers, first_index) = match self {
+            Self::Bourke => (9, 3, 0),
+            Self::Indexed => (3, 3, 0),
+            Self::Cart3d => (3, 3, 1),
+            Self::Labelled => (3, 4, 0),
+            Self::LabelledFromOne => (3, 4, 1),
+            Self::OpenMeeg => (6, 3, 0),
+            Self::Soup => return None,
+        };
+        let (dashed, components) = (self == Self::OpenMeeg, self == Self::Cart3d);
+        Some(Layout {
+            dashed,
+            vertex_numbers,
+            face_numbers,
+            first_index,
+            components,
+        })
+    }
+}
+
+/// Reads a `.tri` file of the given dialect, or of the one that fits.
+pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<Parts, Fault> {
+    let tokens = text::tokens(text::decode(bytes)?);
+    if tokens.is_empty() {
+        return Err((None, Problem::NoVertices));
+    }
+    let mut furthest: Option<(usize, Fault)> = None;
+    let mut seen_triangle = false;
+    for by_line in [true, false] {
+        if !by_line && seen_triangle && format.is_none() {
+            break;
+        }
+        let mut fits = Vec::new();
+        for candidate in candidates(format, &tokens, by_line) {
+            let mut cursor = Cursor::new(&tokens, by_line);
+            let parsed = parse(candidate, &mut cursor);
+            seen_triangle |= cursor.seen_triangle;
+            match parsed {
+                Ok(parts) => fits.push((candidate, parts)),
+                Err(fault)
+                    if by_line && furthest.as_ref().is_none_or(|(at, _)| cursor.at > *at) =>
+                {
+                    furthest = Some((cursor.at, fault));
+                }
+                Err(_) => {}
+            }
+        }
+        if fits.len() > 1 {
+            return Err((None, ambiguous(&fits)));
+        }
+        if let Some((_, parts)) = fits.pop() {
+            return Ok(parts);
+        }
+    }
+    match furthest {
+        Some((at, fault)) if at > HEADER_TOKENS || format.is_some() => Err(fault),
+        _ => Err((Some(tokens[0].line), unknown_dialect())),
+    }
+}
+
+/// The dialects to try. Any nine numbers are a triangle of a soup, so that a cut-off file of another dialect would pass
+/// for one when lines do not count: then, a first line like `nv nt` rules it out.
+fn candidates(format: Option<TriFormat>, tokens: &[Token], by_line: bool) -> Vec<TriFormat> {
+    let first_line: Vec<_> = tokens
+        .iter()
+        .take_while(|token| token.line == tokens[0].line)
+        .collect();
+    let counted = first_line.len() == 2 && first_line.iter().all(|token| count(token).is_ok());
+    let possible = |candidate: &TriFormat| by_line || !counted || *candidate != TriFormat::Soup;
+    match format {
+        Some(format) => vec![format],
+        None => TriFormat::ALL.iter().copied().filter(possible).collect(),
+    }
+}
+
+/// No header is longer than this: a dialect that got past it has seen a vertex or a triangle.
+const HEADER_TOKENS: usize = 2;
+
+fn ambiguous(fits: &[(TriFormat, Parts)]) -> Problem {
+    Problem::Ambiguous {
+        readings: fits
+            .iter()
+            .map(|(format, _)| format.description())
+            .collect(),
+        names: fits.iter().map(|(format, _)| format.name()).collect(),
+    }
+}
+
+fn unknown_dialect() -> Problem {
+    let help = "a .tri file starts with `nv nt` and then vertices of 9 or 3 numbers, with `- nv` and then vertices of \
+                6 numbers, or has 9 coordinates on every line";
+    Problem::malformed("this is none of the known .tri dialects", help)
+}
+
+/// Reads one dialect to the end of the file.
+fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<Parts, Fault> {
+    let Some(layout) = format.layout() else {
+        return soup(cursor);
+    };
+    let header = if layout.dashed {
+        "the header `- nv`"
+    } else {
+        "the header `nv nt`"
+    };
+    let header = cursor.record(2, header)?;
+    let vertex_count = if layout.dashed {
+        dash(&header[0])?;
+        count(&header[1])?
+    } else {
+        count(&header[0])?
+    };
+    cursor.start_section()?;
+    let vertices = vertices(cursor, vertex_count, layout.vertex_numbers)?;
+    cursor.start_section()?;
+    let triangle_count = if layout.dashed {
+        let second = cursor.record(4, "the second header `- nt nt nt`")?;
+        dash(&second[0])?;
+        let nt = count(&second[1])?;
+        if count(&second[2])? != nt || count(&second[3])? != nt {
+            let message = "the second header `- nt nt nt` has three different counts";
+            let help = "write the number of triangles three times";
+            return Err((Some(second[1].line), Problem::malformed(message, help)));
+        }
+        cursor.start_section()?;
+        nt
+    } else {
+        count(&header[1])?
+    };
+    let triangles = triangles(cursor, triangle_count, &layout, vertices.len())?;
+    if layout.components && !cursor.rest().is_empty() {
+        cursor.start_section()?;
+        component_numbers(cursor, triangle_count)?;
+    }
+    match cursor.rest().first() {
+        None => Ok((vertices, triangles)),
+        Some(token) => {
+            let message = format!("{} after the last triangle", excess(cursor.rest().len()));
+            let help = "remove what follows, or correct the counts in the header";
+            Err((Some(token.line), Problem::malformed(message, help)))
+        }
+    }
+}
+
+fn excess(count: usize) -> String {
+    if count == 1 {
+        "1 number too many".to_owned()
+    } else {
+        format!("{count} numbers too many")
+    }
+}
+
+fn vertices(cursor: &mut Cursor, count: usize, numbers: usize) -> Result<Vec<Vec3>, Fault> {
+    if count == 0 {
+        return Err((None, Problem::NoVertices));
+    }
+    let mut vertices = Vec::with_capacity(count.min(cursor.tokens.len() / numbers));
+    for index in 0..count {
+        let record = cursor.record(numbers, &format!("vertex {index} of {count}"))?;
+        // Normals and colours are not used, and a degenerate mesh has NaN normals: they need only be numbers.
+        for token in &record[3..] {
+            token.number::<f32>("a normal or colour")?;
+        }
+        vertices.push(text::position(index, record)?);
+    }
+    Ok(vertices)
+}
+
+fn triangles(
+    cursor: &mut Cursor,
+    count: usize,
+    layout: &Layout,
+    vertices: usize,
+) -> Result<Vec<[u32; 3]>, Fault> {
+    let Layout {
+        face_numbers,
+        first_index,
+        ..
+    } = *layout;
+    if count == 0 {
+        return Err((None, Problem::NoTriangles));
+    }
+    let mut triangles = Vec::with_capacity(count.min(cursor.tokens.len() / face_numbers));
+    for index in 0..count {
+        let record = cursor.record(face_numbers, &format!("triangle {index} of {count}"))?;
+        let mut numbers = [0; 4];
+        for (number, token) in numbers.iter_mut().zip(record) {
+            *number = token.integer("an index")?;
+        }
+        let [a, b, c] = if face_numbers == 4 {
+            [numbers[1], numbers[2], numbers[3]]
+        } else {
+            [numbers[0], numbers[1], numbers[2]]
+        };
+        check_triangle(index, [a, b, c], first_index, vertices)
+            .map_err(|problem| (Some(record[0].line), problem))?;
+        triangles.push([a, b, c].map(|i| (i - i64::from(first_index)) as u32));
+        cursor.seen_triangle = true;
+    }
+    Ok(triangles)
+}
+
+/// Cart3D's configurations name a component for each triangle; the numbers may be spread over lines in any way.
+fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), Fault> {
+    let numbers = cursor.rest();
+    cursor.at = cursor.tokens.len();
+    if numbers.len() != triangles {
+        let message = format!(
+            "{} component numbers for {triangles} triangles",
+            numbers.len()
+        );
+        let help = "give one component number for each triangle, or none at all";
+        return Err((Some(numbers[0].line), Problem::malformed(message, help)));
+    }
+    numbers
+        .iter()
+        .try_for_each(|token| token.integer("a component number").map(|_| ()))
+}
+
+fn soup(cursor: &mut Cursor) -> Result<Parts, Fault> {
+    let coordinates = without_colours(cursor.tokens);
+    let mut inner = Cursor::new(&coordinates, cursor.by_line);
+    let mut welder = Welder::default();
+    let mut triangles = Vec::new();
+    let result = (|| {
+        while !inner.rest().is_empty() {
+            let record = inner.record(9, "a triangle of three points")?;
+            let mut corners = [0; 3];
+            for (i, corner) in corners.iter_mut().enumerate() {
+                let point = text::position(3 * triangles.len() + i, &record[3 * i..3 * i + 3])?;
+                *corner = welder.index(point);
+            }
+            triangles.push(corners);
+            cursor.seen_triangle = true;
+        }
+        Ok(())
+    })();
+    cursor.at = inner.at;
+    result.map(|()| (welder.into_vertices(), triangles))
+}
+
+/// The tokens without the colours (0xRRGGBB) that close a triangle of nine numbers.
+fn without_colours<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
+    let mut kept: Vec<Token<'a>> = Vec::with_capacity(tokens.len());
+    let mut after_colour = true;
+    for token in tokens {
+        let closes_triangle = kept.len().is_multiple_of(9) && !after_colour;
+        after_colour = closes_triangle && token.text.starts_with("0x");
+        if !after_colour {
+            kept.push(*token);
+        }
+    }
+    kept
+}
+
+fn count(token: &Token) -> Result<usize, Fault> {
+    token.text.parse().map_err(|_| {
+        let message = format!(
+            "a count should be a whole number, found {}",
+            text::excerpt(token.text)
+        );
+        let help = "the header names the number of vertices and of triangles";
+        (Some(token.line), Problem::malformed(message, help))
+    })
+}
+
+fn dash(token: &Token) -> Result<(), Fault> {
+    if token.text == "-" {
+        return Ok(());
+    }
+    let message = format!(
+        "the header should start with a dash, found {}",
+        text::excerpt(token.text)
+    );
+    let help = "OpenMEEG writes `- nv` before the vertices and `- nt nt nt` before the triangles";
+    Err((Some(token.line), Problem::malformed(message, help)))
+}

@@ -1,0 +1,124 @@
+//! Writing a mesh; the extension names the format.
+//!
+//! Coordinates are the shortest decimals that read back to the same f32, so a mesh survives the way to a file and back
+//! to the bit. `.tri` files are Bourke's dialect, whose vertices also have a unit normal and a colour: the
+//! normal is the sum of the adjacent triangles' cross products (area-weighted), in three decimals
+//! since it is for display only; a vertex without one gets 0 0 1.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::{MeshFormat, stl};
+use crate::mesh::{MeshError, Problem, TriangleMesh};
+
+/// Writes a mesh in the format that the extension names.
+///
+/// # Errors
+/// An extension that names no format, or a file that cannot be written.
+pub fn write(mesh: &TriangleMesh, path: impl AsRef<Path>) -> Result<(), MeshError> {
+    let path = path.as_ref();
+    let file = path.display().to_string();
+    let format = MeshFormat::of_path(path, "written").map_err(|problem| problem.at(&file, None))?;
+    std::fs::write(path, write_bytes(mesh, format)).map_err(|source| {
+        Problem::Io {
+            action: "write",
+            source,
+        }
+        .at(&file, None)
+    })
+}
+
+/// The contents of a file that holds the mesh.
+pub fn write_bytes(mesh: &TriangleMesh, format: MeshFormat) -> Vec<u8> {
+    match format {
+        MeshFormat::Tri => tri_text(mesh).into_bytes(),
+        MeshFormat::Obj => obj_text(mesh).into_bytes(),
+        MeshFormat::Stl => stl::bytes(mesh),
+        MeshFormat::Ply => ply_text(mesh).into_bytes(),
+    }
+}
+
+/// The mesh as a `.tri` file in Bourke's dialect.
+fn tri_text(mesh: &TriangleMesh) -> String {
+    let mut text = format!("{} {}\n", mesh.vertices.len(), mesh.triangles.len());
+    for (position, normal) in mesh.vertices.iter().zip(vertex_normals(mesh)) {
+        let [x, y, z] = position.to_array().map(shortest);
+        let [nx, ny, nz] = normal.to_array().map(three_decimals);
+        put(
+            &mut text,
+            format_args!("{x} {y} {z} {nx} {ny} {nz} 1 1 1\n"),
+        );
+    }
+    for [a, b, c] in &mesh.triangles {
+        put(&mut text, format_args!("{a} {b} {c}\n"));
+    }
+    text
+}
+
+/// The mesh as a Wavefront OBJ file.
+fn obj_text(mesh: &TriangleMesh) -> String {
+    let mut text = String::new();
+    for position in &mesh.vertices {
+        let [x, y, z] = position.to_array().map(shortest);
+        put(&mut text, format_args!("v {x} {y} {z}\n"));
+    }
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|index| u64::from(index) + 1);
+        put(&mut text, format_args!("f {a} {b} {c}\n"));
+    }
+    text
+}
+
+/// The mesh as a text PLY file.
+fn ply_text(mesh: &TriangleMesh) -> String {
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+        mesh.vertices.len(),
+        mesh.triangles.len()
+    );
+    for position in &mesh.vertices {
+        let [x, y, z] = position.to_array().map(shortest);
+        put(&mut text, format_args!("{x} {y} {z}\n"));
+    }
+    for [a, b, c] in &mesh.triangles {
+        put(&mut text, format_args!("3 {a} {b} {c}\n"));
+    }
+    text
+}
+
+fn put(text: &mut String, line: std::fmt::Arguments) {
+    // Writing to a String cannot fail.
+    let _ = text.write_fmt(line);
+}
+
+/// The shorter of the plain and the exponent form that reads back to the same f32.
+fn shortest(value: f32) -> String {
+    let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
+    if exponent.len() < plain.len() {
+        exponent
+    } else {
+        plain
+    }
+}
+
+fn three_decimals(value: f64) -> f64 {
+    // Adding 0 turns −0 into 0.
+    libm::round(value * 1000.0) / 1000.0 + 0.0
+}
+
+/// Area-weighted vertex normals; the cross product of a triangle's edges is its unit normal times twice its area.
+fn vertex_normals(mesh: &TriangleMesh) -> Vec<DVec3> {
+    let mut sums = vec![DVec3::ZERO; mesh.vertices.len()];
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize].as_dvec3());
+        for &corner in triangle {
+            sums[corner as usize] += (b - a).cross(c - a);
+        }
+    }
+    sums.into_iter()
+        .map(|sum| sum.try_normalize().unwrap_or(DVec3::Z))
+        .collect()
+}
