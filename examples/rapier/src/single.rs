@@ -2,5 +2,13 @@
 
 pub use rapier3d as rapier;
 
+#[path = "filter.rs"]
+mod filter;
+#[path = "volumes.rs"]
+mod volumes;
+
+pub use filter::{Cost, Filter, HOOKS};
+pub use volumes::{Step, volume};
+
 #[path = "proof/mod.rs"]
 pub mod proof;
