@@ -1,17 +1,17 @@
-//! Threads: the same work in the same order, whoever does it.
+//! The thread pool: the same results in the same order, on any number of threads.
 //!
 //! Work is cut into parts by the data alone; a part's results go to buffers of its own, which are joined in the order of
 //! the parts. So lists, counters and hashes are those of one thread, to the bit.
 //!
-//! The caller works too: waking a thread takes as long as finding the pairs of some thousand bodies, and until then the
-//! caller has done what it can. Whoever is free takes the next part, so a thread that comes late leaves nothing undone.
+//! The calling thread works too: waking another takes as long as finding the pairs of some thousand bodies. Each thread
+//! that is free takes the next part, so one that wakes late delays nothing.
 
 use std::sync::Mutex;
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
-/// Pieces of a column that are worth waking a thread for.
-const WORTH_SHARING: usize = 8;
+/// The fewest pieces of a column for which waking a thread pays.
+const FEWEST_PIECES: usize = 8;
 
 /// The caller's thread, or it and a pool of others.
 #[derive(Debug, Default)]
@@ -54,7 +54,9 @@ impl Threads {
     pub fn each<T: Send>(&self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
         let items = items.iter_mut().enumerate();
         match &self.0 {
-            Some(pool) if items.len() > 1 => share(pool, items, |(index, item)| work(index, item)),
+            Some(pool) if items.len() > 1 => {
+                distribute(pool, items, |(index, item)| work(index, item))
+            }
             _ => items.for_each(|(index, item)| work(index, item)),
         }
     }
@@ -67,31 +69,35 @@ impl Threads {
         size: usize,
         work: impl Fn(usize, &mut [T]) + Sync,
     ) {
-        let worth_sharing = column.len() >= WORTH_SHARING * size;
+        let worth_waking = column.len() >= FEWEST_PIECES * size;
         let pieces = column.chunks_mut(size).enumerate();
         match &self.0 {
-            Some(pool) if worth_sharing => {
-                share(pool, pieces, |(index, piece)| work(index * size, piece));
+            Some(pool) if worth_waking => {
+                distribute(pool, pieces, |(index, piece)| work(index * size, piece));
             }
             _ => pieces.for_each(|(index, piece)| work(index * size, piece)),
         }
     }
 }
 
-/// Does the work of each item, on the caller's thread and on those of the pool.
-fn share<T>(pool: &ThreadPool, items: impl Iterator<Item = T> + Send, work: impl Fn(T) + Sync) {
+/// Calls `work` for each item, on the calling thread and on those of the pool.
+fn distribute<T>(
+    pool: &ThreadPool,
+    items: impl Iterator<Item = T> + Send,
+    work: impl Fn(T) + Sync,
+) {
     let queue = Mutex::new(items);
     // Poisoned by a panic, which the scope passes on.
     let next = || queue.lock().ok().and_then(|mut items| items.next());
-    let help = || {
+    let work_off = || {
         while let Some(item) = next() {
             work(item);
         }
     };
     pool.in_place_scope(|scope| {
         for _ in 0..pool.current_num_threads() {
-            scope.spawn(|_| help());
+            scope.spawn(|_| work_off());
         }
-        help();
+        work_off();
     });
 }

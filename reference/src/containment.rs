@@ -7,12 +7,13 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-use crate::exact::relative::{Approximate, Relative, largest};
+use crate::exact::relative::{Approximate, Relative};
 use crate::exact::{Interval, cascade, sphere};
-use crate::linear::{Matrix, Vector, apply, dot, integers, sub};
+use crate::linear::{Matrix, Vector, apply, dot, integers, largest, sub};
 use crate::number::{Number, unit_of};
 use crate::pose::Pose;
-use crate::volume::{Ball, Shape, Slabs};
+use crate::shape::Shape;
+use crate::volume::{Ball, Slabs};
 
 /// What sticks out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

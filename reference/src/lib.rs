@@ -1,6 +1,6 @@
 //! The plain reference of S-DOP culling: one formula a function, no code shared with the culler.
 //!
-//! The stages carry the culler's names: [`pose`], [`volume`], [`overlap`], [`broad_phase`], [`strategy`], [`cost`].
+//! The stages carry the culler's names: [`pose`], [`volume`], [`shape`], [`overlap`], [`broad_phase`], [`strategy`], [`cost`].
 //! Loops are plain f64 and read like the paper; [`exact`] decides the same predicates in exact real arithmetic, and
 //! `optimised ⊇ reference predicate ⊇ exact mesh intersection` is what the culler's tests hold against it.
 //!
@@ -33,6 +33,7 @@ pub mod linear;
 pub mod number;
 pub mod overlap;
 pub mod pose;
+pub mod shape;
 pub mod strategy;
 pub mod volume;
 
@@ -40,9 +41,10 @@ pub mod volume;
 mod tests;
 
 pub use overlap::Overlap;
-pub use pose::{Body, Pose};
+pub use pose::Pose;
+pub use shape::{Body, Shape};
 pub use strategy::{Strategy, pairs};
-pub use volume::{Ball, DirectionSet, Shape, Slabs};
+pub use volume::{Ball, DirectionSet, Slabs};
 
 /// What the reference refuses to judge: an answer about it would mean nothing.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

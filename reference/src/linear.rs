@@ -51,6 +51,11 @@ pub fn multiply<N: Number>(l: &Matrix<N>, m: &Matrix<N>) -> Matrix<N> {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| dot(&l[i], &columns[j])))
 }
 
+/// |v|∞
+pub fn largest(v: &Vector<f64>) -> f64 {
+    v.iter().fold(0.0, |m, x| m.max(x.abs()))
+}
+
 /// Small integers as a vector of numbers.
 pub fn integers<N: Number>(a: [i32; 3]) -> Vector<N> {
     a.map(N::integer)

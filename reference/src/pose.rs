@@ -2,7 +2,6 @@
 
 use crate::InvalidInput;
 use crate::linear::{Matrix, Vector, apply, norm_squared, rotation, sub};
-use crate::volume::Shape;
 
 /// Where a body is: f32 numbers as given, never renormalised.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,15 +60,4 @@ impl Pose {
 /// Δ = tB − tA. Every test compares B with A as seen from A's origin: world coordinates far out would cancel.
 pub fn separation(a: &Pose, b: &Pose) -> Vector<f64> {
     sub(&b.translation(), &a.translation())
-}
-
-/// A rigid body: its form, where it is, and whether it may move.
-#[derive(Clone, Copy, Debug)]
-pub struct Body<'a> {
-    /// Mesh and volumes in the body frame.
-    pub shape: &'a Shape,
-    /// Position and orientation.
-    pub pose: Pose,
-    /// Pairs of two bodies that are not are never reported.
-    pub dynamic: bool,
 }

@@ -10,7 +10,8 @@ use crate::cost::Counters;
 use crate::linear::Vector;
 use crate::overlap::ordop::{self, Turned};
 use crate::overlap::{Overlap, obb, sphere, world};
-use crate::pose::{Body, separation};
+use crate::pose::separation;
+use crate::shape::Body;
 use crate::volume::DirectionSet;
 
 /// When a pair is reported.

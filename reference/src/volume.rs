@@ -1,11 +1,6 @@
 //! Bounding volumes as plain numbers in the body frame (design, section 2): built elsewhere, judged here.
 
-use std::sync::OnceLock;
-
 use crate::InvalidInput;
-use crate::exact::mesh::Mesh;
-use crate::exact::polytope::Polytope;
-use crate::linear::Vector;
 
 /// The ball ‖x − c‖ ≤ r.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,78 +74,6 @@ impl Slabs {
             lo: first(&self.lo),
             hi: first(&self.hi),
         }
-    }
-}
-
-/// A mesh with its volumes.
-#[derive(Clone, Debug)]
-pub struct Shape {
-    /// Bounding ball.
-    pub ball: Ball,
-    /// Oriented k-DOP.
-    pub slabs: Slabs,
-    /// Its corners, exact and rounded.
-    pub polytope: Polytope,
-    /// The oriented box's polytope: of the slabs' first three axes unless [`Shape::with_obb`] gave another.
-    pub obb: Polytope,
-    /// Vertices as culled.
-    pub vertices: Vec<[f32; 3]>,
-    /// Vertex triples.
-    pub triangles: Vec<[u32; 3]>,
-    mesh: OnceLock<Mesh>,
-}
-
-impl Shape {
-    /// A shape of a ball, slabs and a mesh. Whether the volumes contain the mesh is not asked here.
-    ///
-    /// # Errors
-    /// When a number is not finite, the slabs are not k/2, the basis is not exact or an index is out of range.
-    pub fn new(
-        ball: Ball,
-        slabs: Slabs,
-        vertices: Vec<[f32; 3]>,
-        triangles: Vec<[u32; 3]>,
-    ) -> Result<Self, InvalidInput> {
-        if !ball.centre.iter().all(|x| x.is_finite()) {
-            return Err(InvalidInput::NotFinite("the ball's centre"));
-        }
-        if !(ball.radius >= 0.0 && ball.radius.is_finite()) {
-            return Err(InvalidInput::Radius);
-        }
-        check_mesh(&vertices, &triangles)?;
-        let polytope = Polytope::new(&slabs)?;
-        let obb = Polytope::new(&slabs.axes_only())?;
-        Ok(Self {
-            ball,
-            slabs,
-            polytope,
-            obb,
-            vertices,
-            triangles,
-            mesh: OnceLock::new(),
-        })
-    }
-
-    /// The same shape with an oriented box of its own (`directions` K6) for the `obb` strategy.
-    ///
-    /// # Errors
-    /// As [`Shape::new`].
-    pub fn with_obb(self, slabs: &Slabs) -> Result<Self, InvalidInput> {
-        Ok(Self {
-            obb: Polytope::new(slabs)?,
-            ..self
-        })
-    }
-
-    /// The mesh prepared for exact judgement, at first use.
-    pub fn mesh(&self) -> &Mesh {
-        self.mesh
-            .get_or_init(|| Mesh::checked(&self.vertices, &self.triangles))
-    }
-
-    /// The vertices in f64.
-    pub fn points(&self) -> impl Iterator<Item = Vector<f64>> {
-        self.vertices.iter().map(|v| v.map(f64::from))
     }
 }
 

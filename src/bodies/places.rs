@@ -57,7 +57,7 @@ impl Places {
         self.body.is_empty()
     }
 
-    /// Takes up the bodies that are `present`. Those that were there keep their order; the others follow.
+    /// Replaces the set of bodies by those that are `present`. Those that were there keep their order; the others follow.
     pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         let mut is_new = present.to_vec();
         let mut order = Vec::with_capacity(present.len());
@@ -72,11 +72,11 @@ impl Places {
         self.moving = moving.len();
         self.body = [moving, fixed].concat();
         self.shape.resize(self.body.len(), 0);
-        self.wear(bodies);
+        self.reread_shapes(bodies);
     }
 
-    /// Takes up the bodies' shapes.
-    pub(crate) fn wear(&mut self, bodies: &Bodies) {
+    /// Copies each body's shape from the user's columns.
+    pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
         for (shape, &body) in self.shape.iter_mut().zip(&self.body) {
             *shape = bodies.shape[body as usize];
         }
@@ -91,6 +91,6 @@ impl Places {
             }
         }
         std::mem::swap(&mut self.body, order);
-        self.wear(bodies);
+        self.reread_shapes(bodies);
     }
 }

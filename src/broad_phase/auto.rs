@@ -34,13 +34,15 @@ impl Population {
     #[must_use]
     pub fn finder(&self) -> Finder {
         let [smallest, widest] = self.radii;
-        let few = match widest > MANY_SIZES * smallest {
-            true => FEW_OF_MANY_SIZES,
-            false => FEW,
+        let few = if widest > MANY_SIZES * smallest {
+            FEW_OF_MANY_SIZES
+        } else {
+            FEW
         };
-        match self.cheap_test && self.bodies <= few {
-            true => Finder::AllPairs,
-            false => Finder::Grid,
+        if self.cheap_test && self.bodies <= few {
+            Finder::AllPairs
+        } else {
+            Finder::Grid
         }
     }
 }

@@ -160,7 +160,7 @@ impl PairFinder {
         }
     }
 
-    /// Hears how many candidates the last frame had, and may plan anew.
+    /// Notes how many candidates the last frame had; the grid may plan its levels anew by it.
     pub fn observe(&mut self, candidates: u64) {
         match self {
             Self::AllPairs(_) | Self::Sweep(_) => {}

@@ -196,9 +196,10 @@ fn write_text(
     scene: &Scene,
     summary: &Summary,
 ) -> std::fmt::Result {
-    let pairs = match report.pairs == report.finder {
-        true => report.pairs.to_owned(),
-        false => format!("{} ({})", report.pairs, report.finder),
+    let pairs = if report.pairs == report.finder {
+        report.pairs.to_owned()
+    } else {
+        format!("{} ({})", report.pairs, report.finder)
     };
     let dynamic = scene.bodies.dynamic.iter().filter(|&&d| d).count();
     writeln!(

@@ -117,17 +117,17 @@ impl Culler {
         Ok(self)
     }
 
-    /// Adds a model: the shape grown by `margin` ≥ 0. Bodies wear it by the returned number in `bodies.shape`.
+    /// Adds a model: the shape grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the returned number.
     pub(crate) fn grow(&mut self, shape: u32, margin: f32) -> u32 {
         self.models.grow(shape, margin)
     }
 
-    /// Takes up bodies that wear another model since the last frame.
-    pub(crate) fn wear(&mut self, bodies: &Bodies) {
-        self.places.wear(bodies);
+    /// Re-reads `bodies.shape` after a change of margin class.
+    pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
+        self.places.reread_shapes(bodies);
     }
 
-    /// Takes up another set of bodies: those that are `present`. Volumes, static ones too, are placed anew; bodies that were
+    /// Replaces the set of bodies by those that are `present`. Volumes, static ones too, are placed anew; bodies that were
     /// there keep their neighbours.
     pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         self.places.replace(bodies, present);
@@ -153,8 +153,8 @@ impl Culler {
         self.groups = groups;
     }
 
-    /// The bodies of interest from now on.
-    pub(crate) fn look_at(&mut self, bodies: Vec<u32>) {
+    /// From now on, these are the bodies of interest.
+    pub(crate) fn set_interest(&mut self, bodies: Vec<u32>) {
         self.settings.interest = Some(Interest::Bodies(bodies));
     }
 
@@ -233,9 +233,10 @@ impl Culler {
             return;
         }
         let by_place = self.names_are_places();
-        let names = match by_place {
-            true => &self.numbers,
-            false => &self.places.body,
+        let names = if by_place {
+            &self.numbers
+        } else {
+            &self.places.body
         };
         let (balls, order) = (&self.balls, &mut self.order);
         let changed = self.finder.reorder(&self.places, balls, names, order);
@@ -248,7 +249,8 @@ impl Culler {
         }
     }
 
-    /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies wait until a pair asks for them.
+    /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies are left until a pair
+    /// needs them.
     fn update_volumes(&mut self, bodies: &Bodies, range: std::ops::Range<usize>) {
         let (frames, places) = (&self.models.frames, &self.places);
         if self.needs.balls {
@@ -307,9 +309,10 @@ impl Culler {
         if self.settings.strategy == Strategy::None {
             return;
         }
-        let names = match self.names_are_places() {
-            true => &self.numbers,
-            false => &self.places.body,
+        let names = if self.names_are_places() {
+            &self.numbers
+        } else {
+            &self.places.body
         };
         self.finder
             .arrange(self.tier, &self.pool, &self.places, &self.balls, names);

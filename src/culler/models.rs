@@ -1,7 +1,7 @@
 //! What updates and pair tests know of each shape: its frame and its slab table, by model number.
 //!
-//! The first models are the shapes themselves. A shape that a body wears with a margin is a further model: the ball, and
-//! each slab, moved out by the margin, so that the pair tests need not know of margins.
+//! The first models are the shapes themselves. A shape with a margin is a further model: the ball, and each slab, moved
+//! out by the margin, so that the pair tests need not know of margins.
 
 use crate::overlap::ordop::SlabTables;
 use crate::overlap::ordop::reach::reach;
@@ -25,14 +25,18 @@ impl Models {
     /// One model a shape. For [`Strategy::Obb`] a box takes the place of the or-DOP.
     pub fn new(shapes: &[Shape], settings: &CullSettings) -> Self {
         let boxes = settings.strategy == Strategy::Obb;
-        let slabs = |shape: &Shape| match boxes {
-            true => shape.obb(&Hull::of(&shape.vertices)),
-            false => shape.ordop.clone(),
+        let slabs = |shape: &Shape| {
+            if boxes {
+                shape.obb(&Hull::of(&shape.vertices))
+            } else {
+                shape.ordop.clone()
+            }
         };
         let ordops: Vec<OrDop> = shapes.iter().map(slabs).collect();
-        let directions = match boxes {
-            true => DirectionSet::K6,
-            false => ordops.first().map_or(settings.k, |ordop| ordop.directions),
+        let directions = if boxes {
+            DirectionSet::K6
+        } else {
+            ordops.first().map_or(settings.k, |ordop| ordop.directions)
         };
         let mut models = Self {
             frames: Vec::new(),

@@ -142,7 +142,7 @@ impl ShapeFrame {
     }
 }
 
-/// How many places ahead a pose is asked for: bodies that are neighbours in space lie anywhere in the user's columns, and a
+/// How many places ahead a pose is prefetched: bodies that are neighbours in space lie anywhere in the user's columns, and a
 /// cache miss takes as long as some ten updates.
 const AHEAD: usize = 32;
 

@@ -122,7 +122,7 @@ impl Kernel for InTurn<'_> {
         for rows in self.rows.chunks_mut(BODIES) {
             let last = first + rows.len() - 1;
             let places = std::array::from_fn(|lane| (first + lane).min(last) as u32);
-            self.posed.ask_for(first + AHEAD);
+            self.posed.prefetch(first + AHEAD);
             match rows.try_into() {
                 Ok(rows) => self.posed.make(l, &places, rows),
                 Err(_) => {
@@ -160,9 +160,9 @@ impl Kernel for Listed<'_> {
 }
 
 impl Posed<'_> {
-    /// Asks for the poses of sixteen bodies from a place on.
+    /// Prefetches the poses of the bodies in sixteen places, from `place` on.
     #[inline(always)]
-    fn ask_for(&self, place: usize) {
+    fn prefetch(&self, place: usize) {
         let end = self.places.body.len();
         for &body in &self.places.body[place.min(end)..end.min(place + BODIES)] {
             prefetch(&self.bodies.rotation[body as usize]);

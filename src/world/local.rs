@@ -52,9 +52,10 @@ impl Local {
         let middle: [f64; 3] = std::array::from_fn(|i| 0.5 * lo[i] + 0.5 * hi[i]);
         let half = (0..3).fold(0.0, |m: f64, i| m.max(0.5 * hi[i] - 0.5 * lo[i]));
         let away = (0..3).fold(0.0, |m: f64, i| m.max((middle[i] - self.origin[i]).abs()));
-        match away > half {
-            true => Self { origin: middle },
-            false => self,
+        if away > half {
+            Self { origin: middle }
+        } else {
+            self
         }
     }
 }

@@ -335,7 +335,7 @@ impl World {
             self.bodies.translation[slot] = place;
         }
         if changed && !self.replaced {
-            self.culler.wear(&self.bodies);
+            self.culler.reread_shapes(&self.bodies);
         }
         Ok(())
     }
@@ -345,7 +345,7 @@ impl World {
         let living = |id: &BodyId| self.slot(*id).is_ok();
         let slots = self.interest.iter().filter(|id| living(id));
         let slots = slots.map(|id| id.slot).collect();
-        self.culler.look_at(slots);
+        self.culler.set_interest(slots);
     }
 
     fn id(&self, slot: u32) -> BodyId {

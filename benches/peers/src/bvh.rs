@@ -75,9 +75,10 @@ impl Peer for Tree {
         let (bodies, pairs) = (&mut self.bodies, &mut self.pairs);
         let several = self.threads.several();
         self.threads.run(|| {
-            let tree = match several {
-                true => Bvh::build_with_executor(bodies, rayon_executor),
-                false => Bvh::build(bodies),
+            let tree = if several {
+                Bvh::build_with_executor(bodies, rayon_executor)
+            } else {
+                Bvh::build(bodies)
             };
             pairs.ask(bodies, |_, body, pairs| find(&tree, bodies, body, pairs));
         });

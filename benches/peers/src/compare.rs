@@ -50,14 +50,14 @@ pub struct LeftOut {
 /// A case with its answers.
 pub struct Compared {
     /// In the order of engines.
-    pub rows: Vec<Row>,
+    pub rows: Vec<EngineTiming>,
     /// Those without a row.
     pub left_out: Vec<LeftOut>,
 }
 
 /// What one engine did in a case.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct EngineTiming {
     /// The case.
     #[serde(flatten)]
     pub case: Case,
@@ -101,7 +101,7 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compa
         let ratio = base.as_ref().map(|base| median_ratio(&racer.ms, base));
         let [ms_low, ms, ms_high] = [0.25, 0.5, 0.75].map(|q| quantile(&mut racer.ms, q));
         let bodies = case.bodies as f64;
-        rows.push(Row {
+        rows.push(EngineTiming {
             case,
             engine: racer.entry.name,
             version: racer.entry.version,

@@ -54,7 +54,7 @@ const STEPS: usize = 96;
 
 /// One work's speed-up.
 #[derive(Serialize)]
-struct Row {
+struct SpeedUp {
     bodies: usize,
     work: &'static str,
     threads: usize,
@@ -69,7 +69,7 @@ struct Row {
 struct Measured {
     #[serde(flatten)]
     facts: Facts,
-    rows: Vec<Row>,
+    rows: Vec<SpeedUp>,
 }
 
 /// Measures, prints the table, and writes it if asked to.
@@ -99,7 +99,7 @@ struct Racer {
     ms: Vec<f64>,
 }
 
-fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<Row>> {
+fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
     let mut course = Course::new(Spread::Uniform, bodies, Order::Random, 0)?;
     let Schedule {
         warm_up,
@@ -152,7 +152,7 @@ fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<Row>> {
 }
 
 /// The second half of `racers` does what the first does, on more threads.
-fn rows(bodies: usize, threads: usize, racers: &mut [Racer]) -> miette::Result<Vec<Row>> {
+fn rows(bodies: usize, threads: usize, racers: &mut [Racer]) -> miette::Result<Vec<SpeedUp>> {
     let (alone, together) = racers.split_at_mut(racers.len() / 2);
     let sorted = |peer: &dyn Peer| {
         let mut pairs = peer.pairs();
@@ -168,7 +168,7 @@ fn rows(bodies: usize, threads: usize, racers: &mut [Racer]) -> miette::Result<V
                 one.name
             ));
         }
-        rows.push(Row {
+        rows.push(SpeedUp {
             bodies,
             work: one.name,
             threads,

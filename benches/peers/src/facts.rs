@@ -80,9 +80,10 @@ impl Display for Facts {
 
 /// An argument as a shell takes it.
 fn quoted(argument: String) -> String {
-    match argument.contains(|c: char| c.is_whitespace() || "'\"$&|;<>()*?`\\".contains(c)) {
-        true => format!("'{}'", argument.replace('\'', "'\\''")),
-        false => argument,
+    if argument.contains(|c: char| c.is_whitespace() || "'\"$&|;<>()*?`\\".contains(c)) {
+        format!("'{}'", argument.replace('\'', "'\\''"))
+    } else {
+        argument
     }
 }
 

@@ -22,7 +22,7 @@ pub struct Args {
 
 /// A line of the table.
 #[derive(Serialize)]
-struct Row {
+struct KernelTiming {
     group: String,
     function: String,
     parameter: String,
@@ -77,7 +77,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         ));
     }
     rows.sort_by(|a, b| {
-        let key = |row: &Row| (row.group.clone(), row.function.clone(), row.elements);
+        let key = |row: &KernelTiming| (row.group.clone(), row.function.clone(), row.elements);
         key(a).cmp(&key(b)).then(a.parameter.cmp(&b.parameter))
     });
     fs::write(&args.out, facts::csv(&rows)?)
@@ -86,7 +86,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
 }
 
 /// Looks for the newest estimates of every benchmark below a directory.
-fn gather(directory: &Path, rows: &mut Vec<Row>) -> miette::Result<()> {
+fn gather(directory: &Path, rows: &mut Vec<KernelTiming>) -> miette::Result<()> {
     let blame = || format!("reading {}", directory.display());
     let entries = fs::read_dir(directory)
         .into_diagnostic()
@@ -105,13 +105,13 @@ fn gather(directory: &Path, rows: &mut Vec<Row>) -> miette::Result<()> {
     Ok(())
 }
 
-fn row(directory: &Path) -> miette::Result<Row> {
+fn row(directory: &Path) -> miette::Result<KernelTiming> {
     let benchmark: Benchmark = read(&directory.join("benchmark.json"))?;
     let Estimates { median } = read(&directory.join("estimates.json"))?;
     let elements = benchmark.throughput.and_then(|each| each.elements);
     let elements = elements.unwrap_or(1);
     let each = |ns: f64| ns / elements as f64;
-    Ok(Row {
+    Ok(KernelTiming {
         group: benchmark.group_id,
         function: benchmark.function_id.unwrap_or_default(),
         parameter: benchmark.value_str.unwrap_or_default(),

@@ -28,6 +28,7 @@ mod peer;
 mod physx;
 mod rapier;
 mod record;
+mod roster;
 mod rstar;
 mod scenes;
 mod threads;
@@ -37,7 +38,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 use compare::Case;
 use miette::miette;
-use peer::{Entry, OURS, roster};
+use peer::{Entry, OURS};
 use record::Record;
 use scenes::{Order, Schedule, Spread};
 
@@ -122,7 +123,7 @@ fn main() -> miette::Result<()> {
 
 /// Ours, and those whose names begin as wished.
 fn chosen(wished: Option<&[String]>) -> miette::Result<Vec<Entry>> {
-    let all = roster();
+    let all = roster::roster();
     let Some(wished) = wished else {
         return Ok(all);
     };

@@ -38,7 +38,7 @@ pub struct Args {
 
 /// One method on what one strategy leaves.
 #[derive(Serialize)]
-struct Row {
+struct MethodTiming {
     scene: String,
     survivors_of: &'static str,
     method: &'static str,
@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     Ok(())
 }
 
-fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<Row>> {
+fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<MethodTiming>> {
     let settings = CullSettings {
         strategy,
         pairs: Finder::Grid,
@@ -126,7 +126,7 @@ fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<R
             both.filter(|&(&truth, &given)| given == answer && truth != answer)
                 .count()
         };
-        rows.push(Row {
+        rows.push(MethodTiming {
             scene: scene.name.clone(),
             survivors_of: strategy.name(),
             method,

@@ -60,9 +60,10 @@ impl Peer for Parry {
             tree.insert_or_update_partially(aabb(slabs), i as u32, 0.0);
         }
         // As rapier does it: improve first, so that the refit lays the tree out in depth-first order.
-        match self.rebuilt {
-            true => tree.rebuild(workspace, BvhBuildStrategy::Binned),
-            false => tree.optimize_incremental(workspace),
+        if self.rebuilt {
+            tree.rebuild(workspace, BvhBuildStrategy::Binned);
+        } else {
+            tree.optimize_incremental(workspace);
         }
         if self.threads.several() {
             self.threads.run(|| {

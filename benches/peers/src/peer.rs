@@ -1,15 +1,10 @@
-//! What an engine must offer to stand in the comparison, and who does.
+//! What an engine must offer to stand in the comparison.
 //!
-//! A new engine is a file with a `Peer`, and its line in [`roster`].
+//! A new engine is a file with a `Peer`, and its line in [`roster`](crate::roster::roster).
 
 use sdop::lab::scene::Scene;
 
 use crate::boxes::Frame;
-#[cfg(feature = "physx")]
-use crate::physx;
-use crate::{broccoli, bvh, obvhs, ours, parry, rapier, rstar};
-#[cfg(feature = "debian")]
-use crate::{bullet, cgal, embree};
 
 /// An engine with the bodies of one scene.
 pub trait Peer {
@@ -80,25 +75,3 @@ pub struct Entry {
 
 /// The name of the engine that the others are compared with.
 pub const OURS: &str = "sdop boxes";
-
-/// Everyone that was compiled in.
-pub fn roster() -> Vec<Entry> {
-    let all: &[&[Entry]] = &[
-        &ours::ENTRIES,
-        &parry::ENTRIES,
-        &rapier::ENTRIES,
-        &obvhs::ENTRIES,
-        &bvh::ENTRIES,
-        &broccoli::ENTRIES,
-        &rstar::ENTRIES,
-        #[cfg(feature = "physx")]
-        &physx::ENTRIES,
-        #[cfg(feature = "debian")]
-        &embree::ENTRIES,
-        #[cfg(feature = "debian")]
-        &bullet::ENTRIES,
-        #[cfg(feature = "debian")]
-        &cgal::ENTRIES,
-    ];
-    all.concat()
-}

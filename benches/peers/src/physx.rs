@@ -78,9 +78,10 @@ impl PhysX {
         let objects: Vec<u32> = (0..setup.first.boxes.len() as u32).collect();
         // SAFETY: the foundation exists before anything else is asked for; descriptions are passed by value or live on.
         let (broad_phase, groups) = unsafe {
-            let broad_phase = match has_foundation() {
-                true => phys_PxCreateBroadPhase(&PxBroadPhaseDesc_new(kind)),
-                false => ptr::null_mut(),
+            let broad_phase = if has_foundation() {
+                phys_PxCreateBroadPhase(&PxBroadPhaseDesc_new(kind))
+            } else {
+                ptr::null_mut()
             };
             let group = |&object: &u32| phys_PxGetBroadPhaseDynamicFilterGroup(object);
             (broad_phase, objects.iter().map(group).collect())

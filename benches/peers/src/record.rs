@@ -6,7 +6,7 @@ use std::path::Path;
 use miette::IntoDiagnostic as _;
 use serde::Serialize;
 
-use crate::compare::{Case, Compared, LeftOut, Row};
+use crate::compare::{Case, Compared, EngineTiming, LeftOut};
 use crate::facts::{self, Facts};
 use crate::scenes::{Order, Spread};
 
@@ -15,7 +15,7 @@ use crate::scenes::{Order, Spread};
 pub struct Record {
     #[serde(flatten)]
     facts: Facts,
-    rows: Vec<Row>,
+    rows: Vec<EngineTiming>,
     left_out: Vec<LeftOut>,
 }
 
@@ -114,7 +114,7 @@ impl Record {
     }
 
     fn table(&self, out: &mut String, (spread, order, threads): (Spread, Order, usize)) {
-        let rows: Vec<&Row> = self
+        let rows: Vec<&EngineTiming> = self
             .rows
             .iter()
             .filter(|row| {

@@ -9,9 +9,9 @@ use std::cmp::Ordering;
 use dashu_int::IBig;
 
 use super::polytope::{DENOMINATOR, Polytope};
-use super::relative::{Approximate, Relative, largest};
+use super::relative::{Approximate, Relative};
 use super::{Decision, Interval, any, cascade, either};
-use crate::linear::{Vector, add, apply, dot, integers, scale};
+use crate::linear::{Vector, add, apply, dot, integers, largest, scale};
 use crate::number::{Number, unit_of};
 use crate::pose::Pose;
 

@@ -3,12 +3,13 @@
 use std::cell::{Cell, OnceCell};
 
 use super::meeting::{self, Meeting};
-use super::relative::largest;
 use super::world::{self, Extents};
 use super::{Decision, Tally, ordop, sphere};
 use crate::broad_phase::all_pairs;
+use crate::linear::largest;
 use crate::overlap::Overlap;
-use crate::pose::{Body, separation};
+use crate::pose::separation;
+use crate::shape::Body;
 use crate::strategy::{Judge, Strategy, run};
 use crate::volume::DirectionSet;
 

@@ -6,12 +6,11 @@
 //! each closed one, so one vertex decides ([`super::parity`]).
 
 use super::parity::inside_closed;
-use super::relative::largest;
 use super::tree::{Content, Node};
 use super::view::{Posed, View};
 use super::{Path, Record, Tally};
-use crate::linear::{Vector, apply, sub, transpose};
-use crate::pose::Body;
+use crate::linear::{Vector, apply, largest, sub, transpose};
+use crate::shape::Body;
 
 /// Whether two meshes intersect, and what it took.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

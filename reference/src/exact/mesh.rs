@@ -5,10 +5,9 @@
 
 use dashu_int::IBig;
 
-use super::relative::largest;
 use super::tree::Tree;
 use crate::InvalidInput;
-use crate::linear::{Vector, cross, sub};
+use crate::linear::{Vector, cross, largest, sub};
 use crate::number::{Number, unit_of};
 use crate::volume::check_mesh;
 

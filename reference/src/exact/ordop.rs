@@ -11,13 +11,13 @@ use std::cmp::Ordering;
 use dashu_int::IBig;
 
 use super::axes::{Corners, Posed, Rounded, Separation, common_unit};
-use super::relative::{Approximate, Relative, largest};
+use super::relative::{Approximate, Relative};
 use super::simplex::{Effort, Optimum, Row, maximise};
 use super::{Decision, Interval, Path, axes};
-use crate::linear::{Vector, add, apply, dot, integers, scale, transpose};
+use crate::linear::{Vector, add, apply, dot, integers, largest, scale, transpose};
 use crate::number::{Number, unit_of};
 use crate::overlap::Overlap;
-use crate::pose::Body;
+use crate::shape::Body;
 
 /// Whether the posed or-DOPs overlap, as far as the axes of `test` can tell.
 pub fn overlap(a: &Body, b: &Body, test: Overlap) -> Decision<bool> {

@@ -6,8 +6,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::relative::largest;
-use crate::linear::{Vector, cross, dot, sub};
+use crate::linear::{Vector, cross, dot, largest, sub};
 use crate::number::Number;
 
 /// Positive on the side of the plane abc from which abc turns counter-clockwise.

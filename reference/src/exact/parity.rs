@@ -7,10 +7,9 @@
 
 use super::Record;
 use super::mesh::Mesh;
-use super::relative::largest;
 use super::tree::{Content, Node};
 use super::view::View;
-use crate::linear::{Vector, sub};
+use crate::linear::{Vector, largest, sub};
 use crate::number::{dyadic, power_of_two};
 
 /// Segments tried: nearly always one is enough.

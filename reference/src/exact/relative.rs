@@ -7,8 +7,8 @@
 
 use super::polytope::Polytope;
 use crate::linear::{
-    Matrix, Vector, add, apply, conjugate_product, dot, multiply, norm_squared, rotation, scale,
-    sub, transpose,
+    Matrix, Vector, add, apply, conjugate_product, dot, largest, multiply, norm_squared, rotation,
+    scale, sub, transpose,
 };
 use crate::number::{Number, power_of_two, unit_of};
 use crate::pose::{Pose, separation};
@@ -136,9 +136,4 @@ impl Approximate {
             f64::NAN
         }
     }
-}
-
-/// |v|∞
-pub fn largest(v: &Vector<f64>) -> f64 {
-    v.iter().fold(0.0, |m, x| m.max(x.abs()))
 }

@@ -4,11 +4,12 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-use super::relative::{Approximate, Relative, largest};
+use super::relative::{Approximate, Relative};
 use super::{Decision, Interval, cascade};
-use crate::linear::{Vector, dot, sub};
+use crate::linear::{Vector, dot, largest, sub};
 use crate::number::{Number, unit_of};
-use crate::pose::{Body, Pose};
+use crate::pose::Pose;
+use crate::shape::Body;
 use crate::volume::Ball;
 
 /// Whether the posed bounding spheres overlap.

@@ -8,12 +8,15 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-use super::relative::{largest, quaternion};
+use super::relative::quaternion;
 use super::{Decision, Interval, any, cascade, either};
-use crate::linear::{Vector, apply, dot, integers, norm_squared, rotation, scale, sub, transpose};
+use crate::linear::{
+    Vector, apply, dot, integers, largest, norm_squared, rotation, scale, sub, transpose,
+};
 use crate::number::{Number, unit_of};
 use crate::overlap::world::extents;
-use crate::pose::{Body, Pose, separation};
+use crate::pose::{Pose, separation};
+use crate::shape::Body;
 use crate::volume::DirectionSet;
 
 /// Relative error of a height: 90u by hand for a rotation (8u an entry), a product and a sum over three axes; 256u.

@@ -3,7 +3,8 @@
 use super::Overlap;
 use super::ordop::{self, Turned};
 use crate::linear::Vector;
-use crate::pose::{Body, separation};
+use crate::pose::separation;
+use crate::shape::Body;
 
 /// Whether the posed oriented boxes overlap.
 pub fn overlap(a: &Body, b: &Body) -> bool {

@@ -7,7 +7,8 @@
 use super::separated;
 use crate::exact::polytope::Polytope;
 use crate::linear::{Vector, add, apply, cross};
-use crate::pose::{Body, Pose, separation};
+use crate::pose::{Pose, separation};
+use crate::shape::Body;
 
 /// Which axes the or-DOP test looks along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,7 +1,8 @@
 //! Sphere against sphere: ‖cB − cA‖² ≤ (rA + rB)².
 
 use crate::linear::{add, dot, sub};
-use crate::pose::{Body, separation};
+use crate::pose::separation;
+use crate::shape::Body;
 
 /// Whether the posed bounding spheres overlap.
 pub fn overlap(a: &Body, b: &Body) -> bool {

@@ -2,7 +2,8 @@
 
 use super::{apart, interval};
 use crate::linear::{Vector, apply, dot, integers};
-use crate::pose::{Body, separation};
+use crate::pose::separation;
+use crate::shape::Body;
 use crate::volume::DirectionSet;
 
 /// The posed vertices' intervals along each direction, world axes, seen from the body's origin.

@@ -4,7 +4,8 @@ use super::rational::{Rational3, posed, rational, rational3, unposed};
 use super::shapes::{Draws, exact_basis, slabs};
 use crate::DirectionSet;
 use crate::exact::polytope::Polytope;
-use crate::exact::relative::{Approximate, largest};
+use crate::exact::relative::Approximate;
+use crate::linear::largest;
 use crate::number::power_of_two;
 
 /// The largest coordinate difference between a rounded and an exact vector, in f64.

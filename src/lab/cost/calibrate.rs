@@ -6,7 +6,7 @@
 //! lanes that it keeps busy. Dividing a run's own seconds by its own counts would predict nothing.
 
 use super::VolumeCosts;
-use super::fit::{self, Row};
+use super::fit::{self, Measurement};
 use super::predict::{Price, Prices, Volume};
 use crate::bodies::Bodies;
 use crate::lab::measure::turns::{Trial, side_by_side, time};
@@ -143,7 +143,7 @@ struct Run {
     frames: f64,
     trials: Vec<Trial>,
     /// A list of or-DOP hits alone, where S-DOP is measured.
-    hits: Option<Row<4>>,
+    hits: Option<Measurement<4>>,
 }
 
 impl Run {
@@ -175,7 +175,7 @@ impl Run {
 
 /// Times the or-DOP test on a list of its hits. Refined pairs always have about the same share of hits, so that no
 /// choice of scenes alone could tell the price of a hit from that of a miss.
-fn time_hits(scene: &Scene, hits: &PairList, tier: Tier) -> Row<4> {
+fn time_hits(scene: &Scene, hits: &PairList, tier: Tier) -> Measurement<4> {
     let shapes = scene.shapes.iter().map(|shape| (shape, &shape.ordop));
     let posed = PosedOrDops::new(shapes, &scene.bodies, tier);
     let columns = posed.columns(scene.cull.overlap);
@@ -184,7 +184,7 @@ fn time_hits(scene: &Scene, hits: &PairList, tier: Tier) -> Row<4> {
         out.clear();
         columns.test_pairs(tier, hits.first(), hits.second(), &mut out)
     });
-    Row {
+    Measurement {
         counts: [1.0, 0.0, 0.0, hits.len() as f64],
         seconds: if hits.is_empty() { 0.0 } else { seconds },
     }
@@ -226,11 +226,11 @@ fn price(volume: Volume, runs: &[Run], known: &Prices) -> VolumeCosts {
         } else {
             0.0
         };
-        updates.push(Row {
+        updates.push(Measurement {
             counts: [per_frame(counters.updates)],
             seconds: medians.update - spheres / run.frames,
         });
-        finding.push(Row {
+        finding.push(Measurement {
             counts: [1.0, if refined { 0.0 } else { run.bodies }, misses, hits],
             seconds: medians.ordop + if refined { 0.0 } else { medians.pair_finding },
         });

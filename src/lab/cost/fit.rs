@@ -9,7 +9,7 @@ use faer::linalg::solvers::SolveLstsq;
 
 /// One measurement: how often each priced thing happened, and the seconds it took.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row<const N: usize> {
+pub struct Measurement<const N: usize> {
     /// Counts.
     pub counts: [f64; N],
     /// Seconds; rows that took none are left out.
@@ -18,8 +18,8 @@ pub struct Row<const N: usize> {
 
 /// The prices ≥ 0 that explain `rows` best; all 0 where nothing was measured.
 #[must_use]
-pub fn prices<const N: usize>(rows: &[Row<N>]) -> [f64; N] {
-    let rows: Vec<&Row<N>> = rows.iter().filter(|row| row.seconds > 0.0).collect();
+pub fn prices<const N: usize>(rows: &[Measurement<N>]) -> [f64; N] {
+    let rows: Vec<&Measurement<N>> = rows.iter().filter(|row| row.seconds > 0.0).collect();
     let mut best = ([0.0; N], f64::INFINITY);
     for subset in 1..1_u32 << N {
         let used: Vec<usize> = (0..N).filter(|j| subset >> j & 1 == 1).collect();
@@ -38,7 +38,7 @@ pub fn prices<const N: usize>(rows: &[Row<N>]) -> [f64; N] {
 }
 
 /// (explained − measured)/measured.
-fn relative_residual<const N: usize>(row: &Row<N>, prices: &[f64; N]) -> f64 {
+fn relative_residual<const N: usize>(row: &Measurement<N>, prices: &[f64; N]) -> f64 {
     let explained: f64 = row
         .counts
         .iter()
@@ -49,7 +49,7 @@ fn relative_residual<const N: usize>(row: &Row<N>, prices: &[f64; N]) -> f64 {
 }
 
 /// Ordinary least squares in the columns `used`; `None` when they can't be told apart.
-fn free_fit<const N: usize>(rows: &[&Row<N>], used: &[usize]) -> Option<[f64; N]> {
+fn free_fit<const N: usize>(rows: &[&Measurement<N>], used: &[usize]) -> Option<[f64; N]> {
     // Columns scaled to their largest entry: a count of tests is a million times one of frames.
     let scale: Vec<f64> = used
         .iter()
@@ -81,9 +81,9 @@ fn free_fit<const N: usize>(rows: &[&Row<N>], used: &[usize]) -> Option<[f64; N]
 mod tests {
     use super::*;
 
-    fn row(counts: [f64; 3], prices: [f64; 3]) -> Row<3> {
+    fn row(counts: [f64; 3], prices: [f64; 3]) -> Measurement<3> {
         let seconds = counts.iter().zip(prices).map(|(c, p)| c * p).sum();
-        Row { counts, seconds }
+        Measurement { counts, seconds }
     }
 
     #[test]
@@ -118,7 +118,7 @@ mod tests {
     fn nothing_measured_costs_nothing() {
         assert_eq!(prices::<2>(&[]), [0.0; 2]);
         assert_eq!(
-            prices(&[Row {
+            prices(&[Measurement {
                 counts: [1.0, 2.0],
                 seconds: 0.0
             }]),

@@ -11,9 +11,11 @@ use crate::volume::DirectionSet;
 /// Pairs that go through the first bodies' normals before the rest: their survivors' frames fit the first-level cache.
 const BLOCK: usize = 128;
 
-/// How many pairs ahead rows are asked for, and how many rows the caches hold anyway.
-const AHEAD: usize = 48;
-const NEAR: usize = 1 << 13;
+/// How many pairs ahead rows are prefetched.
+const PREFETCH_AHEAD: usize = 48;
+
+/// Up to so many rows the caches hold them all, and prefetching only costs.
+const ROWS_IN_CACHE: usize = 1 << 13;
 
 /// The or-DOPs of all bodies as the pair test reads them.
 #[derive(Clone, Copy)]
@@ -106,9 +108,10 @@ impl OrDopColumns<'_> {
     ) -> Tested {
         // Only a vector of 16 has a permutation for 16 shapes; with two halves each, rows are as quick.
         let few = L::WIDTH == 16 && !self.tables.columns().is_empty();
-        match few {
-            true => self.test_blocks::<L, K, true>(l, first, second, out),
-            false => self.test_blocks::<L, K, false>(l, first, second, out),
+        if few {
+            self.test_blocks::<L, K, true>(l, first, second, out)
+        } else {
+            self.test_blocks::<L, K, false>(l, first, second, out)
         }
     }
 
@@ -125,7 +128,7 @@ impl OrDopColumns<'_> {
         for start in (0..first.len()).step_by(BLOCK) {
             let end = first.len().min(start + BLOCK);
             pairs.fill(&first[start..end], &second[start..end]);
-            let later = first.len().min(start + AHEAD);
+            let later = first.len().min(start + PREFETCH_AHEAD);
             let later = [&first[later..], &second[later..]];
             self.by_first::<L, K, FEW>(l, &pairs, later, &mut alive);
             self.by_rest::<L, K, FEW>(l, &alive, out);
@@ -136,7 +139,8 @@ impl OrDopColumns<'_> {
         }
     }
 
-    /// Pairs through the normals of the first bodies. `later` are the pairs from [`AHEAD`] places behind the first of these.
+    /// Pairs through the normals of the first bodies. `later` are the pairs that follow [`PREFETCH_AHEAD`] behind
+    /// these.
     #[inline(always)]
     fn by_first<L: Lanes, const K: usize, const FEW: bool>(
         &self,
@@ -148,9 +152,9 @@ impl OrDopColumns<'_> {
         alive.pairs.len = 0;
         let mut start = 0;
         while start < pairs.len {
-            if self.rows.len() > NEAR {
+            if self.rows.len() > ROWS_IN_CACHE {
                 for column in later {
-                    self.ask_for(column.iter().skip(start).take(L::WIDTH));
+                    self.prefetch_rows(column.iter().skip(start).take(L::WIDTH));
                 }
             }
             let frames = Frames::new(
@@ -196,7 +200,7 @@ impl OrDopColumns<'_> {
     }
 
     #[inline(always)]
-    fn ask_for<'a>(&self, wanted: impl Iterator<Item = &'a u32>) {
+    fn prefetch_rows<'a>(&self, wanted: impl Iterator<Item = &'a u32>) {
         for &row in wanted {
             if let Some(row) = self.rows.get(row as usize) {
                 prefetch(row);

@@ -19,7 +19,7 @@ use crate::peer::{Peer, Setup};
 const CUBES: usize = 4096;
 /// Bodies whose boxes are copied before any is looked at: each is a cache miss, and so more of them are on their way at once.
 const TOGETHER: usize = 64;
-/// Shares of the work a thread: whoever is done early takes another's.
+/// Ranges of the work per thread: a thread that is done early takes another one.
 const SHARES: usize = 4;
 
 /// Boxes in a grid.

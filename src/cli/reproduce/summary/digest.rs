@@ -13,8 +13,9 @@ use crate::cli::reproduce::rows::Tables;
 
 pub fn section(out: &mut String, tables: &Tables) -> Result {
     writeln!(out, "## In short\n")?;
-    let (yes, no): (Vec<_>, Vec<_>) = table_1::rows(tables).partition(table_1::Row::reproduces);
-    let names = |rows: &[table_1::Row]| {
+    let (yes, no): (Vec<_>, Vec<_>) =
+        table_1::rows(tables).partition(table_1::StrategyMatch::reproduces);
+    let names = |rows: &[table_1::StrategyMatch]| {
         let names: Vec<&str> = rows.iter().map(|row| paper_name(row.strategy)).collect();
         if names.is_empty() {
             "none".to_owned()

@@ -13,13 +13,13 @@ use crate::cli::reproduce::rows::Tables;
 const NEAR: f64 = 0.15;
 
 /// Ours over the paper's in its columns, under the reading that comes nearest.
-pub struct Row {
+pub struct StrategyMatch {
     pub strategy: Strategy,
     pub reading: Reading,
     pub ratios: Vec<Option<f64>>,
 }
 
-impl Row {
+impl StrategyMatch {
     /// The nearest reading is the one with the least worst ratio.
     fn new(tables: &Tables, strategy: Strategy) -> Self {
         let with = |&reading: &Reading| {
@@ -55,10 +55,10 @@ impl Row {
 }
 
 /// The rows of the paper's table.
-pub fn rows(tables: &Tables) -> impl Iterator<Item = Row> + '_ {
+pub fn rows(tables: &Tables) -> impl Iterator<Item = StrategyMatch> + '_ {
     TABLE_1_STRATEGIES
         .into_iter()
-        .map(|strategy| Row::new(tables, strategy))
+        .map(|strategy| StrategyMatch::new(tables, strategy))
 }
 
 pub fn section(out: &mut String, tables: &Tables) -> Result {

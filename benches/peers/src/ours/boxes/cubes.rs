@@ -46,7 +46,7 @@ pub fn cube_about(slabs: &Slabs) -> ([f32; 4], f32) {
 pub struct Gap(AtomicU32);
 
 impl Gap {
-    /// Hears of more boxes.
+    /// Raises the gap to that of more boxes, if it is greater.
     pub fn raise(&self, gap: f32) {
         self.0.fetch_max(gap.to_bits(), Relaxed);
     }
