@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod lives;
+mod pair_test;
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -14,7 +15,7 @@ use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Strategy, Updates};
 use sdop::simd::Tier;
 use sdop::volume::{Shape, ShapeSpec};
-use sdop::world::{Body, BodyId, Groups, World, WorldError};
+use sdop::world::{Body, BodyId, Groups, PairLookup, World, WorldError};
 
 struct Random(ChaCha8Rng);
 
@@ -125,6 +126,7 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
             .unwrap();
         let mut bodies = HashMap::new();
         let mut before = Pairs::new();
+        let mut lookup = PairLookup::default();
         let mut seen = 0;
         for frame in 0..12 {
             let come_and_go = frame % 3 < 2;
@@ -138,6 +140,15 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
             pool.cull().unwrap();
             let now: Pairs = world.pairs().collect();
             assert_eq!(now.len(), world.pairs().len(), "each pair once");
+            lookup.refill(&world);
+            for (&a, &b) in bodies.keys().zip(bodies.keys().cycle().skip(frame)) {
+                let reported = now.contains(&[a, b]) || now.contains(&[b, a]);
+                assert_eq!(lookup.contains(a, b), reported, "{way:?}: {a}, {b}");
+            }
+            assert!(
+                now.iter()
+                    .all(|&[a, b]| lookup.contains(a, b) && lookup.contains(b, a))
+            );
             assert!(world.pairs().eq(pool.pairs()), "{way:?}: threads");
             if deterministic {
                 let expected = afresh(&shapes, &way, &bodies);

@@ -1,39 +1,132 @@
-//! probe
-use sdop_rapier::plan::*;
-use sdop_rapier::single::proof::{calls::Counted, scenes::Stage};
-use sdop_rapier::single::rapier::prelude::*;
-use sdop_rapier::single::{Filter, HOOKS};
-use std::sync::atomic::Ordering;
+//! Runs the proof: `sdop-rapier check`, `measure` and `table`.
 
-fn main() {
-    let forms = sdop_rapier::forms::forms("data/meshes".as_ref()).unwrap();
-    let args: Vec<String> = std::env::args().collect();
-    let plan = Plan { scene: args[1].parse().unwrap(), kind: args[2].parse().unwrap(), bodies: args[3].parse().unwrap(), seed: 1 };
-    let steps: usize = args[4].parse().unwrap();
-    for mode in [Mode::Plain, Mode::Full, Mode::Hook] {
-        let hooks = if mode == Mode::Hook { HOOKS } else { ActiveHooks::empty() };
-        let mut stage = Stage::new(plan, &forms, hooks);
-        let mut filter = Filter::default();
-        let counted = Counted::default();
-        counted.0.timing.store(args.len() > 5, Ordering::Relaxed);
-        stage.world.narrow_phase = NarrowPhase::with_query_dispatcher(counted.clone());
-        stage.world.integration_parameters.contact_recycling = mode != Mode::Full;
-        let (mut step, mut narrow, mut broad, mut last) = (0.0, 0.0, 0.0, 0);
-        for i in 0..steps {
-            stage.between_steps();
-            let params = stage.world.integration_parameters;
-            if mode == Mode::Hook { stage.world.step_with_events(filter.for_step(&params), &()); } else { stage.world.step(); }
-            let c = &stage.world.physics_pipeline.counters;
-            step += c.step_time_ms();
-            narrow += c.cd.narrow_phase_time.time_ms();
-            broad += c.cd.broad_phase_time.time_ms() + c.cd.final_broad_phase_time.time_ms();
-            if (i + 1) % (steps / 5) == 0 {
-                let calls = counted.0.count();
-                let k = i as f64 + 1.0;
-                println!("{mode:>6} {i}: step {:.3} ms narrow {:.3} broad {:.3} pairs {} calls/step {} hits {} @{:.0} misses {} @{:.0} active {} mirror {:.3} cull {:.3} culls {}", step / k, narrow / k, broad / k,
-                    c.cd.ncontact_pairs, (calls - last) as usize / (steps / 5), counted.0.hits.count(), counted.0.hits.mean_ns(), counted.0.misses.count(), counted.0.misses.mean_ns(), stage.world.islands.active_bodies().count(), filter.cost().mirror*1e3/k, filter.cost().cull*1e3/k, filter.cost().culls);
-                last = calls;
-            }
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+use miette::{IntoDiagnostic, Result};
+use sdop::lab::measure::machine::Machine;
+use sdop::simd::Tier;
+use sdop_rapier::forms::forms;
+use sdop_rapier::plan::{Kind, Mode, Plan, Real, Scene};
+use sdop_rapier::record::{Found, Record};
+use sdop_rapier::{double, single, table, whole};
+
+/// S-DOP culling in rapier: contacts compared, steps timed.
+#[derive(Parser)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Takes every step with and without the filter from the same state. A dropped pair is a failure (exit code 1).
+    Check {
+        #[command(flatten)]
+        run: Run,
+        /// How it is filtered.
+        #[arg(long, default_value = "dispatcher")]
+        mode: Mode,
+        /// Plants a bug that the check must see: margins are left out.
+        #[arg(long)]
+        without_margin: bool,
+        /// Where a dropped pair is saved as a scene.
+        #[arg(long, default_value = "dropped")]
+        cases: PathBuf,
+    },
+    /// Steps the scene in several modes, in turns, and times them by rapier's counters.
+    Measure {
+        #[command(flatten)]
+        run: Run,
+        /// The modes.
+        #[arg(long, value_delimiter = ',', default_value = "plain,full,hook,dispatcher")]
+        modes: Vec<Mode>,
+        /// Steps of the run that prices are taken from; it has another seed.
+        #[arg(long, default_value_t = 200)]
+        calibrate: usize,
+    },
+    /// Makes the tables of a folder of records, as Markdown.
+    Table {
+        /// Where the records are.
+        records: PathBuf,
+    },
+}
+
+#[derive(Args)]
+struct Run {
+    /// What happens.
+    #[arg(long)]
+    scene: Scene,
+    /// What bodies are made of.
+    #[arg(long, default_value = "hull")]
+    kind: Kind,
+    /// How many.
+    #[arg(long, default_value_t = 100)]
+    bodies: usize,
+    /// Steps of a sixtieth of a second.
+    #[arg(long, default_value_t = 1000)]
+    steps: usize,
+    /// Where random draws start.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Rapier's numbers.
+    #[arg(long, default_value = "f32")]
+    real: Real,
+    /// The repository's folder of meshes.
+    #[arg(long, default_value = "data/meshes")]
+    meshes: PathBuf,
+    /// The record that is written, as JSON.
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+impl Run {
+    fn plan(&self) -> Plan {
+        let Self { scene, kind, bodies, seed, .. } = *self;
+        Plan { scene, kind, bodies, seed }
+    }
+
+    /// Prints the record and writes it where it was asked for.
+    fn finish(&self, found: Found) -> Result<()> {
+        let record = Record {
+            command: std::env::args().skip(1).collect::<Vec<_>>().join(" "),
+            machine: Machine::here(Tier::detect()),
+            scene: self.scene.to_string(),
+            kind: self.kind.to_string(),
+            bodies: self.bodies,
+            steps: self.steps,
+            seed: self.seed,
+            real: self.real.to_string(),
+            found,
+        };
+        let text = serde_json::to_string_pretty(&record).into_diagnostic()? + "\n";
+        print!("{text}");
+        self.out.as_ref().map_or(Ok(()), |path| whole::write(path, &text))
+    }
+}
+
+fn main() -> Result<ExitCode> {
+    match Cli::parse().command {
+        Command::Check { run, mode, without_margin, cases } => {
+            let check = if run.real == Real::F32 { single::proof::check } else { double::proof::check };
+            let forms = forms(&run.meshes)?;
+            let check = check(run.plan(), &forms, mode, run.steps, without_margin, &cases)?;
+            let fine = check.dropped == 0;
+            run.finish(Found::Checked { mode: mode.to_string(), without_margin, check })?;
+            Ok(if fine { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+        }
+        Command::Measure { run, modes, calibrate } => {
+            let measure =
+                if run.real == Real::F32 { single::proof::measure } else { double::proof::measure };
+            let forms = forms(&run.meshes)?;
+            let (shares, prices) = measure(run.plan(), &forms, &modes, run.steps, calibrate);
+            run.finish(Found::Measured { shares, prices })?;
+            Ok(ExitCode::SUCCESS)
+        }
+        Command::Table { records } => {
+            print!("{}", table::of(&records)?);
+            Ok(ExitCode::SUCCESS)
         }
     }
 }

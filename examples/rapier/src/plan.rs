@@ -52,6 +52,8 @@ names! {
         Conveyor = "conveyor",
         /// Bodies flying about in a closed box, without gravity.
         Cloud = "cloud",
+        /// Bodies of every kind that are disturbed from outside: teleported, put to sleep, exchanged, made sensors, regrouped.
+        Zoo = "zoo",
     }
 }
 
@@ -86,6 +88,39 @@ names! {
         Dispatcher = "dispatcher",
         /// The filter in the query dispatcher; contacts never recycled.
         DispatcherFull = "dispatcher-full",
+    }
+}
+
+names! {
+    /// Rapier's numbers.
+    Real {
+        /// `rapier3d`.
+        F32 = "f32",
+        /// `rapier3d-f64`.
+        F64 = "f64",
+    }
+}
+
+impl Mode {
+    /// Whether contacts are recycled, as far as a hook lets rapier do so.
+    #[must_use]
+    pub const fn recycles(self) -> bool {
+        matches!(self, Self::Plain | Self::Dispatcher | Self::Hook)
+    }
+
+    /// Whether the filter is in the dispatcher.
+    #[must_use]
+    pub const fn dispatches(self) -> bool {
+        matches!(self, Self::Dispatcher | Self::DispatcherFull)
+    }
+
+    /// The mode without the filter that makes the same of every pair.
+    #[must_use]
+    pub const fn unfiltered(self) -> Self {
+        match self {
+            Self::Plain | Self::Dispatcher => Self::Plain,
+            Self::Full | Self::DispatcherFull | Self::Hook => Self::Full,
+        }
     }
 }
 

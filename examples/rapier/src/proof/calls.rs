@@ -1,9 +1,10 @@
 //! Parry's own dispatcher, counted: what reaches the narrow phase, and what it costs.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 use std::time::Instant;
 
+use super::super::CullingDispatcher;
 use super::super::rapier::geometry::ContactManifold;
 use super::super::rapier::math::{Pose, Real, Vector};
 use super::super::rapier::parry::query::details::{NormalConstraints, ShapeCastOptions};
@@ -15,25 +16,45 @@ use super::super::rapier::parry::query::{
 use super::super::rapier::parry::shape::Shape;
 use super::super::rapier::prelude::{ContactData, ContactManifoldData};
 
-/// Pairs of colliders that reached the narrow phase.
+/// Pairs that reached the narrow phase, and pairs that were kept from it.
 #[derive(Debug, Default)]
 pub struct Calls {
     /// Pairs with contact points afterwards.
     pub hits: Timed,
     /// Pairs without.
     pub misses: Timed,
+    /// Of the misses, those that the filter rejects. In [`Filtering::Shadow`] they are checked all the same.
+    pub culled: Timed,
+    /// Pairs that the filter was asked about: the time is its own.
+    pub asked: Timed,
     /// Pairs of which one is a sensor.
     pub sensors: Timed,
-    /// Whether to time them.
-    pub timing: AtomicBool,
+    filtering: AtomicU8,
+    timing: AtomicBool,
+    without_margin: AtomicBool,
+}
+
+/// What the filter is there for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filtering {
+    /// Not asked.
+    Off = 0,
+    /// Asked and heeded.
+    On = 1,
+    /// Asked, but the pair is checked all the same: what would the rejected ones have cost?
+    Shadow = 2,
 }
 
 /// A number of calls and their nanoseconds.
 #[derive(Debug, Default)]
 pub struct Timed {
     count: AtomicU64,
+    timed: AtomicU64,
     ns: AtomicU64,
 }
+
+/// A call that took longer was interrupted by another process, and is not timed.
+const INTERRUPTED_NS: u64 = 2_000_000;
 
 impl Timed {
     /// Calls so far.
@@ -43,21 +64,41 @@ impl Timed {
 
     /// Nanoseconds per call, if timed.
     pub fn mean_ns(&self) -> f64 {
-        self.ns.load(Ordering::Relaxed) as f64 / self.count().max(1) as f64
+        self.ns.load(Ordering::Relaxed) as f64 / self.timed.load(Ordering::Relaxed).max(1) as f64
     }
 
-    fn add(&self, start: Option<Instant>) {
+    fn add(&self, ns: Option<u64>) {
         self.count.fetch_add(1, Ordering::Relaxed);
-        if let Some(start) = start {
-            self.ns.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+        if let Some(ns) = ns.filter(|&ns| ns < INTERRUPTED_NS) {
+            self.timed.fetch_add(1, Ordering::Relaxed);
+            self.ns.fetch_add(ns, Ordering::Relaxed);
         }
     }
 }
 
 impl Calls {
-    /// All pairs that reached the narrow phase.
-    pub fn count(&self) -> u64 {
+    /// Pairs that reached the narrow phase.
+    pub fn narrow(&self) -> u64 {
         self.hits.count() + self.misses.count() + self.sensors.count()
+    }
+
+    /// What the filter in the dispatcher does from now on.
+    pub fn set_filtering(&self, filtering: Filtering) {
+        self.filtering.store(filtering as u8, Ordering::Relaxed);
+    }
+
+    /// Whether calls are timed from now on.
+    pub fn set_timing(&self, timing: bool) {
+        self.timing.store(timing, Ordering::Relaxed);
+    }
+
+    /// Plants a bug: the filter is told of a prediction distance of zero.
+    pub fn leave_margin_out(&self) {
+        self.without_margin.store(true, Ordering::Relaxed);
+    }
+
+    fn is(&self, filtering: Filtering) -> bool {
+        self.filtering.load(Ordering::Relaxed) == filtering as u8
     }
 
     fn start(&self) -> Option<Instant> {
@@ -65,9 +106,18 @@ impl Calls {
     }
 }
 
-/// [`DefaultQueryDispatcher`] with [`Calls`].
-#[derive(Clone, Debug, Default)]
-pub struct Counted(pub Arc<Calls>);
+fn since(start: Option<Instant>) -> Option<u64> {
+    start.map(|start| start.elapsed().as_nanos() as u64)
+}
+
+/// [`DefaultQueryDispatcher`] behind a [`CullingDispatcher`], with [`Calls`].
+#[derive(Clone, Default)]
+pub struct Counted {
+    /// The counts.
+    pub calls: Arc<Calls>,
+    /// The filter.
+    pub culling: CullingDispatcher,
+}
 
 type Manifold = ContactManifold;
 
@@ -81,12 +131,30 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Counted {
         manifolds: &mut Vec<Manifold>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
-        let start = self.0.start();
+        let calls = &self.calls;
+        let mut rejected = false;
+        if !calls.is(Filtering::Off) {
+            let told = if calls.without_margin.load(Ordering::Relaxed) { 0.0 } else { prediction };
+            let start = calls.start();
+            let answer =
+                self.culling.contact_manifolds(pos12, g1, g2, told, manifolds, workspace);
+            calls.asked.add(since(start));
+            rejected = answer.is_ok();
+            if rejected && calls.is(Filtering::On) {
+                calls.culled.add(None);
+                return Ok(());
+            }
+        }
+        let start = calls.start();
         let done = DefaultQueryDispatcher.contact_manifolds(
             pos12, g1, g2, prediction, manifolds, workspace,
         );
+        let ns = since(start);
+        if rejected {
+            calls.culled.add(ns);
+        }
         let hit = manifolds.iter().any(|manifold| !manifold.points.is_empty());
-        if hit { &self.0.hits } else { &self.0.misses }.add(start);
+        if hit { &calls.hits } else { &calls.misses }.add(ns);
         done
     }
 
@@ -113,9 +181,18 @@ impl QueryDispatcher for Counted {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        let start = self.0.start();
+        let calls = &self.calls;
+        if calls.is(Filtering::On) {
+            let answer = self.culling.intersection_test(pos12, g1, g2);
+            calls.asked.add(None);
+            if answer.is_ok() {
+                calls.culled.add(None);
+                return answer;
+            }
+        }
+        let start = calls.start();
         let found = DefaultQueryDispatcher.intersection_test(pos12, g1, g2);
-        self.0.sensors.add(start);
+        calls.sensors.add(since(start));
         found
     }
 

@@ -12,15 +12,16 @@ use crate::plan::{Kind, Plan, Scene};
 const SPACING: Real = 1.1;
 
 /// Half the thickness of walls.
-const WALL: Real = 0.5;
+pub(super) const WALL: Real = 0.5;
 
 /// A world, and what happens to it from outside.
 pub struct Stage {
     /// All of rapier's sets.
     pub world: PhysicsWorld,
-    plan: Plan,
-    colliders: Vec<Vec<Collider>>,
-    random: Random,
+    pub(super) plan: Plan,
+    /// The colliders of one body of each form.
+    pub(super) colliders: Vec<Vec<Collider>>,
+    pub(super) random: Random,
     belt: Option<Belt>,
 }
 
@@ -33,20 +34,20 @@ struct Belt {
 
 /// Numbers of a seed, the same on every platform.
 #[derive(Clone)]
-struct Random(ChaCha8Rng);
+pub(super) struct Random(ChaCha8Rng);
 
 impl Random {
     /// Uniform in [−1, 1).
-    fn sign(&mut self) -> Real {
+    pub fn sign(&mut self) -> Real {
         (self.0.next_u32() >> 8) as Real / (1 << 23) as Real - 1.0
     }
 
-    fn vector(&mut self) -> Vector {
+    pub fn vector(&mut self) -> Vector {
         Vector::new(self.sign(), self.sign(), self.sign())
     }
 
     /// Uniform over all rotations: a quaternion from the unit ball.
-    fn rotation(&mut self) -> Rotation {
+    pub fn rotation(&mut self) -> Rotation {
         loop {
             let [x, y, z, w] = std::array::from_fn(|_| self.sign());
             let square = x * x + y * y + z * z + w * w;
@@ -57,7 +58,7 @@ impl Random {
         }
     }
 
-    fn below(&mut self, count: usize) -> usize {
+    pub fn below(&mut self, count: usize) -> usize {
         (u64::from(self.0.next_u32()) * count as u64 >> 32) as usize
     }
 }
@@ -69,10 +70,9 @@ impl Stage {
     /// If one of `forms` is no body at all: they are this program's own.
     #[must_use]
     pub fn new(plan: Plan, forms: &[TriangleMesh], hooks: ActiveHooks) -> Self {
-        let mut colliders = Vec::new();
-        for form in forms {
-            colliders.push(made_of(plan.kind, form, hooks));
-        }
+        let kinds = if plan.scene == Scene::Zoo { Kind::ALL } else { &[plan.kind] };
+        let made = |form| kinds.iter().map(move |&kind| made_of(kind, form, hooks));
+        let colliders = forms.iter().flat_map(made).collect();
         let mut stage = Self {
             world: PhysicsWorld::new(),
             plan,
@@ -85,8 +85,14 @@ impl Stage {
             Scene::Tumbler => stage.tumbler(),
             Scene::Conveyor => stage.conveyor(),
             Scene::Cloud => stage.cloud(),
+            Scene::Zoo => stage.zoo(),
         }
         stage
+    }
+
+    /// The shapes that bodies are made of.
+    pub fn shapes(&self) -> impl Iterator<Item = &SharedShape> {
+        self.colliders.iter().flatten().map(Collider::shared_shape)
     }
 
     fn pile(&mut self) {
@@ -132,7 +138,7 @@ impl Stage {
 
     /// Sets all bodies out on a cube's lattice about `centre`, `apart` times the usual distance; returns the cube's side in
     /// bodies.
-    fn lattice(&mut self, apart: Real, centre: Vector, speed: Real) -> Real {
+    pub(super) fn lattice(&mut self, apart: Real, centre: Vector, speed: Real) -> Real {
         let side = (1..).find(|n| n * n * n >= self.plan.bodies).unwrap_or(1);
         for i in 0..self.plan.bodies {
             let cell = [i % side, i / side / side, i / side % side].map(|c| c as Real + 0.5);
@@ -144,7 +150,7 @@ impl Stage {
         side as Real
     }
 
-    fn drop_at(&mut self, place: Vector, velocity: Vector) {
+    pub(super) fn drop_at(&mut self, place: Vector, velocity: Vector) {
         let form = self.random.below(self.colliders.len());
         let body = RigidBodyBuilder::dynamic()
             .pose(Pose::from_parts(place, self.random.rotation()))
@@ -162,7 +168,7 @@ impl Stage {
     }
 
     /// The first `count` walls of a box: the floor first, the ceiling last.
-    fn box_around(&mut self, body: Option<RigidBodyHandle>, half: Vector, count: usize) {
+    pub(super) fn box_around(&mut self, body: Option<RigidBodyHandle>, half: Vector, count: usize) {
         let sides = [-Vector::Y, Vector::X, -Vector::X, Vector::Z, -Vector::Z, Vector::Y];
         for side in &sides[..count] {
             let flat = Vector::ONE - side.abs();
@@ -180,8 +186,17 @@ impl Stage {
         self.world.insert_collider(wall.restitution(bounce).friction(0.5), body);
     }
 
-    /// What happens from outside between two steps: the belt is put back, what fell off is replaced.
+    /// What happens from outside between two steps.
     pub fn between_steps(&mut self) {
+        match self.plan.scene {
+            Scene::Conveyor => self.convey(),
+            Scene::Zoo => self.disturb(),
+            _ => {}
+        }
+    }
+
+    /// The belt is put back, what fell off is replaced.
+    fn convey(&mut self) {
         let Some(Belt { body, length, width }) = self.belt else {
             return;
         };
