@@ -42,35 +42,55 @@ struct Entry {
 impl Default for CullingDispatcher {
     fn default() -> Self {
         let test = PairTest::new(DirectionSet::K18);
-        Self(Arc::new(RwLock::new(Known { test, shapes: HashMap::new() })))
+        Self(Arc::new(RwLock::new(Known {
+            test,
+            shapes: HashMap::new(),
+        })))
     }
 }
 
 impl CullingDispatcher {
     /// Makes a collider's shape known. Says whether its pairs can be filtered (see [`volume`]); if not, they pass.
     pub fn add(&self, shape: &SharedShape) -> bool {
-        let Ok(mut known) = self.0.write() else { return false };
+        let Ok(mut known) = self.0.write() else {
+            return false;
+        };
         if known.find(shape.as_ref()).is_some() {
             return true;
         }
-        let Some(volume) = volume(shape.as_ref()) else { return false };
-        let Ok(number) = known.test.add(&volume) else { return false };
-        let entry = Entry { _held: shape.clone(), number, reach: volume.reach.into(), grown: Vec::new() };
+        let Some(volume) = volume(shape.as_ref()) else {
+            return false;
+        };
+        let Ok(number) = known.test.add(&volume) else {
+            return false;
+        };
+        let entry = Entry {
+            _held: shape.clone(),
+            number,
+            reach: volume.reach.into(),
+            grown: Vec::new(),
+        };
         known.shapes.insert(address(shape.as_ref()), entry);
         true
     }
 
     /// False only if the two shapes are farther apart than `distance`.
     fn may_touch(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, distance: Real) -> bool {
-        let Ok(known) = self.0.read() else { return true };
-        let Some((first, second)) = known.find(g1).zip(known.find(g2)) else { return true };
+        let Ok(known) = self.0.read() else {
+            return true;
+        };
+        let Some((first, second)) = known.find(g1).zip(known.find(g2)) else {
+            return true;
+        };
         // 1 % for parry's GJK, which stops within 0.1 % of a distance.
         let size = first.reach + second.reach + pos12.translation.length() as f64;
         let margin = (1.01 * distance as f64 + rounding(size)) as f32;
         let rotation = pos12.rotation.to_array().map(|x| x as f32);
         let translation = pos12.translation.to_array().map(|x| x as f32);
         match first.model(margin) {
-            Some(model) => known.test.may_touch(model, second.number, rotation, translation),
+            Some(model) => known
+                .test
+                .may_touch(model, second.number, rotation, translation),
             None => {
                 drop(known);
                 self.grow(g1, margin); // for the next time
@@ -81,7 +101,9 @@ impl CullingDispatcher {
 
     /// Makes a model of the shape with a margin that serves this one and those a little larger.
     fn grow(&self, shape: &dyn Shape, margin: f32) {
-        let Ok(mut known) = self.0.write() else { return };
+        let Ok(mut known) = self.0.write() else {
+            return;
+        };
         let Known { test, shapes } = &mut *known;
         if let Some(entry) = shapes.get_mut(&address(shape))
             && let Ok(model) = test.grown(entry.number, margin * WIDER)
@@ -124,7 +146,11 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for CullingDisp
     ) -> Result<(), Unsupported> {
         // Points of earlier steps are for parry to keep or to drop.
         let touched = manifolds.iter().any(|manifold| !manifold.points.is_empty());
-        if touched || self.may_touch(pos12, g1, g2, prediction) { Err(Unsupported) } else { Ok(()) }
+        if touched || self.may_touch(pos12, g1, g2, prediction) {
+            Err(Unsupported)
+        } else {
+            Ok(())
+        }
     }
 
     fn contact_manifold_convex_convex(
@@ -149,10 +175,19 @@ impl QueryDispatcher for CullingDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        if self.may_touch(pos12, g1, g2, 0.0) { Err(Unsupported) } else { Ok(ShapeIntersection::new(false)) }
+        if self.may_touch(pos12, g1, g2, 0.0) {
+            Err(Unsupported)
+        } else {
+            Ok(ShapeIntersection::new(false))
+        }
     }
 
-    fn distance(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
+    fn distance(
+        &self,
+        _: &Pose,
+        _: &dyn Shape,
+        _: &dyn Shape,
+    ) -> Result<ShapeDistance, Unsupported> {
         Err(Unsupported)
     }
 

@@ -59,7 +59,10 @@ impl Filter {
 
     /// What it has cost so far.
     pub fn cost(&self) -> Cost {
-        self.mirror.read().map(|mirror| mirror.cost).unwrap_or_default()
+        self.mirror
+            .read()
+            .map(|mirror| mirror.cost)
+            .unwrap_or_default()
     }
 }
 
@@ -113,7 +116,13 @@ struct Seat {
 
 impl Seat {
     /// Whether the collider is where and what it was, and still within its margin.
-    fn is(&self, handle: ColliderHandle, now: &Collider, body: Option<&RigidBody>, step: Step) -> bool {
+    fn is(
+        &self,
+        handle: ColliderHandle,
+        now: &Collider,
+        body: Option<&RigidBody>,
+        step: Step,
+    ) -> bool {
         self.handle == handle
             && Arc::ptr_eq(&self.shape.0, &now.shared_shape().0)
             && self.pose == *now.position()
@@ -135,7 +144,10 @@ impl Mirror {
             let current = || Some(seat.is(handle, pair.colliders.get(handle)?, body, step));
             (seat.id.is_none() || current()?).then_some(seat)
         };
-        let (a, b) = (seat(pair.collider1, bodies[0])?, seat(pair.collider2, bodies[1])?);
+        let (a, b) = (
+            seat(pair.collider1, bodies[0])?,
+            seat(pair.collider2, bodies[1])?,
+        );
         match (a.id, b.id) {
             // Two that were at rest weren't culled against each other.
             (Some(first), Some(second)) if a.awake || b.awake => {
@@ -204,7 +216,10 @@ impl Mirror {
         let seat = &mut self.seats[slot(handle)];
         let awake = body.is_some_and(|body| !body.is_fixed() && !body.is_sleeping());
         let shape = collider.shared_shape();
-        let number = self.shapes.get(&address(shape)).and_then(|(_, number)| *number);
+        let number = self
+            .shapes
+            .get(&address(shape))
+            .and_then(|(_, number)| *number);
         let reach = number.map_or(0.0, |number| self.volumes[number as usize].reach.into());
         let needed = step.margin(collider, body, reach);
         if let Some(seat) = seat

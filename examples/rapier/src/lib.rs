@@ -1,5 +1,8 @@
 //! S-DOP culling between rapier's broad phase and its narrow phase.
-#![allow(clippy::duplicate_mod, reason = "one source serves rapier's two crates, f32 and f64")]
+#![allow(
+    clippy::duplicate_mod,
+    reason = "one source serves rapier's two crates, f32 and f64"
+)]
 
 pub mod case;
 pub mod double;
@@ -7,5 +10,4 @@ pub mod forms;
 pub mod plan;
 pub mod record;
 pub mod single;
-pub mod table;
 pub mod whole;

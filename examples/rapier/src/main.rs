@@ -1,4 +1,4 @@
-//! Runs the proof: `sdop-rapier check`, `measure` and `table`.
+//! Runs the proof: `sdop-rapier check` and `measure`.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,7 +10,7 @@ use sdop::simd::Tier;
 use sdop_rapier::forms::forms;
 use sdop_rapier::plan::{Kind, Mode, Plan, Real, Scene};
 use sdop_rapier::record::{Found, Record};
-use sdop_rapier::{double, single, table, whole};
+use sdop_rapier::{double, single, whole};
 
 /// S-DOP culling in rapier: contacts compared, steps timed.
 #[derive(Parser)]
@@ -40,16 +40,15 @@ enum Command {
         #[command(flatten)]
         run: Run,
         /// The modes.
-        #[arg(long, value_delimiter = ',', default_value = "plain,full,hook,dispatcher")]
+        #[arg(
+            long,
+            value_delimiter = ',',
+            default_value = "plain,full,hook,dispatcher"
+        )]
         modes: Vec<Mode>,
         /// Steps of the run that prices are taken from; it has another seed.
         #[arg(long, default_value_t = 200)]
         calibrate: usize,
-    },
-    /// Makes the tables of a folder of records, as Markdown.
-    Table {
-        /// Where the records are.
-        records: PathBuf,
     },
 }
 
@@ -83,8 +82,19 @@ struct Run {
 
 impl Run {
     fn plan(&self) -> Plan {
-        let Self { scene, kind, bodies, seed, .. } = *self;
-        Plan { scene, kind, bodies, seed }
+        let Self {
+            scene,
+            kind,
+            bodies,
+            seed,
+            ..
+        } = *self;
+        Plan {
+            scene,
+            kind,
+            bodies,
+            seed,
+        }
     }
 
     /// Prints the record and writes it where it was asked for.
@@ -102,30 +112,52 @@ impl Run {
         };
         let text = serde_json::to_string_pretty(&record).into_diagnostic()? + "\n";
         print!("{text}");
-        self.out.as_ref().map_or(Ok(()), |path| whole::write(path, &text))
+        self.out
+            .as_ref()
+            .map_or(Ok(()), |path| whole::write(path, &text))
     }
 }
 
 fn main() -> Result<ExitCode> {
     match Cli::parse().command {
-        Command::Check { run, mode, without_margin, cases } => {
-            let check = if run.real == Real::F32 { single::proof::check } else { double::proof::check };
+        Command::Check {
+            run,
+            mode,
+            without_margin,
+            cases,
+        } => {
+            let check = if run.real == Real::F32 {
+                single::proof::check
+            } else {
+                double::proof::check
+            };
             let forms = forms(&run.meshes)?;
             let check = check(run.plan(), &forms, mode, run.steps, without_margin, &cases)?;
             let fine = check.dropped == 0;
-            run.finish(Found::Checked { mode: mode.to_string(), without_margin, check })?;
-            Ok(if fine { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+            run.finish(Found::Checked {
+                mode: mode.to_string(),
+                without_margin,
+                check,
+            })?;
+            Ok(if fine {
+                ExitCode::SUCCESS
+            } else {
+                ExitCode::FAILURE
+            })
         }
-        Command::Measure { run, modes, calibrate } => {
-            let measure =
-                if run.real == Real::F32 { single::proof::measure } else { double::proof::measure };
+        Command::Measure {
+            run,
+            modes,
+            calibrate,
+        } => {
+            let measure = if run.real == Real::F32 {
+                single::proof::measure
+            } else {
+                double::proof::measure
+            };
             let forms = forms(&run.meshes)?;
             let (shares, prices) = measure(run.plan(), &forms, &modes, run.steps, calibrate);
             run.finish(Found::Measured { shares, prices })?;
-            Ok(ExitCode::SUCCESS)
-        }
-        Command::Table { records } => {
-            print!("{}", table::of(&records)?);
             Ok(ExitCode::SUCCESS)
         }
     }

@@ -15,9 +15,15 @@ use super::rapier::prelude::{Collider, IntegrationParameters, RigidBody};
 #[must_use]
 pub fn volume(shape: &dyn Shape) -> Option<Volume> {
     let (vertices, triangles) = triangles_of(shape)?;
-    let vertices = vertices.iter().map(|v| v.to_array().map(|x| x as f32).into()).collect();
+    let vertices = vertices
+        .iter()
+        .map(|v| v.to_array().map(|x| x as f32).into())
+        .collect();
     let mesh = TriangleMesh::new("collider", vertices, triangles).ok()?;
-    let spec = ShapeSpec { origin: Origin::File, ..ShapeSpec::default() };
+    let spec = ShapeSpec {
+        origin: Origin::File,
+        ..ShapeSpec::default()
+    };
     Volume::build(&mesh, &spec).ok()
 }
 
@@ -52,7 +58,10 @@ impl Step {
     /// A step with these parameters.
     #[must_use]
     pub fn new(parameters: &IntegrationParameters) -> Self {
-        Self { prediction: parameters.prediction_distance() as f64, dt: parameters.dt as f64 }
+        Self {
+            prediction: parameters.prediction_distance() as f64,
+            dt: parameters.dt as f64,
+        }
     }
 
     /// The margin that a collider of size `reach` needs, so that two colliders whose volumes stay apart with their margins

@@ -15,7 +15,10 @@ fn forms() -> Vec<TriangleMesh> {
     let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/meshes");
     let forms = sdop_rapier::forms::forms(&meshes).unwrap();
     // Quick to collide: the cow and the knot have hundreds of triangles.
-    forms.into_iter().filter(|form| form.triangles.len() < 290).collect()
+    forms
+        .into_iter()
+        .filter(|form| form.triangles.len() < 290)
+        .collect()
 }
 
 fn check(plan: Plan, mode: Mode, steps: usize) -> [Check; 2] {
@@ -32,7 +35,12 @@ fn no_scene_loses_a_contact_and_few_checks_are_left() {
     for &scene in Scene::ALL {
         for &kind in Kind::ALL {
             for mode in FILTERED {
-                let plan = Plan { scene, kind, bodies: 20, seed: 3 };
+                let plan = Plan {
+                    scene,
+                    kind,
+                    bodies: 20,
+                    seed: 3,
+                };
                 for check in check(plan, mode, 40) {
                     assert_eq!(check.dropped, 0, "{plan:?}, {mode}: {check:?}");
                     assert_eq!(check.contacts_that_differ, 0, "{plan:?}, {mode}: {check:?}");
@@ -51,13 +59,21 @@ fn no_scene_loses_a_contact_and_few_checks_are_left() {
 #[test]
 fn the_check_sees_margins_left_out_and_saves_the_pair() {
     let forms = forms();
-    let plan = Plan { scene: Scene::Pile, kind: Kind::Hull, bodies: 40, seed: 5 };
+    let plan = Plan {
+        scene: Scene::Pile,
+        kind: Kind::Hull,
+        bodies: 40,
+        seed: 5,
+    };
     for mode in [Mode::Hook, Mode::DispatcherFull] {
         let cases = tempfile::tempdir().unwrap();
         let found = single::proof::check(plan, &forms, mode, 120, true, cases.path()).unwrap();
         assert!(found.dropped > 0, "{mode}: {found:?}");
         let scene = cases.path().join("dropped-pair.toml");
-        let scene = sdop::lab::scene::SceneFile::read(&scene).unwrap().build().unwrap();
+        let scene = sdop::lab::scene::SceneFile::read(&scene)
+            .unwrap()
+            .build()
+            .unwrap();
         assert_eq!(scene.bodies.len(), 2);
     }
 }

@@ -10,8 +10,8 @@ use super::super::rapier::math::{Pose, Real, Vector};
 use super::super::rapier::parry::query::details::{NormalConstraints, ShapeCastOptions};
 use super::super::rapier::parry::query::{
     ClosestPoints, Contact, ContactManifoldsWorkspace, DefaultQueryDispatcher,
-    NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit,
-    ShapeDistance, ShapeIntersection, Unsupported,
+    NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance,
+    ShapeIntersection, Unsupported,
 };
 use super::super::rapier::parry::shape::Shape;
 use super::super::rapier::prelude::{ContactData, ContactManifoldData};
@@ -134,10 +134,15 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Counted {
         let calls = &self.calls;
         let mut rejected = false;
         if !calls.is(Filtering::Off) {
-            let told = if calls.without_margin.load(Ordering::Relaxed) { 0.0 } else { prediction };
+            let told = if calls.without_margin.load(Ordering::Relaxed) {
+                0.0
+            } else {
+                prediction
+            };
             let start = calls.start();
-            let answer =
-                self.culling.contact_manifolds(pos12, g1, g2, told, manifolds, workspace);
+            let answer = self
+                .culling
+                .contact_manifolds(pos12, g1, g2, told, manifolds, workspace);
             calls.asked.add(since(start));
             rejected = answer.is_ok();
             if rejected && calls.is(Filtering::On) {
@@ -146,9 +151,8 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Counted {
             }
         }
         let start = calls.start();
-        let done = DefaultQueryDispatcher.contact_manifolds(
-            pos12, g1, g2, prediction, manifolds, workspace,
-        );
+        let done = DefaultQueryDispatcher
+            .contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
         let ns = since(start);
         if rejected {
             calls.culled.add(ns);
@@ -168,9 +172,8 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Counted {
         prediction: Real,
         manifold: &mut Manifold,
     ) -> Result<(), Unsupported> {
-        DefaultQueryDispatcher.contact_manifold_convex_convex(
-            pos12, g1, g2, normals1, normals2, prediction, manifold,
-        )
+        DefaultQueryDispatcher
+            .contact_manifold_convex_convex(pos12, g1, g2, normals1, normals2, prediction, manifold)
     }
 }
 
@@ -247,7 +250,13 @@ impl QueryDispatcher for Counted {
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         DefaultQueryDispatcher.cast_shapes_nonlinear(
-            motion1, g1, motion2, g2, start_time, end_time, stop_at_penetration,
+            motion1,
+            g1,
+            motion2,
+            g2,
+            start_time,
+            end_time,
+            stop_at_penetration,
         )
     }
 }

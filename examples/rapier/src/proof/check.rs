@@ -12,7 +12,10 @@ pub fn check(
     steps: usize,
     mut dropped: impl FnMut(&PhysicsWorld, [ColliderHandle; 2]),
 ) -> Check {
-    let mut check = Check { steps, ..Check::default() };
+    let mut check = Check {
+        steps,
+        ..Check::default()
+    };
     for step in 0..steps {
         let before = sim.calls().narrow();
         let free = sim.unfiltered().world;
@@ -34,7 +37,9 @@ pub fn check(
             }
         }
         let differs = |pair: &&[ColliderHandle; 2]| {
-            found.get(*pair).is_some_and(|touch| *touch != expected[*pair])
+            found
+                .get(*pair)
+                .is_some_and(|touch| *touch != expected[*pair])
         };
         check.contacts_that_differ += expected.keys().filter(differs).count() as u64;
         check.bodies_that_differ += bodies_that_differ(&filtered.bodies, &free.bodies) as u64;
