@@ -14,9 +14,10 @@ pub use rows::{OrDopRows, Posed};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use self::row::{O, Q, S, SHAPE, T};
 use crate::bodies::contract::is_within_limit;
 use crate::bodies::{Bodies, Places};
-use crate::rounding::pose::{norm, rotation};
+use crate::rounding::pose::{norm, rotate, rotation, world_axes};
 use crate::rounding::sphere::{inflate_radius, world_ball};
 use crate::rounding::up;
 use crate::simd::{ROW, prefetch};
@@ -110,6 +111,20 @@ impl ShapeFrame {
     #[must_use]
     pub fn reach(&self) -> f32 {
         self.reach
+    }
+
+    /// The or-DOP's row of a body in this shape, whose slabs are in the table of number `table`.
+    #[must_use]
+    pub fn row(&self, table: u32, q: [f32; 4], t: [f32; 3]) -> [f32; ROW] {
+        let (turn, mut row) = (rotation(q), [0.0; ROW]);
+        let basis = [0, 3, 6].map(|j| [self.row[j], self.row[j + 1], self.row[j + 2]]);
+        row[Q..Q + 9].copy_from_slice(world_axes(&turn, basis).as_flattened());
+        row[T..T + 3].copy_from_slice(&t);
+        if self.centre != [0.0; 3] {
+            row[O..O + 3].copy_from_slice(&rotate(&turn, self.centre).map(|x| x as f32));
+        }
+        row[S] = f32::from_bits(SHAPE + table);
+        row
     }
 
     /// Inflated world sphere (x, y, z, R) of a body in this shape.

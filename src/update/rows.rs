@@ -314,6 +314,12 @@ mod tests {
             row[S] = f32::from_bits(SHAPE + shape as u32);
             row
         };
+        for body in 0..61 {
+            let frame = &frames[body % 2];
+            let (q, t) = (bodies.rotation[body], bodies.translation[body]);
+            let row = frame.row(body as u32 % 2, q, t);
+            assert_eq!(row.map(f32::to_bits), expected(body).map(f32::to_bits));
+        }
         for tier in Tier::available() {
             let (mut eager, mut lazy) = (OrDopRows::new(61), OrDopRows::new(61));
             let pool = Threads::default();

@@ -5,7 +5,8 @@
 
 use std::collections::HashMap;
 
-use crate::rounding::exp2;
+use crate::bodies::contract::{ContractError, refuse};
+use crate::rounding::{LIMIT, exp2};
 
 /// Errors of placement up to this share of a shape's size are rounded up to it.
 const FINE: f64 = exp2(-12);
@@ -41,6 +42,16 @@ impl Margins {
             .entry((shape, class))
             .or_insert_with(|| grow(shape, f32::from_bits(class)))
     }
+}
+
+/// Checks the margin of a body whose shape has the size `reach`.
+pub(super) fn check_margin(body: usize, reach: f32, margin: f32) -> Result<(), ContractError> {
+    let grown = f64::from(reach) + 1.25 * f64::from(margin);
+    if margin >= 0.0 && grown <= f64::from(LIMIT) {
+        return Ok(());
+    }
+    let hint = "a length of 0 or more; with it the shape is at most 2^60 in size";
+    refuse(body, "margin", format!("{margin}"), hint)
 }
 
 /// The bits of the smallest class above `margin` > 0: an f32 of three significant bits behind the first, so that exponent

@@ -27,21 +27,24 @@ mod body;
 mod error;
 mod events;
 mod local;
+mod lookup;
 mod margins;
+mod pair_test;
 
 pub use crate::bodies::Groups;
 pub use body::{Body, BodyId};
 pub use error::WorldError;
 pub use events::Events;
+pub use lookup::PairLookup;
+pub use pair_test::PairTest;
 
 use self::events::Watch;
 use self::local::Local;
-use self::margins::Margins;
+use self::margins::{Margins, check_margin};
 use crate::bodies::Bodies;
-use crate::bodies::contract::{ContractError, check_number, check_pose, check_shape, refuse};
+use crate::bodies::contract::{ContractError, check_number, check_pose, check_shape};
 use crate::counters::{Counters, Seconds};
 use crate::culler::{CullError, Culler, CullerBuilder};
-use crate::rounding::LIMIT;
 use crate::settings::{Interest, SettingsError};
 use crate::volume::Shape;
 
@@ -369,12 +372,6 @@ impl World {
         check_number(slot + 1)?;
         check_shape(slot, body.shape, &self.shapes)?;
         check_pose(slot, &body.rotation, &body.translation)?;
-        let reach = f64::from(self.shapes[body.shape as usize].reach);
-        let grown = reach + 1.25 * f64::from(body.margin);
-        if !(body.margin >= 0.0 && grown <= f64::from(LIMIT)) {
-            let hint = "a length of 0 or more; with it the shape is at most 2^60 in size";
-            return refuse(slot, "margin", format!("{}", body.margin), hint);
-        }
-        Ok(())
+        check_margin(slot, self.shapes[body.shape as usize].reach, body.margin)
     }
 }

@@ -4,6 +4,7 @@
 
 mod lives;
 mod margins;
+mod pair_test;
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -14,7 +15,7 @@ use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Strategy, Updates};
 use sdop::volume::{Shape, ShapeSpec};
-use sdop::world::{Body, BodyId, Groups, World, WorldError};
+use sdop::world::{Body, BodyId, Groups, PairLookup, World, WorldError};
 
 struct Random(ChaCha8Rng);
 
@@ -126,6 +127,7 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
         let mut pool = World::with(shapes.clone(), &builder.threads(3)).unwrap();
         let mut bodies = HashMap::new();
         let mut before = Pairs::new();
+        let mut lookup = PairLookup::default();
         let mut seen = 0;
         for frame in 0..12 {
             let come_and_go = frame % 3 < 2;
@@ -139,6 +141,15 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
             pool.cull().unwrap();
             let now: Pairs = world.pairs().collect();
             assert_eq!(now.len(), world.pairs().len(), "each pair once");
+            lookup.refill(&world);
+            for (&a, &b) in bodies.keys().zip(bodies.keys().cycle().skip(frame)) {
+                let reported = now.contains(&[a, b]) || now.contains(&[b, a]);
+                assert_eq!(lookup.contains(a, b), reported, "{way:?}: {a}, {b}");
+            }
+            assert!(
+                now.iter()
+                    .all(|&[a, b]| lookup.contains(a, b) && lookup.contains(b, a))
+            );
             assert!(world.pairs().eq(pool.pairs()), "{way:?}: threads");
             if deterministic {
                 let expected = afresh(&shapes, &way, &bodies);

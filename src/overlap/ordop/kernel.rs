@@ -57,6 +57,37 @@ impl OrDopColumns<'_> {
         dispatch(tier, Test(self, first, second, out))
     }
 
+    /// Whether no tried axis separates the two rows: the same test of one pair, in one lane, which leaves at the first axis
+    /// that does.
+    #[must_use]
+    pub fn may_overlap(&self, first: u32, second: u32) -> bool {
+        struct Test<'a, 'b>(&'a OrDopColumns<'b>, [u32; 2]);
+        impl Kernel for Test<'_, '_> {
+            type Output = bool;
+            #[inline(always)]
+            fn run<L: Lanes>(self, l: L) -> bool {
+                match self.0.tables.directions() {
+                    DirectionSet::K6 => self.0.test_one::<L, 6>(l, self.1),
+                    DirectionSet::K14 => self.0.test_one::<L, 14>(l, self.1),
+                    DirectionSet::K18 => self.0.test_one::<L, 18>(l, self.1),
+                    DirectionSet::K26 => self.0.test_one::<L, 26>(l, self.1),
+                }
+            }
+        }
+        dispatch(Tier::SCALAR, Test(self, [first, second]))
+    }
+
+    #[inline(always)]
+    fn test_one<L: Lanes, const K: usize>(&self, l: L, pair: [u32; 2]) -> bool {
+        let [a, b] = pair.map(|row| l.load_transposed(self.rows, &[row; MAX_WIDTH]));
+        let frames = Frames::new(l, a, b);
+        let [a, b] = self.slabs::<L, K, false>(l, &frames);
+        let apart = |mask: L::M| l.bits(mask) & 1 != 0;
+        !(apart(frames.by_normals_of_a::<K>(l, &a, &b))
+            || self.overlap != Overlap::OneSided && apart(frames.by_normals_of_b::<K>(l, &a, &b))
+            || self.overlap == Overlap::Full && apart(frames.by_edges::<K>(l, &a, &b)))
+    }
+
     #[inline(always)]
     fn test<L: Lanes>(&self, l: L, first: &[u32], second: &[u32], out: &mut PairList) -> Tested {
         match self.tables.directions() {

@@ -1,0 +1,68 @@
+//! Whether a pair was reported, by a look-up instead of a walk through the list: for engines that call back pair by pair.
+
+use super::{BodyId, World};
+
+/// The pairs of one cull, ordered by the slot of their first body.
+///
+/// ```
+/// use sdop::world::PairLookup;
+/// # use sdop::{mesh, settings::CullSettings, simd::Tier, volume::{Shape, ShapeSpec}, world::{Body, World}};
+/// # let cow = mesh::read("data/meshes/spot.tri", &mesh::ReadOptions::default())?;
+/// # let shapes = vec![Shape::build(&cow, &ShapeSpec::default())?];
+/// # let mut world = World::new(shapes, &CullSettings::default(), Tier::detect())?;
+/// let a = world.insert(Body::default())?;
+/// let b = world.insert(Body { translation: [0.5, 0.0, 0.0], ..Body::default() })?;
+/// let c = world.insert(Body { translation: [9.0, 0.0, 0.0], ..Body::default() })?;
+/// world.cull()?;
+/// let mut lookup = PairLookup::default();
+/// lookup.refill(&world);
+/// assert!(lookup.contains(b, a) && !lookup.contains(a, c));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct PairLookup {
+    /// Where the pairs of each slot start; one more entry than slots.
+    starts: Vec<usize>,
+    pairs: Vec<[BodyId; 2]>,
+}
+
+impl PairLookup {
+    /// Takes up the pairs of the world's last cull in place of what was here: two passes over the list.
+    pub fn refill(&mut self, world: &World) {
+        self.starts.clear();
+        self.starts.resize(world.slots() + 1, 0);
+        self.pairs.clear();
+        self.pairs.resize(world.pairs().len(), NOBODY);
+        for [first, _] in world.pairs() {
+            self.starts[first.slot()] += 1;
+        }
+        // Ends now, starts once each pair has been put in front of the ones before it.
+        let mut end = 0;
+        for start in &mut self.starts {
+            end += *start;
+            *start = end;
+        }
+        for pair in world.pairs() {
+            let place = &mut self.starts[pair[0].slot()];
+            *place -= 1;
+            self.pairs[*place] = pair;
+        }
+    }
+
+    /// Whether the pair is among them, in either order. A body that was removed before that cull is in no pair.
+    #[must_use]
+    pub fn contains(&self, a: BodyId, b: BodyId) -> bool {
+        let pair = if a.slot <= b.slot { [a, b] } else { [b, a] };
+        let slot = pair[0].slot();
+        match self.starts.get(slot..slot + 2) {
+            Some(&[start, end]) => self.pairs[start..end].contains(&pair),
+            _ => false,
+        }
+    }
+}
+
+/// What a place holds before its pair is put there.
+const NOBODY: [BodyId; 2] = [BodyId {
+    slot: u32::MAX,
+    generation: u32::MAX,
+}; 2];

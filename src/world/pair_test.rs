@@ -1,0 +1,123 @@
+//! One pair at a time, without a set of bodies: for engines that call back with two shapes and their relative pose.
+//!
+//! A [`World`](super::World) finds the pairs of all bodies and tests them a vector at a time; here somebody else's broad
+//! phase has found a pair, and its or-DOPs are tested alone, by the same arithmetic. That takes some ten times as long a
+//! pair as a world's test, and still a fraction of a narrow-phase check.
+
+use super::margins::check_margin;
+use crate::bodies::contract::{ContractError, check_pose, check_shape};
+use crate::overlap::ordop::{OrDopColumns, SlabTables};
+use crate::settings::Overlap;
+use crate::simd::ROW;
+use crate::update::ShapeFrame;
+use crate::volume::{DirectionSet, OrDop, Shape};
+
+/// The or-DOPs of shapes, as they are and grown by margins.
+///
+/// ```
+/// use sdop::mesh;
+/// use sdop::volume::{DirectionSet, Shape, ShapeSpec};
+/// use sdop::world::PairTest;
+///
+/// let cow = mesh::read("data/meshes/spot.tri", &mesh::ReadOptions::default())?;
+/// let mut test = PairTest::new(DirectionSet::K18);
+/// let cow = test.add(&Shape::build(&cow, &ShapeSpec::default())?)?;
+/// let wider = test.grown(cow, 0.5)?;
+/// let unturned = [0.0, 0.0, 0.0, 1.0];
+/// assert!(!test.may_touch(cow, cow, unturned, [1.5, 0.0, 0.0]));
+/// assert!(test.may_touch(wider, cow, unturned, [1.5, 0.0, 0.0]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PairTest {
+    models: Vec<Model>,
+    tables: SlabTables,
+}
+
+#[derive(Clone, Debug)]
+struct Model {
+    ordop: OrDop,
+    frame: ShapeFrame,
+    /// The row of a body that lies in its own frame: the first of every pair.
+    unturned: [f32; ROW],
+}
+
+impl PairTest {
+    /// No shapes yet; all will have slabs along `directions`.
+    #[must_use]
+    pub fn new(directions: DirectionSet) -> Self {
+        Self {
+            models: Vec::new(),
+            tables: SlabTables::new(directions, []),
+        }
+    }
+
+    /// Adds a shape; returns the number that tests know it by.
+    ///
+    /// # Errors
+    /// A shape larger than 2⁶⁰.
+    pub fn add(&mut self, shape: &Shape) -> Result<u32, ContractError> {
+        check_shape(self.models.len(), 0, std::slice::from_ref(shape))?;
+        let ordop = OrDop::build(&shape.vertices, shape.ordop.basis, self.tables.directions());
+        let frame = ShapeFrame::new(shape, &ordop.basis);
+        Ok(self.push(ordop, frame))
+    }
+
+    /// Adds what a shape is with all points up to `margin` away; returns its number. Each call adds one: keep it.
+    ///
+    /// # Errors
+    /// A number that is no shape's, a margin that is negative, not finite or beyond 2⁶⁰ with the shape.
+    pub fn grown(&mut self, shape: u32, margin: f32) -> Result<u32, ContractError> {
+        let Some(model) = self.models.get(shape as usize) else {
+            return Err(ContractError {
+                body: shape as usize,
+                quantity: "shape",
+                value: format!("{shape} of {}", self.models.len()),
+                hint: "numbers come from `add` and `grown`",
+            });
+        };
+        check_margin(shape as usize, model.frame.reach(), margin)?;
+        let (ordop, frame) = (model.ordop.grown(margin), model.frame.grown(margin));
+        Ok(self.push(ordop, frame))
+    }
+
+    /// Whether two shapes may touch, the second posed in the frame of the first: false only if their meshes, grown by their
+    /// margins, are apart in exact arithmetic. Numbers that are no shapes', or a pose outside of the contract, may touch.
+    ///
+    /// `rotation` is a quaternion (x, y, z, w) of any non-zero norm, `translation` the second body's origin. A pose that was
+    /// rounded to f32 needs a margin for what that moved.
+    #[must_use]
+    pub fn may_touch(
+        &self,
+        first: u32,
+        second: u32,
+        rotation: [f32; 4],
+        translation: [f32; 3],
+    ) -> bool {
+        let model = |number: u32| self.models.get(number as usize);
+        let (Some(a), Some(b)) = (model(first), model(second)) else {
+            return true;
+        };
+        if check_pose(0, &rotation, &translation.map(f64::from)).is_err() {
+            return true;
+        }
+        let columns = OrDopColumns {
+            rows: &[a.unturned, b.frame.row(second, rotation, translation)],
+            tables: &self.tables,
+            overlap: Overlap::TwoSided,
+        };
+        columns.may_overlap(0, 1)
+    }
+
+    fn push(&mut self, ordop: OrDop, frame: ShapeFrame) -> u32 {
+        let number = self.models.len() as u32;
+        self.tables.push(&ordop, frame.centre(), frame.reach());
+        let unturned = frame.row(number, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
+        self.models.push(Model {
+            ordop,
+            frame,
+            unturned,
+        });
+        number
+    }
+}
