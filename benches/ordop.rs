@@ -22,7 +22,12 @@ fn pairs(scene: &Scene, strategy: Strategy) -> PairList {
         .settings(&settings)
         .build(&scene.shapes, &scene.bodies);
     culler
-        .map(|mut culler| culler.cull(&scene.bodies).unwrap().clone())
+        .map(|mut culler| {
+            culler
+                .cull(&scene.bodies)
+                .expect("bodies within the contract")
+                .clone()
+        })
         .unwrap_or_default()
 }
 

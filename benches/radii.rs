@@ -57,7 +57,9 @@ fn nanoseconds_a_pair(swarm: &mut Swarm, culler: &mut Culler, frames: usize) -> 
     let before = read(culler);
     for _ in 0..frames {
         swarm.sway();
-        culler.cull(&swarm.bodies).unwrap();
+        culler
+            .cull(&swarm.bodies)
+            .expect("bodies within the contract");
     }
     let after = read(culler);
     1e9 * (after.0 - before.0) / (after.1 - before.1) as f64

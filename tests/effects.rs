@@ -381,9 +381,8 @@ fn response_is_the_formula_on_all_pairs() {
         let (expected, exchanges) = respond(&scene);
         assert!(exchanges > 50 || side == 200, "{exchanges}");
         let (_, found) = after(&scene, 1);
-        for body in 0..90 {
-            for axis in 0..3 {
-                let (a, b) = (found.linear[body][axis], expected[body][axis]);
+        for (body, (found, expected)) in found.linear.iter().zip(&expected).enumerate() {
+            for (&a, &b) in found.iter().zip(expected) {
                 assert!(
                     (a - b).abs() <= 1e-5 * (1.0 + b.abs()),
                     "seed {seed}, body {body}: {a} {b}"

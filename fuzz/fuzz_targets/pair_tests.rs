@@ -5,6 +5,7 @@
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
+use sdop::Tier;
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::check_bodies;
 use sdop::lab::verify::contact::{Contact, Kind, Placed};
@@ -12,7 +13,6 @@ use sdop::lab::verify::draw::add;
 use sdop::lab::verify::rounds::{Ledger, Run};
 use sdop::lab::verify::ways::Rotation;
 use sdop::lab::verify::{Answers, Predicate, Shapes};
-use sdop::Tier;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 

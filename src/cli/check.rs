@@ -89,7 +89,7 @@ fn recorded(args: &Args, pairs: Vec<Option<Vec<[u32; 2]>>>) -> miette::Result<Ve
     })
 }
 
-fn text(path: &PathBuf) -> miette::Result<Vec<u8>> {
+fn text(path: &std::path::Path) -> miette::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = if path.as_os_str() == "-" {
         std::io::stdin().read_to_end(&mut bytes).map(drop)

@@ -106,7 +106,7 @@ fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Re
         .map(|(before, after)| [before, after]);
     manifest.note.clone_from(&args.note);
     manifest.add_inputs(Path::new("."), experiment.scenes)?;
-    write(&beside.join(FILE), &manifest.text())?;
+    write(&beside.join(FILE), manifest.text())?;
     if directory.exists() {
         std::fs::remove_dir_all(directory)
             .into_diagnostic()
@@ -198,5 +198,5 @@ fn adopt(
         manifest.date = day;
     }
     manifest.note.clone_from(&args.note);
-    write(&directory.join(FILE), &manifest.text())
+    write(&directory.join(FILE), manifest.text())
 }

@@ -152,7 +152,7 @@ fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Resul
     write(&numbers.join("tradeoff.json"), &json)?;
     write(&numbers.join("tradeoff.csv"), &csv)?;
     let figures = paper.join("figures");
-    write(&paper.join("tradeoff.md"), &page::page(recorded))?;
+    write(&paper.join("tradeoff.md"), page::page(recorded))?;
     write(&figures.join("tradeoff.svg"), &plot::precision(result)?)?;
     write(
         &figures.join("tradeoff-pays.svg"),

@@ -158,7 +158,6 @@ mod tests {
             let outlet = Outlet::HandedOver(turns.of(0));
             outlet.offer(&mut list);
             outlet.end(&mut list);
-            drop(turns);
             done.send((panicked, list.len(), handed_over))
         });
         let outcome = is_done.recv_timeout(Duration::from_secs(20));

@@ -55,7 +55,9 @@ fn judge(scene: &Scene, strategies: &[Strategy], what: &str) {
 
 /// The extent between these two, 10.494775749…, lies one unit in the last place of f64 below 5½ cells of the bars below:
 /// the division gave six cells, 0 to 5, and the farthest bar fell in number 6.
+#[allow(clippy::excessive_precision, reason = "as the culler got them")]
 const ENDS: [f32; 2] = [2.255_456_088_562_368_7e-8, 10.494_775_772_094_727];
+#[allow(clippy::excessive_precision, reason = "as the culler got it")]
 const REACH: f32 = 0.954_054_474_830_627_4;
 
 fn between(n: usize) -> impl Iterator<Item = f32> {
@@ -72,6 +74,7 @@ fn two_bars_whose_extent_is_just_below_a_border_have_their_cells() {
 fn a_moving_bar_meets_the_farthest_static_one() {
     let fixed = ENDS.into_iter().chain(between(100));
     let bars = fixed.map(|x| (0, false, [x, 0.0, 0.0]));
+    #[allow(clippy::excessive_precision, reason = "as the culler got it")]
     let moving = (0, true, [11.494_775_772_094_727, 0.0, 0.0]);
     let scene = scene(&[REACH], bars.chain([moving]));
     let wanted = pairs(&scene, Strategy::Sphere, Finder::AllPairs, Tier::SCALAR);

@@ -1,7 +1,7 @@
 //! One pair at a time: the verdicts of a world that knows the two bodies alone.
 
-use sdop::settings::{CullSettings, Strategy};
 use sdop::culler::Culler;
+use sdop::settings::{CullSettings, Strategy};
 use sdop::volume::DirectionSet;
 use sdop::world::{Body, PairTest, World};
 

@@ -150,11 +150,14 @@ mod tests {
                 })
                 .collect();
             let names: Vec<u32> = (0..balls.len() as u32).collect();
-            let mut grid = Grid::default();
-            grid.levels = [0..TARGETS, TARGETS..balls.len()]
-                .map(|range| Level::new(range, Layout::Wrapped))
-                .to_vec();
-            (grid.moving_levels, grid.fixed_sorted) = (2, false);
+            let levels =
+                [0..TARGETS, TARGETS..balls.len()].map(|range| Level::new(range, Layout::Wrapped));
+            let mut grid = Grid {
+                levels: levels.to_vec(),
+                moving_levels: 2,
+                fixed_sorted: false,
+                ..Grid::default()
+            };
             let pool = crate::threads::Threads::default();
             let executor = crate::threads::Executor {
                 tier: Tier::SCALAR,

@@ -270,6 +270,10 @@ impl Cells {
 }
 
 /// The number itself, or the nearest finite one.
+#[allow(
+    clippy::manual_clamp,
+    reason = "clamp keeps NaN, which these make a number"
+)]
 fn finite(x: f32) -> f64 {
     f64::from(x.max(f32::MIN).min(f32::MAX))
 }

@@ -298,12 +298,12 @@ pub fn shapes(result: &Tradeoff) -> Table {
 }
 
 /// Survivors per sphere hit of one kind of or-DOP.
-pub fn survivors<'a>(
-    shape: &'a ShapeSurvival,
+pub fn survivors(
+    shape: &ShapeSurvival,
     k: usize,
     axes: Axes,
     overlap: Overlap,
-) -> Option<&'a Estimate> {
+) -> Option<&Estimate> {
     let fits =
         |s: &&sdop::lab::tradeoff::shapes::Survival| (s.k, s.axes, s.overlap) == (k, axes, overlap);
     shape.ordops.iter().find(fits).map(|s| &s.share)

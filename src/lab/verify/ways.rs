@@ -119,12 +119,13 @@ impl Rotation {
     /// In turns 0 … m − 1 with m modes, and in every m turns from a multiple of m on, each way has each mode once.
     #[must_use]
     pub fn turn(&self, turn: u64) -> Vec<Mode> {
-        let all = self.modes.len() as u64;
         let mut order = self.modes.clone();
-        if all > 0 {
-            order.shuffle(&mut ChaCha8Rng::seed_from_u64(turn / all));
-            order.rotate_left((turn % all) as usize);
-        }
+        let all = order.len() as u64;
+        let Some(round) = turn.checked_div(all) else {
+            return order;
+        };
+        order.shuffle(&mut ChaCha8Rng::seed_from_u64(round));
+        order.rotate_left((turn % all) as usize);
         order
     }
 }

@@ -40,7 +40,7 @@ pub fn volumes(number: u32) -> (DirectionSet, Axes) {
         DirectionSet::K26,
         DirectionSet::K6,
     ];
-    let axes = if number / 4 % 2 == 0 {
+    let axes = if (number / 4).is_multiple_of(2) {
         Axes::Principal
     } else {
         Axes::Model

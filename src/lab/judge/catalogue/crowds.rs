@@ -213,8 +213,11 @@ fn permutation(n: usize, rng: &mut impl Rng) -> Vec<usize> {
     order
 }
 
+/// The former number of each body of a frame, where it was there; `None` for a frame in which nothing changed.
+type FormerNumbers = Option<Vec<Option<u32>>>;
+
 /// Some bodies go, others come, numbers change: each frame's former numbers.
-fn changing(all: Bodies, rng: &mut impl Rng) -> (Vec<Bodies>, Vec<Option<Vec<Option<u32>>>>) {
+fn changing(all: Bodies, rng: &mut impl Rng) -> (Vec<Bodies>, Vec<FormerNumbers>) {
     let (mut frames, mut changes) = (Vec::new(), Vec::new());
     let mut before: Vec<usize> = (0..all.len() / 2).collect();
     frames.push(picked(&all, &before));
