@@ -2,7 +2,7 @@
 //!
 //! The scenes resample the one that is predicted ([`scenes`]): other numbers of bodies, other boxes, other seeds, none
 //! within a tenth of it, on both sides of it in numbers and in density. They take turns with the frames that they predict
-//! ([`pass`](super::pass)), so that whatever the machine does meanwhile falls on both. [`explain`](super::explain) then
+//! ([`pass`](super::pass)), so that whatever the machine does meanwhile falls on both. [`explain`](mod@super::explain) then
 //! explains each stage's seconds by its counts. Dividing a run's own seconds by its own counts would predict nothing.
 
 use std::time::Instant;

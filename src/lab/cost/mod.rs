@@ -1,7 +1,7 @@
 //! What culling costs: the paper's formula (equation 1) T = Nu·Cu + Nv·Cv + Co.
 //!
 //! Nu and Nv are [counted](crate::lab::measure::counts); Cu, Cv and Co are [calibrated](calibrate) in the same
-//! [pass](pass) as the frames that they predict, on other scenes.
+//! [`pass`](mod@pass) as the frames that they predict, on other scenes.
 
 pub mod calibrate;
 mod explain;
