@@ -42,6 +42,7 @@ const ROOMS: &[&str] = &[
     "lab/judge",
     "lab/reproduce",
     "lab/tradeoff",
+    "lab/report",
     // The command line.
     "cli",
     "main",

@@ -6,10 +6,10 @@ use super::{BodyId, World};
 ///
 /// ```
 /// use sdop::world::PairLookup;
-/// # use sdop::{mesh, settings::CullSettings, simd::Tier, volume::{Shape, ShapeSpec}, world::{Body, World}};
+/// # use sdop::{mesh, volume::{Shape, ShapeSpec}, world::{Body, World}};
 /// # let cow = mesh::read("data/meshes/spot.tri", &mesh::ReadOptions::default())?;
 /// # let shapes = vec![Shape::build(&cow, &ShapeSpec::default())?];
-/// # let mut world = World::new(shapes, &CullSettings::default(), Tier::detect())?;
+/// # let mut world = World::new(shapes)?;
 /// let a = world.insert(Body::default())?;
 /// let b = world.insert(Body { translation: [0.5, 0.0, 0.0], ..Body::default() })?;
 /// let c = world.insert(Body { translation: [9.0, 0.0, 0.0], ..Body::default() })?;

@@ -22,7 +22,7 @@ use crate::volume::{DirectionSet, OrDop, Shape};
 /// let cow = mesh::read("data/meshes/spot.tri", &mesh::ReadOptions::default())?;
 /// let mut test = PairTest::new(DirectionSet::K18);
 /// let cow = test.add(&Shape::build(&cow, &ShapeSpec::default())?)?;
-/// let wider = test.grown(cow, 0.5)?;
+/// let wider = test.grown(cow, 1.5)?;
 /// let unturned = [0.0, 0.0, 0.0, 1.0];
 /// assert!(!test.may_touch(cow, cow, unturned, [1.5, 0.0, 0.0]));
 /// assert!(test.may_touch(wider, cow, unturned, [1.5, 0.0, 0.0]));

@@ -181,7 +181,7 @@ fn two_strategies_or_two_records_stand_side_by_side() {
     );
     let other = record(directory.path(), &scene, "other.ndjson", &["--seed", "2"]);
     let message = refusal(&["view", text(&first), "--beside", text(&other)]);
-    assert!(message.contains("frame 0 has other poses"), "{message}");
+    assert!(message.contains("not the frames of"), "{message}");
     let message = refusal(&["view", text(&first), "--beside", "shpere"]);
     assert!(
         message.contains("neither a strategy nor a record")

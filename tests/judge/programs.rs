@@ -408,3 +408,73 @@ fn cases_are_written_answered_elsewhere_and_checked() {
         Some(2)
     );
 }
+
+#[test]
+fn a_programs_own_time_counts_once_it_has_passed_and_is_called_self_reported() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = "name = \"three\"\nframes = 4\n[[bodies]]\nshape = \"box\"\nposes = [[0,0,0,1,0,0,0],[0,0,0,1,0.5,0,0],[0,0,0,1,0,0.5,0]]\n";
+    std::fs::write(directory.path().join("three.toml"), scene).unwrap();
+    let bench = |pairs: &str| {
+        let program = answering(&format!(
+            r#"echo "{{\"frame\":$n,\"pairs\":[{pairs}],\"ns\":77}}""#
+        ));
+        let arguments = [
+            "bench",
+            "three.toml",
+            "--exec",
+            &program,
+            "--frames",
+            "4",
+            "--format",
+            "json",
+        ];
+        let (output, text) = sdop(directory.path(), &arguments);
+        let rows: serde_json::Value = serde_json::from_str(&text).unwrap();
+        (output.status.code(), rows)
+    };
+    let (code, rows) = bench("[0,1],[0,2],[1,2]");
+    assert_eq!(code, Some(0), "{rows}");
+    let theirs = &rows[1];
+    assert_eq!(
+        (&theirs["median_ns"], &theirs["clock"], &theirs["outcome"]),
+        (&77.into(), &"self-reported".into(), &"pass".into())
+    );
+    assert!(rows[0]["median_ns"].as_u64().is_some_and(|ns| ns > 0) && rows[0]["outcome"] == "pass");
+    let (code, rows) = bench("[0,1]");
+    assert_eq!(code, Some(1));
+    assert!(
+        rows[1]["median_ns"].is_null() && rows[1]["outcome"] == "fail",
+        "{rows}"
+    );
+}
+
+#[test]
+fn broadmarks_recordings_are_cases_of_boxes() {
+    let directory = tempfile::tempdir().unwrap();
+    let written = ["cases", "--out", "c", "--aabbs", "--case", "box/grid/0000"];
+    assert!(sdop(directory.path(), &written).0.status.success());
+    let bytes = std::fs::read(directory.path().join("c/box/grid/0000.aabbs")).unwrap();
+    assert_eq!(bytes.len(), 304 + 48 * 32);
+    let every: Vec<String> = (0..48)
+        .flat_map(|j| (0..j).map(move |i| format!("[{i},{j}]")))
+        .collect();
+    for (pairs, code) in [(every.join(","), 0), (String::new(), 1)] {
+        let answer = format!("{{\"frame\":0,\"pairs\":[{pairs}]}}\n");
+        std::fs::write(directory.path().join("answers"), answer).unwrap();
+        let check = ["check", "c/box/grid/0000.aabbs", "--pairs", "answers"];
+        let (output, text) = sdop(directory.path(), &check);
+        assert_eq!(output.status.code(), Some(code), "{text}");
+    }
+    std::fs::write(
+        directory.path().join("short.aabbs"),
+        &bytes[..bytes.len() - 1],
+    )
+    .unwrap();
+    assert_eq!(
+        sdop(directory.path(), &["check", "short.aabbs"])
+            .0
+            .status
+            .code(),
+        Some(2)
+    );
+}

@@ -205,6 +205,14 @@ impl Cells {
         }
     }
 
+    /// The highest table index that a centre can fall in: beyond it a box has empty cells only.
+    pub fn last(&self) -> u32 {
+        match self.layout() {
+            Layout::Box => self.index(self.count.map(|n| n - 1)),
+            Layout::Wrapped => self.mask,
+        }
+    }
+
     /// Table index of a cell.
     #[inline(always)]
     pub fn index(&self, [x, y, z]: [u32; 3]) -> u32 {

@@ -68,7 +68,7 @@ impl Level {
         }
         self.starts.resize(entries, 0);
         self.starts[0] = range.start as u32;
-        let last = self.cells.table_len() as u32 - 1;
+        let last = self.cells.last();
         loop {
             let from = Columns {
                 balls,
@@ -83,7 +83,8 @@ impl Level {
                 names: &mut slots.names[range.clone()],
                 cells: &mut slot_cells[range.clone()],
             };
-            if to.sort(pool, &from) {
+            // All bodies lie in cells up to the last one in which a centre can fall.
+            if to.sort(pool, &from) && self.starts[last as usize + 1] == range.end as u32 {
                 break;
             }
             debug_assert!(

@@ -42,7 +42,7 @@ pub fn boxes(kind: Kind, count: usize, rng: &mut impl Rng) -> Result<Drawn, Cata
                 if lo <= hi { [lo, hi] } else { [lo, lo] }
             }),
             Kind::Range => {
-                let scale = [1e-45, 1e-39, 1e-20, 1.0, 1e9, 5e17][rng.random_range(0..6)];
+                let scale = [1e-45, 1e-39, 1e-20, 1.0, 1e9, 2.5e17][rng.random_range(0..6)];
                 from_ends(|_| {
                     let lo = rng.random_range(-2.0..2.0_f32) * scale;
                     [lo, lo + rng.random_range(0.0..2.0) * scale]

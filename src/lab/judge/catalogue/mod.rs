@@ -134,13 +134,19 @@ pub fn groups() -> Result<Vec<Group>, CatalogueError> {
     for &(name, text) in hard::FILES {
         groups.push(Group {
             name: hard_name(name),
-            flag: "see data/hard_cases",
+            flag: why(text),
             source: name,
             cases: runs(&hard::Group::parse(text)?.recipe),
             draw: Draw::Hard(text),
         });
     }
     Ok(groups)
+}
+
+/// What breaks in a group of hard cases: its file says so in a line of its own.
+fn why(text: &'static str) -> &'static str {
+    let line = text.lines().find_map(|line| line.strip_prefix("why = \""));
+    line.and_then(|line| line.strip_suffix('"')).unwrap_or("")
 }
 
 macro_rules! hard_names {

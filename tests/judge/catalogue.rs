@@ -1,0 +1,83 @@
+//! Cases are the same whenever they are drawn, differ by seed, and come back from their files as they went.
+
+use std::collections::BTreeSet;
+
+use sdop::bodies::contract::check_bodies;
+use sdop::judge::catalogue::groups;
+use sdop::judge::wire::{Wire, ndjson};
+use sdop::judge::{Claim, case::matches};
+
+#[test]
+fn a_name_is_the_same_case_every_time_and_a_seed_another() {
+    let mut names = BTreeSet::new();
+    for group in groups().unwrap() {
+        let first = group.case(0, None).unwrap();
+        let (again, seeded) = (
+            group.case(0, None).unwrap(),
+            group.case(0, Some(9)).unwrap(),
+        );
+        assert_eq!(first.frames, again.frames, "{}", group.name);
+        assert_eq!(first.shapes, again.shapes, "{}", group.name);
+        assert!(
+            names.insert(first.name.clone()),
+            "{}: a name twice",
+            first.name
+        );
+        assert_eq!(seeded.name, format!("{}@9", first.name));
+        let empty = first.frames.iter().all(|frame| frame.bodies.is_empty());
+        assert!(
+            empty || first.frames != seeded.frames,
+            "{}: fresh cases are the published ones",
+            group.name
+        );
+        for frame in first.frames.iter().chain(&seeded.frames) {
+            check_bodies(&frame.bodies, &first.shapes)
+                .unwrap_or_else(|e| panic!("{}: {e}", first.name));
+        }
+        assert!(!first.claims.is_empty() && !first.flag.is_empty() && !first.source.is_empty());
+    }
+    assert!(
+        names.len() > 60
+            && names
+                .iter()
+                .any(|name| matches("touch/edge-edge/0000", name))
+    );
+}
+
+#[test]
+fn cases_come_back_from_their_files_to_the_bit() {
+    for group in groups().unwrap() {
+        let case = group.case(group.cases - 1, None).unwrap();
+        let claim = if case.claims.contains(&Claim::Aabb) {
+            Claim::Aabb
+        } else {
+            case.claims[0]
+        };
+        let bytes = Wire::Ndjson.encode(&case, claim).unwrap();
+        let back = ndjson::read(bytes.as_slice()).unwrap().case;
+        assert_eq!(back.name, case.name);
+        assert_eq!(back.claims[0], claim);
+        assert_eq!(back.shapes, case.shapes, "{}", case.name);
+        assert_eq!(back.frames, case.frames, "{}", case.name);
+    }
+}
+
+#[test]
+fn damaged_case_files_are_refused_with_their_line() {
+    let case = groups().unwrap()[0].case(0, None).unwrap();
+    let text = String::from_utf8(Wire::Ndjson.encode(&case, Claim::Aabb).unwrap()).unwrap();
+    let problem = |text: &str| ndjson::read(text.as_bytes()).err().unwrap();
+    assert!(problem("").contains("no line"));
+    assert!(problem("{}").contains("line 1"));
+    assert!(problem(&text.replacen("sdop-record", "other", 1)).contains("other"));
+    assert!(problem(&text[..text.len() - 20]).contains("line 2"));
+    let frames = text.lines().nth(1).unwrap();
+    let short = text.replacen(frames, r#"{"frame":0,"poses":[]}"#, 1);
+    assert!(problem(&short).contains("0 poses"), "{}", problem(&short));
+    let bent = text.replacen(
+        frames,
+        &frames.replacen("\"poses\":[[", "\"poses\":[[0,0,0,0,0,0,0],[", 1),
+        1,
+    );
+    assert!(problem(&bent).contains("line 2"), "{}", problem(&bent));
+}
