@@ -176,9 +176,12 @@ fn a_first_line_that_contradicts_itself_is_refused() {
     for (text, problem) in [
         (seven, "r.ndjson:1: body 0: shape 7 of"),
         (outside, "shape box: triangle 0 is [99, "),
-        (altered("\"k\":18", "\"k\":17"), "no or-DOP has k = 17"),
         (
-            altered("\"k\":18", "\"k\":26"),
+            altered("\"ordop\":{\"k\":18", "\"ordop\":{\"k\":17"),
+            "no or-DOP has k = 17",
+        ),
+        (
+            altered("\"ordop\":{\"k\":18", "\"ordop\":{\"k\":26"),
             "k = 26 takes 13 slabs; it has 9 lower and 9 upper ends",
         ),
         (
