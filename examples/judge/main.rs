@@ -1,7 +1,7 @@
 //! A culler in Rust, judged: a grid over bounding balls that claims to miss no pair of meshes.
 //!
-//! `cargo run --release --example judge` passes. With `-- --tight-cells` the cells are exactly as large as the largest
-//! ball's diameter, and computed in f32: a partner can be two cells away.
+//! `cargo run --release --example judge` passes. With `-- --tight-cells` the cells are as large as the largest ball's radius
+//! instead of its diameter: a partner can be two cells away.
 
 use std::collections::HashMap;
 use std::process::ExitCode;
@@ -33,7 +33,7 @@ impl Grid {
         if size / diameter >= 2_f64.powi(30) {
             0
         } else if self.tight {
-            (x as f32 / diameter as f32).floor() as i64
+            (x / (0.5 * diameter)).floor() as i64
         } else {
             (x / (diameter * (1.0 + 2_f64.powi(-20)))).floor() as i64
         }

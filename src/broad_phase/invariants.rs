@@ -22,11 +22,11 @@ impl PairFinder {
         if n > MOST_BODIES {
             return;
         }
-        let seen = dispatch(tier, Record { finder: self });
         let finite = |slot| self.slots().ball(slot).iter().all(|x| x.is_finite());
         if !(0..n).all(finite) {
             return; // outside the contract
         }
+        let seen = dispatch(tier, Record { finder: self });
         // Slots of moving bodies come first, as their places do.
         for i in 0..n {
             let fixed = seen.0[i] & u64::MAX.checked_shl(places.moving as u32).unwrap_or(0);
