@@ -12,11 +12,12 @@ use sdop::lab::reproduce::check::Verdict;
 use sdop::lab::reproduce::closed_form::{probability, relative_reach};
 use sdop::lab::reproduce::immediate::{Handing, PairLoop};
 use sdop::lab::reproduce::readings::{Reading, cell, table};
+use sdop::lab::reproduce::sensitivity::{self, Bounce, Interpretation, Start};
 use sdop::lab::reproduce::{
     Estimate, PaperScene, Plan, Results, Shard, claims, rates, run_scene, study,
 };
 use sdop::lab::scene::SceneFile;
-use sdop::settings::Strategy;
+use sdop::settings::{Axes, Overlap, Strategy};
 use sdop::simd::Tier;
 
 fn scenes() -> PathBuf {
@@ -118,6 +119,37 @@ fn pair_loops_report_the_culler_s_pairs() {
             assert_eq!(sorted(pair_loop.pairs()), expected, "{handing}");
         }
     }
+}
+
+/// As the scenes stand, an interpretation's percentages are those of the runs; others differ, and the likeliest stands first.
+#[test]
+fn interpretations_are_swept_from_the_scenes() {
+    let mut plan = plan(1, Tier::detect());
+    plan.frames = 2;
+    let found = sensitivity::sweep(&plan).unwrap();
+    assert_eq!(found.len(), 3 * 2 * 2 * 4 * 2 * 3);
+    assert!(found.is_sorted_by(|a, b| a.likelihood >= b.likelihood));
+    let file = SceneFile::read(&scenes().join("paper-300.toml")).unwrap();
+    let run = run_scene(&file.build().unwrap(), &[Strategy::SDopBatch], 2, plan.tier)
+        .unwrap()
+        .remove(0);
+    let percent = |reading: Reading, strategy| reading.percentage(strategy, &run.counters, 2, 300);
+    let as_run = [
+        percent(Reading::OwnTests, Strategy::Sphere),
+        percent(Reading::OwnTests, Strategy::SDopBatch),
+        percent(Reading::TestsAndList, Strategy::SDopBatch),
+    ];
+    let usual = |start: Start, bounce| {
+        let of = |i: &&Interpretation| {
+            (i.start, i.bounce, i.frames, i.k) == (start, bounce, 2, 18)
+                && (i.axes, i.overlap) == (Axes::Principal, Overlap::TwoSided)
+        };
+        let percent = found.iter().find(of).unwrap().percent;
+        [percent[0][2], percent[2][2], percent[3][2]]
+    };
+    assert_eq!(usual(Start::Uniform, Bounce::Specular), as_run);
+    let balls = usual(Start::Balls, Bounce::Specular);
+    assert!(balls[0] > 1.5 * as_run[0], "{balls:?} {as_run:?}");
 }
 
 /// Centres are uniform in side − 2r, in the first frame and after minutes of motion with elastic walls; static bodies are

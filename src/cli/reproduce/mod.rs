@@ -11,7 +11,7 @@ use miette::{IntoDiagnostic as _, miette};
 use sdop::lab::cost::calibrate::Effort;
 use sdop::lab::measure::conditions::Conditions;
 use sdop::lab::measure::machine::Machine;
-use sdop::lab::reproduce::{Plan, Results, Shard};
+use sdop::lab::reproduce::{Plan, Results, Shard, sensitivity};
 use sdop::settings::Strategy;
 
 use super::Outcome;
@@ -99,7 +99,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     })?;
     bar.finish_and_clear();
     let machine = Machine::here(plan.tier);
-    let tables = Tables::new(&results, &machine, args.shard, command(), before);
+    let mut tables = Tables::new(&results, &machine, args.shard, command(), before);
+    if !args.quick {
+        tables.interpretations = sensitivity::sweep(&plan)?;
+    }
     let paper = args.paper.as_ref().unwrap_or(&args.out);
     write_tables(&args.out, &tables)?;
     figures::draw_all(&paper.join("figures"), &tables)?;

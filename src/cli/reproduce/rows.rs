@@ -11,6 +11,7 @@ use sdop::lab::reproduce::check::{Claim, Verdict};
 use sdop::lab::reproduce::closed_form::{probability, relative_reach};
 use sdop::lab::reproduce::rates::{self, Rate};
 use sdop::lab::reproduce::readings::{self, Cell};
+use sdop::lab::reproduce::sensitivity::Interpretation;
 use sdop::lab::reproduce::{Estimate, PaperScene, Results, Run, Shard, claims, study};
 use sdop::settings::Strategy;
 use serde::Serialize;
@@ -42,6 +43,8 @@ pub struct Tables {
     pub survival: Vec<SurvivalRow>,
     pub claims: Vec<Claim>,
     pub study: Vec<Claim>,
+    /// What the paper doesn't state, swept; none of a quick look.
+    pub interpretations: Vec<Interpretation>,
     #[serde(skip)]
     pub counts: Vec<CountRow>,
     #[serde(skip)]
@@ -173,6 +176,7 @@ impl Tables {
             survival: results.survival.iter().map(survival).collect(),
             claims: claims::all(results),
             study: study::all(results),
+            interpretations: Vec::new(),
             counts,
             times: results.runs.iter().map(time_row).collect(),
         }
@@ -181,7 +185,7 @@ impl Tables {
     /// The CSV files: name without extension, rows.
     pub fn files(&self) -> miette::Result<Vec<(&'static str, Value)>> {
         let value = |rows: serde_json::Result<Value>| rows.into_diagnostic();
-        Ok(vec![
+        let mut files = vec![
             ("counts", value(serde_json::to_value(&self.counts))?),
             ("times", value(serde_json::to_value(&self.times))?),
             ("table_1", value(serde_json::to_value(&self.table_1))?),
@@ -190,7 +194,12 @@ impl Tables {
             ("prices", value(serde_json::to_value(&self.prices))?),
             ("survival", value(serde_json::to_value(&self.survival))?),
             ("claims", value(serde_json::to_value(self.checks()))?),
-        ])
+        ];
+        if !self.interpretations.is_empty() {
+            let rows = value(serde_json::to_value(&self.interpretations))?;
+            files.push(("interpretations", rows));
+        }
+        Ok(files)
     }
 
     fn both_costs(&self) -> Vec<&Cost> {

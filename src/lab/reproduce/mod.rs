@@ -14,6 +14,7 @@ pub mod immediate;
 pub mod paper;
 pub mod rates;
 pub mod readings;
+pub mod sensitivity;
 pub mod study;
 
 pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};

@@ -5,6 +5,7 @@ mod claims;
 mod costs;
 mod digest;
 mod frame_rates;
+mod interpretations;
 mod table_1;
 mod text;
 mod words;
@@ -33,6 +34,7 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
     claims::section(out, "Claims of the paper", &tables.claims)?;
     claims::section(out, "Our reading of Table 1, checked", &tables.study)?;
     survival(out, tables)?;
+    interpretations::section(out, tables)?;
     table_1::appendix(out, tables)?;
     hashes(out, tables)?;
     words::references(out)
