@@ -244,10 +244,11 @@ impl Calibration {
             };
             cullers.push(variant.culling_of(&prepared.shapes, scene, self.tier)?);
         }
-        // Buffers have grown, and all others have run, before the first frame is timed.
+        // Buffers have grown, and all others have run, before the first frame is timed; on other poses, since what was just
+        // seen would not be cold.
         cullers
             .iter_mut()
-            .for_each(|culler| culler.frame(&poses[0]));
+            .for_each(|culler| culler.frame(&scene.bodies));
         let before: Vec<Counts> = cullers.iter().map(Culling::counts).collect();
         let mut times = vec![Times::default(); cullers.len()];
         self.turns.round(&mut cullers, &poses, |timed| {
