@@ -11,10 +11,11 @@ use super::files::write;
 use super::output::{print, rows};
 
 /// Pages whose numbers come from records.
-const PAGES: [&str; 7] = [
+const PAGES: [&str; 8] = [
     "README.md",
     "benches/README.md",
     "benches/peers/BIAS.md",
+    "benches/peers/VERDICTS.md",
     "tests/README.md",
     "paper/guide.md",
     "paper/artifact.md",

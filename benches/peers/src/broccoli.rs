@@ -6,8 +6,10 @@ use broccoli::aabb::ManySwappable;
 use broccoli::axgeom::Rect;
 use broccoli::{Tree, rect};
 
+use sdop::lab::measure::contestant::Contestant;
+
 use crate::boxes::Frame;
-use crate::peer::{Entry, Peer, Setup, Work};
+use crate::entry::{Entry, Setup, Work};
 
 /// One way to drive it.
 pub const ENTRIES: [Entry; 1] = [Entry {
@@ -47,7 +49,7 @@ impl Broccoli {
     }
 }
 
-impl Peer for Broccoli {
+impl Contestant<Frame> for Broccoli {
     fn frame(&mut self, frame: &Frame) {
         self.take(frame);
         let pairs = &mut self.pairs;

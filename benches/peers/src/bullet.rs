@@ -1,7 +1,7 @@
 //! Bullet's dynamic tree broad phase: `native/bullet.cpp`.
 
+use crate::entry::{Entry, Work};
 use crate::native::{new, shim};
-use crate::peer::{Entry, Work};
 
 /// One way to drive it.
 pub const ENTRIES: [Entry; 1] = [Entry {

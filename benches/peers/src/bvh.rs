@@ -5,8 +5,10 @@ use bvh::bounding_hierarchy::BHShape;
 use bvh::bvh::{Bvh, rayon_executor};
 use nalgebra::Point3;
 
+use sdop::lab::measure::contestant::Contestant;
+
 use crate::boxes::{Frame, lower, upper};
-use crate::peer::{Entry, Peer, Setup, Work};
+use crate::entry::{Entry, Setup, Work};
 use crate::threads::{Queries, Threads};
 
 /// One way to drive it.
@@ -60,7 +62,7 @@ impl Tree {
     }
 }
 
-impl Peer for Tree {
+impl Contestant<Frame> for Tree {
     fn frame(&mut self, frame: &Frame) {
         self.bodies.clear();
         let body = |(number, slabs): (usize, &_)| {

@@ -5,8 +5,8 @@ use sdop::rounding::U;
 use thiserror::Error;
 
 use crate::boxes::{Frame, Slabs, meet};
+use crate::entry::{Entry, Work};
 use crate::oracle;
-use crate::peer::{Entry, Work};
 
 /// What the pairs of a frame must be.
 pub struct Truth<'a> {

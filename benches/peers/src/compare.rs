@@ -1,20 +1,20 @@
 //! One scene, everyone on the same frames: checked, then timed in turns.
 //!
-//! An engine does a few frames, then it is the next one's turn, so that what the machine does meanwhile falls on all
-//! alike; who begins changes with every round. Frames are made between turns and never timed. A ratio is the median over
-//! frames of theirs over ours *on the same frame*.
+//! Turns are those of every measurement here ([`Turns`]). Frames are made between turns and never timed. A ratio is the
+//! median over frames of theirs over ours *on the same frame*.
 //!
 //! Where a limit is given, an engine that takes longer than that for a frame is left out, and named.
 
 use std::time::Instant;
 
 use miette::miette;
+use sdop::lab::measure::turns::{Quartiles, Turns, median};
 use serde::Serialize;
 
 use crate::boxes::Frame;
 use crate::check::Truth;
+use crate::entry::{Engine, Entry, OURS, Setup};
 use crate::memory::{self, Memory};
-use crate::peer::{Entry, OURS, Peer, Setup};
 use crate::scenes::{Course, EXPECTED, Order, Schedule, Spread};
 
 /// One scene on so many threads.
@@ -93,13 +93,12 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compa
     let able = entries.iter().filter(|entry| entry.threads >= case.threads);
     let (checked, left_out) = check(case, &able.collect::<Vec<_>>(), limit_ms)?;
     let entries: Vec<_> = checked.iter().map(|(entry, _)| *entry).collect();
-    let mut racers = race(case, &entries)?;
+    let racers = race(case, &entries)?;
     let ours = racers.iter().find(|racer| racer.entry.name == OURS);
-    let base = ours.map(|racer| racer.ms.clone());
     let mut rows = Vec::new();
-    for (racer, (_, memory)) in racers.iter_mut().zip(checked) {
-        let ratio = base.as_ref().map(|base| median_ratio(&racer.ms, base));
-        let [ms_low, ms, ms_high] = [0.25, 0.5, 0.75].map(|q| quantile(&mut racer.ms, q));
+    for (racer, (_, memory)) in racers.iter().zip(checked) {
+        let ratio = ours.map(|ours| median_ratio(&racer.ms, &ours.ms));
+        let ms = Quartiles::of(racer.ms.clone());
         let bodies = case.bodies as f64;
         rows.push(EngineTiming {
             case,
@@ -107,10 +106,10 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compa
             version: racer.entry.version,
             work: racer.entry.work.name(),
             pairs: racer.pairs,
-            ms_low,
-            ms,
-            ms_high,
-            ns_a_body: 1e6 * ms / bodies,
+            ms_low: ms.low,
+            ms: ms.median,
+            ms_high: ms.high,
+            ns_a_body: 1e6 * ms.median / bodies,
             ratio: ratio.unwrap_or(f64::NAN),
             bytes_a_body: memory.held as f64 / bodies,
             peak_bytes_a_body: memory.peak as f64 / bodies,
@@ -173,7 +172,7 @@ fn tried(
     setup: &Setup<'_>,
     frames: &[Frame],
     limit_ms: f64,
-) -> miette::Result<(Box<dyn Peer>, f64)> {
+) -> miette::Result<(Engine, f64)> {
     let mut peer = (entry.new)(setup)?;
     let mut ms = 0.0;
     for (number, frame) in frames.iter().enumerate() {
@@ -208,9 +207,10 @@ fn definition_holds(case: Case, first: &Truth<'_>) -> miette::Result<()> {
     }
 }
 
+/// An engine in the race.
 struct Racer<'a> {
     entry: &'a Entry,
-    peer: Box<dyn Peer>,
+    engine: Engine,
     ms: Vec<f64>,
     pairs: usize,
 }
@@ -235,40 +235,34 @@ fn race<'a>(case: Case, entries: &[&'a Entry]) -> miette::Result<Vec<Racer<'a>>>
     for &entry in entries {
         racers.push(Racer {
             entry,
-            peer: (entry.new)(&setup)?,
+            engine: (entry.new)(&setup)?,
             ms: Vec::with_capacity(timed),
             pairs: 0,
         });
     }
-    let (mut done, mut first) = (0, 1);
-    while done < warm_up + timed {
-        let count = turn.min(warm_up + timed - done);
-        for frame in &mut frames[first..count] {
+    let mut turns = Turns::default();
+    let all = warm_up + timed;
+    for done in (0..all).step_by(turn) {
+        frames.truncate(all - done);
+        for frame in &mut frames[usize::from(done == 0)..] {
             course.next_frame(frame)?;
         }
-        first = 0;
-        for place in 0..racers.len() {
-            let at = (place + done / turn) % racers.len();
-            if !racers[at].entry.ages && done + turn < warm_up {
-                continue;
+        // What starts from nothing each frame joins for the last turn before the clock counts.
+        let joins = |racer: &&mut Racer<'_>| racer.entry.ages || done + turn >= warm_up;
+        let joining = racers.iter_mut().filter(joins);
+        let (mut engines, mut times): (Vec<_>, Vec<_>) = joining
+            .map(|racer| (&mut racer.engine, &mut racer.ms))
+            .unzip();
+        turns.round(&mut engines, &frames, |frame| {
+            if done + frame.frame >= warm_up {
+                times[frame.number].push(1e3 * frame.seconds);
             }
-            for (number, frame) in frames[..count].iter().enumerate() {
-                let start = Instant::now();
-                racers[at].peer.frame(frame);
-                let seconds = start.elapsed().as_secs_f64();
-                if done + number >= warm_up {
-                    racers[at].ms.push(1e3 * seconds);
-                }
-                racers[at].peer.settle();
-            }
-        }
-        done += count;
-        if done == warm_up + timed {
-            let truth = Truth::of(&frames[count - 1], done - 1);
-            for racer in &mut racers {
-                let (entry, pairs) = (racer.entry, racer.peer.pairs());
-                racer.pairs = truth.judge(entry, pairs)?;
-            }
+        });
+    }
+    if let Some(last) = frames.last() {
+        let truth = Truth::of(last, all - 1);
+        for racer in &mut racers {
+            racer.pairs = truth.judge(racer.entry, racer.engine.pairs())?;
         }
     }
     Ok(racers)
@@ -277,14 +271,5 @@ fn race<'a>(case: Case, entries: &[&'a Entry]) -> miette::Result<Vec<Racer<'a>>>
 /// The median over frames of one time over the other on the same frame.
 pub fn median_ratio(times: &[f64], others: &[f64]) -> f64 {
     let ratios = times.iter().zip(others).map(|(time, other)| time / other);
-    quantile(&mut ratios.collect::<Vec<_>>(), 0.5)
-}
-
-/// The q-quantile; the numbers are left sorted.
-pub fn quantile(numbers: &mut [f64], q: f64) -> f64 {
-    numbers.sort_by(f64::total_cmp);
-    match numbers.len() {
-        0 => f64::NAN,
-        n => numbers[((n - 1) as f64 * q).round() as usize],
-    }
+    median(ratios.collect())
 }

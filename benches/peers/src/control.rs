@@ -8,17 +8,19 @@
 use std::fmt::Write as _;
 use std::hint::black_box;
 use std::path::PathBuf;
-use std::time::Instant;
 
 use miette::miette;
 use sdop::threads::Threads;
 use serde::Serialize;
 
+use sdop::lab::measure::contestant::Contestant;
+use sdop::lab::measure::turns::{Turns, median};
+
 use crate::boxes::Frame;
-use crate::compare::{median_ratio, quantile};
+use crate::compare::median_ratio;
+use crate::entry::{Engine, Setup};
 use crate::facts::{self, Facts};
 use crate::ours;
-use crate::peer::{Peer, Setup};
 use crate::record::digits;
 use crate::scenes::{Course, Order, Schedule, Spread};
 
@@ -95,7 +97,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
 /// One work on so many threads.
 struct Racer {
     name: &'static str,
-    peer: Box<dyn Peer>,
+    engine: Engine,
     ms: Vec<f64>,
 }
 
@@ -110,6 +112,13 @@ fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
     let mut frames = vec![Frame::default(); turn];
     course.next_frame(&mut frames[0])?;
     let mut racers = Vec::new();
+    let mut enter = |name, engine| {
+        racers.push(Racer {
+            name,
+            engine,
+            ms: Vec::with_capacity(timed),
+        });
+    };
     for threads in [1, threads] {
         let setup = Setup {
             scene: &course.scene,
@@ -117,52 +126,42 @@ fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
             threads,
         };
         for entry in &ours::ENTRIES {
-            racers.push((entry.name, (entry.new)(&setup)?));
+            enter(entry.name, (entry.new)(&setup)?);
         }
-        racers.push((ARITHMETIC, Box::new(Loop::new(threads, bodies, compute)?)));
+        enter(ARITHMETIC, Box::new(Loop::new(threads, bodies, compute)?));
         let floats = bodies * BYTES / size_of::<f32>();
-        racers.push((MEMORY, Box::new(Loop::new(threads, floats, touch)?)));
+        enter(MEMORY, Box::new(Loop::new(threads, floats, touch)?));
     }
-    let mut racers: Vec<_> = racers
-        .into_iter()
-        .map(|(name, peer)| Racer {
-            name,
-            peer,
-            ms: Vec::with_capacity(timed),
-        })
-        .collect();
+    let mut turns = Turns::default();
     for start in (0..warm_up + timed).step_by(turn) {
         for frame in &mut frames[usize::from(start == 0)..] {
             course.next_frame(frame)?;
         }
-        let count = racers.len();
-        for place in 0..count {
-            let racer = &mut racers[(place + start / turn) % count];
-            for frame in &frames {
-                let before = Instant::now();
-                racer.peer.frame(frame);
-                let seconds = before.elapsed().as_secs_f64();
-                if start >= warm_up {
-                    racer.ms.push(1e3 * seconds);
-                }
+        let (mut engines, mut times): (Vec<_>, Vec<_>) = racers
+            .iter_mut()
+            .map(|racer| (&mut racer.engine, &mut racer.ms))
+            .unzip();
+        turns.round(&mut engines, &frames, |frame| {
+            if start >= warm_up {
+                times[frame.number].push(1e3 * frame.seconds);
             }
-        }
+        });
     }
-    rows(bodies, threads, &mut racers)
+    rows(bodies, threads, &racers)
 }
 
 /// The second half of `racers` does what the first does, on more threads.
-fn rows(bodies: usize, threads: usize, racers: &mut [Racer]) -> miette::Result<Vec<SpeedUp>> {
-    let (alone, together) = racers.split_at_mut(racers.len() / 2);
-    let sorted = |peer: &dyn Peer| {
-        let mut pairs = peer.pairs();
+fn rows(bodies: usize, threads: usize, racers: &[Racer]) -> miette::Result<Vec<SpeedUp>> {
+    let (alone, together) = racers.split_at(racers.len() / 2);
+    let sorted = |racer: &Racer| {
+        let mut pairs = racer.engine.pairs();
         pairs.iter_mut().for_each(|pair| pair.sort_unstable());
         pairs.sort_unstable();
         pairs
     };
     let mut rows = Vec::new();
-    for (one, several) in alone.iter_mut().zip(together) {
-        if sorted(&*one.peer) != sorted(&*several.peer) {
+    for (one, several) in alone.iter().zip(together) {
+        if sorted(one) != sorted(several) {
             return Err(miette!(
                 "{} finds other pairs on {threads} threads",
                 one.name
@@ -173,8 +172,8 @@ fn rows(bodies: usize, threads: usize, racers: &mut [Racer]) -> miette::Result<V
             work: one.name,
             threads,
             speed_up: median_ratio(&one.ms, &several.ms),
-            ms_1: quantile(&mut one.ms, 0.5),
-            ms: quantile(&mut several.ms, 0.5),
+            ms_1: median(one.ms.clone()),
+            ms: median(several.ms.clone()),
             share_of_arithmetic: f64::NAN,
             share_of_memory: f64::NAN,
         });
@@ -209,7 +208,7 @@ impl Loop {
     }
 }
 
-impl Peer for Loop {
+impl Contestant<Frame> for Loop {
     fn frame(&mut self, _: &Frame) {
         let work = self.work;
         self.pool

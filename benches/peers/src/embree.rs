@@ -1,7 +1,7 @@
 //! Embree's `rtcCollide`: `native/embree.cpp`.
 
+use crate::entry::{Entry, Work};
 use crate::native::{new, shim};
-use crate::peer::{Entry, Work};
 
 /// One way to drive it.
 pub const ENTRIES: [Entry; 1] = [Entry {

@@ -13,6 +13,7 @@ mod compare;
 mod control;
 #[cfg(feature = "debian")]
 mod embree;
+mod entry;
 mod facts;
 mod kernels;
 mod memory;
@@ -23,7 +24,6 @@ mod obvhs;
 mod oracle;
 mod ours;
 mod parry;
-mod peer;
 #[cfg(feature = "physx")]
 mod physx;
 mod rapier;
@@ -32,13 +32,14 @@ mod roster;
 mod rstar;
 mod scenes;
 mod threads;
+mod verdicts;
 
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 use compare::Case;
+use entry::{Entry, OURS};
 use miette::miette;
-use peer::{Entry, OURS};
 use record::Record;
 use scenes::{Order, Schedule, Spread};
 
@@ -94,6 +95,8 @@ enum Other {
     Narrow(narrow::Args),
     Control(control::Args),
     Kernels(kernels::Args),
+    Verdicts(verdicts::Args),
+    Answer(verdicts::AnswerArgs),
 }
 
 fn main() -> miette::Result<()> {
@@ -103,6 +106,8 @@ fn main() -> miette::Result<()> {
         Some(Other::Narrow(args)) => return narrow::run(args),
         Some(Other::Control(args)) => return control::run(args),
         Some(Other::Kernels(args)) => return kernels::run(args),
+        Some(Other::Verdicts(args)) => return verdicts::run(args),
+        Some(Other::Answer(args)) => return verdicts::answer(args),
         None => {}
     }
     let entries = chosen(cli.peers.as_deref())?;

@@ -6,8 +6,10 @@ use std::ffi::c_void;
 
 use miette::miette;
 
+use sdop::lab::measure::contestant::Contestant;
+
 use crate::boxes::{Frame, Slabs};
-use crate::peer::{Peer, Setup};
+use crate::entry::{Engine, Setup};
 
 /// The functions of an engine.
 #[derive(Clone, Copy)]
@@ -56,7 +58,7 @@ struct Native {
 }
 
 /// Makes an engine.
-pub fn new(setup: &Setup<'_>, shim: Shim) -> miette::Result<Box<dyn Peer>> {
+pub fn new(setup: &Setup<'_>, shim: Shim) -> miette::Result<Engine> {
     let (boxes, threads) = (&setup.first.boxes, setup.threads as u32);
     // SAFETY: as many boxes as the call says.
     let peer = unsafe { (shim.new)(boxes.as_ptr(), boxes.len(), threads) };
@@ -70,7 +72,7 @@ pub fn new(setup: &Setup<'_>, shim: Shim) -> miette::Result<Box<dyn Peer>> {
     }))
 }
 
-impl Peer for Native {
+impl Contestant<Frame> for Native {
     fn frame(&mut self, frame: &Frame) {
         assert_eq!(frame.boxes.len(), self.bodies, "a scene keeps its bodies");
         // SAFETY: as many boxes as the engine was made for; it looks at them during the call alone.

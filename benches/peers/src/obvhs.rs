@@ -4,8 +4,10 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
+use sdop::lab::measure::contestant::Contestant;
+
 use crate::boxes::{Frame, Slabs, lower, upper};
-use crate::peer::{Entry, Peer, Setup, Work};
+use crate::entry::{Entry, Setup, Work};
 use crate::threads::{Queries, Threads};
 
 /// One way to drive it.
@@ -40,7 +42,7 @@ impl Obvhs {
     }
 }
 
-impl Peer for Obvhs {
+impl Contestant<Frame> for Obvhs {
     fn frame(&mut self, frame: &Frame) {
         self.boxes.clear();
         self.boxes.extend(frame.boxes.iter().map(aabb));

@@ -4,8 +4,10 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
+use sdop::lab::measure::contestant::Contestant;
+
 use crate::boxes::{Frame, Slabs, lower, upper};
-use crate::peer::{Entry, Peer, Setup, Work};
+use crate::entry::{Entry, Setup, Work};
 use crate::threads::Threads;
 
 const VERSION: &str = "0.31.1";
@@ -53,7 +55,7 @@ impl Parry {
     }
 }
 
-impl Peer for Parry {
+impl Contestant<Frame> for Parry {
     fn frame(&mut self, frame: &Frame) {
         let (tree, workspace, pairs) = (&mut self.tree, &mut self.workspace, &mut self.pairs);
         for (i, slabs) in frame.boxes.iter().enumerate() {

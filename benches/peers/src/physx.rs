@@ -19,9 +19,11 @@ use physx_sys::{
     phys_PxCreateBroadPhase, phys_PxGetBroadPhaseDynamicFilterGroup, physx_create_foundation,
 };
 
+use sdop::lab::measure::contestant::Contestant;
+
 use crate::boxes::{Frame, Slabs};
 use crate::changes::Changes;
-use crate::peer::{Entry, Peer, Setup, Work};
+use crate::entry::{Engine, Entry, Setup, Work};
 
 const VERSION: &str = "5 (physx-sys 0.11.5)";
 
@@ -38,7 +40,7 @@ pub const ENTRIES: [Entry; 3] = [
 const fn entry(
     name: &'static str,
     slack: u32,
-    new: fn(&Setup<'_>) -> miette::Result<Box<dyn Peer>>,
+    new: fn(&Setup<'_>) -> miette::Result<Engine>,
 ) -> Entry {
     Entry {
         name,
@@ -51,7 +53,7 @@ const fn entry(
     }
 }
 
-fn new(setup: &Setup<'_>, kind: PxBroadPhaseType) -> miette::Result<Box<dyn Peer>> {
+fn new(setup: &Setup<'_>, kind: PxBroadPhaseType) -> miette::Result<Engine> {
     Ok(Box::new(PhysX::new(setup, kind)?))
 }
 
@@ -169,7 +171,7 @@ impl PhysX {
     }
 }
 
-impl Peer for PhysX {
+impl Contestant<Frame> for PhysX {
     fn frame(&mut self, frame: &Frame) {
         self.take(frame);
         self.update(false);

@@ -11,9 +11,11 @@ use rapier3d::geometry::{
 };
 use rapier3d::math::Vector;
 
+use sdop::lab::measure::contestant::Contestant;
+
 use crate::boxes::{Frame, lower, upper};
 use crate::changes::Changes;
-use crate::peer::{Entry, Peer, Setup, Work};
+use crate::entry::{Entry, Setup, Work};
 use crate::threads::Threads;
 
 /// One way to drive it.
@@ -65,7 +67,7 @@ impl Rapier {
     }
 }
 
-impl Peer for Rapier {
+impl Contestant<Frame> for Rapier {
     fn frame(&mut self, frame: &Frame) {
         let Self {
             broad_phase,

@@ -1,6 +1,6 @@
 //! The engines that stand in the comparison.
 
-use crate::peer::Entry;
+use crate::entry::Entry;
 #[cfg(feature = "physx")]
 use crate::physx;
 use crate::{broccoli, bvh, obvhs, ours, parry, rapier, rstar};

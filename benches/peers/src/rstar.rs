@@ -5,8 +5,10 @@
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
+use sdop::lab::measure::contestant::Contestant;
+
 use crate::boxes::{Frame, lower, upper};
-use crate::peer::{Entry, Peer, Setup, Work};
+use crate::entry::{Entry, Setup, Work};
 
 /// One way to drive it.
 pub const ENTRIES: [Entry; 1] = [Entry {
@@ -27,7 +29,7 @@ struct Rstar {
     pairs: Vec<[u32; 2]>,
 }
 
-impl Peer for Rstar {
+impl Contestant<Frame> for Rstar {
     fn frame(&mut self, frame: &Frame) {
         let body = |(number, slabs): (usize, &_)| {
             let rectangle = AABB::from_bounds(lower(slabs), upper(slabs)).into();

@@ -5,10 +5,11 @@ use crate::bodies::Bodies;
 /// A box on the world axes: the lower corner x, y, z, then the upper one.
 pub type WorldBox = [f32; 6];
 
-/// What stands in a comparison. It is made for a scene (its shapes and first bodies), then sees frame after frame.
-pub trait Contestant {
+/// What stands in a comparison. It is made for a scene (its shapes and first bodies), then sees frame after frame: bodies,
+/// or whatever else all that are compared take, such as boxes alone.
+pub trait Contestant<Frame: ?Sized = Bodies> {
     /// Finds the pairs of the frame. This alone is timed: from poses to a complete answer in the contestant's own memory.
-    fn frame(&mut self, bodies: &Bodies);
+    fn frame(&mut self, bodies: &Frame);
 
     /// Books what the frame changed, for cullers that say only that. Not timed.
     fn settle(&mut self) {}
@@ -23,30 +24,37 @@ pub trait Contestant {
 
     /// Takes over another set of bodies before the coming frame: `was[i]` is the former number of body i, `None` for a
     /// new one, and former numbers that are not named are gone. False when the set can't change.
-    fn change(&mut self, bodies: &Bodies, was: &[Option<u32>]) -> bool {
+    fn change(&mut self, bodies: &Frame, was: &[Option<u32>]) -> bool {
         let _ = (bodies, was);
         false
     }
 }
 
-impl<C: Contestant + ?Sized> Contestant for Box<C> {
-    fn frame(&mut self, bodies: &Bodies) {
-        (**self).frame(bodies);
-    }
+/// What owns or borrows a contestant is one.
+macro_rules! pass_on {
+    ($pointer:ty, $($lifetime:lifetime)?) => {
+        impl<$($lifetime,)? Frame: ?Sized, C: Contestant<Frame> + ?Sized> Contestant<Frame> for $pointer {
+            fn frame(&mut self, bodies: &Frame) {
+                (**self).frame(bodies);
+            }
 
-    fn settle(&mut self) {
-        (**self).settle();
-    }
+            fn settle(&mut self) {
+                (**self).settle();
+            }
 
-    fn pairs(&self) -> Vec<[u32; 2]> {
-        (**self).pairs()
-    }
+            fn pairs(&self) -> Vec<[u32; 2]> {
+                (**self).pairs()
+            }
 
-    fn boxes(&mut self, boxes: &[WorldBox]) {
-        (**self).boxes(boxes);
-    }
+            fn boxes(&mut self, boxes: &[WorldBox]) {
+                (**self).boxes(boxes);
+            }
 
-    fn change(&mut self, bodies: &Bodies, was: &[Option<u32>]) -> bool {
-        (**self).change(bodies, was)
-    }
+            fn change(&mut self, bodies: &Frame, was: &[Option<u32>]) -> bool {
+                (**self).change(bodies, was)
+            }
+        }
+    };
 }
+pass_on!(Box<C>,);
+pass_on!(&'a mut C, 'a);

@@ -73,20 +73,20 @@ impl Turns {
     }
 
     /// Every contestant takes every frame of the round: all frames in one turn each. `each` sees what was timed.
-    pub fn round<C: Contestant>(
+    pub fn round<Frame, C: Contestant<Frame>>(
         &mut self,
         contestants: &mut [C],
-        frames: &[Bodies],
+        frames: &[Frame],
         mut each: impl FnMut(Timed<'_, C>),
     ) {
         let mut waiting = Waiting::of_this_thread();
         for number in self.order(contestants.len()) {
             let contestant = &mut contestants[number];
             let mut watched = true;
-            for (frame, poses) in frames.iter().enumerate() {
+            for (frame, bodies) in frames.iter().enumerate() {
                 let before = if watched { waiting.seconds() } else { 0.0 };
                 let start = Instant::now();
-                contestant.frame(poses);
+                contestant.frame(bodies);
                 let seconds = start.elapsed().as_secs_f64();
                 let after = if watched { waiting.seconds() } else { 0.0 };
                 let waited = (after - before).clamp(0.0, seconds);

@@ -12,8 +12,10 @@ use sdop::simd::{Tier, dispatch};
 use sdop::threads::Threads;
 
 use self::cubes::{Find, Found, Gap, Test, cube_about};
+use sdop::lab::measure::contestant::Contestant;
+
 use crate::boxes::{Frame, Slabs};
-use crate::peer::{Peer, Setup};
+use crate::entry::Setup;
 
 /// Bodies whose cubes one thread makes at once.
 const CUBES: usize = 4096;
@@ -85,7 +87,7 @@ impl Boxes {
     }
 }
 
-impl Peer for Boxes {
+impl Contestant<Frame> for Boxes {
     fn frame(&mut self, frame: &Frame) {
         let (finder, order) = (&mut self.finder, &mut self.order);
         if finder.reorder(&self.places, &self.cubes, &self.names, order) != Reorder::None {

@@ -3,8 +3,10 @@
 use sdop::culler::Culler;
 use sdop::settings::{Finder, Strategy};
 
+use sdop::lab::measure::contestant::Contestant;
+
 use crate::boxes::Frame;
-use crate::peer::{Peer, Setup};
+use crate::entry::Setup;
 
 /// A culler with one strategy.
 pub struct Culled(Culler);
@@ -21,7 +23,7 @@ impl Culled {
     }
 }
 
-impl Peer for Culled {
+impl Contestant<Frame> for Culled {
     fn frame(&mut self, frame: &Frame) {
         let pairs = self.0.cull(&frame.bodies);
         assert!(pairs.is_ok(), "{pairs:?}: frames keep their bodies");

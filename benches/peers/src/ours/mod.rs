@@ -5,7 +5,7 @@ mod culler;
 
 use sdop::settings::Strategy;
 
-use crate::peer::{Entry, OURS, Work};
+use crate::entry::{Entry, OURS, Work};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 

@@ -1,23 +1,15 @@
 //! What an engine must offer to stand in the comparison.
 //!
-//! A new engine is a file with a `Peer`, and its line in [`roster`](crate::roster::roster).
+//! A new engine is a file with a `Contestant` of [`Frame`]s and its [`Entry`], and a line in `roster.rs`.
 
+use sdop::judge::Claim;
+use sdop::lab::measure::contestant::Contestant;
 use sdop::lab::scene::Scene;
 
 use crate::boxes::Frame;
 
-/// An engine with the bodies of one scene.
-pub trait Peer {
-    /// Takes over the frame and finds its pairs. This is what is timed: from the frame's boxes to a complete answer in the
-    /// engine's own memory.
-    fn frame(&mut self, frame: &Frame);
-
-    /// Books what the frame changed, for engines that say only that. Not timed.
-    fn settle(&mut self) {}
-
-    /// The pairs of the last frame, each once, in any order. Not timed.
-    fn pairs(&self) -> Vec<[u32; 2]>;
-}
+/// An engine with the bodies of one scene. What is timed goes from the frame's boxes to a complete answer in its own memory.
+pub type Engine = Box<dyn Contestant<Frame>>;
 
 /// What is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +29,15 @@ impl Work {
             Self::Boxes => "boxes",
             Self::Spheres => "spheres",
             Self::SDop => "s-dop",
+        }
+    }
+
+    /// What a pair must be reported for.
+    pub fn claim(self) -> Claim {
+        match self {
+            Self::Boxes => Claim::Aabb,
+            Self::Spheres => Claim::Sphere,
+            Self::SDop => Claim::Mesh,
         }
     }
 }
@@ -70,7 +71,7 @@ pub struct Entry {
     /// for the last of the frames before the clock counts.
     pub ages: bool,
     /// Builds it.
-    pub new: fn(&Setup<'_>) -> miette::Result<Box<dyn Peer>>,
+    pub new: fn(&Setup<'_>) -> miette::Result<Engine>,
 }
 
 /// The name of the engine that the others are compared with.
