@@ -1,7 +1,7 @@
 //! A culler in Rust, judged: a grid over bounding balls that claims to miss no pair of meshes.
 //!
-//! `cargo run --release --example judge` passes. With `-- --tight-cells` the cells are as large as the largest ball's radius
-//! instead of its diameter: a partner can be two cells away.
+//! `cargo run --release --example judge` passes. With `-- --tight-cells` the cells are exactly as large as the largest ball, and
+//! counted in f32: a partner can be two cells away.
 
 use std::collections::HashMap;
 use std::process::ExitCode;
@@ -29,11 +29,11 @@ impl Grid {
     }
 
     /// The cell of a point; indices beyond 2³⁰ would round, and such frames have one cell.
-    fn cell(&self, x: f64, diameter: f64, size: f64) -> i64 {
+    fn cell(&self, x: f64, least: f64, diameter: f64, size: f64) -> i64 {
         if size / diameter >= 2_f64.powi(30) {
             0
         } else if self.tight {
-            (x / (0.5 * diameter)).floor() as i64
+            ((x as f32 - least as f32) / diameter as f32).floor() as i64
         } else {
             (x / (diameter * (1.0 + 2_f64.powi(-20)))).floor() as i64
         }
@@ -59,9 +59,13 @@ impl Contestant for Grid {
             .iter()
             .flat_map(|ball| ball.0)
             .fold(0.0, |most: f64, x| most.max(x.abs()));
+        let least = [0, 1, 2].map(|axis| {
+            let all = balls.iter().map(|ball| ball.0[axis]);
+            all.fold(f64::INFINITY, f64::min)
+        });
         let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
         for (j, (b, rb)) in balls.iter().enumerate() {
-            let cell = b.map(|x| self.cell(x, diameter, size));
+            let cell = [0, 1, 2].map(|axis| self.cell(b[axis], least[axis], diameter, size));
             for n in 0..27 {
                 let near = [0, 1, 2].map(|axis| cell[axis] + [n % 3, n / 3 % 3, n / 9][axis] - 1);
                 for &i in cells.get(&near).into_iter().flatten() {

@@ -108,7 +108,7 @@ groups! {
     "exact/corner-to-corner", 8, Draw::Exact(exact::Touch::Corners), "touching taken for apart: < in place of <=";
     "exact/tip-on-face", 8, Draw::Exact(exact::Touch::TipOnFace), "touching taken for apart: < in place of <=";
     "exact/tip-to-tip", 8, Draw::Exact(exact::Touch::Tips), "touching taken for apart: < in place of <=";
-    "grid/cell-border", 8, Draw::CellBorder, "cells exactly as large as the largest body: a partner two cells away";
+    "grid/cell-border", 12, Draw::CellBorder, "cells exactly as large as the largest body: a partner two cells away";
     "buffer/growth", 2, Draw::Crowd(crowds::Kind::Growth), "a full buffer of pairs, and one that is never emptied";
     "buffer/hub", 2, Draw::Crowd(crowds::Kind::Hub), "a full buffer of one body's partners";
     "order/repeated", 4, Draw::Crowd(crowds::Kind::Repeated), "answers that depend on the frames before";
@@ -268,7 +268,7 @@ impl Group {
                 rng,
             )?),
             Draw::Exact(touch) => exact::touching(touch, number, 8, rng),
-            Draw::CellBorder => grid::tips_across_borders(rng),
+            Draw::CellBorder => grid::tips_across_borders(number, rng),
             Draw::Crowd(kind) => Ok(crowds::crowd(kind, rng)?),
             Draw::Boxes(kind) => boxes::boxes(kind, 48, rng),
             Draw::Hard(text) => hard_case(text, number, seed),
