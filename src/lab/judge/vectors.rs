@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::catalogue::{CatalogueError, Group, groups};
 use super::report::Named;
 use super::truth::Truth;
-use super::wire::ndjson::ShapeLine;
+use crate::lab::record::ShapeLine;
 use crate::lab::verify::judged::InvalidInput;
 
 /// What the files' versions count.

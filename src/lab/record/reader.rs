@@ -61,7 +61,7 @@ impl<R: BufRead> Reader<R> {
         let header = parse_header(&text, name)?;
         let wrong = |problem: String, hint: &str| line_error(name, 1, problem, hint);
         let shapes = header.shapes.iter().map(|line| {
-            check_shape(line).map_err(|problem| {
+            line.built().map_err(|problem| {
                 let problem = format!("shape {}: {problem}", line.name);
                 wrong(problem, "write the body-frame numbers exactly as built")
             })
@@ -241,40 +241,43 @@ fn parse_header(text: &[u8], name: &str) -> Result<Header, RecordError> {
     })
 }
 
-/// The shape with these numbers, or what is wrong with them.
-fn check_shape(line: &ShapeLine) -> Result<Shape, String> {
-    if line.vertices.is_empty() {
-        return Err("it has no vertices".to_owned());
+impl ShapeLine {
+    /// The shape with these numbers, or what is wrong with them.
+    pub(in crate::lab) fn built(&self) -> Result<Shape, String> {
+        let line = self;
+        if line.vertices.is_empty() {
+            return Err("it has no vertices".to_owned());
+        }
+        let finite = |numbers: &[f32]| numbers.iter().all(|x| x.is_finite());
+        if let Some(at) = line.vertices.iter().position(|v| !finite(v)) {
+            return Err(format!("vertex {at} is {:?}", line.vertices[at]));
+        }
+        let count = line.vertices.len();
+        let outside = |t: &[u32; 3]| t.iter().any(|&v| v as usize >= count);
+        if let Some(at) = line.triangles.iter().position(outside) {
+            let corners = line.triangles[at];
+            return Err(format!("triangle {at} is {corners:?} of {count} vertices"));
+        }
+        let [.., radius] = line.ball;
+        if !finite(&line.ball) || radius < 0.0 {
+            return Err(format!("its ball is {:?}", line.ball));
+        }
+        let ordop = &line.ordop;
+        if !finite(&ordop.basis) || !finite(&ordop.lo) || !finite(&ordop.hi) {
+            return Err("its or-DOP is not finite".to_owned());
+        }
+        let shape = line
+            .shape()
+            .ok_or_else(|| format!("no or-DOP has k = {}", ordop.k))?;
+        let slabs = shape.ordop.directions.slabs();
+        if (ordop.lo.len(), ordop.hi.len()) != (slabs, slabs) {
+            let (lo, hi, k) = (ordop.lo.len(), ordop.hi.len(), ordop.k);
+            return Err(format!(
+                "k = {k} takes {slabs} slabs; it has {lo} lower and {hi} upper ends"
+            ));
+        }
+        Ok(shape)
     }
-    let finite = |numbers: &[f32]| numbers.iter().all(|x| x.is_finite());
-    if let Some(at) = line.vertices.iter().position(|v| !finite(v)) {
-        return Err(format!("vertex {at} is {:?}", line.vertices[at]));
-    }
-    let count = line.vertices.len();
-    let outside = |t: &[u32; 3]| t.iter().any(|&v| v as usize >= count);
-    if let Some(at) = line.triangles.iter().position(outside) {
-        let corners = line.triangles[at];
-        return Err(format!("triangle {at} is {corners:?} of {count} vertices"));
-    }
-    let [.., radius] = line.ball;
-    if !finite(&line.ball) || radius < 0.0 {
-        return Err(format!("its ball is {:?}", line.ball));
-    }
-    let ordop = &line.ordop;
-    if !finite(&ordop.basis) || !finite(&ordop.lo) || !finite(&ordop.hi) {
-        return Err("its or-DOP is not finite".to_owned());
-    }
-    let shape = line
-        .shape()
-        .ok_or_else(|| format!("no or-DOP has k = {}", ordop.k))?;
-    let slabs = shape.ordop.directions.slabs();
-    if (ordop.lo.len(), ordop.hi.len()) != (slabs, slabs) {
-        let (lo, hi, k) = (ordop.lo.len(), ordop.hi.len(), ordop.k);
-        return Err(format!(
-            "k = {k} takes {slabs} slabs; it has {lo} lower and {hi} upper ends"
-        ));
-    }
-    Ok(shape)
 }
 
 fn bodies_of(lines: &[BodyLine]) -> Bodies {

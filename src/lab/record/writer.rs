@@ -22,10 +22,6 @@ impl Header {
     /// The first line for these bodies, with what every record has.
     #[must_use]
     pub fn new(scene: &str, seed: u64, shapes: &[Shape], bodies: &Bodies) -> Self {
-        let line = |(&shape, &dynamic): (&u32, &bool)| BodyLine {
-            shape,
-            fixed: !dynamic,
-        };
         Self {
             format: FORMAT.to_owned(),
             version: VERSION,
@@ -38,7 +34,7 @@ impl Header {
             effects: None,
             cull: None,
             shapes: shapes.iter().map(ShapeLine::of).collect(),
-            bodies: bodies.shape.iter().zip(&bodies.dynamic).map(line).collect(),
+            bodies: BodyLine::all(bodies),
         }
     }
 
@@ -57,6 +53,18 @@ impl Header {
             cull: Some(scene.cull.clone()),
             ..Self::new(&scene.name, scene.seed, &scene.shapes, &scene.bodies)
         }
+    }
+}
+
+impl BodyLine {
+    /// A line for each body.
+    #[must_use]
+    pub fn all(bodies: &Bodies) -> Vec<Self> {
+        let line = |(&shape, &dynamic): (&u32, &bool)| Self {
+            shape,
+            fixed: !dynamic,
+        };
+        bodies.shape.iter().zip(&bodies.dynamic).map(line).collect()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Cases as lines of JSON: `sdop-record`, version 1, with what a case has on top. Unknown keys are ignored by readers.
 //!
-//! Line 1 may have `case`, `flag`, `source` and `claims`; a frame has `boxes` for the claim `aabb`, and `bodies` when the set
+//! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claim `aabb`, and `bodies` when the set
 //! changes, each with its former number as `was` (null for a new body).
 
 use std::io::BufRead;
@@ -15,16 +15,14 @@ use crate::lab::judge::answer::{Answer, Trouble};
 use crate::lab::judge::case::{Case, Frame};
 use crate::lab::judge::claim::Claim;
 use crate::lab::measure::contestant::WorldBox;
-use crate::mesh::TriangleMesh;
-use crate::rounding::LIMIT;
-use crate::volume::{Ball, Basis, DirectionSet, OrDop, Shape, ShapeSpec, VolumeError};
+use crate::lab::record::{BodyLine, FORMAT, FrameLine, Header, ShapeLine, VERSION};
+use crate::volume::Shape;
 
+/// A record's first line with what a case has on top.
 #[derive(Serialize, Deserialize)]
-struct Header {
-    format: String,
-    version: u32,
-    scene: String,
-    seed: u64,
+struct CaseHeader {
+    #[serde(flatten)]
+    record: Header,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     flag: String,
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -32,42 +30,22 @@ struct Header {
     /// The claim that is asked about, then the others that the case is about.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     claims: Vec<Claim>,
-    shapes: Vec<ShapeLine>,
-    bodies: Vec<BodyLine>,
 }
 
-/// A shape's numbers.
+/// A body of a changed set.
 #[derive(Serialize, Deserialize)]
-pub struct ShapeLine {
-    name: String,
-    vertices: Vec<[f32; 3]>,
-    triangles: Vec<[u32; 3]>,
-    ball: [f32; 4],
-    ordop: OrDopLine,
-}
-
-#[derive(Serialize, Deserialize)]
-struct OrDopLine {
-    k: usize,
-    basis: [f32; 9],
-    lo: Vec<f32>,
-    hi: Vec<f32>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct BodyLine {
-    shape: u32,
-    #[serde(rename = "static")]
-    fixed: bool,
+struct ChangedBody {
+    #[serde(flatten)]
+    body: BodyLine,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     was: Option<u32>,
 }
 
 #[derive(Serialize, Deserialize)]
-struct FrameLine {
+struct CaseFrame {
     frame: u32,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    bodies: Option<Vec<BodyLine>>,
+    bodies: Option<Vec<ChangedBody>>,
     poses: Vec<[f32; 7]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     boxes: Option<Vec<WorldBox>>,
@@ -80,30 +58,19 @@ pub(super) fn encode(case: &Case, claim: Claim) -> serde_json::Result<Vec<u8>> {
     let empty = Bodies::default();
     let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
     let others = case.claims.iter().copied().filter(|other| *other != claim);
-    let header = Header {
-        format: "sdop-record".to_owned(),
-        version: 1,
-        scene: case.name.clone(),
-        seed: 0,
+    let header = CaseHeader {
+        record: Header::new(&case.name, 0, &case.shapes, first),
         flag: case.flag.clone(),
         source: case.source.clone(),
         claims: std::iter::once(claim).chain(others).collect(),
-        shapes: case.shapes.iter().map(ShapeLine::of).collect(),
-        bodies: body_lines(first, None),
     };
     let mut bytes = serde_json::to_vec(&header)?;
     bytes.push(b'\n');
     for (number, frame) in case.frames.iter().enumerate() {
-        let poses = frame.bodies.rotation.iter().zip(&frame.bodies.translation);
-        let line = FrameLine {
+        let line = CaseFrame {
             frame: number as u32,
-            bodies: frame
-                .was
-                .as_deref()
-                .map(|was| body_lines(&frame.bodies, Some(was))),
-            poses: poses
-                .map(|(&[x, y, z, w], &[tx, ty, tz])| [x, y, z, w, tx, ty, tz])
-                .collect(),
+            bodies: frame.was.as_deref().map(|was| changed(&frame.bodies, was)),
+            poses: FrameLine::poses(&frame.bodies),
             boxes: (claim == Claim::Aabb).then(|| frame.boxes.clone()),
             pairs: None,
         };
@@ -113,84 +80,11 @@ pub(super) fn encode(case: &Case, claim: Claim) -> serde_json::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn body_lines(bodies: &Bodies, was: Option<&[Option<u32>]>) -> Vec<BodyLine> {
-    let line = |i: usize| BodyLine {
-        shape: bodies.shape[i],
-        fixed: !bodies.dynamic[i],
-        was: was.and_then(|was| was[i]),
-    };
-    (0..bodies.len()).map(line).collect()
-}
-
-impl ShapeLine {
-    /// The numbers of a shape.
-    #[must_use]
-    pub fn of(shape: &Shape) -> Self {
-        let [x, y, z] = shape.ball.centre.to_array();
-        let [a, b, c] = shape.ordop.basis.columns.map(|column| column.to_array());
-        Self {
-            name: shape.name.clone(),
-            vertices: shape.vertices.iter().map(|v| v.to_array()).collect(),
-            triangles: shape.triangles.clone(),
-            ball: [x, y, z, shape.ball.radius],
-            ordop: OrDopLine {
-                k: shape.ordop.directions.k(),
-                basis: [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]],
-                lo: shape.ordop.lo.clone(),
-                hi: shape.ordop.hi.clone(),
-            },
-        }
-    }
-
-    fn shape(self) -> Result<Shape, String> {
-        let vertices: Vec<glam::Vec3> = self
-            .vertices
-            .iter()
-            .copied()
-            .map(glam::Vec3::from)
-            .collect();
-        let mesh =
-            TriangleMesh::new(self.name, vertices, self.triangles).map_err(|e| e.to_string())?;
-        let spec = ShapeSpec {
-            origin: crate::volume::Origin::File,
-            ..ShapeSpec::default()
-        };
-        // Built for its reach; ball and or-DOP are the file's.
-        let built = Shape::build(&mesh, &spec).map_err(|e: VolumeError| e.to_string())?;
-        let directions = DirectionSet::ALL.iter().find(|set| set.k() == self.ordop.k);
-        let directions =
-            *directions.ok_or_else(|| format!("no or-DOP has k = {}", self.ordop.k))?;
-        let [cx, cy, cz, radius] = self.ball;
-        let within = |x: &f32| x.abs() <= LIMIT;
-        if !(self.ball.iter().all(within) && radius >= 0.0) {
-            return Err(format!(
-                "the ball {:?} has a number that is negative, not finite or above 2^60",
-                self.ball
-            ));
-        }
-        let column = |i: usize| {
-            glam::Vec3::new(
-                self.ordop.basis[i],
-                self.ordop.basis[i + 1],
-                self.ordop.basis[i + 2],
-            )
-        };
-        Ok(Shape {
-            ball: Ball {
-                centre: glam::Vec3::new(cx, cy, cz),
-                radius,
-            },
-            ordop: OrDop {
-                directions,
-                basis: Basis {
-                    columns: [column(0), column(3), column(6)],
-                },
-                lo: self.ordop.lo,
-                hi: self.ordop.hi,
-            },
-            ..built
-        })
-    }
+fn changed(bodies: &Bodies, was: &[Option<u32>]) -> Vec<ChangedBody> {
+    let lines = BodyLine::all(bodies).into_iter().zip(was);
+    lines
+        .map(|(body, &was)| ChangedBody { body, was })
+        .collect()
 }
 
 /// A case as read from a file, with the pairs that its frames have.
@@ -213,25 +107,36 @@ pub fn read(input: impl BufRead) -> Result<Read, String> {
     let Some((_, first)) = lines.next() else {
         return Err("no line in it: the first has the shapes and bodies".to_owned());
     };
-    let header: Header = parse(1, first)?;
-    if header.format != "sdop-record" || header.version != 1 {
+    let CaseHeader {
+        record: header,
+        flag,
+        source,
+        claims,
+    } = parse(1, first)?;
+    if header.format != FORMAT || header.version != VERSION {
         return Err(format!(
-            "line 1: {} {} is not sdop-record 1",
+            "line 1: {} {} is not {FORMAT} {VERSION}",
             header.format, header.version
         ));
     }
     let shapes: Vec<Shape> = header
         .shapes
-        .into_iter()
-        .map(ShapeLine::shape)
+        .iter()
+        .map(ShapeLine::built)
         .collect::<Result<_, _>>()
         .map_err(|e| format!("line 1: {e}"))?;
     let (mut bodies, mut frames, mut pairs) = (header.bodies, Vec::new(), Vec::new());
     for (number, line) in lines {
         let at = |problem: String| format!("line {}: {problem}", number + 1);
-        let line: FrameLine = parse(number + 1, line)?;
-        let was = line.bodies.is_some();
-        bodies = line.bodies.unwrap_or(bodies);
+        let line: CaseFrame = parse(number + 1, line)?;
+        let was = line.bodies.map(|changed| {
+            let (set, was) = changed
+                .into_iter()
+                .map(|line| (line.body, line.was))
+                .unzip();
+            bodies = set;
+            was
+        });
         if line.poses.len() != bodies.len() {
             return Err(at(format!(
                 "{} poses for {} bodies",
@@ -248,18 +153,18 @@ pub fn read(input: impl BufRead) -> Result<Read, String> {
         if let Some(boxes) = line.boxes {
             frame.boxes = checked(boxes, bodies.len()).map_err(at)?;
         }
-        frame.was = was.then(|| bodies.iter().map(|body| body.was).collect());
+        frame.was = was;
         frames.push(frame);
         pairs.push(line.pairs);
     }
     let case = Case {
         name: header.scene,
-        flag: header.flag,
-        source: header.source,
-        claims: if header.claims.is_empty() {
+        flag,
+        source,
+        claims: if claims.is_empty() {
             Claim::ALL.to_vec()
         } else {
-            header.claims
+            claims
         },
         shapes,
         frames,
@@ -301,13 +206,13 @@ struct AnswerLine {
 
 pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
     match serde_json::from_slice::<AnswerLine>(line) {
-        Ok(AnswerLine { frame, pairs, ns }) => match frame == expected as u64 {
-            true => Ok(Said::Answer(Answer { pairs, ns })),
-            false => Err(Trouble::OutOfTurn {
-                expected,
-                found: frame,
-            }),
-        },
+        Ok(AnswerLine { frame, pairs, ns }) if frame == expected as u64 => {
+            Ok(Said::Answer(Answer { pairs, ns }))
+        }
+        Ok(AnswerLine { frame, .. }) => Err(Trouble::OutOfTurn {
+            expected,
+            found: frame,
+        }),
         Err(error) => diagnose(expected, line, &error),
     }
 }
