@@ -11,7 +11,7 @@ use sdop::lab::verify::hard::{
     Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name,
 };
 use sdop::lab::verify::rounds::{Ledger, Run, group};
-use sdop::lab::verify::ways::{Mode, Rotation, refines, variants, ways};
+use sdop::lab::verify::ways::{Mode, Rotation, variants, ways};
 use sdop::lab::verify::{Answers, Predicate};
 use sdop::mesh::ReadOptions;
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
@@ -232,7 +232,8 @@ fn the_ways_have_every_strategy_finder_overlap_and_volume() {
             for &k in DirectionSet::ALL {
                 for &axes in Axes::ALL {
                     for &overlap in Overlap::ALL {
-                        let expected = refines(strategy) || overlap == Overlap::TwoSided;
+                        let expected =
+                            strategy.scheme().has_overlap_test() || overlap == Overlap::TwoSided;
                         let way = (strategy, finder, overlap, k, axes);
                         assert_eq!(seen.remove(&way), expected, "{way:?}");
                     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use miette::IntoDiagnostic as _;
 use sdop::judge::process::Program;
-use sdop::judge::timing::{Row, compare, frames};
+use sdop::judge::timing::{ContestantTiming, compare, frames};
 use sdop::judge::wire::Wire;
 use sdop::judge::{Claim, Outcome as CaseOutcome};
 use sdop::lab::scene::SceneFile;
@@ -69,7 +69,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     })
 }
 
-fn page(table: &[Row], args: &Args) -> String {
+fn page(table: &[ContestantTiming], args: &Args) -> String {
     let header = [
         "contestant",
         "judged",
@@ -77,7 +77,7 @@ fn page(table: &[Row], args: &Args) -> String {
         "median ns per frame",
         "clock",
     ];
-    let line = |row: &Row| {
+    let line = |row: &ContestantTiming| {
         let judged = match &row.outcome {
             CaseOutcome::Pass => "pass".to_owned(),
             CaseOutcome::Fail { why } => format!("FAIL: {why}"),

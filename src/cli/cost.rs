@@ -11,7 +11,6 @@ use sdop::lab::cost::study::{Plan, Report, possible, study};
 use sdop::lab::cost::table::{Compared, Cost};
 use sdop::lab::measure::turns::Regime;
 use sdop::lab::reproduce::Estimate;
-use sdop::settings::Strategy;
 use serde::Serialize;
 
 use super::files::write;
@@ -86,7 +85,7 @@ fn measure(args: &Args) -> miette::Result<Report> {
     let file = args.scene.read()?;
     let scene = file.build()?;
     let strategies = match args.scene.strategy() {
-        Some(Strategy::None) => {
+        Some(strategy) if !strategy.scheme().culls() => {
             return Err(miette!(
                 help = "leave --strategy out to compare all that do",
                 "the control culls nothing: the formula has no term for it"

@@ -89,9 +89,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         Some(path) => Some(Recorder::create(path, &Header::of(&scene))?),
         None => None,
     };
-    let judge = match args.truth {
-        true => Some(Judge::new(&scene.shapes).map_err(TradeoffError::from)?),
-        false => None,
+    let judge = if args.truth {
+        Some(Judge::new(&scene.shapes).map_err(TradeoffError::from)?)
+    } else {
+        None
     };
     let bar = progress(scene.frames.into(), &scene.name);
     let threads = usize::from(args.threads);

@@ -86,9 +86,13 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     match args.format {
         // A line a variant; the rest is in the other formats.
         Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
-        format => emit(format, &recorded, |recorded| match args.all {
-            true => tables::text(&recorded.result),
-            false => tables::brief(&recorded.result),
+        format => emit(format, &recorded, |recorded| {
+            let write = if args.all {
+                tables::text
+            } else {
+                tables::brief
+            };
+            write(&recorded.result)
         })?,
     }
     let failures: Vec<&str> = result.failures().collect();

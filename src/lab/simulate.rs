@@ -17,7 +17,7 @@ use crate::lab::hash::PairsHash;
 use crate::lab::hash::volumes_sha256;
 use crate::lab::scene::Scene;
 use crate::pairs::PairList;
-use crate::settings::{Finder, Strategy};
+use crate::settings::Finder;
 use crate::simd::Tier;
 
 /// The poses of a scene, frame after frame: the first is the scene as placed, every other one a step of its effects.
@@ -233,7 +233,7 @@ impl<'a> Simulation<'a> {
             hash.frame(frame.number, &frame.pairs.sorted());
             observe(&frame)?;
         }
-        let culls = self.scene.cull.strategy != Strategy::None;
+        let culls = self.scene.cull.strategy.scheme().culls();
         Ok(Summary {
             counters: *self.counters(),
             seconds: self.seconds(),

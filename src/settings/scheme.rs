@@ -79,6 +79,24 @@ impl Scheme {
         self.first.into_iter().chain(self.refining)
     }
 
+    /// Whether pairs are looked at: by all but the control.
+    #[must_use]
+    pub fn culls(self) -> bool {
+        self.flow != Flow::Nothing
+    }
+
+    /// Whether a budget may leave pairs untested, so that the list depends on the order in which they were found.
+    #[must_use]
+    pub fn has_budget(self) -> bool {
+        self.flow == Flow::TimeCritical
+    }
+
+    /// Whether there is a choice of overlap tests: two oriented boxes have one alone.
+    #[must_use]
+    pub fn has_overlap_test(self) -> bool {
+        self.refining == Some(TestedVolume::OrDop)
+    }
+
     /// Whether candidates go to the oriented volumes untested: these are then binned by balls of their own, and hardly
     /// cheaper to test than candidates are to find.
     #[must_use]

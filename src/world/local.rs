@@ -134,9 +134,10 @@ mod tests {
                 let relative: [f64; 3] = std::array::from_fn(|_| {
                     let odd =
                         (2 * (random() % 4) + 1) as f64 + [0.0, 1e-9, -1e-9][random() as usize % 3];
-                    match least {
-                        true => odd * exp2(-150),
-                        false => (1.0 + odd * exp2(-24)) * exp2(exponent),
+                    if least {
+                        odd * exp2(-150)
+                    } else {
+                        (1.0 + odd * exp2(-24)) * exp2(exponent)
                     }
                 });
                 let origin = std::array::from_fn(|_| (random() % 64) as f64 * exp2(exponent + 1));

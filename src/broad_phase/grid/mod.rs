@@ -121,9 +121,10 @@ impl Grid {
         self.slots.resize(balls.len());
         self.slot_cells.resize(balls.len(), 0);
         self.place_cells.resize(balls.len(), 0);
-        let changed = match self.fixed_sorted {
-            true => self.moving_levels,
-            false => self.levels.len(),
+        let changed = if self.fixed_sorted {
+            self.moving_levels
+        } else {
+            self.levels.len()
         };
         for level in &mut self.levels[..changed] {
             level.sort(
@@ -146,9 +147,10 @@ impl Grid {
             push_parts(&mut self.parts, level, PART, index, Kind::Near);
             for (other_index, other) in self.levels.iter().enumerate().skip(index + 1) {
                 let (seeks, search) = across::plan(level, other);
-                let (seeker, target) = match seeks {
-                    true => (level, other_index),
-                    false => (other, index),
+                let (seeker, target) = if seeks {
+                    (level, other_index)
+                } else {
+                    (other, index)
                 };
                 let size = match search {
                     Search::Cells => SEEKERS_BY_CELLS,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use comfy_table::Table;
 use sdop::lab::tradeoff::figure_4;
 use sdop::lab::tradeoff::pays::Standing;
-use sdop::lab::tradeoff::{Estimate, Row, Tradeoff};
+use sdop::lab::tradeoff::{Estimate, Tradeoff, VariantResult};
 use sdop::settings::{Axes, Overlap};
 
 use super::{Recorded, tables};
@@ -104,8 +104,8 @@ fn figure_4(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
 
 /// The steps of accuracy along the front, in words and numbers.
 fn steps(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
-    let on_front = |row: &&Row| row.standing == Standing::Front;
-    let mut front: Vec<&Row> = result.rows.iter().filter(on_front).collect();
+    let on_front = |row: &&VariantResult| row.standing == Standing::Front;
+    let mut front: Vec<&VariantResult> = result.rows.iter().filter(on_front).collect();
     front.sort_by(|a, b| a.seconds().mean.total_cmp(&b.seconds().mean));
     writeln!(out, "## Each step of accuracy\n")?;
     writeln!(
@@ -113,7 +113,7 @@ fn steps(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
         "| step | µs per warm frame | false pairs per frame | ns per false pair removed |"
     )?;
     writeln!(out, "|---|---:|---:|---:|")?;
-    let mut before: Option<(&Row, f64)> = None;
+    let mut before: Option<(&VariantResult, f64)> = None;
     for row in front {
         let wrong = row.reported.mean * (1.0 - row.precision.mean);
         let price = before.map_or("–".to_owned(), |(last, w)| {

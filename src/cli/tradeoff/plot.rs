@@ -8,7 +8,7 @@ use miette::miette;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use sdop::lab::tradeoff::pays::Standing;
-use sdop::lab::tradeoff::{Row, Tradeoff};
+use sdop::lab::tradeoff::{Tradeoff, VariantResult};
 
 use crate::cli::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};
 
@@ -21,14 +21,14 @@ type Points = Vec<(f64, f64)>;
 
 /// Precision against time per frame: the Pareto front labelled at its points, with error bars; what is tied is grey.
 pub fn precision(result: &Tradeoff) -> miette::Result<String> {
-    let at = |row: &Row| (1e6 * row.seconds().mean, row.precision.mean);
+    let at = |row: &VariantResult| (1e6 * row.seconds().mean, row.precision.mean);
     let of = |standing| {
         result
             .rows
             .iter()
             .filter(move |row| row.standing == standing)
     };
-    let mut front: Vec<&Row> = of(Standing::Front).collect();
+    let mut front: Vec<&VariantResult> = of(Standing::Front).collect();
     front.sort_by(|a, b| at(a).0.total_cmp(&at(b).0));
     let times = span(result.rows.iter().map(|row| at(row).0));
     figure(|area| {

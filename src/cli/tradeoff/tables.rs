@@ -7,19 +7,19 @@ use sdop::lab::measure::turns::median;
 use sdop::lab::tradeoff::decide::{CHECKS, Decision};
 use sdop::lab::tradeoff::pays::Standing;
 use sdop::lab::tradeoff::shapes::ShapeSurvival;
-use sdop::lab::tradeoff::{Estimate, Row, Tradeoff};
+use sdop::lab::tradeoff::{Estimate, Tradeoff, VariantResult};
 use sdop::settings::{Axes, Overlap};
 
 use crate::cli::output::{rows, table};
 
 /// For people: the recommendation, then a short table.
 pub fn brief(result: &Tradeoff) -> String {
-    let front: Vec<Row> = {
+    let front: Vec<VariantResult> = {
         let shown = result
             .rows
             .iter()
             .filter(|row| row.standing != Standing::Beaten);
-        let mut shown: Vec<Row> = shown.cloned().collect();
+        let mut shown: Vec<VariantResult> = shown.cloned().collect();
         shown.sort_by(|a, b| a.seconds().mean.total_cmp(&b.seconds().mean));
         shown
     };
@@ -155,7 +155,7 @@ pub fn variants(result: &Tradeoff) -> Table {
     rows(&header, &result.rows, variant)
 }
 
-fn variant(row: &Row) -> Vec<String> {
+fn variant(row: &VariantResult) -> Vec<String> {
     let terms = row.warm.as_ref().map_or(&[][..], |cost| &cost.terms);
     let joined = |term: fn(&Terms) -> f64| {
         let terms: Vec<String> = terms.iter().map(|t| format!("{:.0}", term(t))).collect();

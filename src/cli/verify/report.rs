@@ -8,7 +8,7 @@ use std::time::Duration;
 use sdop::Tier;
 use sdop::lab::verify::Predicate;
 use sdop::lab::verify::matrix::Matrix;
-use sdop::lab::verify::rounds::{Ledger, Row};
+use sdop::lab::verify::rounds::{Judged, Ledger};
 use sdop::lab::verify::ways::Rotation;
 use serde::Serialize;
 
@@ -169,10 +169,10 @@ impl Report {
     }
 }
 
-fn strategy((row, count): (&Row, &sdop::lab::verify::Count)) -> StrategyReport {
+fn strategy((row, count): (&Judged, &sdop::lab::verify::Count)) -> StrategyReport {
     let rate = |part: u64, of: u64| (of > 0).then(|| 1e6 * part as f64 / of as f64);
     // What a budget leaves untested is no rounding margin.
-    let budgeted = row.strategy == sdop::settings::Strategy::SDopTimeCritical;
+    let budgeted = row.strategy.scheme().has_budget();
     let overlap = row.overlap.map(|overlap| format!(" {overlap}"));
     StrategyReport {
         name: format!("{}{}", row.strategy, overlap.unwrap_or_default()),

@@ -75,7 +75,7 @@ pub fn possible(scene: &Scene) -> Vec<Strategy> {
             strategy,
             ..scene.cull.clone()
         };
-        strategy != Strategy::None && settings.check(scene.bodies.len()).is_ok()
+        strategy.scheme().culls() && settings.check(scene.bodies.len()).is_ok()
     };
     Strategy::ALL.iter().copied().filter(has).collect()
 }

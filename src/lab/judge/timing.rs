@@ -39,7 +39,7 @@ pub enum TimingError {
 
 /// One contestant's line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct ContestantTiming {
     /// Who.
     pub name: String,
     /// How its answers were judged, on every frame.
@@ -120,7 +120,7 @@ pub fn compare(
     case: &Case,
     claim: Claim,
     rounds: u32,
-) -> Result<Vec<Row>, TimingError> {
+) -> Result<Vec<ContestantTiming>, TimingError> {
     let strategy = strategy(claim);
     let mut theirs = Timed::new(name.to_owned(), "self-reported");
     let mut own =
@@ -138,7 +138,7 @@ pub fn compare(
             theirs.add(case, claim, subject.answer(case, claim), true)?;
         }
     }
-    Ok(own.into_iter().chain([theirs]).map(Timed::row).collect())
+    Ok(own.into_iter().chain([theirs]).map(Timed::timing).collect())
 }
 
 /// A contestant between its turns.
@@ -189,10 +189,10 @@ impl Timed {
         Ok(())
     }
 
-    fn row(mut self) -> Row {
+    fn timing(mut self) -> ContestantTiming {
         self.times.sort_unstable();
         let passed = self.outcome == Outcome::Pass;
-        Row {
+        ContestantTiming {
             median_ns: self
                 .times
                 .get(self.times.len() / 2)

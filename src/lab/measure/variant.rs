@@ -115,9 +115,10 @@ impl Variant {
         tier: Tier,
     ) -> Result<Culling, CullError> {
         let culling = Culling::new(shapes, &scene.bodies, &self.settings, tier)?;
-        Ok(match self.hulls {
-            true => culling.with_hulls(shapes),
-            false => culling,
+        Ok(if self.hulls {
+            culling.with_hulls(shapes)
+        } else {
+            culling
         })
     }
 }

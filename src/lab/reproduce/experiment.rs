@@ -7,6 +7,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::immediate::{self, Immediacy};
+use super::survival::Survival;
 use crate::choice::choices;
 use crate::counters::{Counters, Seconds};
 use crate::lab::cost::calibrate::{Calibration, Effort};
@@ -20,9 +21,8 @@ use crate::lab::measure::turns::Regime;
 use crate::lab::measure::variant::Variant;
 use crate::lab::scene::{Scene, SceneError, SceneFile};
 use crate::lab::simulate::SimulationError;
-use crate::settings::{CullSettings, Overlap, Strategy};
+use crate::settings::Strategy;
 use crate::simd::Tier;
-use crate::volume::DirectionSet;
 
 /// The paper's strategies, in the order of frame rates that it claims.
 pub const STRATEGIES: [Strategy; 6] = [
@@ -123,17 +123,6 @@ pub struct Run {
     pub pairs_sha256: Option<String>,
 }
 
-/// The share of sphere hits that an or-DOP test lets through, in the first frames of the calibrated scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Survival {
-    /// The or-DOP.
-    pub k: DirectionSet,
-    /// Its test.
-    pub overlap: Overlap,
-    /// One share a seed.
-    pub shares: Vec<f64>,
-}
-
 /// All that was run.
 #[derive(Clone, Debug)]
 pub struct Results {
@@ -230,18 +219,30 @@ impl Plan {
             let scene = file.build()?;
             let variants = variants(&scene, &STRATEGIES);
             let calibration = Calibration::new(&scene, &variants, self.tier, self.effort)?;
-            let bodies = scene.bodies.len();
-            prepared.push((name, file, variants, calibration, bodies));
+            prepared.push(Prepared {
+                name,
+                bodies: scene.bodies.len(),
+                file,
+                variants,
+                calibration,
+            });
         }
         let (mut runs, mut passes) = (Vec::new(), Vec::new());
         let (mut survival, mut immediacies) = (Survival::every(), Vec::new());
-        let most = prepared.iter().map(|(_, _, _, _, bodies)| *bodies).max();
+        let most = prepared.iter().map(|scene| scene.bodies).max();
         for &seed in &self.seeds {
-            for (name, file, variants, calibration, bodies) in &mut prepared {
+            for Prepared {
+                name,
+                bodies,
+                file,
+                variants,
+                calibration,
+            } in &mut prepared
+            {
                 file.spec.seed = seed;
                 let scene = file.build()?;
-                let how = (self.frames, self.tier);
-                let (of_seed, pass) = run_pass(&scene, variants, how, Some(calibration))?;
+                let (of_seed, pass) =
+                    run_pass(&scene, variants, self.frames, self.tier, Some(calibration))?;
                 runs.extend(of_seed);
                 passes.push((*name, pass));
                 if Some(*bodies) == most {
@@ -262,12 +263,21 @@ impl Plan {
             immediacies,
             variants: prepared
                 .into_iter()
-                .map(|(name, _, variants, _, _)| (name, variants))
+                .map(|scene| (scene.name, scene.variants))
                 .collect(),
             survival,
             volumes_sha256,
         })
     }
+}
+
+/// A scene of the plan, and what is made for it once.
+struct Prepared {
+    name: PaperScene,
+    bodies: usize,
+    file: SceneFile,
+    variants: Vec<Variant>,
+    calibration: Calibration,
 }
 
 /// The strategies as variants of the scene's settings.
@@ -287,14 +297,15 @@ pub fn run_scene(
     tier: Tier,
 ) -> Result<Vec<Run>, SimulationError> {
     let variants = variants(scene, strategies);
-    run_pass(scene, &variants, (frames, tier), None).map(|(runs, _)| runs)
+    run_pass(scene, &variants, frames, tier, None).map(|(runs, _)| runs)
 }
 
 /// The same as a pass, with its calibration.
 fn run_pass(
     scene: &Scene,
     variants: &[Variant],
-    (frames, tier): (u32, Tier),
+    frames: u32,
+    tier: Tier,
     calibration: Option<&mut Calibration>,
 ) -> Result<(Vec<Run>, Pass), SimulationError> {
     let mut hashes = vec![PairsHash::default(); variants.len()];
@@ -338,7 +349,7 @@ fn run_pass(
             cold: culled.times.medians(Regime::Cold).total(),
             mean: culled.times.mean(),
             step: pass.step,
-            pairs_sha256: (strategy != Strategy::None).then(|| hash.finish()),
+            pairs_sha256: strategy.scheme().culls().then(|| hash.finish()),
         }
     };
     let runs = variants
@@ -348,38 +359,6 @@ fn run_pass(
         .map(run)
         .collect();
     Ok((runs, pass))
-}
-
-impl Survival {
-    fn every() -> Vec<Self> {
-        let with = |&k: &DirectionSet| {
-            let row = move |&overlap: &Overlap| Self {
-                k,
-                overlap,
-                shares: Vec::new(),
-            };
-            Overlap::ALL.iter().map(row)
-        };
-        DirectionSet::ALL.iter().flat_map(with).collect()
-    }
-
-    /// or-DOP hits among the sphere hits of the scene's first frame.
-    fn share(&self, scene: &Scene, tier: Tier) -> Result<f64, SimulationError> {
-        let variant = Variant::of(
-            String::new(),
-            CullSettings {
-                strategy: Strategy::SDopBatch,
-                k: self.k,
-                overlap: self.overlap,
-                ..scene.cull.clone()
-            },
-        );
-        let mut culling = variant.culling(scene, tier)?;
-        culling.frame(&scene.bodies);
-        culling.accepted()?;
-        let ordop = culling.counters().ordop;
-        Ok(ordop.hits as f64 / ordop.tests as f64)
-    }
 }
 
 impl Results {

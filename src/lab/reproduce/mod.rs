@@ -16,11 +16,13 @@ pub mod rates;
 pub mod readings;
 pub mod sensitivity;
 pub mod study;
+mod survival;
 
 pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};
 pub use experiment::{
-    PaperScene, Plan, ReproduceError, Results, Run, STRATEGIES, Shard, Survival, run_scene,
+    PaperScene, Plan, ReproduceError, Results, Run, STRATEGIES, Shard, run_scene,
 };
+pub use survival::Survival;
 
 use crate::settings::Strategy;
 

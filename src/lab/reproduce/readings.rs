@@ -9,7 +9,7 @@ use super::experiment::Results;
 use super::{Estimate, paper};
 use crate::choice::choices;
 use crate::counters::Counters;
-use crate::settings::Strategy;
+use crate::settings::{Flow, Strategy};
 
 choices! {
     /// What counts as a test.
@@ -39,8 +39,8 @@ impl Reading {
     /// The reading under which figures show a strategy: where a list is kept, its entries count.
     #[must_use]
     pub const fn shown(strategy: Strategy) -> Self {
-        match strategy {
-            Strategy::SDopBatch => Self::TestsAndList,
+        match strategy.scheme().flow {
+            Flow::Batch => Self::TestsAndList,
             _ => Self::OwnTests,
         }
     }
@@ -48,13 +48,14 @@ impl Reading {
     /// Hits in percent of the tests of `frames` frames with `bodies` bodies.
     #[must_use]
     pub fn percentage(self, strategy: Strategy, run: &Counters, frames: u32, bodies: usize) -> f64 {
-        let own = match strategy {
-            Strategy::Sphere => run.sphere,
-            _ => run.ordop,
+        let own = if strategy.scheme().has_overlap_test() {
+            run.ordop
+        } else {
+            run.sphere
         };
         let all = run.sphere.tests + run.ordop.tests;
-        let entries = match strategy {
-            Strategy::SDopBatch => run.sphere.hits,
+        let entries = match strategy.scheme().flow {
+            Flow::Batch => run.sphere.hits,
             _ => 0,
         };
         let tests = match self {
@@ -73,6 +74,9 @@ impl Reading {
 pub struct Cell {
     /// The scene.
     pub scene: String,
+    /// Whether that is the paper's one box.
+    #[serde(skip)]
+    pub in_papers_box: bool,
     /// N.
     pub bodies: usize,
     /// The strategy.
@@ -103,6 +107,7 @@ pub fn cell(results: &Results, scene: &str, strategy: Strategy, reading: Reading
     let comparable = results.paper_scenes().any(|name| name == scene);
     Cell {
         scene: scene.to_owned(),
+        in_papers_box: comparable,
         bodies,
         strategy,
         reading,

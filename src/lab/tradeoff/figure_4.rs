@@ -1,7 +1,7 @@
 //! The paper's Fig. 4, "simplicity versus accuracy", as a claim: sphere, AABB, OBB, k-DOP, or-DOP, each slower and more
 //! precise than the one before it.
 
-use super::study::Row;
+use super::result::VariantResult;
 use crate::lab::measure::estimate::Estimate;
 use crate::lab::reproduce::check::{Check, Claim};
 use crate::settings::{Overlap, Strategy};
@@ -19,13 +19,13 @@ const K: usize = 18;
 
 /// The claim with a number for each step of the order: time, then precision.
 #[must_use]
-pub fn claim(rows: &[Row]) -> Claim {
+pub fn claim(rows: &[VariantResult]) -> Claim {
     let mut checks = Vec::new();
     for step in ORDER.windows(2) {
         let [Some(simple), Some(accurate)] = [step[0], step[1]].map(|of| find(rows, of)) else {
             continue;
         };
-        let ratio = |values: fn(&Row) -> &[f64]| {
+        let ratio = |values: fn(&VariantResult) -> &[f64]| {
             let pairs = values(accurate).iter().zip(values(simple));
             Estimate::in_order(
                 &pairs
@@ -49,8 +49,8 @@ pub fn claim(rows: &[Row]) -> Claim {
 }
 
 /// The row of a volume alone.
-fn find(rows: &[Row], strategy: Strategy) -> Option<&Row> {
-    let fits = |row: &&Row| {
+fn find(rows: &[VariantResult], strategy: Strategy) -> Option<&VariantResult> {
+    let fits = |row: &&VariantResult| {
         let k = row.k.is_none_or(|k| k == K) || strategy == Strategy::Obb;
         let test = row
             .overlap

@@ -13,6 +13,7 @@ pub mod density;
 pub mod figure_4;
 pub mod interest;
 pub mod pays;
+mod result;
 pub mod safety;
 pub mod shapes;
 mod study;
@@ -21,7 +22,8 @@ pub mod truth;
 pub mod variant;
 
 pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate};
-pub use study::{Plan, Row, Tradeoff, steps, study};
+pub use result::{Tradeoff, VariantResult};
+pub use study::{Plan, steps, study};
 
 use std::path::PathBuf;
 

@@ -63,7 +63,10 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
     let bare: Vec<Shape> = scene.shapes.iter().map(without_margins).collect();
     let shapes = Shapes::new(scene.shapes.clone())?;
     let mut rows = Vec::new();
-    for strategy in [Strategy::Sphere, Strategy::SDopSequential] {
+    for (strategy, plain) in [
+        (Strategy::Sphere, reference::Strategy::Sphere),
+        (Strategy::SDopSequential, reference::Strategy::Sequential),
+    ] {
         let settings = CullSettings {
             strategy,
             updates: Updates::Eager,
@@ -71,7 +74,7 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
         };
         let mut labels = vec![(Arithmetic::F64, None)];
         let mut contestants: Vec<Box<dyn Contestant + '_>> =
-            vec![Box::new(InF64::new(&shapes, &settings))];
+            vec![Box::new(InF64::new(&shapes, &settings, plain))];
         for tier in Tier::available() {
             for (arithmetic, shapes) in
                 [(Arithmetic::F32, &scene.shapes), (Arithmetic::Bare, &bare)]
@@ -115,13 +118,14 @@ struct InF64<'a> {
 }
 
 impl<'a> InF64<'a> {
-    fn new(shapes: &'a Shapes, settings: &CullSettings) -> Self {
+    fn new(
+        shapes: &'a Shapes,
+        settings: &CullSettings,
+        strategy: reference::Strategy<'static>,
+    ) -> Self {
         Self {
             shapes,
-            strategy: match settings.strategy {
-                Strategy::Sphere => reference::Strategy::Sphere,
-                _ => reference::Strategy::Sequential,
-            },
+            strategy,
             overlap: overlap(settings.overlap),
             pairs: Vec::new(),
         }

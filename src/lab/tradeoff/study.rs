@@ -2,29 +2,28 @@
 
 use std::path::PathBuf;
 
-use serde::{Deserialize, Serialize};
-
-use super::budget::{self, BudgetRow, ClockRow, Window};
+use super::budget::{self, Window};
 use super::counts::{Tally, share};
-use super::decide::{self, Decision};
-use super::density::{self, Density};
-use super::interest::{self, InterestRow};
-use super::pays::{self, Line, Point, Standing, Stretch};
-use super::safety::{self, SafetyRow};
-use super::shapes::{self, ShapeSurvival};
+use super::decide;
+use super::density;
+use super::interest;
+use super::pays::{self, Line, Point, Standing};
+use super::result::{Tradeoff, VariantResult};
+use super::safety;
+use super::shapes;
 use super::timing::{PASSES, Windows};
 use super::truth::{Judge, NarrowPhase, Sample, Truth, samples};
 use super::variant::{self, Variant};
 use super::{Estimate, TradeoffError};
+use crate::choice::choices;
 use crate::culler::Culler;
 use crate::lab::cost::calibrate::{Calibration, Effort};
 use crate::lab::cost::pass::{Pass, pass};
-use crate::lab::cost::table::{self, Cost, PriceRow};
+use crate::lab::cost::table::{self, PriceRow};
 use crate::lab::measure::conditions::Conditions;
 use crate::lab::measure::counts::Volume;
 use crate::lab::measure::turns::Regime;
 use crate::lab::scene::{Scene, SceneFile};
-use crate::settings::{Axes, Overlap, Strategy};
 use crate::simd::Tier;
 use crate::volume::Shape;
 
@@ -47,111 +46,19 @@ pub struct Plan {
     pub cache: Option<PathBuf>,
 }
 
-/// One variant's result.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
-    /// What tables call it.
-    pub name: String,
-    /// The strategy.
-    pub strategy: Strategy,
-    /// Whether hulls stand behind it.
-    pub hulls: bool,
-    /// The volume that decides last.
-    pub volume: Option<Volume>,
-    /// Half-spaces, where the strategy has or-DOPs or k-DOPs.
-    pub k: Option<usize>,
-    /// The or-DOP's axes, where it has or-DOPs.
-    pub axes: Option<Axes>,
-    /// The overlap test, where it has or-DOPs.
-    pub overlap: Option<Overlap>,
-    /// Pairs reported a frame.
-    pub reported: Estimate,
-    /// True pairs / reported pairs.
-    pub precision: Estimate,
-    /// The same, a seed each.
-    pub precisions: Vec<f64>,
-    /// Reported pairs / true pairs.
-    pub per_true: Estimate,
-    /// True pairs found / true pairs, over all seeds.
-    pub recall: f64,
-    /// Mean volume over hull volume; none when a hull is flat.
-    pub volume_over_hull: Option<f64>,
-    /// The formula beside the clock, warm frames.
-    pub warm: Option<Cost>,
-    /// The same, cold frames.
-    pub cold: Option<Cost>,
-    /// Seconds of a warm frame, a pass each in the order of time.
-    pub times: Vec<f64>,
-    /// How it stands to the Pareto front of time and precision.
-    pub standing: Standing,
-    /// The hash of the pairs reported on the sample frames, a seed.
-    pub pairs_sha256: Vec<String>,
-}
-
-impl Row {
-    /// Seconds of a warm frame, construction not included.
-    #[must_use]
-    pub fn seconds(&self) -> Estimate {
-        Estimate::in_order(&self.times)
-    }
-}
-
-/// Everything about one scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Tradeoff {
-    /// The scene.
-    pub scene: String,
-    /// Its bodies.
-    pub bodies: usize,
-    /// Frames of its run.
-    pub frames: u32,
-    /// Judged frames of each run.
-    pub samples: usize,
-    /// The runs' seeds.
-    pub seeds: Vec<u64>,
-    /// The SIMD tier.
-    pub simd: String,
-    /// True pairs a frame.
-    pub truth: Estimate,
-    /// Sphere overlaps a body.
-    pub partners: f64,
-    /// The exact reference as narrow phase.
-    pub narrow_phase: NarrowPhase,
-    /// Every variant.
-    pub rows: Vec<Row>,
-    /// The cheapest variant as Cp grows.
-    pub cheapest: Vec<Stretch>,
-    /// The scene at other densities.
-    pub densities: Vec<Density>,
-    /// Time-critical culling by tests.
-    pub budgets: Vec<BudgetRow>,
-    /// Time-critical culling by the clock.
-    pub clock: Vec<ClockRow>,
-    /// Interest sets.
-    pub interest: Vec<InterestRow>,
-    /// The scene's shapes and some of known form, each against itself.
-    pub shapes: Vec<ShapeSurvival>,
-    /// Margins, arithmetic and tiers.
-    pub safety: Vec<SafetyRow>,
-    /// Prices of every variant's volumes, warm and cold.
-    pub prices: Vec<PriceRow>,
-    /// Which variant for which density, class of shapes and price of a check.
-    pub decisions: Vec<Decision>,
-    /// What else the machine did.
-    pub conditions: Conditions,
-    /// What to do.
-    pub advice: String,
-}
-
-impl Tradeoff {
-    /// The variants that missed a true pair.
-    pub fn failures(&self) -> impl Iterator<Item = &str> {
-        let rows = self.rows.iter().filter(|row| row.recall != 1.0);
-        let budgets = self.budgets.iter().filter(|row| row.recall != 1.0);
-        let interest = self.interest.iter().filter(|row| row.quality.recall != 1.0);
-        rows.map(|row| row.name.as_str())
-            .chain(budgets.map(|row| row.order.name()))
-            .chain(interest.map(|_| "s-dop of interest"))
+choices! {
+    /// What is measured once, after the runs.
+    Once, "measurement", {
+        /// What the exact narrow phase costs.
+        NarrowPhase = "narrow phase",
+        /// Time-critical culling.
+        Budgets = "budgets",
+        /// Culling of interest.
+        Interest = "interest",
+        /// Margins, arithmetic and tiers.
+        Safety = "safety",
+        /// Shapes, each against itself.
+        Shapes = "shapes",
     }
 }
 
@@ -215,7 +122,7 @@ pub fn study(
             .iter()
             .flat_map(|&regime| table::prices(&passes.iter().collect::<Vec<_>>(), regime))
             .collect(),
-        conditions: before.after(rows.iter().map(Row::seconds)),
+        conditions: before.after(rows.iter().map(VariantResult::seconds)),
         rows,
         hits,
     };
@@ -229,7 +136,7 @@ fn passes_of(plan: &Plan) -> usize {
 
 /// What is known of the variants.
 struct Measured {
-    rows: Vec<Row>,
+    rows: Vec<VariantResult>,
     prices: Vec<PriceRow>,
     conditions: Conditions,
     /// Mean sphere hits per frame.
@@ -244,7 +151,8 @@ pub fn steps(file: &SceneFile, plan: &Plan) -> Result<u64, TradeoffError> {
     let scene = file.build()?;
     let variants = variant::all(&scene, 1).len() as u64;
     let runs = plan.seeds.max(1);
-    Ok(runs * (1 + variants) + passes_of(plan) as u64 + density::steps() + 5)
+    let once = Once::ALL.len() as u64;
+    Ok(runs * (1 + variants) + passes_of(plan) as u64 + density::steps() + once)
 }
 
 fn judged_run(file: &SceneFile, plan: &Plan, seed: u64) -> Result<Run, TradeoffError> {
@@ -268,13 +176,13 @@ fn sphere_hits(run: &Run, tier: Tier) -> Result<f64, TradeoffError> {
     Ok(tally.reported as f64 / f64::from(tally.frames))
 }
 
-fn rows(variants: &[Variant], runs: &[Run], passes: &[Pass]) -> Vec<Row> {
-    let mut rows: Vec<Row> = variants
+fn rows(variants: &[Variant], runs: &[Run], passes: &[Pass]) -> Vec<VariantResult> {
+    let mut rows: Vec<VariantResult> = variants
         .iter()
         .enumerate()
         .map(|(at, variant)| row(variant, at, runs, passes))
         .collect();
-    let point = |row: &Row| Point {
+    let point = |row: &VariantResult| Point {
         times: row.times.clone(),
         precisions: row.precisions.clone(),
     };
@@ -285,7 +193,7 @@ fn rows(variants: &[Variant], runs: &[Run], passes: &[Pass]) -> Vec<Row> {
     rows
 }
 
-fn row(variant: &Variant, at: usize, runs: &[Run], passes: &[Pass]) -> Row {
+fn row(variant: &Variant, at: usize, runs: &[Run], passes: &[Pass]) -> VariantResult {
     let over_runs = |value: &dyn Fn(&Tally) -> f64| {
         let values: Vec<f64> = runs.iter().map(|run| value(&run.tallies[at])).collect();
         Estimate::of(&values)
@@ -302,7 +210,7 @@ fn row(variant: &Variant, at: usize, runs: &[Run], passes: &[Pass]) -> Row {
         table::cost(of, (at, variant), &all, regime)
     };
     let time = |pass: &Pass| pass.culled[at].times.quartiles(Regime::Warm).median;
-    Row {
+    VariantResult {
         name: variant.name.clone(),
         strategy: settings.strategy,
         hulls: variant.hulls,
@@ -346,9 +254,9 @@ fn finish(
     } = measured;
     let (scene, tier) = (&first.scene, plan.tier);
     let judge = Judge::new(&scene.shapes)?;
-    step("narrow phase");
+    step(Once::NarrowPhase.name());
     let narrow_phase = narrow_phase(&judge, first, tier)?;
-    step("budgets");
+    step(Once::Budgets.name());
     let window = first_frames(scene, plan.window)?;
     let window = Window {
         frames: &window,
@@ -356,12 +264,12 @@ fn finish(
     };
     let budgets = budget::by_tests(scene, tier, window, &judge, plan.cache.as_deref(), hits)?;
     let clock = budget::by_clock(scene, tier, plan.window.min(scene.frames))?;
-    step("interest");
+    step(Once::Interest.name());
     let interest = interest::sweep(scene, tier, &first.samples, &first.truth)?;
     let densities = density::sweep(file, tier, plan.samples.min(6), || step("density"))?;
-    step("safety");
+    step(Once::Safety.name());
     let safety = safety::compare(scene, plan.samples)?;
-    step("shapes");
+    step(Once::Shapes.name());
     let builtin = shapes::builtin()?;
     let shapes = distinct(scene)
         .chain(&builtin)
@@ -410,7 +318,7 @@ fn true_pairs(runs: &[Run]) -> Estimate {
     Estimate::of(&runs.iter().map(a_frame).collect::<Vec<_>>())
 }
 
-fn line(row: &Row) -> Line {
+fn line(row: &VariantResult) -> Line {
     Line {
         name: row.name.clone(),
         decides: row.volume,

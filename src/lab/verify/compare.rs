@@ -79,7 +79,7 @@ pub fn culler(
 /// untested depends on the order in which pairs were found, so time-critical culling shows the potentially colliding set.
 #[must_use]
 pub fn found(culler: &Culler, settings: &CullSettings) -> Vec<[u32; 2]> {
-    if settings.strategy != Strategy::SDopTimeCritical {
+    if !settings.strategy.scheme().has_budget() {
         return culler.pairs().sorted();
     }
     let mut pairs: Vec<[u32; 2]> = culler.potentially_colliding().collect();
@@ -116,7 +116,7 @@ pub fn compare(
         Some(Interest::Bodies(list)) => list,
         _ => &[],
     };
-    let culls = settings.strategy != Strategy::None;
+    let culls = settings.strategy.scheme().culls();
     let meshes = answers.of(Predicate::Mesh);
     let mut count = Count {
         judged: answers.pairs.len() as u64,

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::ways::{Mode, Rotation, refines, variants, ways};
+use super::ways::{Mode, Rotation, variants, ways};
 use crate::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
 use crate::volume::{Axes, DirectionSet};
 
@@ -34,7 +34,11 @@ impl Cell {
     pub fn of(way: &CullSettings, mode: Mode) -> Self {
         Self {
             strategy: way.strategy,
-            overlap: refines(way.strategy).then_some(way.overlap),
+            overlap: way
+                .strategy
+                .scheme()
+                .has_overlap_test()
+                .then_some(way.overlap),
             finder: way.pairs,
             k: way.k,
             axes: way.axes,

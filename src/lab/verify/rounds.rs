@@ -15,7 +15,7 @@ use super::forms::{self, Form, FormError};
 use super::hard::{Group, GroupError};
 use super::judged::{InvalidInput, Shapes};
 use super::matrix::Matrix;
-use super::ways::{Mode, Rotation, refines, rows};
+use super::ways::{Mode, Rotation, rows};
 use crate::bodies::Bodies;
 use crate::culler::CullError;
 use crate::mesh::ProceduralShape;
@@ -40,9 +40,9 @@ pub enum RoundError {
     Group(#[from] GroupError),
 }
 
-/// One strategy's row.
+/// What lists are counted by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Row {
+pub struct Judged {
     /// The strategy.
     pub strategy: Strategy,
     /// The overlap test, for strategies that have one.
@@ -55,7 +55,7 @@ pub struct Ledger {
     /// Answers by predicate: pairs that overlap, and which stage decided.
     pub predicates: [(u64, Tally); Predicate::ALL.len()],
     /// Lists against answers; a pair counts once a finder that reported on it.
-    pub rows: BTreeMap<Row, Count>,
+    pub rows: BTreeMap<Judged, Count>,
     /// Pairs missed or found by one finder alone, with all that is needed to see it again.
     pub failures: Vec<Failure>,
     /// In which cells lists were judged.
@@ -90,9 +90,13 @@ impl Ledger {
 
     /// Counts one list.
     pub fn count(&mut self, settings: &CullSettings, count: &Count) {
-        let row = Row {
+        let row = Judged {
             strategy: settings.strategy,
-            overlap: refines(settings.strategy).then_some(settings.overlap),
+            overlap: settings
+                .strategy
+                .scheme()
+                .has_overlap_test()
+                .then_some(settings.overlap),
         };
         self.rows.entry(row).or_default().add(count);
     }
@@ -195,7 +199,7 @@ impl Run<'_> {
         for (n, (frame, answers)) in self.frames.iter().zip(self.answers).enumerate() {
             let list = culler.cull(frame)?.sorted();
             let (mut count, missed, extra) = compare(answers, way, &list);
-            if way.strategy != Strategy::SDopTimeCritical {
+            if !way.strategy.scheme().has_budget() {
                 for pair in extra {
                     let margin = u64::from(expected.explained(n, pair)?);
                     count.margin += margin;

@@ -10,15 +10,9 @@ use rand::SeedableRng as _;
 use rand::seq::SliceRandom as _;
 use rand_chacha::ChaCha8Rng;
 
-use crate::settings::{CullSettings, Finder, Overlap, Strategy, TestedVolume, Updates};
+use crate::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
 use crate::simd::Tier;
 use crate::volume::{Axes, DirectionSet};
-
-/// Whether the overlap test matters to a strategy.
-#[must_use]
-pub fn refines(strategy: Strategy) -> bool {
-    strategy.scheme().refining == Some(TestedVolume::OrDop)
-}
 
 /// Every or-DOP that a shape can have.
 pub fn variants() -> impl Iterator<Item = (DirectionSet, Axes)> {
@@ -38,9 +32,10 @@ pub fn rows((k, axes): (DirectionSet, Axes)) -> Vec<CullSettings> {
         ..CullSettings::all_pairs()
     };
     let rows = Strategy::ALL.iter().flat_map(|&strategy| {
-        let overlaps = match refines(strategy) {
-            true => Overlap::ALL,
-            false => &[Overlap::TwoSided],
+        let overlaps = if strategy.scheme().has_overlap_test() {
+            Overlap::ALL
+        } else {
+            &[Overlap::TwoSided]
         };
         overlaps.iter().map(move |&overlap| row(strategy, overlap))
     });

@@ -47,9 +47,8 @@ pub fn right(tables: &Tables) -> f64 {
 /// A strategy's percentages in the paper's box.
 pub fn cells(tables: &Tables, strategy: Strategy) -> Vec<&Cell> {
     let reading = Reading::shown(strategy);
-    let of = |cell: &&Cell| {
-        cell.strategy == strategy && cell.reading == reading && cell.scene.starts_with("paper")
-    };
+    let of =
+        |cell: &&Cell| cell.strategy == strategy && cell.reading == reading && cell.in_papers_box;
     tables.table_1.iter().filter(of).collect()
 }
 

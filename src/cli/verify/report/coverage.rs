@@ -2,7 +2,7 @@
 //! finder that was left out shows in one of them.
 
 use sdop::lab::verify::matrix::{Cell, Filled, Matrix};
-use sdop::lab::verify::ways::{Rotation, refines};
+use sdop::lab::verify::ways::Rotation;
 use sdop::settings::Strategy;
 use serde::Serialize;
 
@@ -20,16 +20,16 @@ pub struct Coverage {
     /// What can't exist, and so has no cell.
     impossible: String,
     /// By strategy and overlap test against finder: over k, axes, updates, tiers and threads.
-    by_strategy: Vec<Row>,
+    by_strategy: Vec<CoverageLine>,
     /// By tier, updates and threads against k and axes: over strategies, overlap tests and finders.
-    by_mode: Vec<Row>,
+    by_mode: Vec<CoverageLine>,
     /// The cells without a list, by name.
     empty: Vec<String>,
 }
 
-/// One row of a projection.
+/// One line of a projection.
 #[derive(Serialize)]
-struct Row {
+struct CoverageLine {
     name: String,
     parts: Vec<Part>,
 }
@@ -45,7 +45,9 @@ impl Coverage {
     pub fn of(matrix: &Matrix, rotation: &Rotation) -> Self {
         let all = matrix.fold(rotation, |_| ());
         let all = all.first().map_or_else(Filled::default, |(_, all)| *all);
-        let unrefined = Strategy::ALL.iter().filter(|strategy| !refines(**strategy));
+        let unrefined = Strategy::ALL
+            .iter()
+            .filter(|strategy| !strategy.scheme().has_overlap_test());
         let unrefined: Vec<&str> = unrefined.map(|strategy| strategy.name()).collect();
         Self {
             cells: all.cells,
@@ -82,7 +84,7 @@ impl Coverage {
 }
 
 /// One table: filled cells of all, and the fewest lists in one.
-fn projection(rows: &[Row]) -> comfy_table::Table {
+fn projection(rows: &[CoverageLine]) -> comfy_table::Table {
     let columns = rows.iter().take(1).flat_map(|row| &row.parts);
     let columns = columns.map(|part| part.name.as_str());
     let header: Vec<&str> = ["cells with lists"].into_iter().chain(columns).collect();
@@ -97,13 +99,13 @@ fn projection(rows: &[Row]) -> comfy_table::Table {
 }
 
 /// Rows and their parts in the order of their first cells.
-fn rows(folded: Vec<((String, String), Filled)>) -> Vec<Row> {
-    let mut rows: Vec<Row> = Vec::new();
+fn rows(folded: Vec<((String, String), Filled)>) -> Vec<CoverageLine> {
+    let mut rows: Vec<CoverageLine> = Vec::new();
     for ((name, part), filled) in folded {
         let part = Part { name: part, filled };
         match rows.iter_mut().find(|row| row.name == name) {
             Some(row) => row.parts.push(part),
-            None => rows.push(Row {
+            None => rows.push(CoverageLine {
                 name,
                 parts: vec![part],
             }),
