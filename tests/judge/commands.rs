@@ -1,0 +1,260 @@
+//! The command line: examples, known failures, halves on two machines, timing, recordings of others.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use super::programs::{RIGHT, answering};
+
+/// The command line, in a directory of its own.
+fn sdop(directory: &Path, arguments: &[&str]) -> (Output, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_sdop"))
+        .args(arguments)
+        .current_dir(directory)
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    (output, text)
+}
+
+fn example(name: &str) -> String {
+    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "examples", "judge", name]
+        .iter()
+        .collect();
+    path.display().to_string()
+}
+
+#[test]
+fn the_python_example_passes_and_its_full_buffer_is_found_with_a_small_scene_that_replays() {
+    if Command::new("python3").arg("--version").output().is_err() {
+        return;
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let right = format!("python3 {}", example("boxes.py"));
+    let cases = [
+        "--claims",
+        "aabb",
+        "--case",
+        "b*",
+        "--timeout",
+        "60",
+        "--no-fresh",
+    ];
+    let run = |command: &str, more: &[&str]| {
+        sdop(
+            directory.path(),
+            &[&["verify", "--exec", command], &cases[..], more].concat(),
+        )
+    };
+    let (output, text) = run(&right, &[]);
+    assert!(output.status.success() && text.contains("PASS"), "{text}");
+    let (output, text) = run(&format!("{right} --full-buffer"), &[]);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(
+        text.contains("buffer/growth") && text.contains("exactly"),
+        "{text}"
+    );
+    let scene = std::fs::read_to_string(directory.path().join("missed-pair.toml")).unwrap();
+    assert!(scene.matches("[[bodies]]").count() < 96, "{scene}");
+    // The counter-example fails again by the command that was printed.
+    let command = format!("{right} --full-buffer");
+    let again = [
+        "verify",
+        "--exec",
+        &command,
+        "--claims",
+        "aabb",
+        "--timeout",
+        "60",
+        "--replay",
+        "missed-pair.ndjson",
+    ];
+    assert_eq!(sdop(directory.path(), &again).0.status.code(), Some(1));
+    // And the right program passes it.
+    let again = [
+        "verify",
+        "--exec",
+        &right,
+        "--claims",
+        "aabb",
+        "--timeout",
+        "60",
+        "--replay",
+        "missed-pair.ndjson",
+    ];
+    assert!(sdop(directory.path(), &again).0.status.success());
+    // The scene is runnable.
+    let (output, _) = sdop(directory.path(), &["run", "missed-pair.toml"]);
+    assert!(output.status.success(), "{output:?}");
+}
+
+#[test]
+fn a_list_of_known_failures_cannot_go_stale() {
+    let directory = tempfile::tempdir().unwrap();
+    let silent = answering(RIGHT);
+    let run = |known: &str, format: &str| {
+        std::fs::write(directory.path().join("known"), known).unwrap();
+        let case = [
+            "--claims",
+            "aabb",
+            "--case",
+            "box/grid/000?",
+            "--timeout",
+            "60",
+            "--no-fresh",
+            "--known",
+            "known",
+            "--format",
+            format,
+        ];
+        sdop(
+            directory.path(),
+            &[&["verify", "--exec", &silent], &case[..]].concat(),
+        )
+    };
+    let all: String = (0..8)
+        .map(|n| format!("box/grid/000{n} # says nothing\n"))
+        .collect();
+    // Known failures alone: nothing was shown to be right.
+    assert_eq!(run(&all, "table").0.status.code(), Some(1));
+    let (output, text) = run(&format!("{all}box/grid/0009\n"), "json");
+    assert!(
+        output.status.code() == Some(1)
+            && text.contains("\"stale\": [\n    \"box/grid/0009\"\n  ]"),
+        "{text}"
+    );
+    let (output, text) = run("", "junit");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        text.starts_with("<?xml")
+            && text.matches("<failure").count() == 8
+            && text.contains("tests=\"8\""),
+        "{text}"
+    );
+}
+
+#[test]
+fn cases_are_written_answered_elsewhere_and_checked() {
+    let directory = tempfile::tempdir().unwrap();
+    let (output, _) = sdop(
+        directory.path(),
+        &[
+            "cases",
+            "--out",
+            "c",
+            "--claims",
+            "aabb",
+            "--case",
+            "box/flat/*",
+        ],
+    );
+    assert!(output.status.success());
+    let case = "c/box/flat/0000.ndjson";
+    assert_eq!(
+        std::fs::read_dir(directory.path().join("c/box/flat"))
+            .unwrap()
+            .count(),
+        8
+    );
+    let answer = |pairs: &str| {
+        std::fs::write(
+            directory.path().join("answers"),
+            format!("{{\"frame\":0,\"pairs\":[{pairs}]}}\n"),
+        )
+        .unwrap()
+    };
+    let every: Vec<String> = (0..48)
+        .flat_map(|j| (0..j).map(move |i| format!("[{i},{j}]")))
+        .collect();
+    for (pairs, code) in [
+        (every.join(","), 0),
+        (String::new(), 1),
+        ("[0,0]".to_owned(), 1),
+    ] {
+        answer(&pairs);
+        let (output, text) = sdop(directory.path(), &["check", case, "--pairs", "answers"]);
+        assert_eq!(output.status.code(), Some(code), "{text}");
+    }
+    // Without answers there is nothing to judge.
+    let (output, _) = sdop(directory.path(), &["check", case]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        sdop(
+            directory.path(),
+            &["cases", "--out", "c", "--case", "no/such"]
+        )
+        .0
+        .status
+        .code(),
+        Some(2)
+    );
+}
+
+#[test]
+fn a_programs_own_time_counts_once_it_has_passed_and_is_called_self_reported() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = "name = \"three\"\nframes = 4\n[[bodies]]\nshape = \"box\"\nposes = [[0,0,0,1,0,0,0],[0,0,0,1,0.5,0,0],[0,0,0,1,0,0.5,0]]\n";
+    std::fs::write(directory.path().join("three.toml"), scene).unwrap();
+    let bench = |pairs: &str| {
+        let program = answering(&format!(
+            r#"echo "{{\"frame\":$n,\"pairs\":[{pairs}],\"ns\":77}}""#
+        ));
+        let arguments = [
+            "bench",
+            "three.toml",
+            "--exec",
+            &program,
+            "--frames",
+            "4",
+            "--format",
+            "json",
+        ];
+        let (output, text) = sdop(directory.path(), &arguments);
+        let rows: serde_json::Value = serde_json::from_str(&text).unwrap();
+        (output.status.code(), rows)
+    };
+    let (code, rows) = bench("[0,1],[0,2],[1,2]");
+    assert_eq!(code, Some(0), "{rows}");
+    let theirs = &rows[1];
+    assert_eq!(
+        (&theirs["median_ns"], &theirs["clock"], &theirs["outcome"]),
+        (&77.into(), &"self-reported".into(), &"pass".into())
+    );
+    assert!(rows[0]["median_ns"].as_u64().is_some_and(|ns| ns > 0) && rows[0]["outcome"] == "pass");
+    let (code, rows) = bench("[0,1]");
+    assert_eq!(code, Some(1));
+    assert!(
+        rows[1]["median_ns"].is_null() && rows[1]["outcome"] == "fail",
+        "{rows}"
+    );
+}
+
+#[test]
+fn broadmarks_recordings_are_cases_of_boxes() {
+    let directory = tempfile::tempdir().unwrap();
+    let written = ["cases", "--out", "c", "--aabbs", "--case", "box/grid/0000"];
+    assert!(sdop(directory.path(), &written).0.status.success());
+    let bytes = std::fs::read(directory.path().join("c/box/grid/0000.aabbs")).unwrap();
+    assert_eq!(bytes.len(), 304 + 48 * 32);
+    let every: Vec<String> = (0..48)
+        .flat_map(|j| (0..j).map(move |i| format!("[{i},{j}]")))
+        .collect();
+    for (pairs, code) in [(every.join(","), 0), (String::new(), 1)] {
+        let answer = format!("{{\"frame\":0,\"pairs\":[{pairs}]}}\n");
+        std::fs::write(directory.path().join("answers"), answer).unwrap();
+        let check = ["check", "c/box/grid/0000.aabbs", "--pairs", "answers"];
+        let (output, text) = sdop(directory.path(), &check);
+        assert_eq!(output.status.code(), Some(code), "{text}");
+    }
+    std::fs::write(
+        directory.path().join("short.aabbs"),
+        &bytes[..bytes.len() - 1],
+    )
+    .unwrap();
+    assert_eq!(
+        sdop(directory.path(), &["check", "short.aabbs"])
+            .0
+            .status
+            .code(),
+        Some(2)
+    );
+}
