@@ -243,7 +243,7 @@ fn parse_header(text: &[u8], name: &str) -> Result<Header, RecordError> {
 
 impl ShapeLine {
     /// The shape with these numbers, or what is wrong with them.
-    pub(in crate::lab) fn built(&self) -> Result<Shape, String> {
+    pub(crate) fn built(&self) -> Result<Shape, String> {
         let line = self;
         if line.vertices.is_empty() {
             return Err("it has no vertices".to_owned());
