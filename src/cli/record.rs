@@ -18,11 +18,11 @@ use super::scene_args::MachineArgs;
 /// every file and input. Without an experiment, lists them.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples: sdop record\n          sdop record reproduce --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick"
+    after_help = "Examples: sdop record\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick"
 )]
 pub struct Args {
-    /// The experiment
-    experiment: Option<String>,
+    /// The experiments; kernels and peers stand for all of theirs
+    experiments: Vec<String>,
     /// What the machine is called in data/record
     #[arg(long, value_name = "NAME", default_value = "here")]
     name: String,
@@ -47,38 +47,65 @@ pub struct Args {
 /// # Errors
 /// An unknown experiment; a measurement that fails; files that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    let Some(name) = &args.experiment else {
+    if args.experiments.is_empty() {
         let list = rows(&["experiment", "measures"], EXPERIMENTS, |experiment| {
             vec![experiment.name.to_owned(), experiment.about.to_owned()]
         });
         print(&list.to_string())?;
         return Ok(Outcome::Passed);
-    };
-    let directory = args.out.join(&args.name).join(name);
-    let known = Experiment::named(name);
-    if args.adopt {
-        adopt(args, name, known, &directory)?;
-    } else {
-        let experiment = known.ok_or_else(|| {
-            let names: Vec<&str> = EXPERIMENTS
-                .iter()
-                .map(|experiment| experiment.name)
-                .collect();
-            miette!(
-                help = format!("one of: {}", names.join(", ")),
-                "unknown experiment `{name}`"
-            )
-        })?;
-        measure(args, experiment, &directory)?;
     }
-    let manifest = Manifest::read(&directory)?;
+    if args.adopt {
+        for name in &args.experiments {
+            adopt(args, name, Experiment::named(name), &place(args, name))?;
+            say(&place(args, name))?;
+        }
+        return Ok(Outcome::Passed);
+    }
+    // All names are looked at before anything is measured.
+    let mut chosen: Vec<&Experiment> = Vec::new();
+    for name in &args.experiments {
+        chosen.extend(named(name)?);
+    }
+    for experiment in chosen {
+        let directory = place(args, experiment.name);
+        measure(args, experiment, &directory)?;
+        say(&directory)?;
+    }
+    Ok(Outcome::Passed)
+}
+
+fn place(args: &Args, experiment: &str) -> PathBuf {
+    args.out.join(&args.name).join(experiment)
+}
+
+/// The experiment of a name, or all that it stands for.
+fn named(name: &str) -> miette::Result<Vec<&'static Experiment>> {
+    let belongs = |experiment: &&Experiment| {
+        let rest = experiment.name.strip_prefix(name);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+    };
+    let found: Vec<_> = EXPERIMENTS.iter().filter(belongs).collect();
+    if found.is_empty() {
+        let names: Vec<&str> = EXPERIMENTS
+            .iter()
+            .map(|experiment| experiment.name)
+            .collect();
+        return Err(miette!(
+            help = format!("one of: {}", names.join(", ")),
+            "unknown experiment `{name}`"
+        ));
+    }
+    Ok(found)
+}
+
+fn say(directory: &Path) -> miette::Result<()> {
+    let manifest = Manifest::read(directory)?;
     print(&format!(
         "{}: record {}, {} files",
         directory.display(),
         manifest.id(),
         manifest.files.len()
-    ))?;
-    Ok(Outcome::Passed)
+    ))
 }
 
 /// Measures into a directory beside, and puts it in its place when it is whole.

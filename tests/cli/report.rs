@@ -216,6 +216,42 @@ fn two_records_compare_by_counts_and_by_intervals() {
 }
 
 #[test]
+fn a_record_compares_with_what_a_commit_had() {
+    let root = repository();
+    git(root.path(), &["init", "-q"]);
+    git(root.path(), &["add", "."]);
+    git(root.path(), &["commit", "-q", "-m", "records"]);
+    let table = root.path().join("data/record/box/times/times.csv");
+    edit(&table, ",7,", ",8,");
+    let adopt = ["record", "times", "--adopt", "--name", "box"];
+    assert!(
+        command(&adopt)
+            .current_dir(root.path())
+            .status()
+            .unwrap()
+            .success()
+    );
+    let compared = |first| {
+        let arguments = ["cmp", first, "data/record/box/times"];
+        command(&arguments)
+            .current_dir(root.path())
+            .output()
+            .unwrap()
+    };
+    let output = compared("HEAD:data/record/box/times");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("DIFFERS times.csv: a, bodies 500, hits: 7 and 8"),
+        "{said}"
+    );
+    assert_eq!(
+        compared("HEAD:data/record/box/rimes").status.code(),
+        Some(2)
+    );
+}
+
+#[test]
 fn every_record_of_the_repository_names_its_command() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let store = Store::new(root.join("data/record")).unwrap();

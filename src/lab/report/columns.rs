@@ -13,6 +13,9 @@ const NAMING: [&str; 15] = [
 /// Text that differs between machines and versions without naming another row.
 const PASSING: [&str; 4] = ["version", "rustc", "cpu", "os"];
 
+/// Text that is found, not given.
+const FOUND: [&str; 2] = ["verdict", "claim_verdict"];
+
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -22,19 +25,23 @@ pub(super) enum Kind {
     Count,
     /// A measured number.
     Measured,
+    /// A word that follows from measured numbers.
+    Found,
     /// An end or a width of a measured number's interval.
     Interval,
     /// Neither: left out of comparisons.
     Passing,
 }
 
-/// The kind of each column of two tables that have the same columns.
-pub(super) fn kinds(a: &Table, b: &Table) -> Vec<Kind> {
+/// The kinds of some columns of two tables.
+pub(super) fn kinds(columns: &[String], a: &Table, b: &Table) -> Vec<Kind> {
     let kind = |name: &String| {
         let cells = || a.rows.iter().chain(&b.rows).filter_map(|row| row.get(name));
         let last = name.rsplit('.').next().unwrap_or(name);
         if PASSING.contains(&last) {
             Kind::Passing
+        } else if FOUND.contains(&last) {
+            Kind::Found
         } else if NAMING.contains(&last) || cells().any(Value::is_string) {
             Kind::Name
         } else if last.ends_with("_low") || last.ends_with("_high") || last == "half_width" {
@@ -45,7 +52,7 @@ pub(super) fn kinds(a: &Table, b: &Table) -> Vec<Kind> {
             Kind::Count
         }
     };
-    a.columns.iter().map(kind).collect()
+    columns.iter().map(kind).collect()
 }
 
 /// The interval of a measured cell, where its table has one: `x_low` and `x_high` beside `x`, or `x.half_width` beside `x.mean`.

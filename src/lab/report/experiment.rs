@@ -323,6 +323,13 @@ pub const EXPERIMENTS: &[Experiment] = &[
         &[Step::Bench("oracle.md", "oracle")],
     ),
     Experiment {
+        name: "bounds",
+        about: "the long search for the worst rounding error of every bound",
+        steps: &[Step::Bench("bounds.md", "worst_case")],
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
         name: "rapier",
         about: "the filter in a physics engine: contacts compared, steps timed",
         steps: RAPIER,
