@@ -266,7 +266,7 @@ fn estimates(benches: &[&str], file: &Path) -> miette::Result<Command> {
         }
     }
     let mut command = Command::new("cargo");
-    command.args(&[
+    command.args([
         "run",
         "--release",
         "--quiet",
