@@ -5,16 +5,43 @@ use serde_json::Value;
 use super::table::Table;
 
 /// Whole numbers that name a row instead of being counted in it.
-const NAMING: [&str; 15] = [
-    "bodies", "statics", "threads", "seed", "seeds", "frames", "k", "warm_up", "timed", "turn",
-    "checked", "elements", "samples", "frame", "rounds",
+const NAMING: [&str; 16] = [
+    "bodies",
+    "statics",
+    "threads",
+    "seed",
+    "seeds",
+    "frames",
+    "k",
+    "warm_up",
+    "timed",
+    "turn",
+    "checked",
+    "elements",
+    "samples",
+    "frame",
+    "rounds",
+    "elsewhere",
 ];
 
 /// Text that differs between machines and versions without naming another row.
 const PASSING: [&str; 4] = ["version", "rustc", "cpu", "os"];
 
+/// What follows from other columns, or is better when it is larger: no time of its own.
+const DERIVED: [&str; 9] = [
+    "fps",
+    "to_control",
+    "share",
+    "ratio",
+    "speed_up",
+    "share_of_arithmetic",
+    "share_of_memory",
+    "predicted",
+    "residual",
+];
+
 /// Text that is found, not given.
-const FOUND: [&str; 2] = ["verdict", "claim_verdict"];
+const FOUND: [&str; 3] = ["verdict", "claim_verdict", "standing"];
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +65,14 @@ pub(super) fn kinds(columns: &[String], a: &Table, b: &Table) -> Vec<Kind> {
     let kind = |name: &String| {
         let cells = || a.rows.iter().chain(&b.rows).filter_map(|row| row.get(name));
         let last = name.rsplit('.').next().unwrap_or(name);
-        if PASSING.contains(&last) {
+        let listed = || cells().any(|cell| cell.as_str().is_some_and(|text| text.starts_with('[')));
+        if last.ends_with("sha256") {
+            Kind::Count
+        } else if PASSING.contains(&last)
+            || name.ends_with(".seeds")
+            || name.split('.').any(|part| DERIVED.contains(&part))
+            || listed()
+        {
             Kind::Passing
         } else if FOUND.contains(&last) {
             Kind::Found

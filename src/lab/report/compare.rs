@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 use super::columns::{Kind, interval, kinds};
 use super::manifest::{Manifest, ManifestError};
 use super::table::{Table, TableError};
+use crate::lab::measure::estimate::Estimate;
 
 /// A count, or a whole row, that two records don't share.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -122,14 +123,25 @@ pub fn compare(first: &Path, second: &Path) -> Result<Comparison, CompareError> 
     for name in b.files.keys().filter(|name| !a.files.contains_key(*name)) {
         comparison.missing(name, &b.deterministic, ["no such file", "the file"]);
     }
-    let size = |change: &Change| change.ratio.ln().abs();
-    comparison
-        .changes
-        .sort_by(|a, b| size(b).total_cmp(&size(a)));
+    comparison.rank();
     Ok(comparison)
 }
 
 impl Comparison {
+    /// What an interval tells from 1 first, then what it doesn't, then what has none; the largest first in each.
+    fn rank(&mut self) {
+        let class = |change: &Change| match change.same {
+            Some(false) => 0,
+            Some(true) => 1,
+            None => 2,
+        };
+        let size = |change: &Change| change.ratio.ln().abs();
+        self.changes.sort_by(|a, b| {
+            let by_size = || size(b).total_cmp(&size(a));
+            class(a).cmp(&class(b)).then_with(by_size)
+        });
+    }
+
     /// The largest growth of a measured number that its interval confirms: 0.1 is ten percent.
     #[must_use]
     pub fn slowest(&self) -> f64 {
@@ -185,6 +197,7 @@ impl Comparison {
                 "{file}: not compared, its rows can't be told apart by the columns of both"
             ));
         };
+        let before = self.changes.len();
         let mut lacking = 0;
         for (name, row) in &ours {
             let Some(other) = others.remove(name) else {
@@ -198,6 +211,8 @@ impl Comparison {
                 self.cells(file, name, (column, *kind, strict), [row, other]);
             }
         }
+        let raw = self.changes.split_off(before);
+        self.changes.extend(over_seeds(raw));
         if strict {
             for name in others.keys() {
                 self.differ(file, name, None, "no such row", "the row");
@@ -230,6 +245,44 @@ impl Comparison {
                 .push(format!("{file}: {row}: {column} {a} and {b}"));
         }
     }
+}
+
+/// Raw samples, a row a seed, as one change each: the geometric mean of their ratios. Other changes stay.
+fn over_seeds(changes: Vec<Change>) -> Vec<Change> {
+    let mut groups: BTreeMap<(String, String), Vec<Change>> = BTreeMap::new();
+    let mut rest = Vec::new();
+    for change in changes {
+        let parts = change.row.split(", ");
+        let others: Vec<&str> = parts.filter(|part| !part.starts_with("seed ")).collect();
+        let row = others.join(", ");
+        if row == change.row || change.interval.is_some() {
+            rest.push(change);
+        } else {
+            let key = (row, change.column.clone());
+            groups.entry(key).or_default().push(change);
+        }
+    }
+    rest.extend(groups.into_iter().map(|((row, column), of)| {
+        let logarithms: Vec<f64> = of.iter().map(|change| change.ratio.ln()).collect();
+        let Estimate {
+            mean, half_width, ..
+        } = Estimate::of(&logarithms);
+        let ends = [(mean - half_width).exp(), (mean + half_width).exp()];
+        let interval = half_width.is_finite().then_some(ends);
+        let average =
+            |of_one: fn(&Change) -> f64| of.iter().map(of_one).sum::<f64>() / of.len() as f64;
+        Change {
+            file: of[0].file.clone(),
+            row: format!("{row}, {} seeds", of.len()),
+            column,
+            first: average(|change| change.first),
+            second: average(|change| change.second),
+            ratio: mean.exp(),
+            interval,
+            same: interval.map(|[low, high]| low <= 1.0 && high >= 1.0),
+        }
+    }));
+    rest
 }
 
 /// The change of one measured cell, if both rows have it above zero.
@@ -324,6 +377,19 @@ mod tests {
         let c = record(COUNTS, &TIMES.replace(",9,", ",8,"));
         let differences = compare(a.path(), c.path()).unwrap().differences;
         assert_eq!(differences[0].column.as_deref(), Some("pairs"));
+    }
+
+    #[test]
+    fn raw_samples_compare_over_their_seeds() {
+        let times = |factor: f64| {
+            let row = |seed| format!("a,{seed},{}\n", factor * (1.0 + 0.01 * f64::from(seed)));
+            format!("scene,seed,ms\n{}", (1..=5).map(row).collect::<String>())
+        };
+        let (a, b) = (record(COUNTS, &times(1.0)), record(COUNTS, &times(2.0)));
+        let changes = compare(a.path(), b.path()).unwrap().changes;
+        assert_eq!(changes.len(), 1);
+        assert_eq!(changes[0].row, "a, 5 seeds");
+        assert!((changes[0].ratio - 2.0).abs() < 1e-12 && changes[0].same == Some(false));
     }
 
     #[test]

@@ -319,6 +319,26 @@ mod tests {
     }
 
     #[test]
+    fn figures_below_are_part_of_a_record_and_records_below_are_not() {
+        let directory = tempfile::tempdir().unwrap();
+        let place = directory.path();
+        for (name, text) in [
+            ("figures/a.svg", "1"),
+            ("other/b.csv", "2"),
+            ("other/record.json", "{}"),
+        ] {
+            std::fs::create_dir_all(place.join(name).parent().unwrap()).unwrap();
+            std::fs::write(place.join(name), text).unwrap();
+        }
+        let manifest = Manifest::describe(place, "test", "sdop test".to_owned(), &[]).unwrap();
+        assert_eq!(manifest.files.keys().collect::<Vec<_>>(), ["figures/a.svg"]);
+        std::fs::write(place.join(FILE), manifest.text()).unwrap();
+        std::fs::write(place.join("figures/a.svg"), "3").unwrap();
+        let error = Manifest::read(place).unwrap_err();
+        assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
+    }
+
+    #[test]
     fn a_file_more_or_less_is_seen() {
         let (directory, _) = record();
         std::fs::write(directory.path().join("extra.csv"), "a\n1\n").unwrap();
