@@ -87,6 +87,8 @@ pub struct Record {
     pub scene: String,
     /// What bodies are made of.
     pub kind: String,
+    /// How finely they are cut.
+    pub detail: String,
     /// How many.
     pub bodies: usize,
     /// Steps taken.
