@@ -11,12 +11,13 @@ use super::files::write;
 use super::output::{print, rows};
 
 /// Pages whose numbers come from records.
-const PAGES: [&str; 12] = [
+const PAGES: [&str; 13] = [
     "README.md",
     "ARCHITECTURE.md",
     "benches/README.md",
     "benches/peers/BIAS.md",
     "examples/rapier/ENGINES.md",
+    "examples/rapier/README.md",
     "tests/README.md",
     "paper/guide.md",
     "paper/artifact.md",
