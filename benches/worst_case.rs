@@ -32,6 +32,7 @@ fn main() -> ExitCode {
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
     let mut passed = true;
     println!("{evaluations} evaluations each, seeds 1 to {threads}\n");
+    println!("| bound | found | constant | unit |\n|---|--:|--:|---|");
     for bound in bounds::all().iter().chain(&bounds::containments()) {
         let found = std::thread::scope(|scope| {
             let search = |seed| scope.spawn(move || (bound.search)(seed, evaluations / threads));
@@ -42,7 +43,7 @@ fn main() -> ExitCode {
                 .fold(f64::NEG_INFINITY, f64::max)
         });
         println!(
-            "{:34} {found:>14.6} of {} {}",
+            "| {} | {found:.6} | {} | {} |",
             bound.name, bound.constant, bound.unit
         );
         passed &= bound.teeth <= found && found <= bound.constant;

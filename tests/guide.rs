@@ -45,3 +45,53 @@ fn the_guide_has_every_key_of_a_scene() {
         assert_eq!(described(heading), accepted(&scene), "{heading}");
     }
 }
+
+/// The columns that the guide explains for a file of a measurement record.
+fn explained(guide: &str, file: &str) -> BTreeSet<String> {
+    let rows = guide.lines().filter_map(|line| line.strip_prefix("| `"));
+    let named = |row: &&str| {
+        let first = row.split('|').next().unwrap();
+        format!("`{first}").contains(&format!("`{file}`"))
+    };
+    let texts = rows.filter(named).filter_map(|row| row.split_once('|'));
+    let cells = texts.flat_map(|(_, text)| text.split('`').skip(1).step_by(2));
+    cells.map(str::to_owned).collect()
+}
+
+/// Every table below a directory.
+fn tables(directory: &Path, found: &mut Vec<std::path::PathBuf>) {
+    for entry in std::fs::read_dir(directory).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            tables(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "csv") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn the_guide_explains_every_column_of_every_recorded_table() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let guide = std::fs::read_to_string(root.join("paper/guide.md")).unwrap();
+    let mut found = Vec::new();
+    tables(&root.join("data/record"), &mut found);
+    assert!(found.len() > 10);
+    for path in found {
+        let file = path.file_name().unwrap().to_str().unwrap();
+        let explained = explained(&guide, file);
+        let table = std::fs::read_to_string(&path).unwrap();
+        for column in table.lines().next().unwrap().split(',') {
+            let first = column.split('.').next().unwrap();
+            let stem = first.trim_end_matches("_low").trim_end_matches("_high");
+            let known = [column, first, stem]
+                .iter()
+                .any(|name| explained.contains(*name));
+            assert!(
+                known,
+                "{}: the guide doesn't explain {column}",
+                path.display()
+            );
+        }
+    }
+}

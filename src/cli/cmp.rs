@@ -1,11 +1,12 @@
 //! `sdop cmp`: two records side by side.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use miette::IntoDiagnostic as _;
-use sdop::lab::report::{Change, Comparison, compare};
+use miette::{IntoDiagnostic as _, WrapErr as _};
+use sdop::lab::report::{Change, Code, Comparison, compare};
+use tempfile::TempDir;
 
 use super::Outcome;
 use super::output::{csv_text, print, rows};
@@ -16,14 +17,15 @@ use super::output::{csv_text, print, rows};
 /// both meet, "?" where a record has no intervals.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example: sdop cmp data/record/epyc-2core-avx512/reproduce data/record/xeon-2core-avx512/reproduce\n\
+    after_help = "Examples: sdop cmp data/record/epyc-2core-avx512/reproduce data/record/xeon-2core-avx512/reproduce\n         \
+                  sdop cmp HEAD~9:data/record/here/tradeoff data/record/here/tradeoff\n\
                   Exit codes: 0 counts are equal, 1 counts differ or a time grew by more than --fail-slower, 2 bad input."
 )]
 pub struct Args {
-    /// The first record
-    first: PathBuf,
+    /// The first record: a directory, or COMMIT:DIRECTORY as it was in a commit of this repository
+    first: String,
     /// The second record
-    second: PathBuf,
+    second: String,
     /// Exit with 1 when a time has grown by more than so many percent and its interval says so
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     fail_slower: Option<f64>,
@@ -54,7 +56,8 @@ enum Format {
 /// # Errors
 /// A directory that holds no whole record; two experiments.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    let comparison = compare(&args.first, &args.second)?;
+    let [first, second] = [place(&args.first)?, place(&args.second)?];
+    let comparison = compare(first.path(), second.path())?;
     let text = match args.format {
         Format::Table => table(&comparison, args.most),
         Format::Markdown => markdown(&comparison, args.most),
@@ -69,6 +72,37 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         Ok(Outcome::Passed)
     } else {
         Ok(Outcome::Failed)
+    }
+}
+
+/// Where a record can be read.
+enum Place {
+    Directory(PathBuf),
+    /// A copy out of a commit.
+    Copy(TempDir),
+}
+
+impl Place {
+    fn path(&self) -> &Path {
+        match self {
+            Self::Directory(path) => path,
+            Self::Copy(copy) => copy.path(),
+        }
+    }
+}
+
+/// A directory, or what a commit had there.
+fn place(named: &str) -> miette::Result<Place> {
+    let directory = PathBuf::from(named);
+    match named.split_once(':') {
+        Some((commit, path)) if !directory.exists() => {
+            let copy = tempfile::tempdir().into_diagnostic()?;
+            Code::extract(Path::new("."), commit, path, copy.path())
+                .into_diagnostic()
+                .wrap_err_with(|| format!("cannot read {path} of commit {commit}"))?;
+            Ok(Place::Copy(copy))
+        }
+        _ => Ok(Place::Directory(directory)),
     }
 }
 
@@ -123,8 +157,17 @@ fn head(comparison: &Comparison) -> String {
             difference.file, difference.row, difference.first, difference.second
         );
     }
+    for note in comparison.notes.iter().take(NOTES) {
+        let _ = writeln!(out, "note: {note}");
+    }
+    if comparison.notes.len() > NOTES {
+        let _ = writeln!(out, "and {} notes more", comparison.notes.len() - NOTES);
+    }
     out
 }
+
+/// Notes that are shown.
+const NOTES: usize = 10;
 
 /// How many times are listed of how many.
 fn tail(comparison: &Comparison, most: usize) -> String {

@@ -45,8 +45,14 @@ pub fn read(path: &Path) -> miette::Result<String> {
         .wrap_err_with(|| format!("cannot read {}", path.display()))
 }
 
-/// The command that makes these results again. Absolute paths are this machine's own business.
+/// The variable in which `sdop record` names itself to what it runs.
+pub const COMMAND: &str = "SDOP_COMMAND";
+
+/// The command that makes these results again: `sdop record`'s, or this one's. Absolute paths are this machine's own business.
 pub fn command() -> String {
+    if let Ok(command) = std::env::var(COMMAND) {
+        return command;
+    }
     let mut command = "cargo run --release --".to_owned();
     for argument in std::env::args().skip(1) {
         let absolute = Path::new(&argument).is_absolute();

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use sdop::lab::report::{Experiment, Store};
+
 use super::{command, sdop, text};
 
 const PAGE: &str = "# Page\n\nA frame takes <!--= (csv(\"box/times/times.csv\") | one(scene=\"a\")).ms | fixed(1) -->1.5<!--/--> ms.\n";
@@ -87,6 +89,117 @@ fn a_digit_changed_in_a_record_or_its_manifest_is_found() {
 }
 
 #[test]
+fn a_digit_changed_in_the_report_s_data_is_found() {
+    let root = repository();
+    std::fs::create_dir_all(root.path().join("paper")).unwrap();
+    let source = root.path().join("paper/report.typ");
+    let marker = "A frame takes /*= (csv(\"box/times/times.csv\") | one(scene=\"a\")).ms | fixed(1) */1.5/**/ ms.\n";
+    std::fs::write(&source, marker).unwrap();
+    assert_eq!(check(root.path()).0, Some(0));
+    edit(&source, "1.5/**/", "1.6/**/");
+    let (code, said) = check(root.path());
+    assert_eq!(code, Some(1));
+    assert!(said.contains("report.typ:1"), "{said}");
+}
+
+#[test]
+fn two_pages_that_give_one_number_differently_are_found() {
+    let root = repository();
+    let page = "It is <!--= ((csv(\"box/times/times.csv\") | one(scene=\"a\")).ms / 7) | fixed(2) -->?<!--/-->.\n";
+    std::fs::create_dir_all(root.path().join("paper")).unwrap();
+    for name in ["README.md", "paper/guide.md"] {
+        std::fs::write(root.path().join(name), page).unwrap();
+    }
+    let rendered = sdop(&["report", "--quantities", "--root", text(root.path())]);
+    let said = String::from_utf8_lossy(&rendered.stdout).into_owned();
+    assert_eq!(rendered.status.code(), Some(0), "{said}");
+    assert!(
+        said.contains("0.21") && said.contains("paper/guide.md"),
+        "{said}"
+    );
+    let guide = root.path().join("paper/guide.md");
+    edit(&guide, "fixed(2)", "fixed(1)");
+    sdop(&["report", "--root", text(root.path())]);
+    let (code, said) = check(root.path());
+    assert_eq!(code, Some(1));
+    assert!(said.contains("two ways to give one number"), "{said}");
+}
+
+#[test]
+fn a_page_that_belongs_to_a_record_is_its_copy() {
+    let root = repository();
+    let record = root.path().join("data/record/box/reproduce");
+    std::fs::create_dir_all(&record).unwrap();
+    std::fs::write(record.join("summary.md"), "# Summary\n\n1.5 ms\n").unwrap();
+    std::fs::write(
+        root.path().join("data/record/quoted.toml"),
+        "machine = \"box\"\n",
+    )
+    .unwrap();
+    let adopt = ["record", "reproduce", "--adopt", "--name", "box"];
+    assert!(
+        command(&adopt)
+            .current_dir(root.path())
+            .status()
+            .unwrap()
+            .success()
+    );
+    let rendered = sdop(&["report", "--root", text(root.path())]);
+    assert_eq!(rendered.status.code(), Some(0));
+    assert_eq!(check(root.path()).0, Some(0));
+    edit(&root.path().join("paper/summary.md"), "1.5", "1.4");
+    let (code, said) = check(root.path());
+    assert_eq!(code, Some(1));
+    assert!(said.contains("paper/summary.md"), "{said}");
+}
+
+/// Runs git in a repository of its own.
+fn git(root: &Path, arguments: &[&str]) {
+    let status = std::process::Command::new("git")
+        .current_dir(root)
+        .args(["-c", "user.name=a", "-c", "user.email=a@example.org"])
+        .args(arguments)
+        .stdout(std::process::Stdio::null())
+        .status();
+    assert!(status.unwrap().success(), "git {arguments:?}");
+}
+
+#[test]
+fn a_record_older_than_the_code_must_be_called_so() {
+    let root = tempfile::tempdir().unwrap();
+    let record = root.path().join("data/record/box/times");
+    std::fs::create_dir_all(&record).unwrap();
+    std::fs::create_dir_all(root.path().join("src")).unwrap();
+    std::fs::write(root.path().join("src/lib.rs"), "// 1\n").unwrap();
+    std::fs::write(record.join("times.csv"), "scene,ms\na,1.5\n").unwrap();
+    git(root.path(), &["init", "-q"]);
+    git(root.path(), &["add", "."]);
+    git(root.path(), &["commit", "-q", "-m", "code"]);
+    let adopt = ["record", "times", "--adopt", "--name", "box"];
+    assert!(
+        command(&adopt)
+            .current_dir(root.path())
+            .status()
+            .unwrap()
+            .success()
+    );
+    std::fs::write(root.path().join("README.md"), PAGE).unwrap();
+    let (code, said) = check(root.path());
+    assert_eq!(code, Some(0), "{said}");
+    std::fs::write(root.path().join("src/lib.rs"), "// 2\n").unwrap();
+    git(root.path(), &["commit", "-q", "-a", "-m", "other code"]);
+    let (code, said) = check(root.path());
+    assert_eq!(code, Some(1));
+    assert!(said.contains("older than the code"), "{said}");
+    let named =
+        format!("{PAGE}\nCommit <!--= record(\"box/times\").code.commit[:7] --><!--/-->.\n");
+    std::fs::write(root.path().join("README.md"), named).unwrap();
+    sdop(&["report", "--root", text(root.path())]);
+    let (code, said) = check(root.path());
+    assert_eq!(code, Some(0), "{said}");
+}
+
+#[test]
 fn two_records_compare_by_counts_and_by_intervals() {
     let root = repository();
     let records = root.path().join("data/record");
@@ -100,6 +213,55 @@ fn two_records_compare_by_counts_and_by_intervals() {
     assert_eq!(limit.status.code(), Some(1));
     let none = sdop(&["cmp", text(&first), text(root.path())]);
     assert_eq!(none.status.code(), Some(2));
+}
+
+#[test]
+fn a_record_compares_with_what_a_commit_had() {
+    let root = repository();
+    git(root.path(), &["init", "-q"]);
+    git(root.path(), &["add", "."]);
+    git(root.path(), &["commit", "-q", "-m", "records"]);
+    let table = root.path().join("data/record/box/times/times.csv");
+    edit(&table, ",7,", ",8,");
+    let adopt = ["record", "times", "--adopt", "--name", "box"];
+    assert!(
+        command(&adopt)
+            .current_dir(root.path())
+            .status()
+            .unwrap()
+            .success()
+    );
+    let compared = |first| {
+        let arguments = ["cmp", first, "data/record/box/times"];
+        command(&arguments)
+            .current_dir(root.path())
+            .output()
+            .unwrap()
+    };
+    let output = compared("HEAD:data/record/box/times");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("DIFFERS times.csv: a, bodies 500, hits: 7 and 8"),
+        "{said}"
+    );
+    assert_eq!(
+        compared("HEAD:data/record/box/rimes").status.code(),
+        Some(2)
+    );
+}
+
+#[test]
+fn every_record_of_the_repository_names_its_command() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let store = Store::new(root.join("data/record")).unwrap();
+    for name in store.names() {
+        let manifest = store.manifest(&name).unwrap();
+        let known = Experiment::named(&manifest.experiment).is_some();
+        let script = manifest.command.starts_with(".ci/full ");
+        assert!(known || script, "{name}: {}", manifest.command);
+        assert!(!manifest.command.is_empty(), "{name}");
+    }
 }
 
 #[test]

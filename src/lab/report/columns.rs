@@ -5,13 +5,43 @@ use serde_json::Value;
 use super::table::Table;
 
 /// Whole numbers that name a row instead of being counted in it.
-const NAMING: [&str; 15] = [
-    "bodies", "statics", "threads", "seed", "seeds", "frames", "k", "warm_up", "timed", "turn",
-    "checked", "elements", "samples", "frame", "rounds",
+const NAMING: [&str; 16] = [
+    "bodies",
+    "statics",
+    "threads",
+    "seed",
+    "seeds",
+    "frames",
+    "k",
+    "warm_up",
+    "timed",
+    "turn",
+    "checked",
+    "elements",
+    "samples",
+    "frame",
+    "rounds",
+    "elsewhere",
 ];
 
 /// Text that differs between machines and versions without naming another row.
 const PASSING: [&str; 4] = ["version", "rustc", "cpu", "os"];
+
+/// What follows from other columns, or is better when it is larger: no time of its own.
+const DERIVED: [&str; 9] = [
+    "fps",
+    "to_control",
+    "share",
+    "ratio",
+    "speed_up",
+    "share_of_arithmetic",
+    "share_of_memory",
+    "predicted",
+    "residual",
+];
+
+/// Text that is found, not given.
+const FOUND: [&str; 3] = ["verdict", "claim_verdict", "standing"];
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,19 +52,30 @@ pub(super) enum Kind {
     Count,
     /// A measured number.
     Measured,
+    /// A word that follows from measured numbers.
+    Found,
     /// An end or a width of a measured number's interval.
     Interval,
     /// Neither: left out of comparisons.
     Passing,
 }
 
-/// The kind of each column of two tables that have the same columns.
-pub(super) fn kinds(a: &Table, b: &Table) -> Vec<Kind> {
+/// The kinds of some columns of two tables.
+pub(super) fn kinds(columns: &[String], a: &Table, b: &Table) -> Vec<Kind> {
     let kind = |name: &String| {
         let cells = || a.rows.iter().chain(&b.rows).filter_map(|row| row.get(name));
         let last = name.rsplit('.').next().unwrap_or(name);
-        if PASSING.contains(&last) {
+        let listed = || cells().any(|cell| cell.as_str().is_some_and(|text| text.starts_with('[')));
+        if last.ends_with("sha256") {
+            Kind::Count
+        } else if PASSING.contains(&last)
+            || name.ends_with(".seeds")
+            || name.split('.').any(|part| DERIVED.contains(&part))
+            || listed()
+        {
             Kind::Passing
+        } else if FOUND.contains(&last) {
+            Kind::Found
         } else if NAMING.contains(&last) || cells().any(Value::is_string) {
             Kind::Name
         } else if last.ends_with("_low") || last.ends_with("_high") || last == "half_width" {
@@ -45,7 +86,7 @@ pub(super) fn kinds(a: &Table, b: &Table) -> Vec<Kind> {
             Kind::Count
         }
     };
-    a.columns.iter().map(kind).collect()
+    columns.iter().map(kind).collect()
 }
 
 /// The interval of a measured cell, where its table has one: `x_low` and `x_high` beside `x`, or `x.half_width` beside `x.mean`.

@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 use super::columns::{Kind, interval, kinds};
 use super::manifest::{Manifest, ManifestError};
 use super::table::{Table, TableError};
+use crate::lab::measure::estimate::Estimate;
 
 /// A count, or a whole row, that two records don't share.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -57,6 +58,8 @@ pub struct Comparison {
     pub differences: Vec<Difference>,
     /// Measured numbers, the largest change first.
     pub changes: Vec<Change>,
+    /// What only one of the records has or says, without being a count that differs.
+    pub notes: Vec<String>,
 }
 
 /// Records that can't be compared.
@@ -99,6 +102,7 @@ pub fn compare(first: &Path, second: &Path) -> Result<Comparison, CompareError> 
         equal: Vec::new(),
         differences: Vec::new(),
         changes: Vec::new(),
+        notes: Vec::new(),
     };
     for (name, digest) in &a.files {
         match b.files.get(name) {
@@ -113,20 +117,31 @@ pub fn compare(first: &Path, second: &Path) -> Result<Comparison, CompareError> 
                 comparison.differ(name, "", None, digest, &b.files[name]);
             }
             Some(_) => {}
-            None => comparison.differ(name, "", None, "the file", "no such file"),
+            None => comparison.missing(name, &a.deterministic, ["the file", "no such file"]),
         }
     }
     for name in b.files.keys().filter(|name| !a.files.contains_key(*name)) {
-        comparison.differ(name, "", None, "no such file", "the file");
+        comparison.missing(name, &b.deterministic, ["no such file", "the file"]);
     }
-    let size = |change: &Change| change.ratio.ln().abs();
-    comparison
-        .changes
-        .sort_by(|a, b| size(b).total_cmp(&size(a)));
+    comparison.rank();
     Ok(comparison)
 }
 
 impl Comparison {
+    /// What an interval tells from 1 first, then what it doesn't, then what has none; the largest first in each.
+    fn rank(&mut self) {
+        let class = |change: &Change| match change.same {
+            Some(false) => 0,
+            Some(true) => 1,
+            None => 2,
+        };
+        let size = |change: &Change| change.ratio.ln().abs();
+        self.changes.sort_by(|a, b| {
+            let by_size = || size(b).total_cmp(&size(a));
+            class(a).cmp(&class(b)).then_with(by_size)
+        });
+    }
+
     /// The largest growth of a measured number that its interval confirms: 0.1 is ten percent.
     #[must_use]
     pub fn slowest(&self) -> f64 {
@@ -149,25 +164,64 @@ impl Comparison {
         });
     }
 
-    fn tables(&mut self, file: &str, a: &Table, b: &Table, strict: bool) {
-        if a.columns != b.columns {
-            let (a, b) = (a.columns.join(","), b.columns.join(","));
-            return self.differ(file, "header", None, &a, &b);
+    /// A file that one record lacks.
+    fn missing(&mut self, file: &str, deterministic: &[String], [first, second]: [&str; 2]) {
+        if deterministic.iter().any(|name| name == file) {
+            self.differ(file, "", None, first, second);
+        } else {
+            self.notes.push(format!("{file}: {first}, {second}"));
         }
-        let kinds = kinds(a, b);
-        let mut others = by_name(b, &kinds);
-        for row in &a.rows {
-            let name = row_name(row, &a.columns, &kinds);
-            let Some(other) = others.remove(&name) else {
-                self.differ(file, &name, None, "the row", "no such row");
+    }
+
+    /// Compares the columns that both tables have; of a strict table, all must be equal.
+    fn tables(&mut self, file: &str, a: &Table, b: &Table, strict: bool) {
+        let columns: Vec<String> = a
+            .columns
+            .iter()
+            .filter(|column| b.columns.contains(column))
+            .cloned()
+            .collect();
+        if columns != a.columns || columns != b.columns {
+            if strict {
+                let (a, b) = (a.columns.join(","), b.columns.join(","));
+                return self.differ(file, "header", None, &a, &b);
+            }
+            self.notes
+                .push(format!("{file}: only the columns of both are compared"));
+        }
+        let kinds = kinds(&columns, a, b);
+        let (Some(ours), Some(mut others)) =
+            (by_name(a, &columns, &kinds), by_name(b, &columns, &kinds))
+        else {
+            return self.notes.push(format!(
+                "{file}: not compared, its rows can't be told apart by the columns of both"
+            ));
+        };
+        let before = self.changes.len();
+        let mut lacking = 0;
+        for (name, row) in &ours {
+            let Some(other) = others.remove(name) else {
+                lacking += 1;
+                if strict {
+                    self.differ(file, name, None, "the row", "no such row");
+                }
                 continue;
             };
-            for (column, kind) in a.columns.iter().zip(&kinds) {
-                self.cells(file, &name, (column, *kind, strict), [row, other]);
+            for (column, kind) in columns.iter().zip(&kinds) {
+                self.cells(file, name, (column, *kind, strict), [row, other]);
             }
         }
-        for name in others.keys() {
-            self.differ(file, name, None, "no such row", "the row");
+        let raw = self.changes.split_off(before);
+        self.changes.extend(over_seeds(raw));
+        if strict {
+            for name in others.keys() {
+                self.differ(file, name, None, "no such row", "the row");
+            }
+        } else if lacking + others.len() > 0 {
+            self.notes.push(format!(
+                "{file}: {lacking} rows only in the first, {} only in the second",
+                others.len()
+            ));
         }
     }
 
@@ -179,15 +233,56 @@ impl Comparison {
         cells: [&Map<String, Value>; 2],
     ) {
         let [a, b] = cells.map(|cells| &cells[column]);
-        let measured = matches!(kind, Kind::Measured | Kind::Interval);
+        let measured = matches!(kind, Kind::Measured | Kind::Interval | Kind::Found);
         if kind == Kind::Count || (strict && measured) {
             if a != b {
                 self.differ(file, row, Some(column), &a.to_string(), &b.to_string());
             }
         } else if kind == Kind::Measured {
             self.changes.extend(change(file, row, column, cells));
+        } else if kind == Kind::Found && a != b {
+            self.notes
+                .push(format!("{file}: {row}: {column} {a} and {b}"));
         }
     }
+}
+
+/// Raw samples, a row a seed, as one change each: the geometric mean of their ratios. Other changes stay.
+fn over_seeds(changes: Vec<Change>) -> Vec<Change> {
+    let mut groups: BTreeMap<(String, String), Vec<Change>> = BTreeMap::new();
+    let mut rest = Vec::new();
+    for change in changes {
+        let parts = change.row.split(", ");
+        let others: Vec<&str> = parts.filter(|part| !part.starts_with("seed ")).collect();
+        let row = others.join(", ");
+        if row == change.row || change.interval.is_some() {
+            rest.push(change);
+        } else {
+            let key = (row, change.column.clone());
+            groups.entry(key).or_default().push(change);
+        }
+    }
+    rest.extend(groups.into_iter().map(|((row, column), of)| {
+        let logarithms: Vec<f64> = of.iter().map(|change| change.ratio.ln()).collect();
+        let Estimate {
+            mean, half_width, ..
+        } = Estimate::of(&logarithms);
+        let ends = [(mean - half_width).exp(), (mean + half_width).exp()];
+        let interval = half_width.is_finite().then_some(ends);
+        let average =
+            |of_one: fn(&Change) -> f64| of.iter().map(of_one).sum::<f64>() / of.len() as f64;
+        Change {
+            file: of[0].file.clone(),
+            row: format!("{row}, {} seeds", of.len()),
+            column,
+            first: average(|change| change.first),
+            second: average(|change| change.second),
+            ratio: mean.exp(),
+            interval,
+            same: interval.map(|[low, high]| low <= 1.0 && high >= 1.0),
+        }
+    }));
+    rest
 }
 
 /// The change of one measured cell, if both rows have it above zero.
@@ -209,10 +304,15 @@ fn change(file: &str, row: &str, column: &str, cells: [&Map<String, Value>; 2]) 
     })
 }
 
-/// Rows by their names; rows of one name are numbered.
-fn by_name<'a>(table: &'a Table, kinds: &[Kind]) -> BTreeMap<String, &'a Map<String, Value>> {
-    let named = |row| (row_name(row, &table.columns, kinds), row);
-    table.rows.iter().map(named).collect()
+/// Rows by their names; none if two have the same.
+fn by_name<'a>(
+    table: &'a Table,
+    columns: &[String],
+    kinds: &[Kind],
+) -> Option<BTreeMap<String, &'a Map<String, Value>>> {
+    let named = |row| (row_name(row, columns, kinds), row);
+    let rows: BTreeMap<_, _> = table.rows.iter().map(named).collect();
+    (rows.len() == table.rows.len()).then_some(rows)
 }
 
 /// What names a row: its naming cells, joined.
@@ -277,6 +377,40 @@ mod tests {
         let c = record(COUNTS, &TIMES.replace(",9,", ",8,"));
         let differences = compare(a.path(), c.path()).unwrap().differences;
         assert_eq!(differences[0].column.as_deref(), Some("pairs"));
+    }
+
+    #[test]
+    fn raw_samples_compare_over_their_seeds() {
+        let times = |factor: f64| {
+            let row = |seed| format!("a,{seed},{}\n", factor * (1.0 + 0.01 * f64::from(seed)));
+            format!("scene,seed,ms\n{}", (1..=5).map(row).collect::<String>())
+        };
+        let (a, b) = (record(COUNTS, &times(1.0)), record(COUNTS, &times(2.0)));
+        let changes = compare(a.path(), b.path()).unwrap().changes;
+        assert_eq!(changes.len(), 1);
+        assert_eq!(changes[0].row, "a, 5 seeds");
+        assert!((changes[0].ratio - 2.0).abs() < 1e-12 && changes[0].same == Some(false));
+    }
+
+    #[test]
+    fn another_set_of_columns_or_rows_is_noted_where_nothing_is_promised() {
+        let other = TIMES
+            .replace("ms_high", "ms_high,cold")
+            .replace("1.1\n", "1.1,3\n")
+            .replace("2.6\n", "2.6,4\n");
+        let (a, b) = (record(COUNTS, TIMES), record(COUNTS, &other));
+        let comparison = compare(a.path(), b.path()).unwrap();
+        assert!(comparison.differences.is_empty() && !comparison.changes.is_empty());
+        assert_eq!(comparison.notes.len(), 1);
+        let fewer = TIMES.lines().take(2).collect::<Vec<_>>().join("\n");
+        let c = record(COUNTS, &fewer);
+        let comparison = compare(a.path(), c.path()).unwrap();
+        assert!(comparison.differences.is_empty());
+        assert!(
+            comparison.notes[0].contains("1 rows only in the first"),
+            "{:?}",
+            comparison.notes
+        );
     }
 
     #[test]

@@ -1,17 +1,24 @@
-//! The experiments that can be recorded: the command of each, and which of its files every machine must find alike.
+//! The experiments that can be recorded: the steps of each, and which of its files every machine must find alike.
 
-/// Who runs an experiment.
+use super::rapier::{RAPIER_CONTACTS, RAPIER_TIMES};
+
+/// One program that runs for an experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Program {
-    /// This program, with `--out DIR` at the end.
-    Sdop,
+pub enum Step {
+    /// This program, which writes its files into the directory behind `--out`.
+    Sdop(&'static [&'static str]),
+    /// This program, whose output becomes a file.
+    SdopPrints(&'static str, &'static [&'static str]),
     /// The peers' program, with `--out DIR` at the end.
-    Peers,
-    /// A bench that prints its own table: the name of the file it becomes.
-    Bench {
-        /// The file.
-        file: &'static str,
-    },
+    Peers(&'static [&'static str]),
+    /// The physics engine's program, whose result becomes a file; its arguments in a line. Margins that are left out must be seen.
+    Rapier(&'static str, &'static str),
+    /// A bench that prints its own table, which becomes a file.
+    Bench(&'static str, &'static str),
+    /// Criterion's estimates of some benches, as one table.
+    Estimates(&'static str, &'static [&'static str]),
+    /// A program of the repository, whose output becomes a file.
+    Script(&'static str, &'static [&'static str]),
 }
 
 /// An experiment.
@@ -21,17 +28,25 @@ pub struct Experiment {
     pub name: &'static str,
     /// What it measures, in a line.
     pub about: &'static str,
-    /// Who runs it.
-    pub program: Program,
-    /// The arguments.
-    pub arguments: &'static [&'static str],
+    /// What runs, in order.
+    pub steps: &'static [Step],
     /// Files that every machine must find alike.
     pub deterministic: &'static [&'static str],
     /// Scenes that it reads, in the repository.
     pub scenes: &'static [&'static str],
 }
 
-const PAPER: [&str; 7] = [
+impl Experiment {
+    /// The experiment of a name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<&'static Self> {
+        EXPERIMENTS
+            .iter()
+            .find(|experiment| experiment.name == name)
+    }
+}
+
+const PAPER: &[&str] = &[
     "data/scenes/paper-50.toml",
     "data/scenes/paper-150.toml",
     "data/scenes/paper-300.toml",
@@ -40,54 +55,327 @@ const PAPER: [&str; 7] = [
     "data/scenes/crowded-500.toml",
     "data/scenes/sparse-500.toml",
 ];
+const PAPER_500: &[&str] = &["data/scenes/paper-500.toml"];
+const MILLION: &[&str] = &["data/scenes/uniform-1m.toml"];
+
+/// Engines side by side.
+const fn peers(name: &'static str, about: &'static str, steps: &'static [Step]) -> Experiment {
+    Experiment {
+        name,
+        about,
+        steps,
+        deterministic: &[],
+        scenes: &[],
+    }
+}
+
+/// A bench of kernels.
+const fn kernels(name: &'static str, about: &'static str, steps: &'static [Step]) -> Experiment {
+    Experiment {
+        name,
+        about,
+        steps,
+        deterministic: &[],
+        scenes: PAPER_500,
+    }
+}
 
 /// Every experiment.
 pub const EXPERIMENTS: &[Experiment] = &[
     Experiment {
         name: "reproduce",
         about: "the paper's experiments",
-        program: Program::Sdop,
-        arguments: &["reproduce"],
+        steps: &[Step::Sdop(&["reproduce"])],
         deterministic: &["counts.csv", "table_1.csv", "survival.csv"],
-        scenes: &PAPER,
+        scenes: PAPER,
     },
     Experiment {
         name: "tradeoff",
         about: "precision against time on the paper's 500 bodies",
-        program: Program::Sdop,
-        arguments: &["tradeoff", "data/scenes/paper-500.toml"],
+        steps: &[Step::Sdop(&["tradeoff", "data/scenes/paper-500.toml"])],
         deterministic: &[],
-        scenes: &["data/scenes/paper-500.toml"],
+        scenes: PAPER_500,
     },
     Experiment {
         name: "verify",
         about: "the culler judged by the exact reference",
-        program: Program::Sdop,
-        arguments: &[
-            "verify",
-            "--seeds",
-            "128",
-            "--frames",
-            "100",
-            "data/scenes/paper-500.toml",
+        steps: &[Step::SdopPrints(
+            "verify.json",
+            &[
+                "verify",
+                "--seeds",
+                "128",
+                "--frames",
+                "100",
+                "data/scenes/paper-500.toml",
+                "--format",
+                "json",
+            ],
+        )],
+        deterministic: &[],
+        scenes: PAPER_500,
+    },
+    peers(
+        "peers/verdicts",
+        "every engine judged by the cases of its claim",
+        &[Step::Peers(&["verdicts"])],
+    ),
+    peers(
+        "peers/uniform",
+        "every engine on uniform boxes, to ten thousand",
+        &[Step::Peers(&[
+            "--sizes",
+            "500,1000,10000",
+            "--scenes",
+            "uniform",
+        ])],
+    ),
+    peers(
+        "peers/mixed",
+        "every engine where radii differ 1 : 16",
+        &[Step::Peers(&[
+            "--sizes",
+            "500,1000,10000",
+            "--scenes",
+            "mixed",
+            "--threads",
+            "1",
+        ])],
+    ),
+    peers(
+        "peers/clustered",
+        "every engine where bodies cluster",
+        &[Step::Peers(&[
+            "--sizes",
+            "500,1000,10000",
+            "--scenes",
+            "clustered",
+            "--threads",
+            "1",
+        ])],
+    ),
+    peers(
+        "peers/uniform-100k",
+        "a hundred thousand boxes, engines within 300 ms",
+        &[Step::Peers(&[
+            "--sizes",
+            "100000",
+            "--scenes",
+            "uniform",
+            "--order",
+            "random",
+            "--limit-ms",
+            "300",
+        ])],
+    ),
+    peers(
+        "peers/sorted-100k",
+        "the same in sorted order, engines within 80 ms",
+        &[Step::Peers(&[
+            "--sizes",
+            "100000",
+            "--scenes",
+            "uniform",
+            "--order",
+            "sorted",
+            "--threads",
+            "1",
+            "--limit-ms",
+            "80",
+        ])],
+    ),
+    peers(
+        "peers/spreads-100k",
+        "a hundred thousand of mixed radii and in clusters, engines within 40 ms",
+        &[Step::Peers(&[
+            "--sizes",
+            "100000",
+            "--scenes",
+            "mixed,clustered",
+            "--threads",
+            "1",
+            "--limit-ms",
+            "40",
+        ])],
+    ),
+    peers(
+        "peers/uniform-1m",
+        "a million boxes, the fastest engines",
+        &[Step::Peers(&[
+            "--sizes",
+            "1000000",
+            "--scenes",
+            "uniform",
+            "--order",
+            "random",
+            "--limit-ms",
+            "1200",
+            "--peers",
+            "sdop,parry3d,rapier3d,PhysX ABP,Embree",
+        ])],
+    ),
+    peers(
+        "peers/slow-1m",
+        "a million boxes, the other engines within 4 s",
+        &[Step::Peers(&[
+            "--sizes",
+            "1000000",
+            "--scenes",
+            "uniform",
+            "--order",
+            "random",
+            "--threads",
+            "1",
+            "--timed",
+            "4",
+            "--limit-ms",
+            "4000",
+            "--peers",
+            "rapier3d,obvhs,bvh,broccoli,rstar,CGAL",
+        ])],
+    ),
+    peers(
+        "peers/sorted-1m",
+        "a million boxes in sorted order",
+        &[Step::Peers(&[
+            "--sizes",
+            "1000000",
+            "--scenes",
+            "uniform",
+            "--order",
+            "sorted",
+            "--threads",
+            "1",
+            "--peers",
+            "sdop,parry3d refit,Embree",
+        ])],
+    ),
+    peers(
+        "peers/spreads-1m",
+        "a million of mixed radii and in clusters",
+        &[Step::Peers(&[
+            "--sizes",
+            "1000000",
+            "--scenes",
+            "mixed,clustered",
+            "--order",
+            "random",
+            "--threads",
+            "1",
+            "--peers",
+            "sdop,parry3d refit,Embree",
+        ])],
+    ),
+    Experiment {
+        name: "peers/control",
+        about: "what a second thread is worth, and a million bodies by stage",
+        steps: &[
+            Step::Peers(&["control"]),
+            Step::SdopPrints("stages-1.json", &stages("1")),
+            Step::SdopPrints("stages-2.json", &stages("2")),
         ],
         deterministic: &[],
-        scenes: &["data/scenes/paper-500.toml"],
+        scenes: MILLION,
     },
     Experiment {
-        name: "peers/uniform",
-        about: "engines on the same uniform boxes, to ten thousand",
-        program: Program::Peers,
-        arguments: &["--sizes", "500,1000,10000", "--scenes", "uniform"],
+        name: "peers/narrow",
+        about: "what a narrow phase costs a pair",
+        steps: &[Step::Peers(&[
+            "narrow",
+            "data/scenes/paper-500.toml",
+            "--frames",
+            "5",
+        ])],
+        deterministic: &[],
+        scenes: PAPER_500,
+    },
+    kernels(
+        "kernels/tests",
+        "ns an or-DOP test",
+        &[Step::Estimates("tests.csv", &["ordop"])],
+    ),
+    kernels(
+        "kernels/stages",
+        "ns an update and a construction",
+        &[Step::Estimates("stages.csv", &["update", "construct"])],
+    ),
+    kernels(
+        "kernels/finders",
+        "ns a body and a first test, by finder",
+        &[Step::Estimates("finders.csv", &["pair_finding"])],
+    ),
+    kernels(
+        "kernels/tiers",
+        "full S-DOP on 500 bodies in every tier",
+        &[Step::Estimates("tiers.csv", &["tiers"])],
+    ),
+    kernels(
+        "kernels/radii",
+        "a reported pair among radii of one size, 1 : 16 and 1 : 1000",
+        &[Step::Bench("radii.md", "radii")],
+    ),
+    kernels(
+        "kernels/roofline",
+        "each kernel beside the CPU's ceilings",
+        &[Step::Bench("roofline.md", "roofline")],
+    ),
+    kernels(
+        "kernels/safety",
+        "the same frames with margins and without",
+        &[Step::Bench("safety.md", "safety")],
+    ),
+    kernels(
+        "kernels/oracle",
+        "the exact reference by stage",
+        &[Step::Bench("oracle.md", "oracle")],
+    ),
+    Experiment {
+        name: "bounds",
+        about: "the long search for the worst rounding error of every bound",
+        steps: &[Step::Bench("bounds.md", "worst_case")],
         deterministic: &[],
         scenes: &[],
     },
     Experiment {
-        name: "kernels/safety",
-        about: "the same frames with margins and without",
-        program: Program::Bench { file: "safety.md" },
-        arguments: &["safety"],
+        name: "rapier/contacts",
+        about: "the filter in a physics engine: contacts with it and without, step by step",
+        steps: RAPIER_CONTACTS,
         deterministic: &[],
         scenes: &[],
+    },
+    Experiment {
+        name: "rapier/times",
+        about: "the filter in a physics engine: steps timed in turns",
+        steps: RAPIER_TIMES,
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
+        name: "effects",
+        about: "what an effect costs that isn't listed",
+        steps: &[Step::Script(
+            "effects.txt",
+            &[".ci/effect_price", "data/scenes/paper-500.toml", "41"],
+        )],
+        deterministic: &[],
+        scenes: PAPER_500,
     },
 ];
+
+/// A million bodies by stage.
+const fn stages(threads: &'static str) -> [&'static str; 12] {
+    [
+        "run",
+        "data/scenes/uniform-1m.toml",
+        "--pairs",
+        "grid",
+        "--strategy",
+        "s-dop-batch",
+        "--frames",
+        "20",
+        "--threads",
+        threads,
+        "--format",
+        "json",
+    ]
+}

@@ -246,22 +246,35 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
     hex(&Sha256::digest(bytes))
 }
 
-/// The digest of every file right in `directory`, the manifest excepted. Directories below are records of their own.
+/// The digest of every file in `directory` and in its directories, the manifest excepted. A directory with a manifest of its own is
+/// another record.
 fn digests(directory: &Path) -> Result<BTreeMap<String, String>, ManifestError> {
+    let mut digests = BTreeMap::new();
+    add_digests(directory, "", &mut digests)?;
+    Ok(digests)
+}
+
+fn add_digests(
+    directory: &Path,
+    prefix: &str,
+    digests: &mut BTreeMap<String, String>,
+) -> Result<(), ManifestError> {
     let failed = |path: &Path| {
         let path = path.to_path_buf();
         move |source| ManifestError::Io { path, source }
     };
-    let mut digests = BTreeMap::new();
     for entry in std::fs::read_dir(directory).map_err(failed(directory))? {
         let path = entry.map_err(failed(directory))?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if path.is_file() && name != FILE {
+        let own = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = format!("{prefix}{own}");
+        if path.is_dir() && !path.join(FILE).is_file() {
+            add_digests(&path, &format!("{name}/"), digests)?;
+        } else if path.is_file() && name != FILE {
             let bytes = std::fs::read(&path).map_err(failed(&path))?;
-            digests.insert(name.into_owned(), sha256(&bytes));
+            digests.insert(name, sha256(&bytes));
         }
     }
-    Ok(digests)
+    Ok(())
 }
 
 #[cfg(test)]
@@ -302,6 +315,26 @@ mod tests {
         let text = manifest.text().replace("sdop test", "sdop best");
         std::fs::write(directory.path().join(FILE), text).unwrap();
         let error = Manifest::read(directory.path()).unwrap_err();
+        assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
+    }
+
+    #[test]
+    fn figures_below_are_part_of_a_record_and_records_below_are_not() {
+        let directory = tempfile::tempdir().unwrap();
+        let place = directory.path();
+        for (name, text) in [
+            ("figures/a.svg", "1"),
+            ("other/b.csv", "2"),
+            ("other/record.json", "{}"),
+        ] {
+            std::fs::create_dir_all(place.join(name).parent().unwrap()).unwrap();
+            std::fs::write(place.join(name), text).unwrap();
+        }
+        let manifest = Manifest::describe(place, "test", "sdop test".to_owned(), &[]).unwrap();
+        assert_eq!(manifest.files.keys().collect::<Vec<_>>(), ["figures/a.svg"]);
+        std::fs::write(place.join(FILE), manifest.text()).unwrap();
+        std::fs::write(place.join("figures/a.svg"), "3").unwrap();
+        let error = Manifest::read(place).unwrap_err();
         assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
     }
 

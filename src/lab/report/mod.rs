@@ -8,15 +8,18 @@
 mod clock;
 mod columns;
 mod compare;
+mod digits;
 mod experiment;
 mod manifest;
 pub mod pages;
 mod provenance;
+mod rapier;
 mod store;
 mod table;
 
 pub use compare::{Change, Comparison, compare};
-pub use experiment::{EXPERIMENTS, Experiment, Program};
+pub use digits::{Quantities, Quantity};
+pub use experiment::{EXPERIMENTS, Experiment, Step};
 pub use manifest::{FILE, Manifest, ManifestError};
 pub use provenance::{Code, Load, caches};
 pub use store::{Store, StoreError};

@@ -1,31 +1,64 @@
 //! Pages whose numbers come from records: text between markers is rendered, the rest is the author's.
 //!
-//! A marker is an HTML comment, so that a page reads the same with and without it: `<!--= EXPRESSION -->3.14<!--/-->`. What stands
-//! between `<!--=` and `-->` is an expression, or a template with `{{ … }}` and `{% … %}` (the syntax is Jinja's), and what stands behind it up
-//! to `<!--/-->` is what it gives. `{% set … %}` of one marker is not seen by the next: `<!--: NAME = EXPRESSION -->` names a value
-//! for the rest of the page.
+//! A marker is a comment, so that a page reads the same with and without it: `<!--= EXPRESSION -->3.14<!--/-->` in Markdown,
+//! `/*= EXPRESSION */3.14/**/` in Typst. What stands in the first comment is an expression, or a template with `{{ … }}` and `{% … %}`
+//! (the syntax is Jinja's), and what stands behind it up to the closing one is what it gives. `{% set … %}` of one marker is not seen by
+//! the next: `<!--: NAME = EXPRESSION -->` names a value for the rest of the page. Macros that pages share are in one file, `q` in
+//! expressions.
 //!
 //! | function or filter | gives |
 //! |---|---|
-//! | `csv("machine/experiment/file.csv")` | rows, objects of cells |
-//! | `json("machine/experiment/file.json")` | the value |
-//! | `record("machine/experiment")` | the manifest, with `id` |
+//! | `csv("experiment/file.csv")` | rows, objects of cells; a column `a.b` is `row.a.b` |
+//! | `md("experiment/file.md", n)` | the same of the table that comes n-th in a Markdown file, from 0 |
+//! | `json("experiment/file.json")`, `text(…)` | the value; the file as it is |
+//! | `record("experiment")`, `records(…)` | the manifest, with `id` and `place`; every machine's |
 //! | `rows \| where(column=value, …)`, `rows \| one(column=value, …)` | the rows with these cells; the only one, or an error |
 //! | `x \| fixed(2)`, `x \| sig(3)`, `n \| thousands`, `x \| percent(1)` | digits behind the point; digits that count; 12,345; 12.3 |
+//!
+//! `experiment` is that of the machine that `data/record/quoted.toml` names, `machine/experiment` that of any.
+
+use std::sync::Arc;
 
 use miette::Diagnostic;
 use minijinja::syntax::SyntaxConfig;
-use minijinja::value::{Kwargs, Rest, Serde};
+use minijinja::value::{Kwargs, Serde};
 use minijinja::{Environment, Error, ErrorKind, Value, context};
 use serde_json::Value as Json;
-use std::sync::Arc;
 
+use super::digits::{Quantities, markdown_table, significant, thousands};
 use super::store::Store;
 
-const OPEN: &str = "<!--=";
-const NAME: &str = "<!--:";
-const SHUT: &str = "-->";
-const END: &str = "<!--/-->";
+/// The comments of a kind of page.
+struct Markers {
+    open: &'static str,
+    name: &'static str,
+    shut: &'static str,
+    end: &'static str,
+}
+
+const MARKDOWN: Markers = Markers {
+    open: "<!--=",
+    name: "<!--:",
+    shut: "-->",
+    end: "<!--/-->",
+};
+const TYPST: Markers = Markers {
+    open: "/*=",
+    name: "/*:",
+    shut: "*/",
+    end: "/**/",
+};
+
+/// What every page of a repository is rendered from.
+#[derive(Clone, Debug)]
+pub struct Sources {
+    /// The records.
+    pub store: Arc<Store>,
+    /// Macros that pages share, a template.
+    pub macros: String,
+    /// Where recorded numbers stand.
+    pub quantities: Arc<Quantities>,
+}
 
 /// A page that can't be rendered.
 #[derive(Debug, thiserror::Error, Diagnostic)]
@@ -43,11 +76,19 @@ pub struct PageError {
 ///
 /// # Errors
 /// A marker without an end, an expression that has no value, a record that was changed.
-pub fn render(page: &str, text: &str, store: &Arc<Store>) -> Result<String, PageError> {
-    let mut environment = environment(store);
+pub fn render(page: &str, text: &str, sources: &Sources) -> Result<String, PageError> {
+    let typst = std::path::Path::new(page)
+        .extension()
+        .is_some_and(|ending| ending == "typ");
+    let markers = if typst { TYPST } else { MARKDOWN };
+    let mut environment = environment(page, sources).map_err(|error| PageError {
+        page: "macros".to_owned(),
+        line: error.line().unwrap_or(0),
+        problem: said(&error),
+    })?;
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
-    while let Some((start, marker)) = next(rest) {
+    while let Some((start, marker)) = markers.next(rest) {
         let line = 1 + text[..text.len() - rest.len() + start]
             .matches('\n')
             .count();
@@ -57,36 +98,49 @@ pub fn render(page: &str, text: &str, store: &Arc<Store>) -> Result<String, Page
             problem,
         };
         let from = start + marker.len();
-        let shut = rest[from..]
-            .find(SHUT)
-            .ok_or_else(|| failed(format!("`{marker}` without `{SHUT}`")))?;
-        let (source, behind) = (&rest[from..from + shut], from + shut + SHUT.len());
+        let Markers {
+            open, shut, end, ..
+        } = markers;
+        let length = rest[from..]
+            .find(shut)
+            .ok_or_else(|| failed(format!("`{marker}` without `{shut}`")))?;
+        let (source, behind) = (&rest[from..from + length], from + length + shut.len());
         out.push_str(&rest[..behind]);
         rest = &rest[behind..];
-        if marker == NAME {
+        if marker == markers.name {
             set(&mut environment, source).map_err(|error| failed(said(&error)))?;
             continue;
         }
-        let end = rest
-            .find(END)
-            .ok_or_else(|| failed(format!("`{OPEN}` without `{END}`")))?;
-        if next(&rest[..end]).is_some() {
-            return Err(failed(format!("`{OPEN}` without `{END}` before the next")));
+        let last = rest
+            .find(end)
+            .ok_or_else(|| failed(format!("`{open}` without `{end}`")))?;
+        if markers.next(&rest[..last]).is_some() {
+            return Err(failed(format!("`{open}` without `{end}` before the next")));
         }
-        out.push_str(&evaluate(&environment, source).map_err(|error| failed(said(&error)))?);
-        out.push_str(END);
-        rest = &rest[end + END.len()..];
+        let value = evaluate(&environment, source).map_err(|error| failed(said(&error)))?;
+        let begins_line = out[..out.len() - marker.len() - length - shut.len()].ends_with('\n');
+        if !typst && begins_line && !value.starts_with('\n') {
+            return Err(failed(
+                "a comment that begins a line ends the paragraph above: begin the line with a word"
+                    .to_owned(),
+            ));
+        }
+        out.push_str(&value);
+        out.push_str(end);
+        rest = &rest[last + end.len()..];
     }
     out.push_str(rest);
     Ok(out)
 }
 
-/// The next marker and which one it is.
-fn next(text: &str) -> Option<(usize, &'static str)> {
-    [OPEN, NAME]
-        .into_iter()
-        .filter_map(|marker| Some((text.find(marker)?, marker)))
-        .min()
+impl Markers {
+    /// The next marker and which one it is.
+    fn next(&self, text: &str) -> Option<(usize, &'static str)> {
+        [self.open, self.name]
+            .into_iter()
+            .filter_map(|marker| Some((text.find(marker)?, marker)))
+            .min()
+    }
 }
 
 fn set(environment: &mut Environment<'_>, source: &str) -> Result<(), Error> {
@@ -99,20 +153,25 @@ fn set(environment: &mut Environment<'_>, source: &str) -> Result<(), Error> {
     Ok(())
 }
 
+/// What an expression or a template gives, with the shared macros as `q`.
 fn evaluate(environment: &Environment<'_>, source: &str) -> Result<String, Error> {
+    // What a template begins with isn't the import's own line end.
+    const IMPORT: &str = "{% import 'macros' as q %}{{ '' }}";
     if source.contains("{%") || source.contains("{{") {
-        return environment.render_str(source, context! {});
+        return environment.render_str(&format!("{IMPORT}{source}"), context! {});
     }
-    let value = environment
-        .compile_expression(source.trim())?
-        .eval(context! {})?;
-    if value.is_undefined() || value.is_none() {
+    let (source, none) = (source.trim(), "\u{0}");
+    let text = environment.render_str(
+        &format!("{IMPORT}{{% set x = {source} %}}{{{{ '{none}' if x is none else x }}}}"),
+        context! {},
+    )?;
+    if text == none {
         return Err(Error::new(
             ErrorKind::UndefinedError,
-            format!("`{}` has no value", source.trim()),
+            format!("`{source}` has no value"),
         ));
     }
-    Ok(value.to_string())
+    Ok(text)
 }
 
 /// An error with its causes.
@@ -127,7 +186,7 @@ fn said(error: &Error) -> String {
     text
 }
 
-fn environment(store: &Arc<Store>) -> Environment<'static> {
+fn environment<'s>(page: &str, sources: &'s Sources) -> Result<Environment<'s>, Error> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
     // A block's tag takes no line of its own.
@@ -138,10 +197,41 @@ fn environment(store: &Arc<Store>) -> Environment<'static> {
         .build();
     debug_assert!(syntax.is_ok(), "the usual delimiters");
     environment.set_syntax(syntax.unwrap_or_default());
+    add_readers(&mut environment, &sources.store);
+    environment.add_filter("where", matching);
+    environment.add_filter("one", one);
+    // Formats, each noted with its number.
+    let format = |page: &str, text: fn(f64, usize) -> String| {
+        let (page, quantities) = (page.to_owned(), sources.quantities.clone());
+        move |x: f64, digits: Option<usize>| {
+            let text = text(x, digits.unwrap_or(0));
+            quantities.note(&page, x, &text);
+            text
+        }
+    };
+    environment.add_filter("fixed", format(page, |x, digits| format!("{x:.digits$}")));
+    environment.add_filter("sig", format(page, significant));
+    environment.add_filter("thousands", format(page, |x, _| thousands(x)));
+    environment.add_filter(
+        "percent",
+        format(page, |x, digits| format!("{:.digits$}", 100.0 * x)),
+    );
+    environment.add_template("macros", &sources.macros)?;
+    Ok(environment)
+}
+
+fn add_readers(environment: &mut Environment<'_>, store: &Arc<Store>) {
     let from = store.clone();
     environment.add_function("csv", move |path: &str| {
         let table = from.table(path).map_err(lost)?;
-        Ok::<_, Error>(Value::from(Serde(table.rows)))
+        let rows: Vec<Json> = table.rows.into_iter().map(nested).collect();
+        Ok::<_, Error>(Value::from(Serde(rows)))
+    });
+    let from = store.clone();
+    environment.add_function("md", move |path: &str, nth: Option<usize>| {
+        let text = from.text(path).map_err(lost)?;
+        let rows = markdown_table(&text, nth.unwrap_or(0));
+        Ok::<_, Error>(Value::from(Serde(rows)))
     });
     let from = store.clone();
     environment.add_function("json", move |path: &str| {
@@ -150,21 +240,41 @@ fn environment(store: &Arc<Store>) -> Environment<'static> {
             .map_err(lost)
     });
     let from = store.clone();
-    environment.add_function("record", move |name: &str| {
-        let manifest = from.manifest(name).map_err(lost)?;
-        let mut value = serde_json::to_value(&manifest).map_err(lost)?;
-        value["id"] = Json::from(manifest.id());
-        Ok::<_, Error>(Value::from(Serde(value)))
+    environment.add_function("text", move |path: &str| from.text(path).map_err(lost));
+    let from = store.clone();
+    environment.add_function("record", move |name: &str| described(&from, name));
+    let from = store.clone();
+    environment.add_function("records", move |experiment: &str| {
+        let names = from.names();
+        let of = names.iter().filter(|name| {
+            name.split_once('/')
+                .is_some_and(|(_, own)| own == experiment)
+        });
+        of.map(|name| described(&from, name))
+            .collect::<Result<Vec<_>, _>>()
     });
-    environment.add_filter("where", matching);
-    environment.add_filter("one", one);
-    environment.add_filter("fixed", |x: f64, digits: usize| format!("{x:.digits$}"));
-    environment.add_filter("sig", significant);
-    environment.add_filter("thousands", thousands);
-    environment.add_filter("percent", |x: f64, digits: usize| {
-        format!("{:.digits$}", 100.0 * x)
-    });
-    environment
+}
+
+/// A manifest with its identifier and its place.
+fn described(store: &Store, name: &str) -> Result<Value, Error> {
+    let manifest = store.manifest(name).map_err(lost)?;
+    let mut value = serde_json::to_value(&manifest).map_err(lost)?;
+    value["id"] = Json::from(manifest.id());
+    value["place"] = Json::from(store.place(name));
+    Ok(Value::from(Serde(value)))
+}
+
+/// A row whose columns `a.b` are objects in objects.
+fn nested(row: serde_json::Map<String, Json>) -> Json {
+    let mut root = Json::Object(serde_json::Map::new());
+    for (column, cell) in row {
+        let mut place = &mut root;
+        for part in column.split('.') {
+            place = &mut place[part];
+        }
+        *place = cell;
+    }
+    root
 }
 
 fn lost(error: impl std::fmt::Display) -> Error {
@@ -180,7 +290,7 @@ fn matching(rows: Value, cells: Kwargs) -> Result<Vec<Value>, Error> {
     let names: Vec<&str> = cells.args().collect();
     let mut wanted = Vec::new();
     for name in names {
-        wanted.push((name.replace("__", "."), cells.get::<Value>(name)?));
+        wanted.push((name, cells.get::<Value>(name)?));
     }
     let mut found = Vec::new();
     for row in rows.try_iter()? {
@@ -204,41 +314,13 @@ fn one(rows: Value, cells: Kwargs) -> Result<Value, Error> {
     }
 }
 
-/// So many digits that count, without an exponent.
-fn significant(x: f64, digits: usize) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return x.to_string();
-    }
-    let magnitude = x.abs().log10().floor() as i64;
-    let behind = digits as i64 - 1 - magnitude;
-    let text = format!("{x:.*}", usize::try_from(behind).unwrap_or(0));
-    // 9.996 to three digits is 10.00: one digit too many behind the point.
-    let rounded: f64 = text.parse().unwrap_or(x);
-    if rounded.abs().log10().floor() as i64 > magnitude && behind > 0 {
-        return format!("{x:.*}", usize::try_from(behind - 1).unwrap_or(0));
-    }
-    text
-}
-
-fn thousands(x: f64, _: Rest<Value>) -> String {
-    let digits = format!("{:.0}", x.abs());
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    if x < 0.0 { format!("-{text}") } else { text }
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::super::{FILE, Manifest};
     use super::*;
 
-    fn store() -> (tempfile::TempDir, Arc<Store>) {
+    fn sources() -> (tempfile::TempDir, Sources) {
         let root = tempfile::tempdir().unwrap();
         let record = root.path().join("box/kernels");
         std::fs::create_dir_all(&record).unwrap();
@@ -250,27 +332,54 @@ mod tests {
         let manifest =
             Manifest::describe(&record, "kernels", "sdop bench".to_owned(), &[]).unwrap();
         std::fs::write(record.join(FILE), manifest.text()).unwrap();
-        let store = Arc::new(Store::new(root.path()));
-        (root, store)
+        let sources = Sources {
+            store: Arc::new(Store::new(root.path()).unwrap()),
+            macros: "{% macro us(row) %}{{ row.us.mean | fixed(1) }} µs{% endmacro %}".to_owned(),
+            quantities: Arc::default(),
+        };
+        (root, sources)
     }
 
     #[test]
     fn a_marker_gives_what_its_record_holds_and_the_rest_stays() {
-        let (_root, store) = store();
+        let (_root, sources) = sources();
         let page = "a 1\n<!--: t = csv(\"box/kernels/t.csv\") -->\n\
-                    <!--= (t | one(tier=\"avx2\"))[\"us.mean\"] | fixed(1) -->99.9<!--/--> µs, 2\n";
-        let rendered = render("page.md", page, &store).unwrap();
+                    It is <!--= (t | one(tier=\"avx2\")).us.mean | fixed(1) -->99.9<!--/--> µs, 2\n";
+        let rendered = render("page.md", page, &sources).unwrap();
         assert_eq!(rendered, page.replace("99.9", "62.1"));
-        assert_eq!(render("page.md", &rendered, &store).unwrap(), rendered);
-        assert_eq!(store.used().len(), 1);
+        assert_eq!(render("page.md", &rendered, &sources).unwrap(), rendered);
+        assert_eq!(sources.store.used().len(), 1);
+    }
+
+    #[test]
+    fn typst_has_markers_of_its_own_and_macros_are_shared() {
+        let (_root, sources) = sources();
+        let page = "/*: t = csv(\"box/kernels/t.csv\") */\n= Time\n/*= q.us(t | one(tier=\"avx2\")) */0 µs/**/ a frame\n";
+        let rendered = render("page.typ", page, &sources).unwrap();
+        assert_eq!(rendered, page.replace("0 µs", "62.1 µs"));
+    }
+
+    #[test]
+    fn two_roundings_of_one_number_are_noticed() {
+        let (_root, sources) = sources();
+        let number = "(csv(\"box/kernels/t.csv\") | one(tier=\"scalar\")).us.mean / 7";
+        for (page, digits) in [("a.md", 1), ("b.md", 2)] {
+            render(
+                page,
+                &format!("x <!--= ({number}) | fixed({digits}) --><!--/-->"),
+                &sources,
+            )
+            .unwrap();
+        }
+        assert_eq!(sources.quantities.given_differently().len(), 1);
     }
 
     #[test]
     fn a_template_makes_a_table() {
-        let (_root, store) = store();
-        let page = "<!--=\n{% for row in csv(\"box/kernels/t.csv\") %}\n| {{ row.tier }} | {{ row[\"us.mean\"] | sig(3) }} |\n\
+        let (_root, sources) = sources();
+        let page = "<!--=\n{% for row in csv(\"box/kernels/t.csv\") %}\n| {{ row.tier }} | {{ row.us.mean | sig(3) }} |\n\
                     {% endfor %}\n--><!--/-->";
-        let rendered = render("page.md", page, &store).unwrap();
+        let rendered = render("page.md", page, &sources).unwrap();
         assert!(
             rendered.ends_with("| scalar | 301 |\n| avx2 | 62.1 |\n<!--/-->"),
             "{rendered}"
@@ -279,7 +388,7 @@ mod tests {
 
     #[test]
     fn what_has_no_value_is_an_error_with_its_line() {
-        let (_root, store) = store();
+        let (_root, sources) = sources();
         for (marker, said) in [
             (
                 "<!--= (csv(\"box/kernels/t.csv\") | one(tier=\"neon\")).k -->1<!--/-->",
@@ -289,8 +398,9 @@ mod tests {
             ("<!--= 1 -->1", "without `<!--/-->`"),
             ("<!--= 1", "without `-->`"),
             ("<!--= nothing -->1<!--/-->", "undefined"),
+            ("<!--= 1 -->1<!--/-->", "ends the paragraph"),
         ] {
-            let error = render("page.md", &format!("x\n\n{marker}"), &store)
+            let error = render("page.md", &format!("x\n\n{marker}"), &sources)
                 .unwrap_err()
                 .to_string();
             assert!(
@@ -298,20 +408,5 @@ mod tests {
                 "{error}"
             );
         }
-    }
-
-    #[test]
-    fn digits_that_count() {
-        for (x, digits, text) in [
-            (9.996, 3, "10.0"),
-            (0.012_349, 3, "0.0123"),
-            (1441.0, 3, "1441"),
-            (2.16, 3, "2.16"),
-            (0.0, 3, "0"),
-        ] {
-            assert_eq!(significant(x, digits), text);
-        }
-        assert_eq!(thousands(1_234_567.0, Rest(vec![])), "1,234,567");
-        assert_eq!(thousands(-999.0, Rest(vec![])), "-999");
     }
 }

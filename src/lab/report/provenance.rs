@@ -46,6 +46,33 @@ impl Code {
         })
     }
 
+    /// Copies a directory as a commit has it.
+    ///
+    /// # Errors
+    /// No repository at `place`, no such commit or directory, or files that can't be written.
+    pub fn extract(place: &Path, commit: &str, directory: &str, to: &Path) -> std::io::Result<()> {
+        let tree = format!("{commit}:{}", directory.trim_end_matches('/'));
+        let names = git(place, &["ls-tree", "-r", "--name-only", &tree])
+            .filter(|names| !names.is_empty())
+            .ok_or_else(|| refused(&tree))?;
+        for name in names.lines() {
+            let file = format!("{tree}/{name}");
+            let output = Command::new("git")
+                .current_dir(place)
+                .args(["show", &file])
+                .output()?;
+            if !output.status.success() {
+                return Err(refused(&file));
+            }
+            let target = to.join(name);
+            if let Some(above) = target.parent() {
+                std::fs::create_dir_all(above)?;
+            }
+            crate::files::write(&target, output.stdout)?;
+        }
+        Ok(())
+    }
+
     /// The commit that last touched a path, and its day.
     #[must_use]
     pub fn last_touching(place: &Path, path: &Path) -> Option<(String, String)> {
@@ -54,6 +81,11 @@ impl Code {
         let (commit, day) = line.split_once(' ')?;
         Some((commit.to_owned(), day.to_owned()))
     }
+}
+
+/// Text that git doesn't give.
+fn refused(what: &str) -> std::io::Error {
+    std::io::Error::new(std::io::ErrorKind::NotFound, format!("git has no {what}"))
 }
 
 /// The output of a git command that succeeds.

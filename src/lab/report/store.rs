@@ -1,18 +1,37 @@
 //! All records of the repository, read and checked once each.
+//!
+//! A path is `machine/experiment/file`, or `experiment/file`: then it is the machine's that `quoted.toml` names, so that every page quotes
+//! the same record of an experiment.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use serde::Deserialize;
 use serde_json::Value;
 
 use super::manifest::{FILE, Manifest, ManifestError};
 use super::table::{Table, TableError};
 
+/// The file that says which machine's record a page quotes.
+const QUOTED: &str = "quoted.toml";
+
+/// Whose record of an experiment is quoted.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Quoted {
+    /// The machine, where nothing else is said.
+    machine: String,
+    /// Another machine, by experiment.
+    #[serde(default)]
+    experiments: BTreeMap<String, String>,
+}
+
 /// Records below one directory.
 #[derive(Debug)]
 pub struct Store {
     root: PathBuf,
+    quoted: Option<Quoted>,
     manifests: Mutex<BTreeMap<String, Manifest>>,
 }
 
@@ -27,9 +46,9 @@ pub enum StoreError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Table(#[from] TableError),
-    /// One of its JSON files can't be read.
+    /// One of its other files can't be read.
     #[error("{}: {problem}", path.display())]
-    Json {
+    File {
         /// The file.
         path: PathBuf,
         /// What is wrong.
@@ -39,12 +58,47 @@ pub enum StoreError {
 
 impl Store {
     /// The records below `root`, by tradition `data/record`.
-    #[must_use]
-    pub fn new(root: impl Into<PathBuf>) -> Self {
-        Self {
-            root: root.into(),
+    ///
+    /// # Errors
+    /// `quoted.toml` is there and can't be read.
+    pub fn new(root: impl Into<PathBuf>) -> Result<Self, StoreError> {
+        let root = root.into();
+        let path = root.join(QUOTED);
+        let failed = |problem: String| StoreError::File {
+            path: path.clone(),
+            problem,
+        };
+        let quoted = if path.is_file() {
+            let text = std::fs::read_to_string(&path).map_err(|error| failed(error.to_string()))?;
+            Some(toml::from_str(&text).map_err(|error| failed(error.to_string()))?)
+        } else {
+            None
+        };
+        Ok(Self {
+            root,
+            quoted,
             manifests: Mutex::default(),
-        }
+        })
+    }
+
+    /// The full path of a record or of its file: with the machine that is quoted, where `path` names none.
+    #[must_use]
+    pub fn place(&self, path: &str) -> String {
+        let first = path.split('/').next().unwrap_or(path);
+        let Some(quoted) = self
+            .quoted
+            .as_ref()
+            .filter(|_| !self.root.join(first).is_dir())
+        else {
+            return path.to_owned();
+        };
+        let belongs = |name: &String| {
+            path.strip_prefix(name.as_str())
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        };
+        let named = quoted.experiments.iter().rfind(|(name, _)| belongs(name));
+        let machine = named.map_or(&quoted.machine, |(_, machine)| machine);
+        format!("{machine}/{path}")
     }
 
     /// Every record's name, as in `machine/experiment`, sorted.
@@ -65,11 +119,12 @@ impl Store {
             .manifests
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        if let Some(manifest) = known.get(record) {
+        let record = self.place(record);
+        if let Some(manifest) = known.get(&record) {
             return Ok(manifest.clone());
         }
-        let manifest = Manifest::read(&self.root.join(record))?;
-        known.insert(record.to_owned(), manifest.clone());
+        let manifest = Manifest::read(&self.root.join(&record))?;
+        known.insert(record, manifest.clone());
         Ok(manifest)
     }
 
@@ -96,20 +151,38 @@ impl Store {
     /// # Errors
     /// The record or the file can't be read.
     pub fn json(&self, path: &str) -> Result<Value, StoreError> {
+        let text = self.text(path)?;
+        serde_json::from_str(&text).map_err(|error| StoreError::File {
+            path: self.root.join(self.place(path)),
+            problem: error.to_string(),
+        })
+    }
+
+    /// A text file, by `machine/experiment/file`.
+    ///
+    /// # Errors
+    /// The record or the file can't be read.
+    pub fn text(&self, path: &str) -> Result<String, StoreError> {
         let path = self.checked(path)?;
-        let failed = |problem: String| StoreError::Json {
-            path: path.clone(),
-            problem,
-        };
-        let text = std::fs::read_to_string(&path).map_err(|error| failed(error.to_string()))?;
-        serde_json::from_str(&text).map_err(|error| failed(error.to_string()))
+        std::fs::read_to_string(&path).map_err(|error| StoreError::File {
+            path,
+            problem: error.to_string(),
+        })
     }
 
     /// The path of a record's file, once the record is known to be whole.
     fn checked(&self, path: &str) -> Result<PathBuf, StoreError> {
-        let (record, _) = path.rsplit_once('/').unwrap_or(("", path));
+        let path = self.place(path);
+        // A record may have directories of its own.
+        let mut record = path.as_str();
+        while let Some((above, _)) = record.rsplit_once('/') {
+            record = above;
+            if self.root.join(record).join(FILE).is_file() {
+                break;
+            }
+        }
         self.manifest(record)?;
-        Ok(self.root.join(path))
+        Ok(self.root.join(&path))
     }
 }
 
