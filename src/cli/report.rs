@@ -11,11 +11,12 @@ use super::files::write;
 use super::output::{print, rows};
 
 /// Pages whose numbers come from records.
-const PAGES: [&str; 12] = [
+const PAGES: [&str; 13] = [
     "README.md",
     "ARCHITECTURE.md",
     "benches/README.md",
     "benches/peers/BIAS.md",
+    "benches/peers/VERDICTS.md",
     "examples/rapier/ENGINES.md",
     "tests/README.md",
     "paper/guide.md",

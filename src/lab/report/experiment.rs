@@ -114,6 +114,11 @@ pub const EXPERIMENTS: &[Experiment] = &[
         scenes: PAPER_500,
     },
     peers(
+        "peers/verdicts",
+        "every engine judged by the cases of its claim",
+        &[Step::Peers(&["verdicts"])],
+    ),
+    peers(
         "peers/uniform",
         "every engine on uniform boxes, to ten thousand",
         &[Step::Peers(&[
