@@ -30,6 +30,10 @@ export class Charts {
   ) {}
 
   add(chart: Chart): void {
+    if (chart.courses.length === 1 && chart.courses[0].values.every((x) => x === chart.courses[0].values[0])) {
+      this.addConstant(chart);
+      return;
+    }
     const figure = document.createElement("figure");
     figure.className = "chart";
     const caption = document.createElement("figcaption");
@@ -60,6 +64,14 @@ export class Charts {
     const draw = () => paint(canvas, sums, most, chart.stacked === true);
     this.draws.push(draw);
     new ResizeObserver(draw).observe(canvas);
+  }
+
+  /** What never changes is a line of text. */
+  private addConstant({ title, unit, courses: [{ name, values }] }: Chart): void {
+    const text = document.createElement("p");
+    text.className = "constant";
+    text.textContent = `${title}: ${number.format(values[0])}${unit} ${name} in every frame`;
+    this.element.append(text);
   }
 
   /** Moves the line to a frame. */

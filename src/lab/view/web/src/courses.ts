@@ -1,6 +1,7 @@
 // Which numbers the charts show.
 
 import { type Chart, Charts } from "./charts.ts";
+import { TERMS } from "./panel.ts";
 import type { Counts, Run } from "./run.ts";
 
 /** Builds the charts of a run. A second strategy's courses are dashed. */
@@ -30,17 +31,12 @@ export function buildCharts(run: Run, element: HTMLElement, seek: (frame: number
   chart("Nv", "", [["tests", "--accent", (c) => c.nv]]);
   counts.forEach((list, side) => {
     if (list.some((c) => c.terms === null)) return;
-    const term = (at: 0 | 1 | 2) => Float64Array.from(list, (c) => 1e6 * c.terms![at]);
     const title = counts.length > 1 ? `T, ${run.header.runs[side].name}` : "T";
     charts.add({
       title,
       unit: " µs",
       stacked: true,
-      courses: [
-        { name: "Nu·Cu", colour: "--accent", values: term(0) },
-        { name: "F", colour: "--finding", values: term(1) },
-        { name: "Nv·Cv", colour: "--reported", values: term(2) },
-      ],
+      courses: TERMS.map((term, at) => ({ ...term, values: Float64Array.from(list, (c) => 1e6 * c.terms![at]) })),
     });
   });
   return charts;

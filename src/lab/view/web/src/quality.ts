@@ -9,7 +9,7 @@ export interface Quality {
 
 /** From the finest to the cheapest. Factors of sharpness apply to the screen's own pixels, at most two per CSS pixel. */
 const LADDER: Quality[] = [
-  { sharpness: 2, coarseness: 1 },
+  { sharpness: 2, coarseness: 0.4 },
   { sharpness: 1, coarseness: 1 },
   { sharpness: 1, coarseness: 2 },
   { sharpness: 0.7, coarseness: 2.5 },
@@ -24,7 +24,7 @@ const SMOOTH = 26;
 const WINDOW = 6;
 
 export class Pace {
-  private level = 0;
+  private level = 1;
   private times: number[] = [];
 
   /** What to draw with, now. Between pictures of one movement the time is measured. */

@@ -1,7 +1,6 @@
 // Colours that the colour-blind tell apart (Okabe & Ito 2008) on light and on dark ground.
 
 import { Color } from "three";
-import { State } from "./run.ts";
 
 export interface Theme {
   dark: boolean;
@@ -17,14 +16,6 @@ export interface Theme {
   volumes: Color;
   cells: Color;
 }
-
-export const STATE_NAMES: Record<State, string> = {
-  [State.Idle]: "no pair",
-  [State.Spheres]: "spheres overlap",
-  [State.Reported]: "reported",
-  [State.Meets]: "truly meets",
-  [State.Missed]: "missed",
-};
 
 const hex = (text: string): Color => new Color(text);
 
@@ -46,7 +37,7 @@ const DARK: Theme = {
   background: hex("#12151a"),
   moving: hex("#6b7580"),
   fixed: hex("#454d57"),
-  walls: hex("#5a636e"),
+  walls: hex("#78828e"),
   picked: hex("#ffffff"),
   states: ["#6b7580", "#6b7580", "#e69f00", "#45a5e6", "#ff5a1f"].map(hex),
   spheres: hex("#6d7681"),

@@ -305,6 +305,7 @@ export class Viewer {
     if (address.frame !== null) this.player.seek(this.run.indexOf(address.frame));
     if (address.origin && this.stage) this.stage.space.origin = address.origin as [number, number, number];
     if (address.camera && this.stage) this.stage.camera.state = address.camera;
+    else this.stage?.camera.home();
     if (address.switches) Object.assign(this.switches, address.switches);
     this.picked = address.picked !== null && address.picked < this.run.header.bodies ? address.picked : null;
     if (this.run.header.runs.length > 1 && address.sides) this.sides = address.sides;

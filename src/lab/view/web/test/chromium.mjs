@@ -100,7 +100,7 @@ export class Tab {
   /** Presses a key; `text` only where it types something. */
   async key(key, { code = key, shift = false } = {}) {
     const modifiers = shift ? 8 : 0;
-    const text = key.length === 1 ? key : undefined;
+    const text = key === "Enter" ? "\r" : key.length === 1 ? key : undefined;
     const virtual = { " ": 32, Enter: 13, Escape: 27, Tab: 9, ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40 };
     const windowsVirtualKeyCode = virtual[key];
     await this.client.Input.dispatchKeyEvent({ type: "keyDown", key, code, text, modifiers, windowsVirtualKeyCode });
