@@ -320,7 +320,7 @@ mod tests {
         let mut random = Stream::new(7, 0);
         let mut bodies = Bodies::default();
         for body in 0..300 {
-            let at = [(); 3].map(|()| random.between(-10.0, 10.0));
+            let at = [(); 3].map(|()| random.between(-4.0, 4.0));
             let shape = if body == 150 { 2 } else { body % 2 };
             bodies.push(shape, body % 3 > 0, [0.0, 0.0, 0.0, 1.0], at);
         }

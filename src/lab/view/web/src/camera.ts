@@ -58,6 +58,11 @@ export class Camera {
     this.rest[1].copy(target);
   }
 
+  /** From the point looked at to the camera. */
+  get back(): Vector3 {
+    return this.lens.position.clone().sub(this.controls.target);
+  }
+
   /** Whether the camera is where `home` took it. */
   private get atHome(): boolean {
     const near = (a: Vector3, b: Vector3) => a.distanceTo(b) < EXTENT / 1e5;
@@ -86,7 +91,7 @@ export class Camera {
 
   /** Flies to a ball; jumps where the person wants less motion. */
   flyTo(centre: Vector3, radius: number): void {
-    const away = this.lens.position.clone().sub(this.controls.target).normalize();
+    const away = this.back.normalize();
     const target = centre.clone();
     const position = target.clone().addScaledVector(away, this.distanceFor(Math.max(2.2 * radius, EXTENT / 200)));
     if (reducedMotion()) {
@@ -113,7 +118,7 @@ export class Camera {
 
   /** Turns by these angles, in radians. */
   orbit(right: number, up: number): void {
-    const offset = this.lens.position.clone().sub(this.controls.target);
+    const offset = this.back;
     const radius = offset.length();
     const polar = Math.acos(Math.max(-1, Math.min(1, offset.y / radius)));
     const azimuth = Math.atan2(offset.x, offset.z) + right;
@@ -134,7 +139,7 @@ export class Camera {
 
   /** Nearer below 1, farther above. */
   zoom(factor: number): void {
-    const offset = this.lens.position.clone().sub(this.controls.target).multiplyScalar(factor);
+    const offset = this.back.multiplyScalar(factor);
     this.lens.position.copy(this.controls.target).add(offset);
     this.controls.update();
   }

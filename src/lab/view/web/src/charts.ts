@@ -27,6 +27,8 @@ export class Charts {
     private readonly element: HTMLElement,
     private readonly frames: number,
     private readonly seek: (frame: number) => void,
+    /** Whose courses are dashed. */
+    private readonly second: string | null,
   ) {}
 
   add(chart: Chart): void {
@@ -38,13 +40,15 @@ export class Charts {
     figure.className = "chart";
     const caption = document.createElement("figcaption");
     caption.append(`${chart.title}:`);
-    for (const course of chart.courses) {
+    for (const course of chart.courses.filter(({ dashed }) => !dashed)) {
       const entry = document.createElement("span");
       const mark = document.createElement("i");
       mark.style.background = `var(${course.colour})`;
       entry.append(mark, course.name);
       caption.append(entry);
     }
+    const dashed = chart.courses.some((course) => course.dashed) && this.second;
+    if (dashed) caption.append(`(dashed: ${dashed})`);
     const field = document.createElement("div");
     const canvas = document.createElement("canvas");
     const cursor = document.createElement("b");
@@ -54,7 +58,8 @@ export class Charts {
     const most = Math.max(0, ...sums.map((course) => maximum(course.values)));
     top.textContent = `${number.format(most)}${chart.unit}`;
     canvas.setAttribute("role", "img");
-    const ranges = chart.courses.map((c) => `${c.name} at most ${number.format(maximum(c.values))}${chart.unit}`);
+    const whose = ({ name, dashed }: Course) => (dashed ? `${name} of ${this.second}` : name);
+    const ranges = chart.courses.map((c) => `${whose(c)} at most ${number.format(maximum(c.values))}${chart.unit}`);
     canvas.setAttribute("aria-label", `${chart.title} over the frames: ${ranges.join(", ")}`);
     field.append(canvas, top, cursor);
     figure.append(caption, field);

@@ -9,7 +9,7 @@ const ROWS = 60;
 /** Cells of the table, whose ids tests read. */
 const CELLS = ["nu", "nv", "hits", "reported", "true", "t"] as const;
 
-const LAYER_NAMES: Record<Layer, string> = {
+export const LAYER_NAMES: Record<Layer, string> = {
   spheres: "spheres",
   ordops: "or-DOPs",
   boxes: "world boxes",
@@ -90,6 +90,10 @@ export class Panel {
       }
     });
     element("numbers-head").append(head);
+    const { meet } = this.run.header;
+    const row = element("row-true");
+    row.querySelector("th")!.title = `Pairs whose ${meet} meet, in exact arithmetic`;
+    if (meet !== "meshes") row.querySelector("small")!.textContent = `pairs of ${meet} meet`;
   }
 
   private buildSwitches(): void {

@@ -57,9 +57,12 @@ export class Surface extends ShaderMaterial {
     });
   }
 
-  /** Light for the theme, from above the eye; bodies far behind the middle of the box fade, which shows depth. */
-  light(theme: Theme, eye: Vector3): void {
-    this.uniforms.sun.value.copy(eye).normalize().add(UP).normalize();
+  /**
+   * Light for the theme, from above the eye; what is far behind the point looked at fades, which shows depth. `back` leads
+   * from that point to the eye.
+   */
+  light(theme: Theme, back: Vector3): void {
+    this.uniforms.sun.value.copy(back).normalize().add(UP).normalize();
     this.uniforms.sky.value = theme.dark ? 0.4 : 0.6;
     this.uniforms.ground.value = theme.dark ? 0.08 : 0.26;
     this.uniforms.glare.value = theme.dark ? 0.85 : 0.75;
@@ -67,7 +70,8 @@ export class Surface extends ShaderMaterial {
     // A little light ground shows at once, a little dark ground doesn't.
     this.uniforms.hazeMost.value = theme.dark ? 0.9 : 0.62;
     const [start, depth] = theme.dark ? [1.4, 2] : [0.8, 2.4];
-    this.uniforms.hazeFrom.value.set(eye.length() - start * EXTENT, 1 / (depth * EXTENT));
+    const distance = back.length();
+    this.uniforms.hazeFrom.value.set(distance - start * Math.min(EXTENT, distance / 3), 1 / (depth * EXTENT));
   }
 }
 

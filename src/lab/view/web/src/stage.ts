@@ -2,6 +2,8 @@
 
 import {
   Color,
+  DoubleSide,
+  FrontSide,
   Raycaster,
   Scene,
   Vector2,
@@ -69,6 +71,8 @@ export class Stage {
     this.resize(shown.sides.length, quality.sharpness);
     const colours = theme();
     this.dress(colours);
+    // Decimated meshes have slits, through which the inside is better than nothing; pictures in a hurry do without.
+    this.bodies.surface.side = shown.moving ? FrontSide : DoubleSide;
     this.bodies.place(shown.frame);
     const { width, height } = this.canvas.getBoundingClientRect();
     const part = width / shown.sides.length;
@@ -109,7 +113,7 @@ export class Stage {
       if (this.isAway(body, picked)) return null;
       return this.states[body] >= State.Reported ? colours.states[this.states[body]] : colours.volumes;
     };
-    const moment: Moment = { frame, run: side, switches, picked, theme: colours, colour: overlay };
+    const moment: Moment = { frame, run: side, switches, picked, theme: colours, colour: overlay, eye: this.camera.lens.position };
     this.overlays.update(moment, this.marks(picked, colours));
   }
 
@@ -145,7 +149,7 @@ export class Stage {
 
   private dress(colours: Theme): void {
     this.renderer.setClearColor(colours.background);
-    this.bodies.surface.light(colours, this.camera.lens.position);
+    this.bodies.surface.light(colours, this.camera.back);
     this.walls.begin();
     const { side } = this.run.header;
     if (side) {

@@ -5,7 +5,7 @@ import { buildCharts } from "./courses.ts";
 import type { Charts } from "./charts.ts";
 import { type Key, listen } from "./keys.ts";
 import { LAYERS, type Layer, type Switches } from "./overlays.ts";
-import { element, Panel } from "./panel.ts";
+import { element, LAYER_NAMES, Panel } from "./panel.ts";
 import { Player, SPEEDS } from "./player.ts";
 import type { Run } from "./run.ts";
 import { Stage } from "./stage.ts";
@@ -57,6 +57,7 @@ export class Viewer {
     } catch {
       explain("No picture: this browser has no WebGL.", "The numbers, charts and lists work all the same.");
     }
+    for (const layer of LAYERS) this.switches[layer] = run.header.layers.includes(layer);
     this.connect();
     this.readAddress();
     window.addEventListener("hashchange", () => this.readAddress());
@@ -136,7 +137,7 @@ export class Viewer {
       this.keepAddress();
     };
     const layers = LAYERS.map((layer, at): Key => {
-      return { keys: [String(at + 1)], label: String(at + 1), does: `${layer} on or off`, act: () => this.toggle(layer) };
+      return { keys: [String(at + 1)], label: String(at + 1), does: `${LAYER_NAMES[layer]} on or off`, act: () => this.toggle(layer) };
     });
     return [
       { keys: [" ", "k"], label: "space", does: "play or pause", act: () => this.togglePlaying() },
