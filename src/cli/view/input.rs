@@ -38,9 +38,12 @@ pub fn read(
 ) -> miette::Result<Input> {
     let path = args.path();
     if is_record(path)? {
-        if answers.is_some() || is_judged(path) {
+        let claim = claim(path);
+        if answers.is_some() || claim.is_some() {
             refuse(args, run, "its poses are given")?;
-            return judged(path, answers).map(|show| Input::Show(Box::new(show), None));
+            // A record is about the meshes.
+            let show = judged(path, claim.unwrap_or(Claim::Mesh), answers)?;
+            return Ok(Input::Show(Box::new(show), None));
         }
         return record(args, run);
     }
@@ -94,29 +97,22 @@ fn is_case(path: &Path) -> bool {
     table.is_some_and(|table| table.contains_key("recipe"))
 }
 
-/// Whether a record's first line says which claims it is about: a case of the judge.
-fn is_judged(path: &Path) -> bool {
+/// The claim that a case of the judge is about: the first of those in its first line. Records have none.
+fn claim(path: &Path) -> Option<Claim> {
     #[derive(serde::Deserialize)]
     struct Mark {
         claims: Option<Vec<Claim>>,
     }
     let mut line = Vec::new();
-    let read = File::open(path).and_then(|file| BufReader::new(file).read_until(b'\n', &mut line));
-    let mark = read
-        .ok()
-        .and_then(|_| serde_json::from_slice::<Mark>(&line).ok());
-    mark.is_some_and(|mark| mark.claims.is_some())
+    let mut file = BufReader::new(File::open(path).ok()?);
+    file.read_until(b'\n', &mut line).ok()?;
+    let mark: Mark = serde_json::from_slice(&line).ok()?;
+    mark.claims?.first().copied()
 }
 
 /// A case with the pairs that its file has or that `answers` has.
-fn judged(path: &Path, answers: Option<&Path>) -> miette::Result<Show> {
+fn judged(path: &Path, claim: Claim, answers: Option<&Path>) -> miette::Result<Show> {
     let Read { case, pairs } = read_case(path)?;
-    // A record is about all claims: it is the meshes that count.
-    let claim = if case.claims == Claim::ALL {
-        Claim::Mesh
-    } else {
-        case.claims[0]
-    };
     let given = match answers {
         None => {
             let answer = |pairs: Option<Vec<_>>| pairs.map(|pairs| Answer { pairs, ns: None });

@@ -200,7 +200,6 @@ impl Show {
                 meets: Some(truth.pairs(frame).map_err(|error| error.to_string())?),
             });
         }
-        let about = [&case.flag, &case.source].into_iter();
         Ok(Self {
             source: file_name(source),
             header,
@@ -208,7 +207,7 @@ impl Show {
             bodies,
             frames,
             claim,
-            messages: about.filter(|text| !text.is_empty()).cloned().collect(),
+            messages: Vec::from_iter((!case.flag.is_empty()).then(|| case.flag.clone())),
         })
     }
 

@@ -20,8 +20,16 @@ export class Camera {
   /** Position and target that `home` took last. */
   private readonly rest: [Vector3, Vector3] = [new Vector3(), new Vector3()];
 
-  /** `changed` is called whenever the picture must be drawn again, `moved` when a movement by hand has ended. */
-  constructor(element: HTMLElement, changed: () => void, moved: () => void) {
+  /**
+   * `headroom` is the part of the view's height that titles take. `changed` is called whenever the picture must be drawn again, `moved` when a
+   * movement by hand has ended.
+   */
+  constructor(
+    element: HTMLElement,
+    private readonly headroom: number,
+    changed: () => void,
+    moved: () => void,
+  ) {
     this.controls = new OrbitControls(this.lens, element);
     this.controls.minDistance = EXTENT / 500;
     this.controls.maxDistance = 200 * EXTENT;
@@ -38,12 +46,13 @@ export class Camera {
     this.flight = null;
     const right = new Vector3(0, 1, 0).cross(HOME).normalize();
     const up = HOME.clone().cross(right);
-    const rise = FILLED * Math.tan((this.lens.fov * Math.PI) / 360);
+    const slope = Math.tan((this.lens.fov * Math.PI) / 360);
+    const [across, rise] = [FILLED * slope * this.lens.aspect, FILLED * slope * (1 - this.headroom)];
     const [target, position] = [new Vector3(), new Vector3()];
     // What is near looks larger, so the box isn't in the middle of the view when the camera looks at its centre.
     for (let turn = 0; turn < 8; turn++) {
       const seen = CORNERS.map((corner) => corner.clone().sub(target));
-      const need = (c: Vector3) => c.dot(HOME) + Math.max(Math.abs(c.dot(right)) / (rise * this.lens.aspect), Math.abs(c.dot(up)) / rise);
+      const need = (c: Vector3) => c.dot(HOME) + Math.max(Math.abs(c.dot(right)) / across, Math.abs(c.dot(up)) / rise);
       const distance = Math.max(...seen.map(need));
       position.copy(target).addScaledVector(HOME, distance);
       for (const axis of [right, up]) {
@@ -51,8 +60,10 @@ export class Camera {
         target.addScaledVector(axis, ((Math.min(...slopes) + Math.max(...slopes)) / 2) * distance);
       }
     }
+    const under = up.multiplyScalar(this.headroom * slope * position.distanceTo(target));
+    target.add(under);
     this.controls.target.copy(target);
-    this.lens.position.copy(position);
+    this.lens.position.copy(position.add(under));
     this.controls.update();
     this.rest[0].copy(this.lens.position);
     this.rest[1].copy(target);

@@ -68,7 +68,8 @@ export class Panel {
     const { header } = run;
     element("scene").textContent = header.scene;
     const fixed = header.bodies - header.moving;
-    const size = `${grouped.format(header.bodies)} bodies, ${grouped.format(fixed)} of them at rest, ${grouped.format(header.frames)} frames`;
+    const atRest = fixed > 0 && header.frames > 1 ? [`${grouped.format(fixed)} of them at rest`] : [];
+    const size = [counted(header.bodies, "bodies", "body"), ...atRest, counted(header.frames, "frames", "frame")].join(", ");
     element("source").textContent = [size, header.seed && `seed ${header.seed}`, header.source].filter(Boolean).join("; ");
     document.title = `${header.scene} – sdop view`;
     element("last").textContent = String(run.numbers[run.frames - 1]);
@@ -217,8 +218,6 @@ export class Panel {
     });
     element("caption").textContent = this.caption(frame, sides[0]);
     this.showLegend(frame, sides);
-    this.showTerms(this.run.counts(frame, sides[0]), sides[0]);
-    this.showVolumes(frame, sides[0]);
   }
 
   private caption(frame: number, side: number): string {
@@ -270,8 +269,10 @@ export class Panel {
     element("volumes").replaceChildren(...rows);
   }
 
-  /** The lists of a frame: slower, when the frame stays. */
-  showPairs(frame: number, side: number, picked: number | null): void {
+  /** What of a frame takes longer to show, for when it stays: terms, volumes, pairs. */
+  showLists(frame: number, side: number, picked: number | null): void {
+    this.showTerms(this.run.counts(frame, side), side);
+    this.showVolumes(frame, side);
     const shown: [State, Pair][] = [];
     for (const pair of this.run.pairsAt(frame)) {
       const state = this.run.state(pair.flags, side);
@@ -313,4 +314,5 @@ export class Panel {
   }
 }
 
+const counted = (n: number, many: string, one: string): string => `${grouped.format(n)} ${n === 1 ? one : many}`;
 const optional = (value: number | null): string => (value === null ? "–" : grouped.format(value));

@@ -20,7 +20,10 @@ const LADDER: Quality[] = [
 /** The longest mean time between pictures that is smooth enough, in milliseconds. */
 const SMOOTH = 26;
 
-/** Pictures in a mean. */
+/** What nobody waits a whole window for, in milliseconds. */
+const FAR_TOO_LONG = 4 * SMOOTH;
+
+/** Times in a mean. */
 const WINDOW = 6;
 
 export class Pace {
@@ -34,8 +37,10 @@ export class Pace {
       return scaled(LADDER[0]);
     }
     this.times.push(now);
-    if (this.times.length > WINDOW) {
-      const mean = (now - this.times[0]) / WINDOW;
+    const gaps = this.times.length - 1;
+    const slow = gaps >= 2 && now - this.times[gaps - 2] > 2 * FAR_TOO_LONG;
+    if (gaps === WINDOW || slow) {
+      const mean = (now - this.times[0]) / gaps;
       // One step per doubling of the time.
       const steps = Math.ceil(Math.log2(mean / SMOOTH));
       if (steps > 0) this.level = Math.min(LADDER.length - 1, this.level + steps);

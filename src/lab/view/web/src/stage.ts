@@ -31,6 +31,9 @@ export interface Shown {
   moving: boolean;
 }
 
+/** The part of the picture's height under the strategies' names. */
+const TITLES = 0.12;
+
 /** Half a period of the flashing of missed bodies, in milliseconds: slow enough for the photosensitive. */
 const FLASH = 350;
 
@@ -56,7 +59,7 @@ export class Stage {
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
     this.space = new Space(run);
-    this.camera = new Camera(canvas, changed, moved);
+    this.camera = new Camera(canvas, run.header.runs.length > 1 ? TITLES : 0, changed, moved);
     this.bodies = new Bodies(run, this.space);
     this.overlays = new Overlays(run, this.space, this.bodies);
     this.scene.add(this.bodies, this.overlays, this.walls);

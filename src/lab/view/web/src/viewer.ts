@@ -48,6 +48,8 @@ export class Viewer {
       sides: (sides) => this.setSides(sides),
       fly: (frame, bodies) => this.fly(frame, bodies),
     });
+    // One frame has no course.
+    element("charts").hidden = run.frames === 1;
     this.charts = buildCharts(run, element("charts"), (frame) => this.seek(frame));
     const changed = () => {
       this.dirty = true;
@@ -255,7 +257,7 @@ export class Viewer {
   }
 
   private showLists(): void {
-    this.panel.showPairs(this.player.at, this.shownSides()[0], this.picked);
+    this.panel.showLists(this.player.at, this.shownSides()[0], this.picked);
   }
 
   /** Called for every picture that the browser is about to show. */
