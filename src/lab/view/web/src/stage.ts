@@ -85,8 +85,8 @@ export class Stage {
       this.renderer.setViewport(place * part, 0, part, height);
       this.renderer.setScissor(place * part + (place > 0 ? 1 : 0), 0, part, height);
       this.judge(shown.frame, side, shown.picked);
-      const hidden = (body: number) => this.isAway(body, shown.picked);
-      this.bodies.arrange(this.camera.lens, height, quality.coarseness, hidden);
+      const covers = this.covering(shown.picked);
+      this.bodies.arrange(this.camera.lens, height, quality.coarseness, covers);
       this.paint(shown, side, colours, now);
       this.renderer.render(this.scene, this.camera.lens);
     });
@@ -107,6 +107,7 @@ export class Stage {
     const bright = colours.dark ? new Color("#ffffff") : new Color("#ffd9c9");
     const colour = (body: number): Color => {
       const state: State = this.states[body];
+      if (this.isAway(body, picked)) return colours.ghost;
       if (state === State.Missed) return this.phase === 1 ? bright : colours.states[state];
       if (state >= State.Reported) return colours.states[state];
       return this.run.fixed[body] ? colours.fixed : colours.moving;
@@ -118,6 +119,16 @@ export class Stage {
     };
     const moment: Moment = { frame, run: side, switches, picked, theme: colours, colour: overlay, eye: this.camera.lens.position };
     this.overlays.update(moment, this.marks(picked, colours));
+  }
+
+  /** With a picked body: which others could stand before it or what it meets, and aren't drawn. */
+  private covering(picked: number | null): (body: number) => boolean {
+    if (picked === null) return () => false;
+    const eye = this.camera.lens.position;
+    const place = new Vector3();
+    const far = (body: number) => place.fromArray(this.bodies.placement(body).offset).distanceTo(eye);
+    const behind = far(picked) + 3 * this.bodies.radius(picked);
+    return (body) => this.isAway(body, picked) && far(body) - this.bodies.radius(body) < behind;
   }
 
   /** With a picked body, whether this one has nothing to do with it. */

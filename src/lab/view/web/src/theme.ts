@@ -7,6 +7,8 @@ export interface Theme {
   background: Color;
   moving: Color;
   fixed: Color;
+  /** Bodies that have nothing to do with the picked one. */
+  ghost: Color;
   walls: Color;
   picked: Color;
   /** By State. */
@@ -24,6 +26,7 @@ const LIGHT: Theme = {
   background: hex("#f6f7f9"),
   moving: hex("#b4bcc6"),
   fixed: hex("#7c8590"),
+  ghost: hex("#e9ecf0"),
   walls: hex("#8a929c"),
   picked: hex("#000000"),
   states: ["#b4bcc6", "#b4bcc6", "#e69f00", "#0072b2", "#d5400a"].map(hex),
@@ -37,6 +40,7 @@ const DARK: Theme = {
   background: hex("#12151a"),
   moving: hex("#6b7580"),
   fixed: hex("#454d57"),
+  ghost: hex("#39414b"),
   walls: hex("#78828e"),
   picked: hex("#ffffff"),
   states: ["#6b7580", "#6b7580", "#e69f00", "#45a5e6", "#ff5a1f"].map(hex),
