@@ -181,7 +181,7 @@ impl Show {
         }
         let truth = Truth::new(claim, &case.shapes).map_err(|error| error.to_string())?;
         let mut header = Header::new(&case.name, 0, &case.shapes, &bodies);
-        header.program = Some("reported".to_owned());
+        header.program = Some("the program".to_owned());
         if reported.is_none() {
             // Nobody was asked, so nothing is missed.
             header.cull = Some(CullSettings {

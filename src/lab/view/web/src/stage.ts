@@ -29,6 +29,8 @@ export interface Shown {
   picked: number | null;
   /** Whether pictures follow one another: then speed goes before sharpness. */
   moving: boolean;
+  /** Whether this picture is all there will be: nothing flashes in it. */
+  still: boolean;
 }
 
 /** The part of the picture's height under the strategies' names. */
@@ -50,6 +52,7 @@ export class Stage {
   private readonly pace = new Pace();
   private flashing = false;
   private phase = -1;
+  private still = false;
 
   constructor(
     private readonly run: Run,
@@ -81,6 +84,7 @@ export class Stage {
     const part = width / shown.sides.length;
     this.renderer.setScissorTest(shown.sides.length > 1);
     this.flashing = false;
+    this.still = shown.still;
     shown.sides.forEach((side, place) => {
       this.renderer.setViewport(place * part, 0, part, height);
       this.renderer.setScissor(place * part + (place > 0 ? 1 : 0), 0, part, height);
@@ -98,7 +102,7 @@ export class Stage {
   }
 
   private phaseAt(now: number): number {
-    return reducedMotion() ? 0 : Math.floor(now / FLASH) % 2;
+    return this.still || reducedMotion() ? 0 : Math.floor(now / FLASH) % 2;
   }
 
   private paint(shown: Shown, side: number, colours: Theme, now: number): void {

@@ -285,7 +285,7 @@ export class Viewer {
     this.dirty = false;
     this.sharp = !moving;
     const { switches, picked } = this;
-    this.stage.draw({ frame: at, sides: this.shownSides(), switches, picked, moving }, now);
+    this.stage.draw({ frame: at, sides: this.shownSides(), switches, picked, moving, still: this.still }, now);
   }
 
   private keepAddress(): void {
