@@ -89,7 +89,11 @@ fn recorded(args: &Args, pairs: Vec<Option<Vec<[u32; 2]>>>) -> miette::Result<Ve
     })
 }
 
-fn text(path: &std::path::Path) -> miette::Result<Vec<u8>> {
+/// What a file holds, or standard input for `-`.
+///
+/// # Errors
+/// It can't be read.
+pub fn text(path: &std::path::Path) -> miette::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = if path.as_os_str() == "-" {
         std::io::stdin().read_to_end(&mut bytes).map(drop)
@@ -102,7 +106,10 @@ fn text(path: &std::path::Path) -> miette::Result<Vec<u8>> {
 }
 
 /// The answers in a text, one a line.
-fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop> {
+///
+/// # Errors
+/// A line that is no answer, or more lines than frames.
+pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop> {
     let lines = text
         .split(|byte| *byte == b'\n')
         .filter(|line| !line.trim_ascii().is_empty());

@@ -18,6 +18,7 @@ const PAGES: [&str; 13] = [
     "benches/peers/BIAS.md",
     "benches/peers/VERDICTS.md",
     "examples/rapier/ENGINES.md",
+    "examples/rapier/README.md",
     "tests/README.md",
     "paper/guide.md",
     "paper/artifact.md",

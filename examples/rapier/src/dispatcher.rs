@@ -3,9 +3,9 @@
 //!
 //! Unlike a hook it leaves rapier's contact recycling on, and it isn't asked by continuous collision detection at all.
 
-use std::collections::HashMap;
 use std::sync::{Arc, RwLock};
 
+use rustc_hash::FxHashMap;
 use sdop::volume::DirectionSet;
 use sdop::world::PairTest;
 
@@ -28,7 +28,7 @@ pub struct CullingDispatcher(Arc<RwLock<Known>>);
 struct Known {
     test: PairTest,
     /// By address; holding the shape keeps the address its own.
-    shapes: HashMap<usize, Entry>,
+    shapes: FxHashMap<usize, Entry>,
 }
 
 struct Entry {
@@ -44,7 +44,7 @@ impl Default for CullingDispatcher {
         let test = PairTest::new(DirectionSet::K18);
         Self(Arc::new(RwLock::new(Known {
             test,
-            shapes: HashMap::new(),
+            shapes: FxHashMap::default(),
         })))
     }
 }

@@ -5,13 +5,11 @@
 //! culled. Otherwise all colliders are mirrored and culled again, then and there: so no teleport, no substep and no call
 //! that somebody forgot between hook and step can make a verdict stale.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::{Arc, RwLock};
 use std::time::Instant;
 
-use sdop::settings::CullSettings;
-use sdop::simd::Tier;
+use rustc_hash::FxHashMap;
 use sdop::world::{Body, BodyId, Groups, PairLookup, World};
 
 use super::rapier::math::Pose;
@@ -93,7 +91,7 @@ struct Mirror {
     world: Option<World>,
     volumes: Vec<Volume>,
     /// Which of them each shape has, by address; holding the shape keeps the address its own.
-    shapes: HashMap<usize, (SharedShape, Option<u32>)>,
+    shapes: FxHashMap<usize, (SharedShape, Option<u32>)>,
     seats: Vec<Option<Seat>>,
     reported: PairLookup,
     cost: Cost,
@@ -165,9 +163,8 @@ impl Mirror {
             self.learn(collider.shared_shape());
         }
         if self.world.is_none() {
-            let settings = CullSettings::default();
             self.seats.clear();
-            self.world = World::new(self.volumes.clone(), &settings, Tier::detect()).ok();
+            self.world = World::new(self.volumes.clone()).ok();
         }
         for (handle, collider) in colliders.iter_enabled() {
             let body = collider.parent().and_then(|handle| bodies.get(handle));

@@ -1,4 +1,4 @@
-//! What the bodies of all scenes look like: low-polygon meshes as people simulate them, within a ball of radius ½.
+//! What the bodies of all scenes look like, within a ball of radius ½.
 
 use std::path::Path;
 
@@ -6,19 +6,25 @@ use miette::{IntoDiagnostic, Result};
 use sdop::mesh::decimate::decimate;
 use sdop::mesh::{ProceduralShape, ReadOptions, TriangleMesh, read};
 
-/// Closed meshes of 20 to 480 triangles: a cow, a ring, an L, a rod, a gear and a knot.
+use crate::plan::Detail;
+
+/// A cow, a ring, an L, a rod, a gear and a knot, all closed: of 16 to 480 triangles, or finely cut of up to 7,680.
 ///
 /// # Errors
 /// `meshes` isn't the repository's folder of meshes.
-pub fn forms(meshes: &Path) -> Result<Vec<TriangleMesh>> {
+pub fn forms(meshes: &Path, detail: Detail) -> Result<Vec<TriangleMesh>> {
     let cow = read(meshes.join("spot.tri"), &ReadOptions::default())?;
-    let mut forms = vec![decimate(&cow, 300)];
+    let (cow, n) = match detail {
+        Detail::Coarse => (decimate(&cow, 300), 1),
+        Detail::Fine => (cow, 4),
+    };
+    let mut forms = vec![cow];
     for shape in [
         ProceduralShape::Torus {
             radius: 0.7,
             tube: 0.3,
-            segments: 16,
-            sides: 8,
+            segments: 16 * n,
+            sides: 8 * n,
         },
         ProceduralShape::LShape {
             x: 1.0,
@@ -29,20 +35,20 @@ pub fn forms(meshes: &Path) -> Result<Vec<TriangleMesh>> {
         ProceduralShape::Needle {
             length: 2.0,
             radius: 0.3,
-            sides: 8,
+            sides: 8 * n,
         },
         ProceduralShape::Gear {
             tip: 1.0,
             root: 0.8,
             bore: 0.3,
             thickness: 0.4,
-            teeth: 10,
+            teeth: 10 * n,
         },
         ProceduralShape::Knot {
             radius: 0.8,
             tube: 0.15,
-            segments: 40,
-            sides: 6,
+            segments: 40 * n,
+            sides: 6 * n,
         },
     ] {
         forms.push(shape.build().into_diagnostic()?);

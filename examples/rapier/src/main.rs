@@ -5,10 +5,10 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 use miette::{IntoDiagnostic, Result};
+use sdop::Tier;
 use sdop::lab::measure::machine::Machine;
-use sdop::simd::Tier;
 use sdop_rapier::forms::forms;
-use sdop_rapier::plan::{Kind, Mode, Plan, Real, Scene};
+use sdop_rapier::plan::{Detail, Kind, Mode, Plan, Real, Scene};
 use sdop_rapier::record::{Found, Record};
 use sdop_rapier::{double, single, whole};
 
@@ -60,6 +60,9 @@ struct Run {
     /// What bodies are made of.
     #[arg(long, default_value = "hull")]
     kind: Kind,
+    /// How finely bodies are cut.
+    #[arg(long, default_value = "coarse")]
+    detail: Detail,
     /// How many.
     #[arg(long, default_value_t = 100)]
     bodies: usize,
@@ -104,6 +107,7 @@ impl Run {
             machine: Machine::here(Tier::detect()),
             scene: self.scene.to_string(),
             kind: self.kind.to_string(),
+            detail: self.detail.to_string(),
             bodies: self.bodies,
             steps: self.steps,
             seed: self.seed,
@@ -131,7 +135,7 @@ fn main() -> Result<ExitCode> {
             } else {
                 double::proof::check
             };
-            let forms = forms(&run.meshes)?;
+            let forms = forms(&run.meshes, run.detail)?;
             let check = check(run.plan(), &forms, mode, run.steps, without_margin, &cases)?;
             let fine = check.dropped == 0;
             run.finish(Found::Checked {
@@ -155,7 +159,7 @@ fn main() -> Result<ExitCode> {
             } else {
                 double::proof::measure
             };
-            let forms = forms(&run.meshes)?;
+            let forms = forms(&run.meshes, run.detail)?;
             let (shares, prices) = measure(run.plan(), &forms, &modes, run.steps, calibrate);
             run.finish(Found::Measured { shares, prices })?;
             Ok(ExitCode::SUCCESS)

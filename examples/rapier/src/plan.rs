@@ -92,6 +92,16 @@ names! {
 }
 
 names! {
+    /// How finely bodies are cut.
+    Detail {
+        /// Low-polygon meshes, as people simulate them.
+        Coarse = "coarse",
+        /// Meshes as they come from modelling, of thousands of triangles.
+        Fine = "fine",
+    }
+}
+
+names! {
     /// Rapier's numbers.
     Real {
         /// `rapier3d`.

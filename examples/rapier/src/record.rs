@@ -12,7 +12,11 @@ pub struct Check {
     pub touching: u64,
     /// Pairs of a sensor and what overlaps it in the unfiltered steps.
     pub overlapping: u64,
-    /// Of all of them, those that the filtered step lacks. Must be zero.
+    /// Of those with points, pairs that the filtered step lacks because rapier would not have found them either: farther apart
+    /// than it looks, with points left over from a shape that was replaced since.
+    #[serde(default)]
+    pub leftovers: u64,
+    /// Of all of them, others that the filtered step lacks. Must be zero.
     pub dropped: u64,
     /// The first step with one, and the pair's collider indices.
     pub first_dropped: Option<(usize, [u32; 2])>,
@@ -87,6 +91,8 @@ pub struct Record {
     pub scene: String,
     /// What bodies are made of.
     pub kind: String,
+    /// How finely they are cut.
+    pub detail: String,
     /// How many.
     pub bodies: usize,
     /// Steps taken.

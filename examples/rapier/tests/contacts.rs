@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use sdop::mesh::TriangleMesh;
-use sdop_rapier::plan::{Kind, Mode, Plan, Scene};
+use sdop_rapier::plan::{Detail, Kind, Mode, Plan, Scene};
 use sdop_rapier::record::Check;
 use sdop_rapier::{double, single};
 
@@ -13,7 +13,7 @@ const FILTERED: [Mode; 3] = [Mode::Hook, Mode::Dispatcher, Mode::DispatcherFull]
 
 fn forms() -> Vec<TriangleMesh> {
     let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/meshes");
-    let forms = sdop_rapier::forms::forms(&meshes).unwrap();
+    let forms = sdop_rapier::forms::forms(&meshes, Detail::Coarse).unwrap();
     // Quick to collide: the cow and the knot have hundreds of triangles.
     forms
         .into_iter()

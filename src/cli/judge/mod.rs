@@ -222,7 +222,7 @@ fn save(
         }
         let stem = out.join(STEM);
         lines.push(format!(
-            "written: {0}.toml (sdop run {0}.toml) and the case {0}.ndjson",
+            "written: {0}.toml (sdop run {0}.toml) and the case {0}.ndjson (sdop view {0}.ndjson)",
             stem.display()
         ));
         lines.push(format!(

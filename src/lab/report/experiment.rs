@@ -1,5 +1,7 @@
 //! The experiments that can be recorded: the steps of each, and which of its files every machine must find alike.
 
+use super::rapier::{RAPIER_CONTACTS, RAPIER_TIMES};
+
 /// One program that runs for an experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
@@ -335,9 +337,16 @@ pub const EXPERIMENTS: &[Experiment] = &[
         scenes: &[],
     },
     Experiment {
-        name: "rapier",
-        about: "the filter in a physics engine: contacts compared, steps timed",
-        steps: RAPIER,
+        name: "rapier/contacts",
+        about: "the filter in a physics engine: contacts with it and without, step by step",
+        steps: RAPIER_CONTACTS,
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
+        name: "rapier/times",
+        about: "the filter in a physics engine: steps timed in turns",
+        steps: RAPIER_TIMES,
         deterministic: &[],
         scenes: &[],
     },
@@ -370,94 +379,3 @@ const fn stages(threads: &'static str) -> [&'static str; 12] {
         "json",
     ]
 }
-
-const RAPIER: &[Step] = &[
-    Step::Rapier(
-        "check-cloud-mesh-300-dispatcher-f32.json",
-        "check --scene cloud --kind mesh --bodies 300 --steps 150 --mode dispatcher --real f32",
-    ),
-    Step::Rapier(
-        "check-cloud-mesh-300-hook-f32.json",
-        "check --scene cloud --kind mesh --bodies 300 --steps 150 --mode hook --real f32",
-    ),
-    Step::Rapier(
-        "check-conveyor-colliders-100-dispatcher-f32.json",
-        "check --scene conveyor --kind colliders --bodies 100 --steps 300 --mode dispatcher --real f32",
-    ),
-    Step::Rapier(
-        "check-conveyor-colliders-100-hook-f32.json",
-        "check --scene conveyor --kind colliders --bodies 100 --steps 300 --mode hook --real f32",
-    ),
-    Step::Rapier(
-        "check-pile-hull-200-dispatcher-f64.json",
-        "check --scene pile --kind hull --bodies 200 --steps 300 --mode dispatcher --real f64",
-    ),
-    Step::Rapier(
-        "check-pile-hull-200-hook-f64.json",
-        "check --scene pile --kind hull --bodies 200 --steps 300 --mode hook --real f64",
-    ),
-    Step::Rapier(
-        "check-pile-hull-500-dispatcher-f32.json",
-        "check --scene pile --kind hull --bodies 500 --steps 200 --mode dispatcher --real f32",
-    ),
-    Step::Rapier(
-        "check-pile-hull-500-hook-f32.json",
-        "check --scene pile --kind hull --bodies 500 --steps 200 --mode hook --real f32",
-    ),
-    Step::Rapier(
-        "check-pile-mesh-100-dispatcher-f32.json",
-        "check --scene pile --kind mesh --bodies 100 --steps 200 --mode dispatcher --real f32",
-    ),
-    Step::Rapier(
-        "check-pile-mesh-100-hook-f32.json",
-        "check --scene pile --kind mesh --bodies 100 --steps 200 --mode hook --real f32",
-    ),
-    Step::Rapier(
-        "check-planted-dispatcher.json",
-        "check --scene pile --kind hull --bodies 60 --steps 150 --mode dispatcher --without-margin",
-    ),
-    Step::Rapier(
-        "check-planted-hook.json",
-        "check --scene pile --kind hull --bodies 60 --steps 150 --mode hook --without-margin",
-    ),
-    Step::Rapier(
-        "check-tumbler-compound-100-dispatcher-f32.json",
-        "check --scene tumbler --kind compound --bodies 100 --steps 300 --mode dispatcher --real f32",
-    ),
-    Step::Rapier(
-        "check-tumbler-compound-100-hook-f32.json",
-        "check --scene tumbler --kind compound --bodies 100 --steps 300 --mode hook --real f32",
-    ),
-    Step::Rapier(
-        "check-zoo-hull-200-dispatcher-f32.json",
-        "check --scene zoo --kind hull --bodies 200 --steps 300 --mode dispatcher --real f32",
-    ),
-    Step::Rapier(
-        "check-zoo-hull-200-dispatcher-f64.json",
-        "check --scene zoo --kind hull --bodies 200 --steps 200 --mode dispatcher --real f64",
-    ),
-    Step::Rapier(
-        "check-zoo-hull-200-hook-f32.json",
-        "check --scene zoo --kind hull --bodies 200 --steps 300 --mode hook --real f32",
-    ),
-    Step::Rapier(
-        "check-zoo-hull-200-hook-f64.json",
-        "check --scene zoo --kind hull --bodies 200 --steps 200 --mode hook --real f64",
-    ),
-    Step::Rapier(
-        "measure-pile-hull-500.json",
-        "measure --scene pile --kind hull --bodies 500 --steps 300 --calibrate 100",
-    ),
-    Step::Rapier(
-        "measure-pile-mesh-100.json",
-        "measure --scene pile --kind mesh --bodies 100 --steps 300 --calibrate 100",
-    ),
-    Step::Rapier(
-        "measure-tumbler-hull-500.json",
-        "measure --scene tumbler --kind hull --bodies 500 --steps 150 --calibrate 100",
-    ),
-    Step::Rapier(
-        "measure-tumbler-mesh-100.json",
-        "measure --scene tumbler --kind mesh --bodies 100 --steps 200 --calibrate 100",
-    ),
-];

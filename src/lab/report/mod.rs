@@ -13,6 +13,7 @@ mod experiment;
 mod manifest;
 pub mod pages;
 mod provenance;
+mod rapier;
 mod store;
 mod table;
 

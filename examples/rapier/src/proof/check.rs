@@ -1,12 +1,13 @@
 //! Contacts with and without the filter, step by step from the same state.
 
+use super::super::rapier::parry::query::distance;
 use super::super::rapier::prelude::*;
 use super::sim::{Sim, bodies_that_differ, overlaps, touches};
 use crate::record::Check;
 
 /// Takes `steps` filtered steps; before each, its state is stepped without the filter and compared.
 ///
-/// `dropped` is called with the state and the pair of the first step that drops one.
+/// `dropped` is called with the state before the first step that drops a pair, and with the pair.
 pub fn check(
     sim: &mut Sim,
     steps: usize,
@@ -18,7 +19,7 @@ pub fn check(
     };
     for step in 0..steps {
         let before = sim.calls().narrow();
-        let free = sim.unfiltered().world;
+        let [start, free] = sim.unfiltered().map(|stage| stage.world);
         let between = sim.calls().narrow();
         sim.step();
         check.checked_unfiltered += between - before;
@@ -30,10 +31,14 @@ pub fn check(
         check.overlapping += overlapping.len() as u64;
         let lacks_points = expected.keys().filter(|pair| !found.contains_key(*pair));
         for &pair in lacks_points.chain(overlapping.difference(&overlaps)) {
+            if out_of_sight(&start, pair) {
+                check.leftovers += 1;
+                continue;
+            }
             check.dropped += 1;
             if check.first_dropped.is_none() {
                 check.first_dropped = Some((step, pair.map(|c| c.into_raw_parts().0)));
-                dropped(&free, pair);
+                dropped(&start, pair);
             }
         }
         let differs = |pair: &&[ColliderHandle; 2]| {
@@ -45,4 +50,23 @@ pub fn check(
         check.bodies_that_differ += bodies_that_differ(&filtered.bodies, &free.bodies) as u64;
     }
     check
+}
+
+/// Whether the two are farther apart than rapier looks in this step, by its own distance query. It keeps points of such a
+/// pair all the same where a shape was replaced by one with fewer manifolds (`set_shape`): it updates the first of them and
+/// leaves the others as they were. A pair that is rejected loses them.
+fn out_of_sight(world: &PhysicsWorld, pair: [ColliderHandle; 2]) -> bool {
+    let body = |collider: &Collider| collider.parent().and_then(|body| world.bodies.get(body));
+    let pose = |collider: &Collider| match (body(collider), collider.position_wrt_parent()) {
+        (Some(body), Some(local)) => *body.position() * *local,
+        _ => *collider.position(),
+    };
+    let [Some(a), Some(b)] = pair.map(|handle| world.colliders.get(handle)) else {
+        return false;
+    };
+    let way = |collider| body(collider).map_or(0.0, |body| body.linvel().length());
+    let parameters = &world.integration_parameters;
+    let way = parameters.dt * (way(a) + way(b)); // soft CCD looks as far, at most
+    let looks = parameters.prediction_distance().max(way) + a.contact_skin() + b.contact_skin();
+    distance(&pose(a), a.shape(), &pose(b), b.shape()).is_ok_and(|found| found.distance > looks)
 }

@@ -113,18 +113,19 @@ impl Sim {
         }
     }
 
-    /// The same state, stepped once without the filter.
+    /// The state that the next step begins with, and what becomes of it without the filter.
     #[must_use]
-    pub fn unfiltered(&self) -> Stage {
-        let mut fork = self.stage.fork();
-        fork.between_steps();
+    pub fn unfiltered(&self) -> [Stage; 2] {
+        let mut start = self.stage.fork();
+        start.between_steps();
+        let mut fork = start.fork();
         let calls = &self.counted.calls;
         calls.set_filtering(Filtering::Off); // both have the same dispatcher
         fork.world.step();
         if self.mode.dispatches() {
             calls.set_filtering(Filtering::On);
         }
-        fork
+        [start, fork]
     }
 
     /// What reached the narrow phase.

@@ -75,8 +75,12 @@ struct FrameLine {
     pairs: Option<Vec<[u32; 2]>>,
 }
 
-/// A whole case for one claim.
-pub(super) fn encode(case: &Case, claim: Claim) -> serde_json::Result<Vec<u8>> {
+/// A whole case for one claim; with the pairs that were reported of each frame, where there are any.
+pub(in crate::lab::judge) fn encode(
+    case: &Case,
+    claim: Claim,
+    reported: &[Vec<[u32; 2]>],
+) -> serde_json::Result<Vec<u8>> {
     let empty = Bodies::default();
     let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
     let others = case.claims.iter().copied().filter(|other| *other != claim);
@@ -105,7 +109,7 @@ pub(super) fn encode(case: &Case, claim: Claim) -> serde_json::Result<Vec<u8>> {
                 .map(|(&[x, y, z, w], &[tx, ty, tz])| [x, y, z, w, tx, ty, tz])
                 .collect(),
             boxes: (claim == Claim::Aabb).then(|| frame.boxes.clone()),
-            pairs: None,
+            pairs: reported.get(number).cloned(),
         };
         serde_json::to_writer(&mut bytes, &line)?;
         bytes.push(b'\n');
