@@ -1,7 +1,7 @@
 //! What is to be shown: a scene is simulated, a record read, a group of hard cases made.
 
 use std::fs::File;
-use std::io::{BufRead as _, BufReader, Read as _};
+use std::io::{BufReader, Read as _};
 use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
@@ -36,13 +36,13 @@ pub fn read(
     answers: Option<&Path>,
     tier: Tier,
 ) -> miette::Result<Input> {
-    let path = args.path();
+    let (path, most) = (args.path(), args.max_bytes());
     if is_record(path)? {
-        let claim = claim(path);
+        let claim = claim(path, most);
         if answers.is_some() || claim.is_some() {
             refuse(args, run, "its poses are given")?;
             // A record is about the meshes.
-            let show = judged(path, claim.unwrap_or(Claim::Mesh), answers)?;
+            let show = judged((path, most), claim.unwrap_or(Claim::Mesh), answers)?;
             return Ok(Input::Show(Box::new(show), None));
         }
         return record(args, run);
@@ -54,7 +54,7 @@ pub fn read(
             path.display()
         ));
     }
-    if is_case(path) {
+    if is_case(path, most) {
         return Ok(Input::Show(
             Box::new(case(args, run.unwrap_or(0), tier)?),
             None,
@@ -90,35 +90,39 @@ fn is_record(path: &Path) -> miette::Result<bool> {
 }
 
 /// Whether a TOML file has a recipe. What is no TOML, or can't be read, is left to the scene's reader, which says so.
-fn is_case(path: &Path) -> bool {
-    let table = std::fs::read_to_string(path)
+fn is_case(path: &Path, most: u64) -> bool {
+    let table = sdop::files::read_text(path, most)
         .ok()
         .and_then(|text| text.parse::<toml::Table>().ok());
     table.is_some_and(|table| table.contains_key("recipe"))
 }
 
 /// The claim that a case of the judge is about: the first of those in its first line. Records have none.
-fn claim(path: &Path) -> Option<Claim> {
+fn claim(path: &Path, most: u64) -> Option<Claim> {
     #[derive(serde::Deserialize)]
     struct Mark {
         claims: Option<Vec<Claim>>,
     }
     let mut line = Vec::new();
     let mut file = BufReader::new(File::open(path).ok()?);
-    file.read_until(b'\n', &mut line).ok()?;
+    sdop::files::read_line(&mut file, most, &mut line).ok()?;
     let mark: Mark = serde_json::from_slice(&line).ok()?;
     mark.claims?.first().copied()
 }
 
-/// A case with the pairs that its file has or that `answers` has.
-fn judged(path: &Path, claim: Claim, answers: Option<&Path>) -> miette::Result<Show> {
-    let Read { case, pairs } = read_case(path)?;
+/// A case with the pairs that its file has or that `answers` has; a line, and the answers, have at most `most` bytes.
+fn judged(
+    (path, most): (&Path, u64),
+    claim: Claim,
+    answers: Option<&Path>,
+) -> miette::Result<Show> {
+    let Read { case, pairs } = read_case(path, most)?;
     let given = match answers {
         None => {
             let answer = |pairs: Option<Vec<_>>| pairs.map(|pairs| Answer { pairs, ns: None });
             pairs.into_iter().map(answer).collect::<Option<Vec<_>>>()
         }
-        Some(file) => Some(answered(&case, file)?),
+        Some(file) => Some(answered(&case, file, most)?),
     };
     let name = answers.unwrap_or(path).display();
     let sort = |answers: Vec<Answer>| {
@@ -145,8 +149,8 @@ fn judged(path: &Path, claim: Claim, answers: Option<&Path>) -> miette::Result<S
 }
 
 /// The answers in a file, in either encoding.
-fn answered(case: &Case, file: &Path) -> miette::Result<Vec<Answer>> {
-    let text = text(file)?;
+fn answered(case: &Case, file: &Path, most: u64) -> miette::Result<Vec<Answer>> {
+    let text = text(file, most)?;
     let wire = match text.trim_ascii_start().first() {
         Some(b'{') => Wire::Ndjson,
         _ => Wire::Text,

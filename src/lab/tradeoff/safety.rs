@@ -54,7 +54,11 @@ pub struct SafetyRow {
     pub seconds: Quartiles,
 }
 
-/// Spheres alone and S-DOP with the scene's or-DOPs, in every tier that this CPU has, in turns on `count` sample frames
+/// The strategies whose price is asked: those of the volumes that [`without_margins`] shrinks, first one alone, then both. Volumes
+/// that are refitted each frame get their margins there.
+pub const STRATEGIES: [Strategy; 2] = [Strategy::Sphere, Strategy::SDopSequential];
+
+/// The [`STRATEGIES`] with the scene's or-DOPs, in every tier that this CPU has, in turns on `count` sample frames
 /// and those that follow them.
 ///
 /// # Errors
@@ -63,7 +67,7 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
     let bare: Vec<Shape> = scene.shapes.iter().map(without_margins).collect();
     let shapes = Shapes::new(scene.shapes.clone())?;
     let mut rows = Vec::new();
-    for strategy in [Strategy::Sphere, Strategy::SDopSequential] {
+    for strategy in STRATEGIES {
         let settings = CullSettings {
             strategy,
             updates: Updates::Eager,
