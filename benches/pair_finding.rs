@@ -15,29 +15,22 @@ use criterion::measurement::WallTime;
 use criterion::{
     BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
 };
-use sdop::settings::{Finder, Strategy};
+use sdop::settings::Finder;
 
 use common::swarm::{Kind, Swarm};
 
 fn pair_finding(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("pair finding");
     group.sample_size(20);
-    let volumes: [common::Counted; 5] = [
-        (Strategy::Sphere, |c| c.sphere.tests),
-        (Strategy::OrDop, |c| c.ordop.tests),
-        (Strategy::Aabb, |c| c.aabb.tests),
-        (Strategy::KDop, |c| c.kdop.tests),
-        (Strategy::Obb, |c| c.obb.tests),
-    ];
     for (name, scene) in common::calibration_scenes() {
-        for (strategy, count) in volumes {
+        for (strategy, volume) in common::one_volume() {
             let id = BenchmarkId::new(strategy.name(), &name);
             common::stage(
                 &mut group,
                 id,
                 (&scene, strategy),
                 |s| s.pair_finding + s.ordop,
-                count,
+                |c| c.of(volume).tests,
             );
         }
     }

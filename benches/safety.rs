@@ -8,8 +8,8 @@ mod common;
 use sdop::bodies::Bodies;
 use sdop::lab::measure::culling::Culling;
 use sdop::lab::measure::turns::{Quartiles, Regime, Turns, median, turn_frames};
-use sdop::lab::tradeoff::safety::without_margins;
-use sdop::settings::{CullSettings, Strategy};
+use sdop::lab::tradeoff::safety::{STRATEGIES, without_margins};
+use sdop::settings::CullSettings;
 use sdop::simd::Tier;
 
 /// Rounds over all frames.
@@ -21,7 +21,7 @@ fn main() {
     let bare: Vec<_> = scene.shapes.iter().map(without_margins).collect();
     println!("| strategy | tier | µs a frame with margins | without | ratio | quartiles |");
     println!("|---|---|--:|--:|--:|---|");
-    for strategy in [Strategy::Sphere, Strategy::SDopSequential] {
+    for strategy in STRATEGIES {
         let settings = CullSettings {
             strategy,
             ..scene.cull.clone()

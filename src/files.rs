@@ -4,7 +4,7 @@
 //! disk or a kill leaves the former file or none, and at worst a `.part` file beside it.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, ErrorKind, Read as _, Write};
+use std::io::{self, BufRead, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// Bytes of a file that are read unless the caller says otherwise: 1 GiB, several times the largest scanned meshes. A link
@@ -16,8 +16,16 @@ pub const MAX_BYTES: u64 = 1 << 30;
 /// # Errors
 /// What the system says, and [`ErrorKind::FileTooLarge`] for a file with more bytes.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    read_all(File::open(path)?, most)
+}
+
+/// Reads a source of at most `most` bytes to its end.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_all(source: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?
+    source
         .take(most.saturating_add(1))
         .read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most {
@@ -34,6 +42,21 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     let text = String::from_utf8(read(path, most)?);
     text.map_err(|_| io::Error::new(ErrorKind::InvalidData, "the file is not UTF-8 text"))
+}
+
+/// Reads a line of at most `most` bytes and its end into `line`, which is emptied before; the number of bytes, 0 at the end.
+///
+/// # Errors
+/// What the system says, and [`ErrorKind::FileTooLarge`] for a longer line.
+pub fn read_line(source: &mut impl BufRead, most: u64, line: &mut Vec<u8>) -> io::Result<usize> {
+    line.clear();
+    let mut source = source.take(most.saturating_add(1));
+    let read = source.read_until(b'\n', line)?;
+    if read as u64 > most && !line.ends_with(b"\n") {
+        let text = format!("the line is longer than {most} bytes");
+        return Err(io::Error::new(ErrorKind::FileTooLarge, text));
+    }
+    Ok(read)
 }
 
 /// Writes a file whole.
@@ -180,6 +203,21 @@ mod tests {
         assert_eq!(fs::read_to_string(&file).unwrap(), "new");
         let mode = fs::metadata(&file).unwrap().permissions().mode();
         assert_eq!(mode & 0o777, 0o640);
+    }
+
+    #[test]
+    fn a_line_ends_at_the_limit() {
+        let (mut endless, mut line) = (io::BufReader::new(io::repeat(0)), Vec::new());
+        let error = read_line(&mut endless, 100, &mut line).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::FileTooLarge);
+        assert!(error.to_string().contains("100 bytes"), "{error}");
+        assert_eq!(line.len(), 101);
+        let mut text = &b"12345\n\nend"[..];
+        let mut lines = Vec::new();
+        while read_line(&mut text, 5, &mut line).unwrap() > 0 {
+            lines.push(String::from_utf8(line.clone()).unwrap());
+        }
+        assert_eq!(lines, ["12345\n", "\n", "end"]);
     }
 
     #[test]

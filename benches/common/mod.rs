@@ -15,13 +15,19 @@ use sdop::culler::Culler;
 use sdop::lab::cost::calibrate;
 use sdop::lab::scene::{Scene, SceneFile};
 use sdop::lab::simulate::Trajectory;
-use sdop::settings::{CullSettings, Strategy};
+use sdop::settings::{CullSettings, Strategy, TestedVolume};
 
 /// Frames that a bench goes round in.
 pub const FRAMES: usize = 32;
 
-/// A strategy and what is counted of it.
-pub type Counted = (Strategy, fn(&Counters) -> u64);
+/// The strategies of one volume alone, whose stages are the volume's own.
+pub fn one_volume() -> impl Iterator<Item = (Strategy, TestedVolume)> {
+    Strategy::ALL.iter().filter_map(|&strategy| {
+        let mut volumes = strategy.scheme().volumes();
+        let first = volumes.next()?;
+        volumes.next().is_none().then_some((strategy, first))
+    })
+}
 
 /// A scene file of `data/scenes`.
 pub fn scene_file(name: &str) -> SceneFile {
@@ -61,7 +67,7 @@ pub fn stage(
     id: BenchmarkId,
     (scene, strategy): (&Scene, Strategy),
     stage: fn(&Seconds) -> f64,
-    count: fn(&Counters) -> u64,
+    count: impl Fn(&Counters) -> u64,
 ) {
     let settings = CullSettings {
         strategy,

@@ -1,6 +1,5 @@
 //! `sdop check`: answers that are there already, judged.
 
-use std::io::Read as _;
 use std::path::PathBuf;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
@@ -9,6 +8,7 @@ use sdop::judge::run::examine_given;
 use sdop::judge::wire::{Said, Wire};
 use sdop::judge::{Case, Claim, Options, Subject};
 
+use super::files::ReadArgs;
 use super::judge::{ReportFormat, emit_verdict, read_case};
 use super::{Outcome, one_of};
 
@@ -32,6 +32,8 @@ pub struct Args {
     /// How the answers are written
     #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES))]
     wire: Wire,
+    #[command(flatten)]
+    files: ReadArgs,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
     format: ReportFormat,
@@ -51,7 +53,7 @@ impl Subject for Given {
 /// # Errors
 /// A file that can't be read.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    let read = read_case(&args.record)?;
+    let read = read_case(&args.record, args.files.max_bytes())?;
     let is_record = read.case.claims == Claim::ALL;
     let first = if is_record {
         Claim::Mesh
@@ -65,7 +67,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         ..Options::default()
     };
     let answers = match &args.pairs {
-        Some(path) => said(args.wire, &text(path)?, read.case.frames.len()),
+        Some(path) => {
+            let text = text(path, args.files.max_bytes())?;
+            said(args.wire, &text, read.case.frames.len())
+        }
         None => Ok(recorded(args, read.pairs)?),
     };
     let verdict = examine_given(&Given(answers), &options, vec![read.case]).into_diagnostic()?;
@@ -89,20 +94,25 @@ fn recorded(args: &Args, pairs: Vec<Option<Vec<[u32; 2]>>>) -> miette::Result<Ve
     })
 }
 
-fn text(path: &std::path::Path) -> miette::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
+/// What a file holds, or standard input for `-`: at most `most` bytes.
+///
+/// # Errors
+/// It can't be read.
+pub fn text(path: &std::path::Path, most: u64) -> miette::Result<Vec<u8>> {
     let read = if path.as_os_str() == "-" {
-        std::io::stdin().read_to_end(&mut bytes).map(drop)
+        sdop::files::read_all(std::io::stdin(), most)
     } else {
-        sdop::files::read(path, sdop::files::MAX_BYTES).map(|read| bytes = read)
+        sdop::files::read(path, most)
     };
     read.into_diagnostic()
-        .wrap_err_with(|| format!("cannot read {}", path.display()))?;
-    Ok(bytes)
+        .wrap_err_with(|| format!("cannot read {}", path.display()))
 }
 
 /// The answers in a text, one a line.
-fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop> {
+///
+/// # Errors
+/// A line that is no answer, or more lines than frames.
+pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop> {
     let lines = text
         .split(|byte| *byte == b'\n')
         .filter(|line| !line.trim_ascii().is_empty());

@@ -7,7 +7,7 @@ use miette::{IntoDiagnostic as _, WrapErr as _};
 /// How much is read of a file.
 #[derive(clap::Args)]
 pub struct ReadArgs {
-    /// Refuse scenes and meshes of more MiB than this
+    /// Refuse scenes and meshes, and lines of records, of more MiB than this
     #[arg(long, value_name = "MIB", default_value_t = sdop::files::MAX_BYTES >> 20)]
     max_file_size: u64,
 }

@@ -85,6 +85,11 @@ impl SceneArgs {
         Ok(self.read()?.build()?)
     }
 
+    /// The most bytes that are read of a file, or of a line of a record.
+    pub fn max_bytes(&self) -> u64 {
+        self.files.max_bytes()
+    }
+
     /// The file as named.
     pub fn path(&self) -> &Path {
         &self.scene

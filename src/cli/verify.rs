@@ -75,7 +75,14 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         return record(directory);
     }
     if let Some(command) = &args.outside.exec {
-        return judge::run(&args.outside, command, args.time, &args.out, args.format);
+        return judge::run(
+            &args.outside,
+            command,
+            &args.files,
+            args.time,
+            &args.out,
+            args.format,
+        );
     }
     let format = args.format.plain()?;
     let start = Instant::now();

@@ -23,7 +23,7 @@ use input::Input;
 #[derive(clap::Args)]
 #[command(
     mut_arg("scene", |arg| arg.value_name("SCENE|RECORD|CASE").help(
-        "A scene file (TOML), a record (as `sdop run --record` writes it), or a group of hard cases (data/hard_cases/*.toml)"
+        "A scene file (TOML), a record (as `sdop run --record` writes it), a case of the judge (as `sdop cases` and a miss of `sdop verify --exec` are written), or a group of hard cases (data/hard_cases/*.toml)"
     )),
     after_help = "Examples: sdop view data/scenes/paper-500.toml --open\n          sdop run data/scenes/paper-50.toml --record run.ndjson && sdop view run.ndjson --beside sphere"
 )]
@@ -49,6 +49,9 @@ pub struct Args {
     /// A second strategy on the same frames, or another record of them, side by side
     #[arg(long, value_name = "STRATEGY|RECORD")]
     beside: Option<String>,
+    /// What a program answered to a case (`sdop cases`) or record, one line a frame; - is standard input
+    #[arg(long, value_name = "FILE")]
+    answers: Option<PathBuf>,
     /// Which run of a group of hard cases
     #[arg(long, value_name = "N")]
     run: Option<usize>,
@@ -70,28 +73,29 @@ pub struct Args {
 /// A bad scene or record, settings that it can't have, a page that can't be written, no browser for a PNG.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let tier = args.machine.tier();
-    let (page, name, broken) = match input::read(&args.scene, args.run, tier)? {
-        Input::Show(mut show, broken) => {
-            let culled = culled(args, &show)?;
-            if !args.no_truth {
-                let bar = progress(show.frames.len() as u64, "which meshes meet");
-                decide_truth(&mut show, || bar.inc(1))?;
-                bar.finish_and_clear();
+    let (page, name, broken) =
+        match input::read(&args.scene, args.run, args.answers.as_deref(), tier)? {
+            Input::Show(mut show, broken) => {
+                let culled = culled(args, &show)?;
+                if !args.no_truth {
+                    let bar = progress(show.frames.len() as u64, "which meshes meet");
+                    decide_truth(&mut show, || bar.inc(1))?;
+                    bar.finish_and_clear();
+                }
+                let tier = (!args.no_prices).then_some(tier);
+                let page = Page::new(&show, &culled, tier)?;
+                (page, show.header.scene, broken)
             }
-            let tier = (!args.no_prices).then_some(tier);
-            let page = Page::new(&show, &culled, tier)?;
-            (page, show.header.scene, broken)
-        }
-        Input::Broken(error) => {
-            let path = args.scene.path();
-            let stem = path.file_stem().unwrap_or(path.as_os_str());
-            (
-                Page::broken(path, &error),
-                stem.to_string_lossy().into_owned(),
-                Some(error),
-            )
-        }
-    };
+            Input::Broken(error) => {
+                let path = args.scene.path();
+                let stem = path.file_stem().unwrap_or(path.as_os_str());
+                (
+                    Page::broken(path, &error),
+                    stem.to_string_lossy().into_owned(),
+                    Some(error),
+                )
+            }
+        };
     let written = write(args, &page, &name)?;
     match broken {
         Some(error) => Err(Report::from(error))

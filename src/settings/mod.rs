@@ -106,13 +106,14 @@ pub enum Interest {
     serde(deny_unknown_fields)
 )]
 pub struct ViewCone {
-    /// The body that looks: the apex is its translation, `direction` is in its frame.
+    /// The body that looks: the apex is its translation, `direction` is in its frame. It is of interest itself when its
+    /// sphere's centre lies in the cone, as one at its origin does.
     pub body: Option<u32>,
     /// The fixed apex, world frame, instead of `body`.
     pub apex: Option<[f32; 3]>,
     /// The cone's axis, any non-zero length; world frame with `apex`.
     pub direction: [f32; 3],
-    /// Angle between the axis and the rim, degrees, in (0, 180].
+    /// Angle between the axis and the rim, degrees, in (0, 180]. What lies on the rim is in the cone.
     pub half_angle: f32,
     /// How far it reaches from the apex; absent: without end.
     pub range: Option<f32>,

@@ -2,6 +2,7 @@
 
 use crate::bodies::Bodies;
 use crate::pairs::PairList;
+use crate::rounding::exp2;
 use crate::rounding::pose::rotation;
 use crate::settings::{Interest, ViewCone};
 
@@ -68,6 +69,10 @@ impl InterestFilter<'_> {
     }
 }
 
+/// More than the cosine of the half angle, the axis' length and a product may be off by: what lies on the rim is in the
+/// cone, sideways at 90° and straight behind at 180°.
+const RIM: f64 = exp2(-48);
+
 /// A view cone in the world frame.
 struct PlacedCone {
     apex: [f64; 3],
@@ -93,12 +98,13 @@ impl PlacedCone {
         Self {
             apex: apex.map(f64::from),
             direction: turned.map(|x| x / length),
-            cosine: libm::cos(f64::from(cone.half_angle).to_radians()),
+            cosine: libm::cos(f64::from(cone.half_angle).to_radians()) - RIM,
             range: cone.range.map_or(f64::INFINITY, f64::from),
         }
     }
 
-    /// The apex itself is in the cone, so a body that looks is always of interest.
+    /// The apex itself is in the cone, so a body that looks is of interest when its sphere's centre is its origin; elsewhere the
+    /// centre counts, as for others.
     fn sees(&self, centre: [f32; 3]) -> bool {
         let way: [f64; 3] = std::array::from_fn(|i| f64::from(centre[i]) - self.apex[i]);
         let distance = dot(way, way).sqrt();
@@ -159,6 +165,48 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Sideways at 90° and straight behind at 180° are on the rim, whatever an axis' length has rounded.
+    #[test]
+    fn what_lies_on_the_rim_is_in_the_cone() {
+        for apex in APEXES {
+            for (way, _) in WAYS {
+                let cone = |half_angle: f32| ViewCone {
+                    body: None,
+                    apex: Some(apex),
+                    direction: way,
+                    half_angle,
+                    range: None,
+                };
+                let at = |by: [f32; 3]| std::array::from_fn(|i| apex[i] + by[i]);
+                let (behind, [x, y, z]) = (at(way.map(|x| -x)), way);
+                let none = Bodies::default();
+                assert!(seen(&cone(180.0), &none, behind), "{apex:?} {way:?}");
+                assert!(!seen(&cone(179.99), &none, behind), "{apex:?} {way:?}");
+                for sideways in [[-y, x, 0.0], [0.0, -z, y], [z, 0.0, -x]] {
+                    assert!(seen(&cone(90.0), &none, at(sideways)), "{apex:?} {way:?}");
+                    assert!(!seen(&cone(89.99), &none, at(sideways)));
+                }
+            }
+        }
+    }
+
+    /// A mesh may lie off the origin that its cone looks from.
+    #[test]
+    fn a_body_that_looks_is_of_interest_when_its_centre_is_in_the_cone() {
+        let mut bodies = Bodies::default();
+        bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [5.0, 6.0, 7.0]);
+        let cone = ViewCone {
+            body: Some(0),
+            apex: None,
+            direction: [0.0, 0.0, 1.0],
+            half_angle: 30.0,
+            range: None,
+        };
+        assert!(seen(&cone, &bodies, [5.0, 6.0, 7.0]), "about its origin");
+        assert!(seen(&cone, &bodies, [5.0, 6.0, 8.0]), "in front of it");
+        assert!(!seen(&cone, &bodies, [5.0, 6.0, 6.0]), "behind it");
     }
 
     /// Bodies 2·10⁻⁵ of their distance to either side of the rim, where f32 can place them: an apex or an angle a little off

@@ -313,6 +313,80 @@ fn hard_cases_are_shown_run_by_run() {
 }
 
 #[test]
+fn a_case_is_shown_with_the_answers_to_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let cases = directory.path().join("cases");
+    let name = "hard/contained/0000";
+    stdout(&[
+        "cases",
+        "--out",
+        text(&cases),
+        "--claims",
+        "sphere",
+        "--case",
+        name,
+    ]);
+    let case = cases.join(format!("{name}.ndjson"));
+    let page = directory.path().join("page.html");
+    view(&[text(&case), "--out", text(&page)]);
+    let unasked = header(&page);
+    assert_eq!(unasked["runs"][0]["control"], true);
+    assert_eq!(
+        (&unasked["meet"], &unasked["layers"]),
+        (&"bounding balls".into(), &serde_json::json!(["spheres"]))
+    );
+    assert!(
+        unasked["messages"].to_string().contains("--answers FILE"),
+        "{}",
+        unasked["messages"]
+    );
+
+    let frames = unasked["frames"].as_u64().unwrap();
+    let answers = directory.path().join("answers");
+    let said: String = (0..frames)
+        .map(|frame| format!("{{\"frame\":{frame},\"pairs\":[]}}\n"))
+        .collect();
+    std::fs::write(&answers, said).unwrap();
+    view(&[
+        text(&case),
+        "--answers",
+        text(&answers),
+        "--out",
+        text(&page),
+    ]);
+    let asked = header(&page);
+    assert_eq!(asked["runs"][0]["control"], false);
+    assert!(
+        asked["pairs"].as_u64().unwrap() > 0,
+        "what meets is shown, and it is missed"
+    );
+
+    for (said, why) in [
+        ("{\"frame\":0,\"pairs\":[[1,0]]}\n", "larger"),
+        ("{\"frame\":0,\"pairs\":[[0,77]]}\n", "77"),
+        ("", "0 answers"),
+        ("skip too hard\n", "skipped: too hard"),
+        ("what?\n", "answers"),
+    ] {
+        std::fs::write(&answers, said).unwrap();
+        let message = refusal(&[
+            "view",
+            text(&case),
+            "--answers",
+            text(&answers),
+            "--out",
+            text(&page),
+        ]);
+        assert!(message.contains(why), "{said}: {message}");
+    }
+    let scene = "data/scenes/paper-50.toml";
+    let message = refusal(&["view", scene, "--answers", text(&answers)]);
+    assert!(message.contains("--answers is for a case"), "{message}");
+    let message = refusal(&["view", text(&case), "--strategy", "sphere"]);
+    assert!(message.contains("its poses are given"), "{message}");
+}
+
+#[test]
 fn without_a_browser_a_picture_is_refused_clearly() {
     let (directory, scene) = scene_file(SCENE);
     let page = directory.path().join("page.html");

@@ -54,7 +54,7 @@ fn cases_come_back_from_their_files_to_the_bit() {
             case.claims[0]
         };
         let bytes = Wire::Ndjson.encode(&case, claim).unwrap();
-        let back = ndjson::read(bytes.as_slice()).unwrap().case;
+        let back = ndjson::read(bytes.as_slice(), u64::MAX).unwrap().case;
         assert_eq!(back.name, case.name);
         assert_eq!(back.claims[0], claim);
         assert_eq!(back.shapes, case.shapes, "{}", case.name);
@@ -66,7 +66,7 @@ fn cases_come_back_from_their_files_to_the_bit() {
 fn damaged_case_files_are_refused_with_their_line() {
     let case = groups().unwrap()[0].case(0, None).unwrap();
     let text = String::from_utf8(Wire::Ndjson.encode(&case, Claim::Aabb).unwrap()).unwrap();
-    let problem = |text: &str| ndjson::read(text.as_bytes()).err().unwrap();
+    let problem = |text: &str| ndjson::read(text.as_bytes(), u64::MAX).err().unwrap();
     assert!(problem("").contains("no line"));
     assert!(problem("{}").contains("line 1"));
     assert!(problem(&text.replacen("sdop-record", "other", 1)).contains("other"));

@@ -33,12 +33,8 @@ pub struct Facts {
 impl Facts {
     /// Here and now.
     pub fn new(note: String) -> Self {
-        let arguments: Vec<_> = std::env::args().skip(1).map(quoted).collect();
         Self {
-            command: format!(
-                "cargo run --release -p sdop-peers{FEATURES} -- {}",
-                arguments.join(" ")
-            ),
+            command: command(),
             machine: Machine::here(Tier::detect()),
             compiled_for: match (
                 cfg!(target_feature = "avx512f"),
@@ -57,6 +53,15 @@ impl Facts {
     pub fn look_again(&mut self) {
         self.load[1] = load();
     }
+}
+
+/// `sdop record`'s command where it runs this, or this one's.
+fn command() -> String {
+    std::env::var("SDOP_COMMAND").unwrap_or_else(|_| {
+        let arguments: Vec<_> = std::env::args().skip(1).map(quoted).collect();
+        let arguments = arguments.join(" ");
+        format!("cargo run --release -p sdop-peers{FEATURES} -- {arguments}")
+    })
 }
 
 /// As a list in Markdown.

@@ -46,6 +46,9 @@ pub struct Args {
     out: Option<PathBuf>,
 }
 
+/// The longest case.
+const MOST_BYTES: u64 = 1 << 30;
+
 /// A scene whose shapes and bodies a case replaces.
 const SCENE: &str =
     "name = 'case'\nframes = 1\n[[bodies]]\nshape = 'box'\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n";
@@ -57,7 +60,7 @@ const SCENE: &str =
 pub fn answer(args: &AnswerArgs) -> miette::Result<()> {
     let entry = roster().into_iter().find(|entry| entry.name == args.engine);
     let entry = entry.ok_or_else(|| miette!("no engine is called `{}`", args.engine))?;
-    let read = ndjson::read(std::io::stdin().lock());
+    let read = ndjson::read(std::io::stdin().lock(), MOST_BYTES);
     let case = read.map_err(|problem| miette!("{problem}"))?.case;
     let mut scene = SceneFile::parse(SCENE, "case", Path::new(""))?.build()?;
     scene.shapes.clone_from(&case.shapes);

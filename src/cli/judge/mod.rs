@@ -100,6 +100,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 pub fn run(
     args: &Outside,
     command: &str,
+    files: &files::ReadArgs,
     time: Option<u64>,
     out: &Path,
     format: ReportFormat,
@@ -124,7 +125,8 @@ pub fn run(
     };
     let verdict = match &args.replay {
         Some(path) => {
-            examine_given(&program, &options, vec![read_case(path)?.case]).into_diagnostic()?
+            let case = read_case(path, files.max_bytes())?.case;
+            examine_given(&program, &options, vec![case]).into_diagnostic()?
         }
         None => {
             let bar = progress(0, "cases");
@@ -159,16 +161,17 @@ impl Outside {
     }
 }
 
-/// Reads a case, a record or one of Broadmark's recordings (`.aabbs`) from a file.
+/// Reads a case, a record or one of Broadmark's recordings (`.aabbs`) from a file. A recording, or a line of another, has at most
+/// `most` bytes.
 ///
 /// # Errors
 /// A file that can't be read or is none.
-pub fn read_case(path: &Path) -> miette::Result<ndjson::Read> {
+pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::Read> {
     if path
         .extension()
         .is_some_and(|extension| extension == "aabbs")
     {
-        let bytes = sdop::files::read(path, MAX_BYTES)
+        let bytes = sdop::files::read(path, most)
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot read {}", path.display()))?;
         let case = broadmark::read(&bytes).into_diagnostic()?;
@@ -178,7 +181,7 @@ pub fn read_case(path: &Path) -> miette::Result<ndjson::Read> {
     let file = File::open(path)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))?;
-    let read = ndjson::read(BufReader::new(file));
+    let read = ndjson::read(BufReader::new(file), most);
     read.map_err(|problem| {
         miette!(
             help = "`sdop cases --out DIR` writes cases, `sdop run SCENE --record FILE` records",
@@ -222,7 +225,7 @@ fn save(
         }
         let stem = out.join(STEM);
         lines.push(format!(
-            "written: {0}.toml (sdop run {0}.toml) and the case {0}.ndjson",
+            "written: {0}.toml (sdop run {0}.toml) and the case {0}.ndjson (sdop view {0}.ndjson)",
             stem.display()
         ));
         lines.push(format!(

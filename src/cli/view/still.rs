@@ -1,11 +1,14 @@
 //! A picture of the page, drawn by an installed Chromium.
 
 use std::ffi::OsStr;
+use std::fs::File;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop::files::Whole;
 use tempfile::TempDir;
 
 /// Commands that are Chromium, and where macOS and Windows keep it.
@@ -127,14 +130,16 @@ pub fn draw(
             browser.display()
         ));
     }
-    if let Some(directory) = picture.parent() {
-        std::fs::create_dir_all(directory).into_diagnostic()?;
-    }
     // The scratch directory may lie on another disk, where a file can't be renamed from.
-    std::fs::copy(&drawn, picture)
+    keep(&drawn, picture)
         .into_diagnostic()
-        .wrap_err_with(|| format!("cannot write {}", picture.display()))?;
-    Ok(())
+        .wrap_err_with(|| format!("cannot write {}", picture.display()))
+}
+
+fn keep(drawn: &Path, picture: &Path) -> io::Result<()> {
+    let mut whole = Whole::create(picture)?;
+    io::copy(&mut File::open(drawn)?, &mut whole)?;
+    whole.finish()
 }
 
 /// A directory that goes when the value does.

@@ -6,7 +6,7 @@ use super::claim::Claim;
 use super::score::Outcome;
 use super::shrink::Smallest;
 use super::verdict::Verdict;
-use super::wire::Wire;
+use super::wire::ndjson;
 use crate::bodies::Bodies;
 use crate::mesh::{MeshFormat, TriangleMesh, write_bytes};
 use crate::volume::Shape;
@@ -17,12 +17,12 @@ pub type Named = (String, Vec<u8>);
 /// The stem of a counter-example's files.
 pub const STEM: &str = "missed-pair";
 
-/// A counter-example as a case file (`.ndjson`) and as a scene that `sdop run` takes (`.toml`, and its meshes).
+/// A counter-example as a case file (`.ndjson`, with the pairs that were reported, for `sdop view` and `sdop check`) and as a scene that `sdop run` takes (`.toml`, and its meshes).
 ///
 /// # Errors
 /// A mesh that can't be written: none that was read.
 pub fn counter_example(smallest: &Smallest, claim: Claim) -> std::io::Result<Vec<Named>> {
-    let case = Wire::Ndjson.encode(&smallest.case, claim)?;
+    let case = ndjson::encode(&smallest.case, claim, &smallest.pairs)?;
     let mut files = vec![(format!("{STEM}.ndjson"), case)];
     let shapes = &smallest.case.shapes;
     files.push((

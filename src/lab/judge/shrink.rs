@@ -19,6 +19,8 @@ use crate::volume::{Origin, Shape, ShapeSpec};
 pub struct Smallest {
     /// The case.
     pub case: Case,
+    /// What is reported of it, frame by frame, sorted.
+    pub pairs: Vec<Vec<[u32; 2]>>,
     /// What is missed.
     pub miss: Miss,
     /// Why it should not be.
@@ -41,6 +43,7 @@ pub fn shrink(
             pair: [0, 0],
         },
         case: case.clone(),
+        pairs: Vec::new(),
     };
     if !search.try_case(case.clone()) {
         return None;
@@ -50,10 +53,13 @@ pub fn shrink(
     search.fewer_shapes();
     search.fewer_triangles();
     search.fewer_digits();
-    let Search { case, miss, .. } = search;
+    let Search {
+        case, pairs, miss, ..
+    } = search;
     let witness = Witness::of(claim, &case.shapes, &case.frames[miss.frame], miss.pair);
     Some(Smallest {
         case,
+        pairs,
         miss,
         witness,
     })
@@ -64,6 +70,7 @@ struct Search<'a> {
     claim: Claim,
     deadline: Instant,
     case: Case,
+    pairs: Vec<Vec<[u32; 2]>>,
     miss: Miss,
 }
 
@@ -76,11 +83,14 @@ impl Search<'_> {
         let Ok(answers) = self.subject.answer(&case, self.claim) else {
             return false;
         };
-        let Ok(Some(miss)) = judge_answers(&case, self.claim, &answers).map(|judged| judged.miss)
-        else {
+        let Ok(judged) = judge_answers(&case, self.claim, &answers) else {
+            return false;
+        };
+        let Some(miss) = judged.miss else {
             return false;
         };
         self.case = case;
+        self.pairs = judged.lists;
         self.miss = miss;
         true
     }
@@ -102,6 +112,7 @@ impl Search<'_> {
             return;
         }
         self.case.frames.truncate(self.miss.frame + 1);
+        self.pairs.truncate(self.miss.frame + 1);
         // A changing set of bodies has its frames in a chain.
         if self.case.frames.iter().any(|frame| frame.was.is_some()) {
             return;

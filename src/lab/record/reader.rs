@@ -9,6 +9,7 @@ use serde::Deserialize;
 use super::{BodyLine, FORMAT, FrameLine, Header, RecordError, ShapeLine, VERSION};
 use crate::bodies::Bodies;
 use crate::bodies::contract::{ContractError, check_bodies, check_poses};
+use crate::files::{MAX_BYTES, read_line};
 use crate::volume::Shape;
 
 /// A record being read.
@@ -53,7 +54,7 @@ impl<R: BufRead> Reader<R> {
     /// As [`Reader::open`].
     pub fn new(mut source: R, name: &str) -> Result<Self, RecordError> {
         let mut text = Vec::new();
-        let read = source.read_until(b'\n', &mut text);
+        let read = read_line(&mut source, MAX_BYTES, &mut text);
         read.map_err(|cause| RecordError::Unreadable {
             file: name.to_owned(),
             cause,
@@ -105,8 +106,7 @@ impl<R: BufRead> Reader<R> {
     pub fn next_frame(&mut self) -> Result<Option<FrameLine>, RecordError> {
         let mut text = Vec::new();
         loop {
-            text.clear();
-            let read = self.source.read_until(b'\n', &mut text);
+            let read = read_line(&mut self.source, MAX_BYTES, &mut text);
             let read = read.map_err(|cause| RecordError::Unreadable {
                 file: self.name.clone(),
                 cause,

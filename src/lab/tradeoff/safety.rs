@@ -54,7 +54,11 @@ pub struct SafetyRow {
     pub seconds: Quartiles,
 }
 
-/// Spheres alone and S-DOP with the scene's or-DOPs, in every tier that this CPU has, in turns on `count` sample frames
+/// The strategies whose price is asked: those of the volumes that [`without_margins`] shrinks, first one alone, then both. Volumes
+/// that are refitted each frame get their margins there.
+pub const STRATEGIES: [Strategy; 2] = [Strategy::Sphere, Strategy::SDopSequential];
+
+/// The [`STRATEGIES`] with the scene's or-DOPs, in every tier that this CPU has, in turns on `count` sample frames
 /// and those that follow them.
 ///
 /// # Errors
@@ -63,10 +67,7 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
     let bare: Vec<Shape> = scene.shapes.iter().map(without_margins).collect();
     let shapes = Shapes::new(scene.shapes.clone())?;
     let mut rows = Vec::new();
-    for (strategy, plain) in [
-        (Strategy::Sphere, reference::Strategy::Sphere),
-        (Strategy::SDopSequential, reference::Strategy::Sequential),
-    ] {
+    for strategy in STRATEGIES {
         let settings = CullSettings {
             strategy,
             updates: Updates::Eager,
@@ -74,7 +75,7 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
         };
         let mut labels = vec![(Arithmetic::F64, None)];
         let mut contestants: Vec<Box<dyn Contestant + '_>> =
-            vec![Box::new(InF64::new(&shapes, &settings, plain))];
+            vec![Box::new(InF64::new(&shapes, &settings))];
         for tier in Tier::available() {
             for (arithmetic, shapes) in
                 [(Arithmetic::F32, &scene.shapes), (Arithmetic::Bare, &bare)]
@@ -118,14 +119,13 @@ struct InF64<'a> {
 }
 
 impl<'a> InF64<'a> {
-    fn new(
-        shapes: &'a Shapes,
-        settings: &CullSettings,
-        strategy: reference::Strategy<'static>,
-    ) -> Self {
+    fn new(shapes: &'a Shapes, settings: &CullSettings) -> Self {
         Self {
             shapes,
-            strategy,
+            strategy: match settings.strategy {
+                Strategy::Sphere => reference::Strategy::Sphere,
+                _ => reference::Strategy::Sequential,
+            },
             overlap: overlap(settings.overlap),
             pairs: Vec::new(),
         }

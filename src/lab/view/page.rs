@@ -16,6 +16,7 @@ use super::show::{file_name, in_words};
 use super::terms::{self, TermCourse};
 use super::{Culled, Show};
 use crate::culler::CullError;
+use crate::lab::judge::Claim;
 use crate::lab::record::{EffectLine, FrameLine, OrDopLine, RecordError, ShapeLine};
 use crate::lab::simulate::SimulationError;
 use crate::settings::{Interest, Strategy};
@@ -81,6 +82,10 @@ struct Header {
     shapes: Vec<ShapeHeader>,
     runs: Vec<RunHeader>,
     truth: bool,
+    /// What is said to meet.
+    meet: &'static str,
+    /// Layers that are switched on at first.
+    layers: Vec<&'static str>,
     effects: Option<Vec<EffectLine>>,
     messages: Vec<String>,
     blocks: Vec<BlockHeader>,
@@ -391,10 +396,33 @@ impl Header {
             side: header.side,
             interest,
             bodies: header.bodies.len(),
+            meet: meet(show.claim),
+            layers: layers(show.claim),
             effects: header.effects.clone(),
             messages: show.messages.clone(),
             ..Self::default()
         }
+    }
+}
+
+/// What meets, in the page's words, when a claim holds of a pair.
+fn meet(claim: Claim) -> &'static str {
+    match claim {
+        Claim::Sphere => "bounding balls",
+        Claim::Aabb => "boxes",
+        Claim::OrDop => "or-DOPs",
+        Claim::Hull => "convex hulls",
+        Claim::Mesh => "meshes",
+    }
+}
+
+/// The volumes that a claim is about, by their names in the page's address.
+fn layers(claim: Claim) -> Vec<&'static str> {
+    match claim {
+        Claim::Sphere => vec!["spheres"],
+        Claim::Aabb => vec!["boxes"],
+        Claim::OrDop => vec!["ordops"],
+        Claim::Hull | Claim::Mesh => Vec::new(),
     }
 }
 

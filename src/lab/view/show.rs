@@ -6,6 +6,7 @@ use miette::Diagnostic as _;
 
 use crate::bodies::Bodies;
 use crate::culler::{CullError, Culler};
+use crate::lab::judge::{Case, Claim, truth::Truth};
 use crate::lab::measure::counts::Volume;
 use crate::lab::record::{FrameLine, Header, Reader, RecordError, VolumeLine};
 use crate::lab::scene::Scene;
@@ -27,6 +28,8 @@ pub struct Show {
     pub bodies: Bodies,
     /// The frames.
     pub frames: Vec<FrameLine>,
+    /// What `meets` says of a frame's pairs.
+    pub claim: Claim,
     /// What the page has to say of them.
     pub messages: Vec<String>,
 }
@@ -74,6 +77,7 @@ impl Show {
             shapes: reader.shapes().to_vec(),
             bodies: reader.bodies().clone(),
             frames,
+            claim: Claim::Mesh,
             messages: Vec::new(),
         };
         if let Some(error) = &broken {
@@ -110,6 +114,7 @@ impl Show {
             shapes: scene.shapes.clone(),
             bodies: scene.bodies.clone(),
             frames,
+            claim: Claim::Mesh,
             messages: Vec::new(),
         })
     }
@@ -136,6 +141,7 @@ impl Show {
             source: file_name(source),
             header: Header::new(name, 0, &shapes, &bodies),
             frames: frames.iter().enumerate().map(line).collect(),
+            claim: Claim::Mesh,
             messages: Vec::new(),
             shapes,
             bodies,
@@ -149,6 +155,60 @@ impl Show {
             (frame.pairs, frame.counters) = (pairs, Some(counters));
         }
         Ok(show)
+    }
+
+    /// A case of the judge, and the pairs that a program reported of each frame, sorted; none where it wasn't asked. A pair meets
+    /// when the claim holds of it.
+    ///
+    /// # Errors
+    /// In words: a set of bodies that changes, no frames, numbers that the exact reference refuses.
+    pub fn case(
+        case: &Case,
+        claim: Claim,
+        reported: Option<Vec<Vec<[u32; 2]>>>,
+        source: &Path,
+    ) -> Result<Self, String> {
+        let bodies = case
+            .frames
+            .first()
+            .ok_or("it has no frames")?
+            .bodies
+            .clone();
+        if let Some(n) = case.frames.iter().position(|frame| frame.was.is_some()) {
+            return Err(format!(
+                "its bodies change in frame {n}, and a page shows one set"
+            ));
+        }
+        let truth = Truth::new(claim, &case.shapes).map_err(|error| error.to_string())?;
+        let mut header = Header::new(&case.name, 0, &case.shapes, &bodies);
+        header.program = Some("the program".to_owned());
+        if reported.is_none() {
+            // Nobody was asked, so nothing is missed.
+            header.cull = Some(CullSettings {
+                strategy: Strategy::None,
+                ..CullSettings::default()
+            });
+        }
+        let mut reported = reported.into_iter().flatten();
+        let mut frames = Vec::new();
+        for (number, frame) in case.frames.iter().enumerate() {
+            frames.push(FrameLine {
+                frame: number as u32,
+                poses: FrameLine::poses(&frame.bodies),
+                pairs: reported.next().unwrap_or_default(),
+                counters: None,
+                meets: Some(truth.pairs(frame).map_err(|error| error.to_string())?),
+            });
+        }
+        Ok(Self {
+            source: file_name(source),
+            header,
+            shapes: case.shapes.clone(),
+            bodies,
+            frames,
+            claim,
+            messages: Vec::from_iter((!case.flag.is_empty()).then(|| case.flag.clone())),
+        })
     }
 
     /// The pairs as the record has them.

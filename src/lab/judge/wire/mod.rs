@@ -36,7 +36,7 @@ impl Wire {
     /// None that the case's numbers can cause.
     pub fn encode(self, case: &Case, claim: Claim) -> serde_json::Result<Vec<u8>> {
         match self {
-            Self::Ndjson => ndjson::encode(case, claim),
+            Self::Ndjson => ndjson::encode(case, claim, &[]),
             Self::Text => Ok(text::encode(case, claim).into_bytes()),
         }
     }

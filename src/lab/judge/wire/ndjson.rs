@@ -11,6 +11,7 @@ use serde_json::Value;
 use super::{Said, malformed};
 use crate::bodies::Bodies;
 use crate::bodies::contract::check_bodies;
+use crate::files::read_line;
 use crate::lab::judge::answer::{Answer, Trouble};
 use crate::lab::judge::case::{Case, Frame};
 use crate::lab::judge::claim::Claim;
@@ -53,8 +54,12 @@ struct CaseFrame {
     pairs: Option<Vec<[u32; 2]>>,
 }
 
-/// A whole case for one claim.
-pub(super) fn encode(case: &Case, claim: Claim) -> serde_json::Result<Vec<u8>> {
+/// A whole case for one claim; with the pairs that were reported of each frame, where there are any.
+pub(in crate::lab::judge) fn encode(
+    case: &Case,
+    claim: Claim,
+    reported: &[Vec<[u32; 2]>],
+) -> serde_json::Result<Vec<u8>> {
     let empty = Bodies::default();
     let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
     let others = case.claims.iter().copied().filter(|other| *other != claim);
@@ -72,7 +77,7 @@ pub(super) fn encode(case: &Case, claim: Claim) -> serde_json::Result<Vec<u8>> {
             bodies: frame.was.as_deref().map(|was| changed(&frame.bodies, was)),
             poses: FrameLine::poses(&frame.bodies),
             boxes: (claim == Claim::Aabb).then(|| frame.boxes.clone()),
-            pairs: None,
+            pairs: reported.get(number).cloned(),
         };
         serde_json::to_writer(&mut bytes, &line)?;
         bytes.push(b'\n');
@@ -95,15 +100,21 @@ pub struct Read {
     pub pairs: Vec<Option<Vec<[u32; 2]>>>,
 }
 
-/// Reads a case or a record.
+/// Reads a case or a record whose lines have at most `most` bytes.
 ///
 /// # Errors
 /// A line that is none, with its number and what is wrong.
-pub fn read(input: impl BufRead) -> Result<Read, String> {
-    let mut lines = input
-        .lines()
-        .enumerate()
-        .filter(|(_, line)| !matches!(line, Ok(line) if line.trim().is_empty()));
+pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
+    let lines = std::iter::from_fn(|| {
+        let mut line = Vec::new();
+        match read_line(&mut input, most, &mut line) {
+            Ok(0) => None,
+            read => Some(read.map(|_| line)),
+        }
+    });
+    let mut lines = (1..)
+        .zip(lines)
+        .filter(|(_, line)| !matches!(line, Ok(line) if line.trim_ascii().is_empty()));
     let Some((_, first)) = lines.next() else {
         return Err("no line in it: the first has the shapes and bodies".to_owned());
     };
@@ -127,8 +138,8 @@ pub fn read(input: impl BufRead) -> Result<Read, String> {
         .map_err(|e| format!("line 1: {e}"))?;
     let (mut bodies, mut frames, mut pairs) = (header.bodies, Vec::new(), Vec::new());
     for (number, line) in lines {
-        let at = |problem: String| format!("line {}: {problem}", number + 1);
-        let line: CaseFrame = parse(number + 1, line)?;
+        let at = |problem: String| format!("line {number}: {problem}");
+        let line: CaseFrame = parse(number, line)?;
         let was = line.bodies.map(|changed| {
             let (set, was) = changed
                 .into_iter()
@@ -174,10 +185,10 @@ pub fn read(input: impl BufRead) -> Result<Read, String> {
 
 fn parse<T: for<'a> Deserialize<'a>>(
     number: usize,
-    line: std::io::Result<String>,
+    line: std::io::Result<Vec<u8>>,
 ) -> Result<T, String> {
     let line = line.map_err(|e| format!("line {number}: {e}"))?;
-    serde_json::from_str(&line).map_err(|e| format!("line {number}: {e}"))
+    serde_json::from_slice(&line).map_err(|e| format!("line {number}: {e}"))
 }
 
 fn checked(boxes: Vec<WorldBox>, bodies: usize) -> Result<Vec<WorldBox>, String> {

@@ -10,13 +10,26 @@ const FLIGHT = 600; // milliseconds
 /** Where the camera looks from at first; the whole box is in view. */
 const HOME = new Vector3(0.55, 0.42, 1).normalize();
 
+/** The part of the view's width and height that the box fills; the legend has room under it. */
+const FILLED = 0.9;
+
 export class Camera {
   readonly lens = new PerspectiveCamera(40, 1, EXTENT / 1000, 1000 * EXTENT);
   private readonly controls: OrbitControls;
   private flight: { start: number; from: [Vector3, Vector3]; to: [Vector3, Vector3] } | null = null;
+  /** Position and target that `home` took last. */
+  private readonly rest: [Vector3, Vector3] = [new Vector3(), new Vector3()];
 
-  /** `changed` is called whenever the picture must be drawn again, `moved` when a movement by hand has ended. */
-  constructor(element: HTMLElement, changed: () => void, moved: () => void) {
+  /**
+   * `headroom` is the part of the view's height that titles take. `changed` is called whenever the picture must be drawn again, `moved` when a
+   * movement by hand has ended.
+   */
+  constructor(
+    element: HTMLElement,
+    private readonly headroom: number,
+    changed: () => void,
+    moved: () => void,
+  ) {
     this.controls = new OrbitControls(this.lens, element);
     this.controls.minDistance = EXTENT / 500;
     this.controls.maxDistance = 200 * EXTENT;
@@ -28,34 +41,68 @@ export class Camera {
     this.home();
   }
 
-  /** Sees the whole box. */
+  /** Sees the whole box, in the middle and as large as fits. */
   home(): void {
     this.flight = null;
-    this.controls.target.set(0, 0, 0);
-    this.lens.position.copy(HOME).multiplyScalar(this.distanceFor(1.72 * EXTENT));
+    const right = new Vector3(0, 1, 0).cross(HOME).normalize();
+    const up = HOME.clone().cross(right);
+    const slope = Math.tan((this.lens.fov * Math.PI) / 360);
+    const [across, rise] = [FILLED * slope * this.lens.aspect, FILLED * slope * (1 - this.headroom)];
+    const [target, position] = [new Vector3(), new Vector3()];
+    // What is near looks larger, so the box isn't in the middle of the view when the camera looks at its centre.
+    for (let turn = 0; turn < 8; turn++) {
+      const seen = CORNERS.map((corner) => corner.clone().sub(target));
+      const need = (c: Vector3) => c.dot(HOME) + Math.max(Math.abs(c.dot(right)) / across, Math.abs(c.dot(up)) / rise);
+      const distance = Math.max(...seen.map(need));
+      position.copy(target).addScaledVector(HOME, distance);
+      for (const axis of [right, up]) {
+        const slopes = seen.map((c) => c.dot(axis) / (distance - c.dot(HOME)));
+        target.addScaledVector(axis, ((Math.min(...slopes) + Math.max(...slopes)) / 2) * distance);
+      }
+    }
+    const under = up.multiplyScalar(this.headroom * slope * position.distanceTo(target));
+    target.add(under);
+    this.controls.target.copy(target);
+    this.lens.position.copy(position.add(under));
     this.controls.update();
+    this.rest[0].copy(this.lens.position);
+    this.rest[1].copy(target);
+  }
+
+  /** From the point looked at to the camera. */
+  get back(): Vector3 {
+    return this.lens.position.clone().sub(this.controls.target);
+  }
+
+  /** Whether the camera is where `home` took it. */
+  private get atHome(): boolean {
+    const near = (a: Vector3, b: Vector3) => a.distanceTo(b) < EXTENT / 1e5;
+    return near(this.lens.position, this.rest[0]) && near(this.controls.target, this.rest[1]) && !this.flight;
   }
 
   resize(aspect: number): void {
-    const ratio = this.distanceFor(1);
+    const { atHome, widening } = this;
     this.lens.aspect = aspect;
     this.lens.updateProjectionMatrix();
-    // What was in view stays in view on a narrower screen.
-    const offset = this.lens.position.clone().sub(this.controls.target);
-    this.lens.position.copy(this.controls.target).add(offset.multiplyScalar(this.distanceFor(1) / ratio));
-    this.controls.update();
+    if (atHome) this.home();
+    else this.zoom(this.widening / widening);
+  }
+
+  /** How many times farther away the camera must be on a view that is higher than wide, for the same to be in view. */
+  private get widening(): number {
+    const { fov, aspect } = this.lens;
+    const half = (fov * Math.PI) / 360;
+    return Math.sin(half) / Math.sin(Math.min(half, Math.atan(Math.tan(half) * aspect)));
   }
 
   /** The distance from which a ball of this radius fills the view. */
   private distanceFor(radius: number): number {
-    const half = (this.lens.fov * Math.PI) / 360;
-    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.lens.aspect));
-    return radius / Math.sin(narrow);
+    return (radius * this.widening) / Math.sin((this.lens.fov * Math.PI) / 360);
   }
 
   /** Flies to a ball; jumps where the person wants less motion. */
   flyTo(centre: Vector3, radius: number): void {
-    const away = this.lens.position.clone().sub(this.controls.target).normalize();
+    const away = this.back.normalize();
     const target = centre.clone();
     const position = target.clone().addScaledVector(away, this.distanceFor(Math.max(2.2 * radius, EXTENT / 200)));
     if (reducedMotion()) {
@@ -82,7 +129,7 @@ export class Camera {
 
   /** Turns by these angles, in radians. */
   orbit(right: number, up: number): void {
-    const offset = this.lens.position.clone().sub(this.controls.target);
+    const offset = this.back;
     const radius = offset.length();
     const polar = Math.acos(Math.max(-1, Math.min(1, offset.y / radius)));
     const azimuth = Math.atan2(offset.x, offset.z) + right;
@@ -103,7 +150,7 @@ export class Camera {
 
   /** Nearer below 1, farther above. */
   zoom(factor: number): void {
-    const offset = this.lens.position.clone().sub(this.controls.target).multiplyScalar(factor);
+    const offset = this.back.multiplyScalar(factor);
     this.lens.position.copy(this.controls.target).add(offset);
     this.controls.update();
   }
@@ -115,16 +162,21 @@ export class Camera {
     this.controls.update();
   }
 
-  /** Position, then target, as six numbers. */
-  get state(): number[] {
-    const end = this.flight ? this.flight.to : [this.lens.position, this.controls.target];
-    return [...end[0].toArray(), ...end[1].toArray()];
+  /** Position, then target, as six numbers, as on a view that is as wide as high; none while the whole box is seen. */
+  get state(): number[] | null {
+    if (this.atHome) return null;
+    const [position, target] = this.flight ? this.flight.to : [this.lens.position, this.controls.target];
+    const offset = position.clone().sub(target).divideScalar(this.widening);
+    return [...target.clone().add(offset).toArray(), ...target.toArray()];
   }
 
   set state(numbers: number[]) {
     this.flight = null;
     this.lens.position.fromArray(numbers, 0);
     this.controls.target.fromArray(numbers, 3);
-    this.controls.update();
+    this.zoom(this.widening);
   }
 }
+
+/** Of the box from −EXTENT to EXTENT. */
+const CORNERS = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => new Vector3(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1).multiplyScalar(EXTENT));

@@ -27,20 +27,28 @@ export class Charts {
     private readonly element: HTMLElement,
     private readonly frames: number,
     private readonly seek: (frame: number) => void,
+    /** Whose courses are dashed. */
+    private readonly second: string | null,
   ) {}
 
   add(chart: Chart): void {
+    if (chart.courses.length === 1 && chart.courses[0].values.every((x) => x === chart.courses[0].values[0])) {
+      this.addConstant(chart);
+      return;
+    }
     const figure = document.createElement("figure");
     figure.className = "chart";
     const caption = document.createElement("figcaption");
     caption.append(`${chart.title}:`);
-    for (const course of chart.courses) {
+    for (const course of chart.courses.filter(({ dashed }) => !dashed)) {
       const entry = document.createElement("span");
       const mark = document.createElement("i");
       mark.style.background = `var(${course.colour})`;
       entry.append(mark, course.name);
       caption.append(entry);
     }
+    const dashed = chart.courses.some((course) => course.dashed) && this.second;
+    if (dashed) caption.append(`(dashed: ${dashed})`);
     const field = document.createElement("div");
     const canvas = document.createElement("canvas");
     const cursor = document.createElement("b");
@@ -50,7 +58,8 @@ export class Charts {
     const most = Math.max(0, ...sums.map((course) => maximum(course.values)));
     top.textContent = `${number.format(most)}${chart.unit}`;
     canvas.setAttribute("role", "img");
-    const ranges = chart.courses.map((c) => `${c.name} at most ${number.format(maximum(c.values))}${chart.unit}`);
+    const whose = ({ name, dashed }: Course) => (dashed ? `${name} of ${this.second}` : name);
+    const ranges = chart.courses.map((c) => `${whose(c)} at most ${number.format(maximum(c.values))}${chart.unit}`);
     canvas.setAttribute("aria-label", `${chart.title} over the frames: ${ranges.join(", ")}`);
     field.append(canvas, top, cursor);
     figure.append(caption, field);
@@ -60,6 +69,14 @@ export class Charts {
     const draw = () => paint(canvas, sums, most, chart.stacked === true);
     this.draws.push(draw);
     new ResizeObserver(draw).observe(canvas);
+  }
+
+  /** What never changes is a line of text. */
+  private addConstant({ title, unit, courses: [{ name, values }] }: Chart): void {
+    const text = document.createElement("p");
+    text.className = "constant";
+    text.textContent = `${title}: ${number.format(values[0])}${unit} ${name} in every frame`;
+    this.element.append(text);
   }
 
   /** Moves the line to a frame. */

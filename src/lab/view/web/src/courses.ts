@@ -1,11 +1,12 @@
 // Which numbers the charts show.
 
 import { type Chart, Charts } from "./charts.ts";
+import { TERMS } from "./panel.ts";
 import type { Counts, Run } from "./run.ts";
 
 /** Builds the charts of a run. A second strategy's courses are dashed. */
 export function buildCharts(run: Run, element: HTMLElement, seek: (frame: number) => void): Charts {
-  const charts = new Charts(element, run.frames, seek);
+  const charts = new Charts(element, run.frames, seek, run.header.runs[1]?.name ?? null);
   const counts = run.header.runs.map((_, side) => Array.from({ length: run.frames }, (_, frame) => run.counts(frame, side)));
   const chart = (title: string, unit: string, courses: [string, string, (c: Counts) => number | null][]): void => {
     const made: Chart = { title, unit, courses: [] };
@@ -14,8 +15,7 @@ export function buildCharts(run: Run, element: HTMLElement, seek: (frame: number
         if (list.some((c) => get(c) === null)) continue;
         // The truth is one for both strategies.
         if (side > 0 && name === "true") continue;
-        const label = counts.length > 1 && name !== "true" ? `${name}, ${run.header.runs[side].name}` : name;
-        made.courses.push({ name: label, colour, values: Float64Array.from(list, (c) => get(c)!), dashed: side > 0 });
+        made.courses.push({ name, colour, values: Float64Array.from(list, (c) => get(c)!), dashed: side > 0 });
       }
     });
     if (made.courses.length > 0) charts.add(made);
@@ -30,17 +30,12 @@ export function buildCharts(run: Run, element: HTMLElement, seek: (frame: number
   chart("Nv", "", [["tests", "--accent", (c) => c.nv]]);
   counts.forEach((list, side) => {
     if (list.some((c) => c.terms === null)) return;
-    const term = (at: 0 | 1 | 2) => Float64Array.from(list, (c) => 1e6 * c.terms![at]);
     const title = counts.length > 1 ? `T, ${run.header.runs[side].name}` : "T";
     charts.add({
       title,
       unit: " µs",
       stacked: true,
-      courses: [
-        { name: "Nu·Cu", colour: "--accent", values: term(0) },
-        { name: "F", colour: "--finding", values: term(1) },
-        { name: "Nv·Cv", colour: "--reported", values: term(2) },
-      ],
+      courses: TERMS.map((term, at) => ({ ...term, values: Float64Array.from(list, (c) => 1e6 * c.terms![at]) })),
     });
   });
   return charts;

@@ -65,6 +65,10 @@ export interface Header {
   runs: RunHeader[];
   /** Whether pairs are known to meet or not, in exact arithmetic. */
   truth: boolean;
+  /** What is said to meet, such as meshes. */
+  meet: string;
+  /** Layers that are switched on at first. */
+  layers: string[];
   effects: { name: string; on: boolean }[] | null;
   /** What the reader of the record had to say. */
   messages: string[];

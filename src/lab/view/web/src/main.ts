@@ -22,8 +22,9 @@ function start(): void {
   let run: Run;
   try {
     const { header, blocks } = readDocument(document);
+    // Such a page has no blocks either.
+    if (header.frames === 0) throw new DataError(header.messages.join("\n") || "the run has no frames");
     run = new Run(header, blocks);
-    if (run.frames === 0) throw new DataError(header.messages.join("\n") || "the run has no frames");
   } catch (error) {
     if (!(error instanceof DataError)) throw error;
     document.body.classList.add("broken");

@@ -1,7 +1,7 @@
 // What can be switched on over the meshes: spheres, or-DOPs, world boxes, pairs, grid cells.
 
 import { Group } from "three";
-import type { Color } from "three";
+import type { Color, Vector3 } from "three";
 import type { Bodies } from "./bodies.ts";
 import { cubeLines, extent, plus, rotate, sphereLines, type Triple, turnFromX, UPRIGHT } from "./figures.ts";
 import { Wires } from "./lines.ts";
@@ -24,16 +24,23 @@ export interface Moment {
   theme: Theme;
   /** A body's colour, or null where nothing of it is to be drawn. */
   colour: (body: number) => Color | null;
+  /** Where the camera is. */
+  eye: Vector3;
 }
 
-const SEGMENT = [-1, 0, 0, 1, 0, 0];
+/** Five lines close together: WebGL draws none thicker than a pixel. */
+const SEGMENT = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]].flatMap(([y, z]) => [-1, y, z, 1, y, z]);
+
+/** Half the thickness of a line, as a part of its distance from the eye. */
+const THIN = 7e-4;
 
 export class Overlays extends Group {
   private readonly spheres = new Wires(sphereLines(), 0.55);
   private readonly ordops: Wires[];
   private readonly boxes = new Wires(cubeLines(), 0.7);
   private readonly cells = new Wires(cubeLines(), 0.35);
-  private readonly pairs = new Wires(SEGMENT, 0.9);
+  private readonly halos = new Wires(SEGMENT, 0.9, true);
+  private readonly pairs = new Wires(SEGMENT, 0.9, true);
   private readonly marks = new Wires(sphereLines(40), 1, true);
   private readonly markedPairs = new Wires(SEGMENT, 1, true);
   private readonly hulls: Float64Array[];
@@ -59,13 +66,13 @@ export class Overlays extends Group {
       Float64Array.from(run.blocks.get("hull")!.subarray(3 * start, 3 * (start + count))),
     );
     this.widest = Math.max(0, ...Array.from(new Set(run.shapeOf), (shape) => shapes[shape].ball[3]));
-    this.add(this.spheres, ...this.ordops, this.boxes, this.cells, this.pairs, this.marks, this.markedPairs);
+    this.add(this.spheres, ...this.ordops, this.boxes, this.cells, this.halos, this.pairs, this.marks, this.markedPairs);
   }
 
   /** Draws what is switched on for the moment; `marked` are bodies with a ring, each with its colour. */
   update(moment: Moment, marked: Map<number, Color>): void {
     const { switches } = moment;
-    const all = [this.spheres, ...this.ordops, this.boxes, this.cells, this.pairs, this.marks, this.markedPairs];
+    const all = [this.spheres, ...this.ordops, this.boxes, this.cells, this.halos, this.pairs, this.marks, this.markedPairs];
     for (const wires of all) wires.begin();
     if (switches.spheres) this.addSpheres(moment);
     if (switches.ordops) this.addOrDops(moment);
@@ -135,18 +142,22 @@ export class Overlays extends Group {
     const { states, spheres } = moment.theme;
     for (const { i, j, flags } of this.run.pairsAt(moment.frame)) {
       const state = this.run.state(flags, moment.run);
-      if (state === State.Missed) this.line(this.markedPairs, i, j, states[state]);
+      if (state === State.Missed) this.line(this.markedPairs, i, j, states[state], moment);
       if (!moment.switches.pairs || state === State.Idle) continue;
       if (moment.picked !== null && i !== moment.picked && j !== moment.picked) continue;
-      this.line(this.pairs, i, j, state === State.Spheres ? spheres : states[state]);
+      this.line(this.pairs, i, j, state === State.Spheres ? spheres : states[state], moment);
     }
   }
 
-  private line(wires: Wires, i: number, j: number, colour: Color): void {
+  private line(wires: Wires, i: number, j: number, colour: Color, { eye, theme }: Moment): void {
     const [a, b] = [this.bodies.placement(i).offset, this.bodies.placement(j).offset];
     const half = [0, 1, 2].map((axis) => (b[axis] - a[axis]) / 2) as Triple;
     const length = Math.hypot(...half);
     const middle = [0, 1, 2].map((axis) => (a[axis] + b[axis]) / 2) as Triple;
-    wires.put(middle, turnFromX(half, length), [length, 1, 1], colour);
+    const thickness = THIN * Math.hypot(middle[0] - eye.x, middle[1] - eye.y, middle[2] - eye.z);
+    const turn = turnFromX(half, length);
+    // On bodies of its own colour a line is seen by the ground's colour about it.
+    this.halos.put(middle, turn, [length, 3 * thickness, 3 * thickness], theme.background);
+    wires.put(middle, turn, [length, thickness, thickness], colour);
   }
 }

@@ -2,7 +2,6 @@
 
 import { LAYERS, type Layer } from "./overlays.ts";
 import { type Counts, type Pair, type Run, State } from "./run.ts";
-import { STATE_NAMES } from "./theme.ts";
 
 /** Rows of a list; a click on a body shows its own pairs alone. */
 const ROWS = 60;
@@ -10,7 +9,7 @@ const ROWS = 60;
 /** Cells of the table, whose ids tests read. */
 const CELLS = ["nu", "nv", "hits", "reported", "true", "t"] as const;
 
-const LAYER_NAMES: Record<Layer, string> = {
+export const LAYER_NAMES: Record<Layer, string> = {
   spheres: "spheres",
   ordops: "or-DOPs",
   boxes: "world boxes",
@@ -26,6 +25,13 @@ export const STATE_COLOURS: Record<State, string> = {
   [State.Meets]: "var(--meets)",
   [State.Missed]: "var(--missed)",
 };
+
+/** T's terms, in the order of the block `terms-…`. */
+export const TERMS = [
+  { name: "Nu·Cu", colour: "--update" },
+  { name: "F", colour: "--find" },
+  { name: "Nv·Cv", colour: "--test" },
+];
 
 const grouped = new Intl.NumberFormat("en");
 const short = new Intl.NumberFormat("en", { maximumSignificantDigits: 4 });
@@ -53,6 +59,7 @@ function create(tag: string, text = "", attributes: Record<string, string> = {})
 export class Panel {
   private readonly layers = new Map<Layer, HTMLElement>();
   private readonly sideButtons = new Map<string, HTMLElement>();
+  private readonly legend = new Map<State, HTMLElement>();
 
   constructor(
     private readonly run: Run,
@@ -61,7 +68,8 @@ export class Panel {
     const { header } = run;
     element("scene").textContent = header.scene;
     const fixed = header.bodies - header.moving;
-    const size = `${grouped.format(header.bodies)} bodies, ${grouped.format(fixed)} of them at rest, ${grouped.format(header.frames)} frames`;
+    const atRest = fixed > 0 && header.frames > 1 ? [`${grouped.format(fixed)} of them at rest`] : [];
+    const size = [counted(header.bodies, "bodies", "body"), ...atRest, counted(header.frames, "frames", "frame")].join(", ");
     element("source").textContent = [size, header.seed && `seed ${header.seed}`, header.source].filter(Boolean).join("; ");
     document.title = `${header.scene} – sdop view`;
     element("last").textContent = String(run.numbers[run.frames - 1]);
@@ -83,6 +91,10 @@ export class Panel {
       }
     });
     element("numbers-head").append(head);
+    const { meet } = this.run.header;
+    const row = element("row-true");
+    row.querySelector("th")!.title = `Pairs whose ${meet} meet, in exact arithmetic`;
+    if (meet !== "meshes") row.querySelector("small")!.textContent = `pairs of ${meet} meet`;
   }
 
   private buildSwitches(): void {
@@ -138,15 +150,44 @@ export class Panel {
     element("missed-section").hidden = total === 0;
   }
 
+  /** The colours' meaning, each with its number of pairs in this frame. */
   private buildLegend(): void {
     const states = [State.Idle, State.Reported];
     if (this.run.header.truth) states.push(State.Meets, State.Missed);
     for (const state of states) {
-      const name = state === State.Reported && this.run.header.truth ? "reported, doesn't meet" : STATE_NAMES[state];
       const entry = create("li");
-      entry.append(create("i", "", { style: `background: ${STATE_COLOURS[state]}` }), name);
+      entry.append(create("i", "", { style: `background: ${STATE_COLOURS[state]}` }));
+      if (state === State.Idle && this.run.fixed.includes(1)) {
+        entry.append(create("i", "", { style: "background: var(--fixed)" }), "no pair (darker: static)");
+      } else {
+        const count = create("b");
+        entry.append(count, this.describe(state));
+        this.legend.set(state, count);
+      }
       element("legend").append(entry);
     }
+  }
+
+  private showLegend(frame: number, sides: number[]): void {
+    const counts = sides.map((side) => this.run.counts(frame, side));
+    const [one] = counts;
+    const alone = sides.length === 1;
+    const put = (state: State, count: number) => {
+      const place = this.legend.get(state);
+      if (place) place.textContent = alone ? `${grouped.format(count)} ` : "";
+    };
+    put(State.Reported, one.apart);
+    put(State.Meets, one.true === null ? 0 : one.true - one.missed);
+    put(State.Missed, one.missed);
+    const { runs, truth } = this.run.header;
+    const titles = counts.map((count, at) => {
+      const known = truth ? `${grouped.format(count.apart)} of them apart, ${grouped.format(count.missed)} missed` : "";
+      const text = [`${grouped.format(count.reported)} reported`, known].filter(Boolean).join(", ");
+      const title = create("span", runs[sides[at]].name);
+      title.append(create("small", ` ${text}`));
+      return title;
+    });
+    element("sides").replaceChildren(...(runs.length > 1 ? titles : []));
   }
 
   private row(frame: number, { i, j }: Pair, state: State, note: string): HTMLElement {
@@ -176,8 +217,7 @@ export class Panel {
       for (const cell of CELLS) element(cell + suffix).textContent = values[cell];
     });
     element("caption").textContent = this.caption(frame, sides[0]);
-    this.showTerms(this.run.counts(frame, sides[0]), sides[0]);
-    this.showVolumes(frame, sides[0]);
+    this.showLegend(frame, sides);
   }
 
   private caption(frame: number, side: number): string {
@@ -192,13 +232,24 @@ export class Panel {
 
   private showTerms({ terms }: Counts, side: number): void {
     const { construct, volumes } = this.run.header.runs[side];
-    const text = element("terms");
+    const place = element("terms");
     if (!terms || construct === null) {
-      text.textContent = volumes ? "T is not known: no prices" : "Nu, Nv, hits and T are not known: the record has no counters";
+      place.textContent = volumes ? "T is not known: no prices" : "Nu, Nv, hits and T are not known: the record has no counters";
       return;
     }
-    const [update, find, test] = terms.map((x) => short.format(1e6 * x));
-    text.textContent = `T = Nu·Cu ${update} + F ${find} + Nv·Cv ${test} µs; Co ${short.format(1e6 * construct)} µs, once`;
+    const bar = create("div", "", { class: "bar", "aria-hidden": "true" });
+    const list = create("ul");
+    terms.forEach((seconds, at) => {
+      const { name, colour } = TERMS[at];
+      bar.append(create("i", "", { style: `background: var(${colour}); flex-grow: ${1e6 * seconds}` }));
+      const entry = create("li");
+      entry.append(create("i", "", { style: `background: var(${colour})` }), `${name} `, create("b", short.format(1e6 * seconds)), " µs");
+      list.append(entry);
+    });
+    const once = create("li", "and once, Co ");
+    once.append(create("b", short.format(1e3 * construct)), " ms");
+    list.append(once);
+    place.replaceChildren(bar, list);
   }
 
   private showVolumes(frame: number, side: number): void {
@@ -218,8 +269,10 @@ export class Panel {
     element("volumes").replaceChildren(...rows);
   }
 
-  /** The lists of a frame: slower, when the frame stays. */
-  showPairs(frame: number, side: number, picked: number | null): void {
+  /** What of a frame takes longer to show, for when it stays: terms, volumes, pairs. */
+  showLists(frame: number, side: number, picked: number | null): void {
+    this.showTerms(this.run.counts(frame, side), side);
+    this.showVolumes(frame, side);
     const shown: [State, Pair][] = [];
     for (const pair of this.run.pairsAt(frame)) {
       const state = this.run.state(pair.flags, side);
@@ -235,7 +288,15 @@ export class Panel {
   }
 
   private describe(state: State): string {
-    return state === State.Reported && this.run.header.truth ? "reported, doesn't meet" : STATE_NAMES[state];
+    const { truth } = this.run.header;
+    const names: Record<State, string> = {
+      [State.Idle]: "no pair",
+      [State.Spheres]: truth ? "spheres overlap, culled" : "spheres overlap",
+      [State.Reported]: truth ? "reported, but apart" : "reported",
+      [State.Meets]: "truly meet",
+      [State.Missed]: "missed",
+    };
+    return names[state];
   }
 
   showPicked(picked: number | null): void {
@@ -250,10 +311,8 @@ export class Panel {
   showSwitches(switches: Record<Layer, boolean>, sides: string): void {
     for (const [layer, button] of this.layers) button.setAttribute("aria-pressed", String(switches[layer]));
     for (const [name, button] of this.sideButtons) button.setAttribute("aria-pressed", String(name === sides));
-    const { runs } = this.run.header;
-    const names = sides === "both" ? runs.map((run) => run.name) : runs.length > 1 ? [runs[sides === "second" ? 1 : 0].name] : [];
-    element("sides").replaceChildren(...names.map((name) => create("span", name)));
   }
 }
 
+const counted = (n: number, many: string, one: string): string => `${grouped.format(n)} ${n === 1 ? one : many}`;
 const optional = (value: number | null): string => (value === null ? "–" : grouped.format(value));

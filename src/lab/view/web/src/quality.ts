@@ -9,7 +9,7 @@ export interface Quality {
 
 /** From the finest to the cheapest. Factors of sharpness apply to the screen's own pixels, at most two per CSS pixel. */
 const LADDER: Quality[] = [
-  { sharpness: 2, coarseness: 1 },
+  { sharpness: 2, coarseness: 0.4 },
   { sharpness: 1, coarseness: 1 },
   { sharpness: 1, coarseness: 2 },
   { sharpness: 0.7, coarseness: 2.5 },
@@ -20,11 +20,14 @@ const LADDER: Quality[] = [
 /** The longest mean time between pictures that is smooth enough, in milliseconds. */
 const SMOOTH = 26;
 
-/** Pictures in a mean. */
+/** What nobody waits a whole window for, in milliseconds. */
+const FAR_TOO_LONG = 4 * SMOOTH;
+
+/** Times in a mean. */
 const WINDOW = 6;
 
 export class Pace {
-  private level = 0;
+  private level = 1;
   private times: number[] = [];
 
   /** What to draw with, now. Between pictures of one movement the time is measured. */
@@ -34,8 +37,10 @@ export class Pace {
       return scaled(LADDER[0]);
     }
     this.times.push(now);
-    if (this.times.length > WINDOW) {
-      const mean = (now - this.times[0]) / WINDOW;
+    const gaps = this.times.length - 1;
+    const slow = gaps >= 2 && now - this.times[gaps - 2] > 2 * FAR_TOO_LONG;
+    if (gaps === WINDOW || slow) {
+      const mean = (now - this.times[0]) / gaps;
       // One step per doubling of the time.
       const steps = Math.ceil(Math.log2(mean / SMOOTH));
       if (steps > 0) this.level = Math.min(LADDER.length - 1, this.level + steps);

@@ -9,6 +9,8 @@ export interface Counts {
   /** Pairs that the first volume test let through. */
   hits: number | null;
   reported: number;
+  /** Reported pairs whose meshes don't meet, or all of them where the truth isn't known. */
+  apart: number;
   true: number | null;
   missed: number;
   /** Seconds: Nu·Cu, F, Nv·Cv. */
@@ -106,12 +108,14 @@ export class Run {
 
   /** What the panel shows of a frame. */
   counts(frame: number, run: number): Counts {
-    let [reported, meeting, missed] = [0, 0, 0];
+    let [reported, apart, meeting, missed] = [0, 0, 0, 0];
     for (let p = this.starts[frame]; p < this.starts[frame + 1]; p++) {
       const flags = this.flags[p];
       if (flags & (REPORTED << run)) reported++;
       if (flags & MEETS) meeting++;
-      if (this.state(flags, run) === State.Missed) missed++;
+      const state = this.state(flags, run);
+      if (state === State.Reported) apart++;
+      if (state === State.Missed) missed++;
     }
     const volumes = this.volumes(frame, run);
     const sum = (get: (v: Volume) => number) => volumes && volumes.reduce((total, v) => total + get(v), 0);
@@ -121,6 +125,7 @@ export class Run {
       nv: sum((v) => v.tests),
       hits: volumes && (volumes[0]?.hits ?? 0),
       reported,
+      apart,
       true: this.header.truth ? meeting : null,
       missed,
       terms: terms && [terms[3 * frame], terms[3 * frame + 1], terms[3 * frame + 2]],

@@ -12,6 +12,7 @@ uniform float ground;
 uniform float glare;
 uniform vec3 haze;
 uniform vec2 hazeFrom;
+uniform float hazeMost;
 varying vec3 colour;
 void main() {
   vec4 p = instanceMatrix * vec4(position, 1.0);
@@ -19,9 +20,9 @@ void main() {
   vec4 seen = viewMatrix * p;
   float facing = abs(dot(n, normalize(cameraPosition - p.xyz)));
   float light = mix(ground, sky, 0.5 + 0.5 * n.y) + glare * max(dot(n, sun), 0.0);
-  vec3 lit = instanceColor * light * (0.55 + 0.45 * facing);
+  vec3 lit = instanceColor * light * (0.4 + 0.6 * facing);
   float far = clamp((-seen.z - hazeFrom.x) * hazeFrom.y, 0.0, 1.0);
-  colour = sRGBTransferOETF(vec4(mix(lit, haze, 0.55 * far), 1.0)).rgb;
+  colour = sRGBTransferOETF(vec4(mix(lit, haze, hazeMost * far), 1.0)).rgb;
   gl_Position = projectionMatrix * seen;
 }`;
 
@@ -51,18 +52,26 @@ export class Surface extends ShaderMaterial {
         glare: { value: 0.4 },
         haze: { value: new Color() },
         hazeFrom: { value: new Vector2(0, 0) },
+        hazeMost: { value: 0.5 },
       },
     });
   }
 
-  /** Light for the theme, from above the eye; bodies far behind the middle of the box fade, which shows depth. */
-  light(theme: Theme, eye: Vector3): void {
-    this.uniforms.sun.value.copy(eye).normalize().add(UP).normalize();
-    this.uniforms.sky.value = theme.dark ? 0.7 : 0.78;
-    this.uniforms.ground.value = theme.dark ? 0.26 : 0.42;
-    this.uniforms.glare.value = 0.55;
+  /**
+   * Light for the theme, from above the eye; what is far behind the point looked at fades, which shows depth. `back` leads
+   * from that point to the eye.
+   */
+  light(theme: Theme, back: Vector3): void {
+    this.uniforms.sun.value.copy(back).normalize().add(UP).normalize();
+    this.uniforms.sky.value = theme.dark ? 0.4 : 0.6;
+    this.uniforms.ground.value = theme.dark ? 0.08 : 0.26;
+    this.uniforms.glare.value = theme.dark ? 0.85 : 0.75;
     this.uniforms.haze.value.copy(theme.background);
-    this.uniforms.hazeFrom.value.set(eye.length() - 0.6 * EXTENT, 1 / (2.6 * EXTENT));
+    // A little light ground shows at once, a little dark ground doesn't.
+    this.uniforms.hazeMost.value = theme.dark ? 0.9 : 0.62;
+    const [start, depth] = theme.dark ? [1.4, 2] : [0.8, 2.4];
+    const distance = back.length();
+    this.uniforms.hazeFrom.value.set(distance - start * Math.min(EXTENT, distance / 3), 1 / (depth * EXTENT));
   }
 }
 

@@ -2,6 +2,8 @@
 
 import {
   Color,
+  DoubleSide,
+  FrontSide,
   Raycaster,
   Scene,
   Vector2,
@@ -27,7 +29,12 @@ export interface Shown {
   picked: number | null;
   /** Whether pictures follow one another: then speed goes before sharpness. */
   moving: boolean;
+  /** Whether this picture is all there will be: nothing flashes in it. */
+  still: boolean;
 }
+
+/** The part of the picture's height under the strategies' names. */
+const TITLES = 0.12;
 
 /** Half a period of the flashing of missed bodies, in milliseconds: slow enough for the photosensitive. */
 const FLASH = 350;
@@ -45,6 +52,7 @@ export class Stage {
   private readonly pace = new Pace();
   private flashing = false;
   private phase = -1;
+  private still = false;
 
   constructor(
     private readonly run: Run,
@@ -54,7 +62,7 @@ export class Stage {
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
     this.space = new Space(run);
-    this.camera = new Camera(canvas, changed, moved);
+    this.camera = new Camera(canvas, run.header.runs.length > 1 ? TITLES : 0, changed, moved);
     this.bodies = new Bodies(run, this.space);
     this.overlays = new Overlays(run, this.space, this.bodies);
     this.scene.add(this.bodies, this.overlays, this.walls);
@@ -69,17 +77,20 @@ export class Stage {
     this.resize(shown.sides.length, quality.sharpness);
     const colours = theme();
     this.dress(colours);
+    // Decimated meshes have slits, through which the inside is better than nothing; pictures in a hurry do without.
+    this.bodies.surface.side = shown.moving ? FrontSide : DoubleSide;
     this.bodies.place(shown.frame);
     const { width, height } = this.canvas.getBoundingClientRect();
     const part = width / shown.sides.length;
     this.renderer.setScissorTest(shown.sides.length > 1);
     this.flashing = false;
+    this.still = shown.still;
     shown.sides.forEach((side, place) => {
       this.renderer.setViewport(place * part, 0, part, height);
       this.renderer.setScissor(place * part + (place > 0 ? 1 : 0), 0, part, height);
       this.judge(shown.frame, side, shown.picked);
-      const hidden = (body: number) => this.isAway(body, shown.picked);
-      this.bodies.arrange(this.camera.lens, height, quality.coarseness, hidden);
+      const covers = this.covering(shown.picked);
+      this.bodies.arrange(this.camera.lens, height, quality.coarseness, covers);
       this.paint(shown, side, colours, now);
       this.renderer.render(this.scene, this.camera.lens);
     });
@@ -91,7 +102,7 @@ export class Stage {
   }
 
   private phaseAt(now: number): number {
-    return reducedMotion() ? 0 : Math.floor(now / FLASH) % 2;
+    return this.still || reducedMotion() ? 0 : Math.floor(now / FLASH) % 2;
   }
 
   private paint(shown: Shown, side: number, colours: Theme, now: number): void {
@@ -100,6 +111,7 @@ export class Stage {
     const bright = colours.dark ? new Color("#ffffff") : new Color("#ffd9c9");
     const colour = (body: number): Color => {
       const state: State = this.states[body];
+      if (this.isAway(body, picked)) return colours.ghost;
       if (state === State.Missed) return this.phase === 1 ? bright : colours.states[state];
       if (state >= State.Reported) return colours.states[state];
       return this.run.fixed[body] ? colours.fixed : colours.moving;
@@ -109,8 +121,18 @@ export class Stage {
       if (this.isAway(body, picked)) return null;
       return this.states[body] >= State.Reported ? colours.states[this.states[body]] : colours.volumes;
     };
-    const moment: Moment = { frame, run: side, switches, picked, theme: colours, colour: overlay };
+    const moment: Moment = { frame, run: side, switches, picked, theme: colours, colour: overlay, eye: this.camera.lens.position };
     this.overlays.update(moment, this.marks(picked, colours));
+  }
+
+  /** With a picked body: which others could stand before it or what it meets, and aren't drawn. */
+  private covering(picked: number | null): (body: number) => boolean {
+    if (picked === null) return () => false;
+    const eye = this.camera.lens.position;
+    const place = new Vector3();
+    const far = (body: number) => place.fromArray(this.bodies.placement(body).offset).distanceTo(eye);
+    const behind = far(picked) + 3 * this.bodies.radius(picked);
+    return (body) => this.isAway(body, picked) && far(body) - this.bodies.radius(body) < behind;
   }
 
   /** With a picked body, whether this one has nothing to do with it. */
@@ -145,7 +167,7 @@ export class Stage {
 
   private dress(colours: Theme): void {
     this.renderer.setClearColor(colours.background);
-    this.bodies.surface.light(colours, this.camera.lens.position);
+    this.bodies.surface.light(colours, this.camera.back);
     this.walls.begin();
     const { side } = this.run.header;
     if (side) {

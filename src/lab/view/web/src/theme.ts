@@ -1,13 +1,14 @@
 // Colours that the colour-blind tell apart (Okabe & Ito 2008) on light and on dark ground.
 
 import { Color } from "three";
-import { State } from "./run.ts";
 
 export interface Theme {
   dark: boolean;
   background: Color;
   moving: Color;
   fixed: Color;
+  /** Bodies that have nothing to do with the picked one. */
+  ghost: Color;
   walls: Color;
   picked: Color;
   /** By State. */
@@ -18,14 +19,6 @@ export interface Theme {
   cells: Color;
 }
 
-export const STATE_NAMES: Record<State, string> = {
-  [State.Idle]: "no pair",
-  [State.Spheres]: "spheres overlap",
-  [State.Reported]: "reported",
-  [State.Meets]: "truly meets",
-  [State.Missed]: "missed",
-};
-
 const hex = (text: string): Color => new Color(text);
 
 const LIGHT: Theme = {
@@ -33,6 +26,7 @@ const LIGHT: Theme = {
   background: hex("#f6f7f9"),
   moving: hex("#b4bcc6"),
   fixed: hex("#7c8590"),
+  ghost: hex("#e9ecf0"),
   walls: hex("#8a929c"),
   picked: hex("#000000"),
   states: ["#b4bcc6", "#b4bcc6", "#e69f00", "#0072b2", "#d5400a"].map(hex),
@@ -46,7 +40,8 @@ const DARK: Theme = {
   background: hex("#12151a"),
   moving: hex("#6b7580"),
   fixed: hex("#454d57"),
-  walls: hex("#5a636e"),
+  ghost: hex("#39414b"),
+  walls: hex("#78828e"),
   picked: hex("#ffffff"),
   states: ["#6b7580", "#6b7580", "#e69f00", "#45a5e6", "#ff5a1f"].map(hex),
   spheres: hex("#6d7681"),

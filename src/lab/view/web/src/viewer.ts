@@ -5,7 +5,7 @@ import { buildCharts } from "./courses.ts";
 import type { Charts } from "./charts.ts";
 import { type Key, listen } from "./keys.ts";
 import { LAYERS, type Layer, type Switches } from "./overlays.ts";
-import { element, Panel } from "./panel.ts";
+import { element, LAYER_NAMES, Panel } from "./panel.ts";
 import { Player, SPEEDS } from "./player.ts";
 import type { Run } from "./run.ts";
 import { Stage } from "./stage.ts";
@@ -48,6 +48,8 @@ export class Viewer {
       sides: (sides) => this.setSides(sides),
       fly: (frame, bodies) => this.fly(frame, bodies),
     });
+    // One frame has no course.
+    element("charts").hidden = run.frames === 1;
     this.charts = buildCharts(run, element("charts"), (frame) => this.seek(frame));
     const changed = () => {
       this.dirty = true;
@@ -57,6 +59,7 @@ export class Viewer {
     } catch {
       explain("No picture: this browser has no WebGL.", "The numbers, charts and lists work all the same.");
     }
+    for (const layer of LAYERS) this.switches[layer] = run.header.layers.includes(layer);
     this.connect();
     this.readAddress();
     window.addEventListener("hashchange", () => this.readAddress());
@@ -136,7 +139,7 @@ export class Viewer {
       this.keepAddress();
     };
     const layers = LAYERS.map((layer, at): Key => {
-      return { keys: [String(at + 1)], label: String(at + 1), does: `${layer} on or off`, act: () => this.toggle(layer) };
+      return { keys: [String(at + 1)], label: String(at + 1), does: `${LAYER_NAMES[layer]} on or off`, act: () => this.toggle(layer) };
     });
     return [
       { keys: [" ", "k"], label: "space", does: "play or pause", act: () => this.togglePlaying() },
@@ -254,7 +257,7 @@ export class Viewer {
   }
 
   private showLists(): void {
-    this.panel.showPairs(this.player.at, this.shownSides()[0], this.picked);
+    this.panel.showLists(this.player.at, this.shownSides()[0], this.picked);
   }
 
   /** Called for every picture that the browser is about to show. */
@@ -282,7 +285,7 @@ export class Viewer {
     this.dirty = false;
     this.sharp = !moving;
     const { switches, picked } = this;
-    this.stage.draw({ frame: at, sides: this.shownSides(), switches, picked, moving }, now);
+    this.stage.draw({ frame: at, sides: this.shownSides(), switches, picked, moving, still: this.still }, now);
   }
 
   private keepAddress(): void {
@@ -305,6 +308,7 @@ export class Viewer {
     if (address.frame !== null) this.player.seek(this.run.indexOf(address.frame));
     if (address.origin && this.stage) this.stage.space.origin = address.origin as [number, number, number];
     if (address.camera && this.stage) this.stage.camera.state = address.camera;
+    else this.stage?.camera.home();
     if (address.switches) Object.assign(this.switches, address.switches);
     this.picked = address.picked !== null && address.picked < this.run.header.bodies ? address.picked : null;
     if (this.run.header.runs.length > 1 && address.sides) this.sides = address.sides;

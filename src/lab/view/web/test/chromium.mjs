@@ -24,7 +24,7 @@ export async function launch() {
   options.push("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-vsync", "--hide-scrollbars");
   options.push("--disable-extensions", "--disable-background-networking", "--mute-audio");
   if (process.getuid?.() === 0) options.push("--no-sandbox"); // Chromium's sandbox refuses root, as in a container
-  const browser = spawn(find(), [...options, "about:blank"], { stdio: "ignore" });
+  const browser = spawn(find(), [...options, "about:blank"], { stdio: "ignore", detached: true });
   const ended = new Promise((resolve) => browser.on("exit", resolve));
   const file = join(profile, "DevToolsActivePort");
   for (let waited = 0; !existsSync(file) || !readFileSync(file, "utf8").includes("\n"); waited += 50) {
@@ -36,9 +36,18 @@ export async function launch() {
     port,
     profile,
     async close() {
-      browser.kill();
+      // With all its helpers, which would go on writing into the profile.
+      process.kill(-browser.pid, "SIGKILL");
       await ended;
-      rmSync(profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 100 });
+      for (let tries = 0; ; tries++) {
+        try {
+          rmSync(profile, { recursive: true, force: true });
+          return;
+        } catch (error) {
+          if (tries === 50) throw error;
+          await sleep(100);
+        }
+      }
     },
   };
 }
@@ -100,7 +109,7 @@ export class Tab {
   /** Presses a key; `text` only where it types something. */
   async key(key, { code = key, shift = false } = {}) {
     const modifiers = shift ? 8 : 0;
-    const text = key.length === 1 ? key : undefined;
+    const text = key === "Enter" ? "\r" : key.length === 1 ? key : undefined;
     const virtual = { " ": 32, Enter: 13, Escape: 27, Tab: 9, ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40 };
     const windowsVirtualKeyCode = virtual[key];
     await this.client.Input.dispatchKeyEvent({ type: "keyDown", key, code, text, modifiers, windowsVirtualKeyCode });

@@ -84,6 +84,8 @@ const header = (change: Partial<Header> = {}): Header => ({
     { name: "none", detail: "", control: true, volumes: null, construct: null },
   ],
   truth: true,
+  meet: "meshes",
+  layers: [],
   effects: null,
   messages: [],
   blocks: [],
@@ -107,14 +109,14 @@ const blocks = (): Map<string, Numbers> =>
 
 test("a frame's counts are sums over volumes and pairs", () => {
   const run = new Run(header(), blocks());
-  assert.deepEqual(run.counts(0, 0), { nu: 4, nv: 14, hits: 4, reported: 2, true: 1, missed: 0, terms: [1, 2, 3] });
-  assert.deepEqual(run.counts(1, 0), { nu: 4, nv: 16, hits: 5, reported: 0, true: 1, missed: 1, terms: [4, 5, 6] });
+  assert.deepEqual(run.counts(0, 0), { nu: 4, nv: 14, hits: 4, reported: 2, apart: 1, true: 1, missed: 0, terms: [1, 2, 3] });
+  assert.deepEqual(run.counts(1, 0), { nu: 4, nv: 16, hits: 5, reported: 0, apart: 0, true: 1, missed: 1, terms: [4, 5, 6] });
   assert.deepEqual(run.missed(0, 5), { list: [{ frame: 1, pair: { i: 0, j: 1, flags: SPHERES | MEETS } }], count: 1 });
 });
 
 test("the control misses nothing, and without truth nothing is true", () => {
   const run = new Run(header(), blocks());
-  assert.deepEqual(run.counts(1, 1), { nu: null, nv: null, hits: null, reported: 0, true: 1, missed: 0, terms: null });
+  assert.deepEqual(run.counts(1, 1), { nu: null, nv: null, hits: null, reported: 0, apart: 0, true: 1, missed: 0, terms: null });
   assert.equal(run.state(MEETS, 1), State.Meets);
   assert.equal(run.state(MEETS, 0), State.Missed);
   assert.equal(new Run(header({ truth: false }), blocks()).counts(0, 0).true, null);
