@@ -11,7 +11,7 @@ use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
 use serde::Serialize;
 
 use super::files::ReadArgs;
-use super::output::{Format, emit, table};
+use super::output::{Format, decimal, emit, table};
 use super::{Outcome, one_of};
 
 /// Describe a mesh and its bounding volumes, or convert it
@@ -138,20 +138,42 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
         "components: {all}, {state}; boundary edges: {}, non-manifold edges: {}",
         report.boundary_edges, report.non_manifold_edges
     )?;
-    writeln!(out, "smallest ball: centre ({x}, {y}, {z}), radius {r}")?;
+    // What is far below the ball's size is rounding.
+    let at = |x: f32| decimal(if x.abs() < 1e-6 * r { 0.0 } else { x.into() });
     writeln!(
         out,
-        "convex hull: {} vertices, volume {:.6e}",
-        report.hull_vertices, report.hull_volume
+        "smallest ball: centre ({}, {}, {}), radius {}; lengths are in the mesh's unit",
+        at(x),
+        at(y),
+        at(z),
+        decimal(r.into())
     )?;
-    let mut rows = table(&["volume", "size", "size / hull"]);
+    writeln!(
+        out,
+        "convex hull: {} vertices, volume {} unit³",
+        report.hull_vertices,
+        decimal(report.hull_volume)
+    )?;
+    if is_flat(report) {
+        writeln!(
+            out,
+            "warning: the mesh is flat, or nearly so: its hull has no volume to compare with"
+        )?;
+    }
+    let mut rows = table(&["volume", "size, unit³", "size / hull"]);
     for row in &report.volumes {
         let over_hull = row.over_hull.map_or("–".to_owned(), |x| format!("{x:.3}"));
-        rows.add_row([row.name.clone(), format!("{:.6e}", row.volume), over_hull]);
+        rows.add_row([row.name.clone(), decimal(row.volume), over_hull]);
     }
     writeln!(out, "{rows}")?;
     match &report.written {
         Some(path) => writeln!(out, "written to {path}"),
         None => Ok(()),
     }
+}
+
+/// Whether the hull's volume is nothing beside the ball's.
+fn is_flat(report: &Report) -> bool {
+    let radius = f64::from(report.ball[3]);
+    report.hull_volume <= 1e-9 * radius.powi(3)
 }

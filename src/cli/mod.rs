@@ -7,9 +7,11 @@ mod bench;
 mod cases;
 mod check;
 mod cmp;
+mod completions;
 mod cost;
 mod files;
 mod judge;
+mod man;
 mod mesh;
 mod output;
 mod palette;
@@ -54,6 +56,8 @@ enum Command {
     Record(record::Args),
     Cmp(cmp::Args),
     Report(report::Args),
+    Completions(completions::Args),
+    Man(man::Args),
 }
 
 /// How a command ended when its input was good.
@@ -86,6 +90,8 @@ impl Cli {
             Command::Record(args) => record::run(&args),
             Command::Cmp(args) => cmp::run(&args),
             Command::Report(args) => report::run(&args),
+            Command::Completions(args) => completions::run(&args),
+            Command::Man(args) => man::run(&args),
         }
     }
 }

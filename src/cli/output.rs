@@ -3,7 +3,7 @@
 use std::io::{ErrorKind, Write as _};
 
 use clap::ValueEnum;
-use comfy_table::{CellAlignment, LineStyle, Table, presets};
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, presets};
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{IntoDiagnostic as _, WrapErr as _};
 use serde::Serialize;
@@ -61,6 +61,8 @@ pub fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table
         .load_style(presets::UTF8_HORIZONTAL_ONLY)
+        // A terminal's width is kept to; a pipe has none.
+        .set_content_arrangement(ContentArrangement::Dynamic)
         .set_header(header.iter().copied());
     table.style_mut().row_separator = LineStyle::none();
     for column in table.column_iter_mut().skip(1) {
@@ -74,6 +76,23 @@ pub fn rows<T>(header: &[&str], items: &[T], row: impl Fn(&T) -> Vec<String>) ->
     let mut table = table(header);
     table.add_rows(items.iter().map(row));
     table
+}
+
+/// A number for people: six significant digits, plain unless it is tiny or huge, never minus zero.
+pub fn decimal(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    let exponent = x.abs().log10().floor();
+    if !(-5.0..9.0).contains(&exponent) {
+        return format!("{x:.5e}");
+    }
+    let digits = (5.0 - exponent).max(0.0) as usize;
+    let text = format!("{x:.digits$}");
+    if digits == 0 {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A progress bar on standard error; it shows on a terminal only.
@@ -172,6 +191,22 @@ mod tests {
         let expected = "scene,budget,interest,counters.tests,counters.hits,effects.motion.steps,effects.spin.steps,list\n\
                         \"a,b\",\"{\"\"tests\"\":5}\",,1,2,3,0,\"[1,2]\"\n";
         assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn numbers_for_people_have_six_digits_and_no_exponent_where_they_need_none() {
+        for (x, text) in [
+            (32.536_16, "32.5362"),
+            (-0.0, "0"),
+            (3.25, "3.25"),
+            (0.000_123_456_7, "0.000123457"),
+            (123_456_789.0, "123456789"),
+            (1.0e12, "1.00000e12"),
+            (-1.665_334_5e-16, "-1.66533e-16"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(decimal(x), text);
+        }
     }
 
     #[test]

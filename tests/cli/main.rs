@@ -8,6 +8,7 @@ mod recording;
 mod report;
 mod reproduce;
 mod run;
+mod terminal;
 mod view;
 
 use std::path::{Path, PathBuf};
