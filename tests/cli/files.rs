@@ -65,6 +65,24 @@ fn a_run_that_is_interrupted_leaves_the_former_record_or_none() {
     }
 }
 
+/// What took long to judge is kept for the user, wherever the command was given.
+#[test]
+fn truths_are_kept_in_the_user_s_cache_and_not_where_one_stands() {
+    let (directory, scene) = scene_file(&LONG.replace("100000000", "40"));
+    let [here, cache] = ["here", "cache"].map(|name| directory.path().join(name));
+    fs::create_dir(&here).unwrap();
+    let study = ["tradeoff", text(&scene), "--quick", "--seeds", "1"];
+    let output = command(&study)
+        .current_dir(&here)
+        .env("XDG_CACHE_HOME", &cache)
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{message}");
+    assert_eq!(fs::read_dir(&here).unwrap().count(), 0);
+    assert!(fs::read_dir(cache.join("sdop/truth")).unwrap().count() > 0);
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_said() {
@@ -91,6 +109,21 @@ fn a_link_to_an_endless_device_ends_at_the_limit() {
         let message = refusal(&[&args[..], &["--max-file-size", "1"]].concat());
         assert!(message.contains("more than 1048576 bytes"), "{message}");
         assert!(message.contains("--max-file-size"), "{message}");
+    }
+    // A record's line, a recording and answers.
+    let [record, boxes, answers] = ["run.ndjson", "run.aabbs", "answers"].map(link);
+    let case = directory.path().join("case.ndjson");
+    let (_scene, file) = scene_file(LONG);
+    let run = ["run", text(&file), "--frames", "1", "--record", text(&case)];
+    assert!(command(&run).status().unwrap().success());
+    for args in [
+        &["check", text(&record)][..],
+        &["check", text(&boxes)],
+        &["check", text(&case), "--pairs", text(&answers)],
+        &["verify", "--exec", "true", "--replay", text(&record)],
+    ] {
+        let message = refusal(&[args, &["--max-file-size", "1"]].concat());
+        assert!(message.contains("1048576 bytes"), "{message}");
     }
     // A scene within the limit whose mesh is not.
     let (_other, scene) = scene_file(&format!(

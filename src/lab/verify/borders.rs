@@ -14,7 +14,7 @@ use crate::mesh::TriangleMesh;
 use crate::rounding::{sphere::inflate_radius, widen};
 use crate::settings::{CullSettings, Finder, Strategy};
 use crate::simd::Tier;
-use crate::volume::{Origin, Shape, ShapeSpec, VolumeError};
+use crate::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec, VolumeError};
 
 /// Chooses a number below the given one, which is at least 1.
 pub type Choose<'a> = &'a mut dyn FnMut(u32) -> u32;
@@ -49,6 +49,17 @@ pub struct Difference {
 /// # Errors
 /// A radius beyond 2⁶⁰.
 pub fn bar(radius: f32) -> Result<Shape, VolumeError> {
+    let ShapeSpec {
+        directions, axes, ..
+    } = ShapeSpec::default();
+    bar_within(radius, directions, axes)
+}
+
+/// The same with slabs along these directions and axes.
+///
+/// # Errors
+/// As [`bar`].
+pub fn bar_within(radius: f32, directions: DirectionSet, axes: Axes) -> Result<Shape, VolumeError> {
     // The ball of its farthest vertices is rounded up by one step.
     let (reach, half) = (radius.next_down(), radius / 2.0);
     let vertices = [
@@ -64,6 +75,8 @@ pub fn bar(radius: f32) -> Result<Shape, VolumeError> {
     };
     let spec = ShapeSpec {
         origin: Origin::File,
+        directions,
+        axes,
         ..ShapeSpec::default()
     };
     Shape::build(&mesh, &spec)

@@ -33,6 +33,16 @@ pub struct FormError {
     problem: String,
 }
 
+impl FormError {
+    /// The problem with a form of that name.
+    pub(super) fn of(form: &str, problem: impl ToString) -> Self {
+        Self {
+            form: form.to_owned(),
+            problem: problem.to_string(),
+        }
+    }
+}
+
 impl Form {
     /// A procedural shape by name, of radius 2ᵃ to 2ᵇ.
     #[must_use]
@@ -46,10 +56,7 @@ impl Form {
     }
 
     fn mesh(&self) -> Result<TriangleMesh, FormError> {
-        let error = |problem: String| FormError {
-            form: self.form.clone(),
-            problem,
-        };
+        let error = |problem: String| FormError::of(&self.form, problem);
         let flat = |vertices: &[[f32; 3]], triangles: &[[u32; 3]]| TriangleMesh {
             name: self.form.clone(),
             vertices: vertices.iter().copied().map(Vec3::from).collect(),
@@ -120,10 +127,7 @@ impl Form {
             directions,
             axes,
         };
-        Shape::build(&mesh, &spec).map_err(|e| FormError {
-            form: self.form.clone(),
-            problem: e.to_string(),
-        })
+        Shape::build(&mesh, &spec).map_err(|error| FormError::of(&self.form, error))
     }
 }
 
@@ -144,8 +148,5 @@ pub fn build(
             built.push(form.shape(directions, axes, rng)?);
         }
     }
-    Shapes::new(built).map_err(|e| FormError {
-        form: "all".to_owned(),
-        problem: e.to_string(),
-    })
+    Shapes::new(built).map_err(|error| FormError::of("all", error))
 }

@@ -166,6 +166,7 @@ hard_names! {
     "near-parallel-edges", "needles-and-plates", "on-a-line", "on-a-plane", "one-cell", "one-ulp-turns",
     "quaternion-norms", "quaternion-signs", "shared-vertices", "subnormal", "teleports", "touch-by-quadruples",
     "touch-within-an-ulp", "unequal-sizes", "vertex-on-face",
+    "finder-borders",
 }
 
 /// The runs that a recipe makes: a case each.
@@ -173,6 +174,7 @@ fn runs(recipe: &Recipe) -> u32 {
     let runs = match recipe {
         Recipe::Probe { frames, .. } => *frames,
         Recipe::Chain { bodies, .. } => bodies.len(),
+        Recipe::Borders { scenes, .. } => *scenes,
         Recipe::Quadruples { .. } | Recipe::Lattice { .. } => 1,
     };
     runs as u32 // a few

@@ -61,6 +61,7 @@ corpus! {
     "touch-within-an-ulp",
     "unequal-sizes",
     "vertex-on-face",
+    "finder-borders",
 }
 
 /// One group of hard cases.

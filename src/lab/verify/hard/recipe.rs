@@ -5,6 +5,7 @@ use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
 use crate::bodies::Bodies;
+use crate::lab::verify::borders::{Borders, bar_within};
 use crate::lab::verify::contact::Placed;
 use crate::lab::verify::draw::{ContactSpec, add, probe};
 use crate::lab::verify::forms::{self, Form, FormError};
@@ -47,6 +48,15 @@ pub enum Recipe {
         #[serde(default)]
         nudged: bool,
     },
+    /// Bars on the borders between a finder's cells, to a few units in the last place of f64.
+    Borders {
+        /// Scenes, each a run of its own.
+        scenes: usize,
+        /// How many of them have an extent whose cells a division would count otherwise.
+        divided: usize,
+        /// The most bodies of a scene.
+        most: usize,
+    },
     /// Balls on a cubic lattice that is turned by a 24-bit integer quaternion, so that neighbours touch exactly.
     Lattice {
         /// Balls along each edge.
@@ -88,6 +98,14 @@ impl Recipe {
                 Ok(quadruples(exact(partners + 1, rng)?, nudged, rng))
             }
             Self::Lattice { edge } => Ok(lattice(exact(1, rng)?, edge, rng)),
+            Self::Borders {
+                scenes,
+                divided,
+                most,
+            } => {
+                let drawn = (0..scenes).map(|n| border(n < divided, most, rng));
+                bars(drawn.collect(), k, axes)
+            }
             Self::Probe {
                 frames,
                 partners,
@@ -221,6 +239,35 @@ fn set_radius(shapes: &mut Shapes, shape: usize, radius: f32) {
     shapes.judged[shape].ball.radius = radius;
     let wider = f64::from(radius) * (1.0 + 15.0 * crate::rounding::U);
     shapes.widened[shape].ball.radius = crate::rounding::up(wider);
+}
+
+/// A scene on the borders between cells.
+fn border(divides: bool, most: usize, rng: &mut impl Rng) -> Borders {
+    loop {
+        let scene = Borders::draw(&mut |below| rng.random_range(0..below));
+        if scene.bodies.len() <= most && (scene.divides || !divides) {
+            return scene;
+        }
+    }
+}
+
+/// The scenes as cases of one list of shapes, two a scene.
+fn bars(scenes: Vec<Borders>, k: DirectionSet, axes: Axes) -> Result<Cases, FormError> {
+    let (mut built, mut runs) = (Vec::new(), Vec::new());
+    for mut scene in scenes {
+        let first = built.len() as u32;
+        scene
+            .bodies
+            .shape
+            .iter_mut()
+            .for_each(|shape| *shape += first);
+        for radius in scene.radii {
+            built.push(bar_within(radius, k, axes).map_err(|error| FormError::of("bar", error))?);
+        }
+        runs.push(vec![scene.bodies]);
+    }
+    let shapes = Shapes::new(built).map_err(|error| FormError::of("bar", error))?;
+    Ok(Cases { shapes, runs })
 }
 
 fn lattice(mut shapes: Shapes, edge: usize, rng: &mut impl Rng) -> Cases {
