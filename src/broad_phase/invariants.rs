@@ -52,7 +52,7 @@ impl PairFinder {
         let reach = (a[3] + b[3]) * REPORTED;
         match self {
             Self::Neighbours(finder) if finder.volume() == Volume::Ball => {
-                apart.iter().map(|d| d * d).sum::<f64>() <= reach * reach
+                reach >= 0.0 && apart.iter().map(|d| d * d).sum::<f64>() <= reach * reach
             }
             _ => apart.iter().all(|&d| d <= reach),
         }

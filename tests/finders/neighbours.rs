@@ -148,7 +148,7 @@ fn lists_are_followed_at_any_speed_and_lose_nothing() {
                 let what = format!("{}, {speed} r a frame", scene.name);
                 let fly = fly(scene, speed, 5);
                 let (pairs, [lists, grid]) = judge(scene, strategy, 40, &what, fly);
-                assert!(pairs > 1000, "{what}: {pairs} pairs");
+                assert!(pairs > 500, "{what}: {pairs} pairs");
                 let slow = speed < 0.1 && scene.name == "uniform" && strategy == Strategy::Sphere;
                 assert!(
                     !slow || 2 * lists < grid,
