@@ -75,11 +75,13 @@ fn all_stay<L: Lanes>(
     now: &[[f32; 4]; BLOCK_BODIES],
     then: &[[f32; 4]; BLOCK_BODIES],
 ) -> bool {
-    let all = l.bits(l.first(L::WIDTH));
-    let starts = (0..BLOCK_BODIES).step_by(L::WIDTH);
-    let mut staying = starts.map(|start| {
-        let [now, then] = [now, then].map(|balls| l.load_quads(&balls[start..]));
-        l.bits(stays(l, skin, now, then))
-    });
-    staying.all(|bits| bits == all)
+    // A loop and no closure, which would be compiled apart and without the tier's features.
+    let mut staying = l.first(L::WIDTH);
+    let mut start = 0;
+    while start < BLOCK_BODIES {
+        let (now, then) = (l.load_quads(&now[start..]), l.load_quads(&then[start..]));
+        staying = staying & stays(l, skin, now, then);
+        start += L::WIDTH;
+    }
+    l.bits(staying) == l.bits(l.first(L::WIDTH))
 }

@@ -116,7 +116,8 @@ impl Neighbours {
                 self.policy.followed();
                 return;
             }
-            self.policy.ended(self.list.len(), balls.len());
+            self.policy
+                .ended(self.list.len(), self.list.seen(), balls.len());
         }
         self.state = State::Searching;
         let Some(skin) = self.policy.next() else {

@@ -2,19 +2,21 @@
 //!
 //! A list with a skin of σ radii that served n frames tells the speed of the fastest body, v ≈ σ/(n − ½) radii a frame: as
 //! long as it lasts, another list with a skin of σ′ serves σ′/v frames and one more. A wider skin makes fewer lists, each of
-//! (1 + σ′)³ as many pairs. Costs in the last column are instructions per body of AVX2 on uniform bodies.
+//! (1 + σ′)³ as many pairs, from as many more candidates.
 
-/// Skins to choose from, in radii.
-const SKINS: [f32; 6] = [0.0625, 0.125, 0.25, 0.375, 0.5, 0.75];
+/// Skins to choose from, in radii. With wider ones than these the frame that makes a list takes more than 1.3 of the grid's.
+const SKINS: [f32; 6] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375];
 
 /// The first one, before anything is known of the motion.
-const FIRST: usize = 2;
+const FIRST: usize = 3;
 
-/// What a frame of the grid costs a body, what making a list costs beyond that, and what following costs a body and a pair.
-const GRID: f64 = 120.0;
-const MAKE: f64 = 160.0;
-const FOLLOW: f64 = 25.0;
-const PAIR: f64 = 9.0;
+/// Costs in instructions of AVX2 (10,000 uniform bodies, spheres): to sort a body; to look at a candidate, in a frame of the
+/// grid and in one that makes a list; to follow a list, a body and a pair.
+const SORT: f64 = 160.0;
+const SEARCH: f64 = 25.0;
+const MAKE: f64 = 13.0;
+const FOLLOW: f64 = 35.0;
+const PAIR: f64 = 25.0;
 
 /// Frames of the grid between two attempts: at first, and at most.
 const PAUSE: u32 = 16;
@@ -65,15 +67,18 @@ impl Policy {
         self.served += 1;
     }
 
-    /// A list of so many pairs can't be followed any longer.
-    pub fn ended(&mut self, pairs: usize, bodies: usize) {
+    /// A list of so many pairs, made of so many candidates, can't be followed any longer.
+    pub fn ended(&mut self, pairs: usize, candidates: u64, bodies: usize) {
         let skin = |index: usize| f64::from(SKINS[index]);
+        let wider = |index: usize| (1.0 + skin(index)).powi(3);
         let speed = skin(self.skin) / (f64::from(self.served) - 0.5);
-        let each = pairs as f64 / bodies.max(1) as f64 / (1.0 + skin(self.skin)).powi(3);
+        // A body's, if there were no skin.
+        let [pairs, candidates] = [pairs as f64, candidates as f64]
+            .map(|number| number / bodies.max(1) as f64 / wider(self.skin));
         let cost = |index: usize| {
             let frames = (skin(index) / speed).floor() + 1.0;
-            let pairs = each * (1.0 + skin(index)).powi(3);
-            MAKE / frames + FOLLOW + PAIR * pairs
+            let make = SORT + MAKE * candidates * wider(index);
+            make / frames + FOLLOW + PAIR * pairs * wider(index)
         };
         let mut best = 0;
         for index in 1..SKINS.len() {
@@ -82,9 +87,11 @@ impl Policy {
             }
         }
         self.skin = best;
-        if cost(best) < GRID {
+        if cost(best) < SORT + SEARCH * candidates {
             self.pause = PAUSE;
         } else {
+            // Of a list that served one frame alone the widest skin tells most.
+            self.skin = SKINS.len() - 1;
             self.give_up();
         }
     }
@@ -119,7 +126,8 @@ mod tests {
                     continue;
                 }
                 let wider = f64::from(1.0 + policy.skin()).powi(3);
-                policy.ended((1000.0 * each * wider) as usize, 1000);
+                let pairs = 1000.0 * each * wider;
+                policy.ended(pairs as usize, (6.0 * pairs) as u64, 1000);
             }
             drift = policy.next().map(|_| 0.0);
             if drift.is_some() {
