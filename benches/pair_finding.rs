@@ -100,8 +100,11 @@ fn finders(criterion: &mut Criterion) {
 const FRAMES: usize = 400;
 
 /// Frame times of lists and of the grid by motion, since a list's worst frame is the one that makes it: the means are what
-/// criterion would tell, and hide that.
+/// criterion would tell, and hide that. Only when asked for by name: it takes minutes.
 fn motion(_: &mut Criterion) {
+    if !std::env::args().any(|argument| argument == "motion") {
+        return;
+    }
     println!("motion/finder/bodies: ns a body, p50 p99 max; tests a body");
     for n in [10_000, 100_000, 1_000_000] {
         for most in [0.01, 0.1, 0.3] {
