@@ -5,13 +5,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::Volume;
 use super::collect::{Collect, Pair};
+use super::policy::WIDEST;
 use crate::broad_phase::{Block, FirstTest, Grid, MOST_CANDIDATES, bytes};
 use crate::rounding::skin::Reach;
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch};
 use crate::threads::Executor;
 
-/// Pairs a body that a list may hold, and a few more for small scenes: crowds are bound by what is reported, and there a list
-/// would take more memory than all the rest.
+/// Pairs a body that a list with the widest skin may hold, and a few more for small scenes: crowds are bound by what is
+/// reported, and there a list would take more memory than all the rest.
 const PAIRS_PER_BODY: usize = 4;
 const FEW_PAIRS: usize = 256;
 
@@ -33,6 +34,8 @@ pub struct Chunk {
     entries: Vec<(u32, u32)>,
     /// Candidates that the grid has handed out.
     pub seen: u64,
+    /// By how much more room is made than is needed.
+    spare: f64,
 }
 
 impl List {
@@ -42,11 +45,14 @@ impl List {
         if self.chunks.len() < self.parts {
             self.chunks.resize(self.parts, Chunk::default());
         }
-        let most = PAIRS_PER_BODY * grid.bodies() + FEW_PAIRS;
+        // Room for as many pairs as the widest skin will bring, so that another skin allocates nothing.
+        let spare = f64::from((1.0 + WIDEST) / (1.0 + skin)).powi(3);
+        let most = ((PAIRS_PER_BODY * grid.bodies()) as f64 / spare) as usize + FEW_PAIRS;
         let listed = AtomicUsize::new(0);
         let chunks = &mut self.chunks[..self.parts];
         executor.pool.each(chunks, |part, chunk| {
             chunk.clear();
+            chunk.spare = spare;
             // The sum only grows, so whether it ends above `most` depends on no thread.
             if listed.load(Ordering::Relaxed) > most {
                 return;
@@ -133,14 +139,14 @@ impl Chunk {
                 self.entries.pop();
             }
         }
-        reserve(&mut self.entries, 1);
+        reserve(&mut self.entries, 1, 1.0);
         self.entries.push((first as u32, self.len as u32));
     }
 
     /// Appends codes to the open entry.
     #[inline(always)]
     pub fn append(&mut self, codes: &[u32]) {
-        reserve(&mut self.codes, codes.len() + MAX_WIDTH);
+        reserve(&mut self.codes, codes.len() + MAX_WIDTH, self.spare);
         self.codes.extend_from_slice(codes);
         self.len += codes.len();
         if let Some((_, end)) = self.entries.last_mut() {
@@ -150,7 +156,7 @@ impl Chunk {
 
     /// Closes the list.
     fn close(&mut self) {
-        reserve(&mut self.codes, MAX_WIDTH);
+        reserve(&mut self.codes, MAX_WIDTH, self.spare);
         self.codes.resize(self.len + MAX_WIDTH, 0);
     }
 
@@ -161,11 +167,14 @@ impl Chunk {
     }
 }
 
-/// Room for more, and a quarter to spare, so that a list that breathes allocates nothing and doubles nothing.
+/// Room for more, `spare` times what is needed, and a quarter more than that, so that a list that breathes allocates nothing
+/// and doubles nothing.
 #[inline(always)]
-fn reserve<T>(column: &mut Vec<T>, more: usize) {
-    if column.capacity() - column.len() < more {
-        column.reserve_exact(more + (column.len() + more) / 4);
+fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
+    let needed = column.len() + more;
+    if column.capacity() < needed {
+        let room = (1.25 * spare * needed as f64) as usize;
+        column.reserve_exact(room.max(needed) - column.len());
     }
 }
 

@@ -7,6 +7,9 @@
 /// Skins to choose from, in radii. With wider ones than these the frame that makes a list takes more than 1.3 of the grid's.
 const SKINS: [f32; 6] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375];
 
+/// The widest.
+pub const WIDEST: f32 = SKINS[SKINS.len() - 1];
+
 /// The first one, before anything is known of the motion.
 const FIRST: usize = 3;
 
