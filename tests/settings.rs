@@ -29,7 +29,7 @@ fn an_unknown_name_suggests_the_nearest() {
     );
     assert_eq!(
         "octree".parse::<Finder>().unwrap_err().hint,
-        "one of: all-pairs, grid, sweep, auto"
+        "one of: all-pairs, grid, sweep, neighbours, auto"
     );
     assert_eq!(
         "16".parse::<DirectionSet>().unwrap_err().hint,

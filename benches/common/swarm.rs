@@ -1,4 +1,4 @@
-//! Bodies for pair finders: 1.5 sphere partners each, which move a tenth of the smallest radius per frame.
+//! Bodies for pair finders: 1.5 sphere partners each, which move a tenth of the smallest radius per frame unless said.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -36,8 +36,13 @@ pub struct Swarm {
 }
 
 impl Swarm {
-    /// `n` bodies of a kind.
+    /// `n` bodies of a kind that move a tenth of the smallest radius per frame.
     pub fn new(kind: Kind, n: usize) -> Self {
+        Self::moving(kind, n, 0.1)
+    }
+
+    /// `n` bodies of a kind whose coordinates change by up to so many of the smallest radii per frame.
+    pub fn moving(kind: Kind, n: usize, most: f32) -> Self {
         let octaves = match kind {
             Kind::Mixed => 4,
             Kind::Wild => 10,
@@ -85,7 +90,7 @@ impl Swarm {
                 [0.0, 0.0, 0.0, 1.0],
                 at,
             );
-            step.push(std::array::from_fn(|_| rng.random_range(-0.1..0.1)));
+            step.push(std::array::from_fn(|_| rng.random_range(-most..most)));
         }
         Self {
             shapes,

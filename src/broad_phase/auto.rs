@@ -6,6 +6,7 @@
 //! bodies from 16 to 10,000, in cubes, planes, lines and clusters, with one giant and with radii 1 : 1000 (1.4 to 9
 //! times), so it is there to be compared with and never picked.
 
+use super::Volume;
 use crate::settings::Finder;
 
 /// The most bodies for all pairs.
@@ -27,6 +28,8 @@ pub struct Population {
     /// Whether the first volume test is cheaper than looking for candidates: balls and slabs are, or-DOPs aren't, and all
     /// pairs would hand every pair to them.
     pub cheap_test: bool,
+    /// What balls stand for.
+    pub volume: Volume,
 }
 
 impl Population {
@@ -59,6 +62,7 @@ mod tests {
                 bodies,
                 radii,
                 cheap_test,
+                volume: Volume::Ball,
             }
             .finder()
         };

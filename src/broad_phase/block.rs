@@ -17,7 +17,7 @@ const STRIDE: usize = 8;
 /// The longest run that is copied into a block; longer ones fill vectors by themselves.
 const LONGEST_WRITTEN: usize = 2 * STRIDE;
 
-/// Runs that a block has room for.
+/// Runs that a page has room for.
 const RUNS: usize = 160;
 
 /// Room for codes.
@@ -27,8 +27,46 @@ const CAPACITY: usize = RUNS * LONGEST_WRITTEN;
 pub const MOST_CANDIDATES: usize = CAPACITY;
 
 /// Candidate pairs of up to sixteen neighbouring slots.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<'a> {
+    first: usize,
+    codes: &'a [u32],
+    padded: &'a [u32],
+}
+
+impl<'a> Block<'a> {
+    /// The candidates `padded[..len]` of the slots from `first` on; a vector of whatever codes stands behind them.
+    #[inline(always)]
+    pub(super) fn new(first: usize, padded: &'a [u32], len: usize) -> Self {
+        Self {
+            first,
+            codes: &padded[..len],
+            padded: &padded[..len + MAX_WIDTH],
+        }
+    }
+
+    /// The slot of lane 0.
+    #[inline(always)]
+    pub fn first(&self) -> usize {
+        self.first
+    }
+
+    /// Candidates: `slot·16 + lane` stands for the pair (first slot + lane, slot). At most [`MOST_CANDIDATES`].
+    #[inline(always)]
+    pub fn codes(&self) -> &'a [u32] {
+        self.codes
+    }
+
+    /// The same and a vector of whatever codes behind them.
+    #[inline(always)]
+    pub fn padded_codes(&self) -> &'a [u32] {
+        self.padded
+    }
+}
+
+/// What a search writes a block on, and long runs beside it.
 #[derive(Clone, Debug)]
-pub struct Block {
+pub struct Page {
     first: usize,
     len: usize,
     codes: [u32; CAPACITY + MAX_WIDTH],
@@ -36,13 +74,9 @@ pub struct Block {
     long: [(u32, u32, u32); RUNS],
 }
 
-impl Block {
-    /// An empty block.
+impl Page {
+    /// An empty page.
     #[inline(always)]
-    #[allow(
-        clippy::new_without_default,
-        reason = "made once a search, never as a part that defaults"
-    )]
     pub fn new() -> Self {
         Self {
             first: 0,
@@ -53,22 +87,10 @@ impl Block {
         }
     }
 
-    /// The slot of lane 0.
+    /// The short runs.
     #[inline(always)]
-    pub fn first(&self) -> usize {
-        self.first
-    }
-
-    /// Candidates in short runs: `slot·16 + lane` stands for the pair (first slot + lane, slot).
-    #[inline(always)]
-    pub fn codes(&self) -> &[u32] {
-        &self.codes[..self.len]
-    }
-
-    /// The same and a vector of whatever codes behind them.
-    #[inline(always)]
-    pub fn padded_codes(&self) -> &[u32] {
-        &self.codes[..self.len + MAX_WIDTH]
+    pub fn block(&self) -> Block<'_> {
+        Block::new(self.first, &self.codes, self.len)
     }
 
     /// Long runs, each with the slot that it is for.
@@ -79,22 +101,22 @@ impl Block {
             .map(|&(i, start, end)| (i as usize, start as usize..end as usize))
     }
 
-    /// Empties the block, for the slots from `first` on, and lets a pen write its runs.
+    /// Empties the page, for the slots from `first` on, and lets a pen write its runs.
     #[inline(always)]
     pub fn restart(&mut self, first: usize) -> Pen<'_> {
         self.first = first;
         Pen {
-            block: self,
+            page: self,
             len: 0,
             long_len: 0,
         }
     }
 }
 
-/// Writes runs into a block. Its place is a pair of local numbers, which registers can hold: kept in the block, each run
+/// Writes runs on a page. Its place is a pair of local numbers, which registers can hold: kept in the block, each run
 /// waits for the last one's store (25 cycles per body, measured).
 pub struct Pen<'a> {
-    block: &'a mut Block,
+    page: &'a mut Page,
     len: usize,
     long_len: usize,
 }
@@ -112,8 +134,8 @@ impl Pen<'_> {
             self.write(STRIDE, code);
             self.len += length;
         } else {
-            let slot = self.block.first + lane;
-            self.block.long[self.long_len] = (slot as u32, run.start, run.end);
+            let slot = self.page.first + lane;
+            self.page.long[self.long_len] = (slot as u32, run.start, run.end);
             self.long_len += 1;
         }
     }
@@ -121,7 +143,7 @@ impl Pen<'_> {
     #[inline(always)]
     fn write(&mut self, skip: usize, code: u32) {
         let at = self.len + skip;
-        if let Some(codes) = self.block.codes.get_mut(at..at + STRIDE) {
+        if let Some(codes) = self.page.codes.get_mut(at..at + STRIDE) {
             for (i, to) in codes.iter_mut().enumerate() {
                 *to = code.wrapping_add(((skip + i) << 4) as u32);
             }
@@ -134,10 +156,10 @@ impl Pen<'_> {
         self.len + runs * LONGEST_WRITTEN > CAPACITY || self.long_len + runs > RUNS
     }
 
-    /// Closes the block.
+    /// Closes the page.
     #[inline(always)]
     pub fn done(self) {
-        (self.block.len, self.block.long_len) = (self.len, self.long_len);
+        (self.page.len, self.page.long_len) = (self.len, self.long_len);
     }
 }
 
@@ -147,8 +169,8 @@ mod tests {
 
     #[test]
     fn runs_of_any_length_follow_each_other_without_gaps() {
-        let mut block = Block::new();
-        let mut pen = block.restart(64);
+        let mut page = Page::new();
+        let mut pen = page.restart(64);
         let (mut short, mut long) = (Vec::new(), Vec::new());
         for (lane, length) in [0, 1, 7, 8, 9, 16, 0, 17, 15, 300, 2]
             .into_iter()
@@ -164,16 +186,16 @@ mod tests {
             }
         }
         pen.done();
-        assert_eq!(block.codes(), short);
-        assert_eq!(block.long_runs().collect::<Vec<_>>(), long);
-        assert_eq!(block.padded_codes().len(), short.len() + MAX_WIDTH);
+        assert_eq!(page.block().codes(), short);
+        assert_eq!(page.long_runs().collect::<Vec<_>>(), long);
+        assert_eq!(page.block().padded_codes().len(), short.len() + MAX_WIDTH);
     }
 
     #[test]
     fn a_block_takes_what_it_promises() {
-        let mut block = Block::new();
+        let mut page = Page::new();
         for length in [16, 17] {
-            let mut pen = block.restart(0);
+            let mut pen = page.restart(0);
             let mut runs = 0;
             while !pen.is_full(1) {
                 pen.push(15, 7..7 + length);
@@ -182,6 +204,6 @@ mod tests {
             pen.done();
             assert_eq!(runs, RUNS);
         }
-        assert!(block.codes().is_empty());
+        assert!(page.block().codes().is_empty());
     }
 }

@@ -1,11 +1,12 @@
 //! What debug builds, and so tests, check of every finder in every small frame: each pair is a candidate at most once, and
 //! each pair whose cubes meet once, unless both bodies are static.
 //!
-//! Cubes, since some first tests compare world-aligned volumes: there balls stand for the cubes about them.
+//! Cubes, since some first tests compare world-aligned volumes: there balls stand for the cubes about them. A list of
+//! neighbours knows whether they do.
 
 use std::ops::Range;
 
-use super::{Block, FirstTest, PairFinder};
+use super::{Block, FirstTest, PairFinder, Volume};
 use crate::bodies::Places;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
@@ -35,7 +36,7 @@ impl PairFinder {
                 "static slots are candidates: {i}"
             );
             for j in i + 1..n {
-                let may_lack = i >= places.moving || !self.cubes_meet(i, j);
+                let may_lack = i >= places.moving || !self.meet(i, j);
                 assert!(
                     may_lack || seen.has(i, j),
                     "slots {i} and {j} meet and are no candidates"
@@ -44,10 +45,17 @@ impl PairFinder {
         }
     }
 
-    fn cubes_meet(&self, i: usize, j: usize) -> bool {
+    /// Whether the cubes of two slots meet, or the balls where these alone are reported.
+    fn meet(&self, i: usize, j: usize) -> bool {
         let [a, b] = [i, j].map(|slot| self.slots().ball(slot).map(f64::from));
+        let apart: [f64; 3] = std::array::from_fn(|axis| (a[axis] - b[axis]).abs());
         let reach = (a[3] + b[3]) * REPORTED;
-        (0..3).all(|axis| (a[axis] - b[axis]).abs() <= reach)
+        match self {
+            Self::Neighbours(finder) if finder.volume() == Volume::Ball => {
+                reach >= 0.0 && apart.iter().map(|d| d * d).sum::<f64>() <= reach * reach
+            }
+            _ => apart.iter().all(|&d| d <= reach),
+        }
     }
 }
 
@@ -90,7 +98,7 @@ impl FirstTest for Seen {
     }
 
     #[inline(always)]
-    fn block<L: Lanes>(&mut self, _: L, block: &Block) {
+    fn block<L: Lanes>(&mut self, _: L, block: &Block<'_>) {
         for &code in block.codes() {
             self.take(block.first() + (code & 15) as usize, (code >> 4) as usize);
         }

@@ -19,13 +19,16 @@ mod bounds;
 mod grid;
 #[cfg(debug_assertions)]
 mod invariants;
+mod neighbours;
 mod sweep;
 
 pub use all_pairs::AllPairs;
 pub use auto::Population;
-pub use block::{BLOCK_BODIES, Block, MOST_CANDIDATES, Pen};
+use block::{BLOCK_BODIES, Page, Pen};
+pub use block::{Block, MOST_CANDIDATES};
 pub use bounds::Bounds;
 pub use grid::{Cells, Grid, Layout};
+pub use neighbours::{Neighbours, Volume};
 pub use sweep::Sweep;
 
 /// The strategy's first volume test.
@@ -33,7 +36,7 @@ pub trait FirstTest {
     /// Slot `i` against each slot of `run`.
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>);
     /// Scattered pairs of slots, but not the block's long runs.
-    fn block<L: Lanes>(&mut self, l: L, block: &Block);
+    fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>);
 }
 
 /// World balls (x, y, z, R) in slot order, padded by [`MAX_WIDTH`] finite entries, with the names of their bodies.
@@ -101,6 +104,8 @@ pub enum PairFinder {
     Grid(Grid),
     /// Sorted ends along an axis.
     Sweep(Sweep),
+    /// Candidates that are kept.
+    Neighbours(Neighbours),
 }
 
 /// Which places take other bodies.
@@ -122,6 +127,7 @@ impl PairFinder {
             Finder::AllPairs => Self::AllPairs(AllPairs::default()),
             Finder::Grid => Self::Grid(Grid::default()),
             Finder::Sweep => Self::Sweep(Sweep::default()),
+            Finder::Neighbours => Self::Neighbours(Neighbours::new(population.volume)),
             Finder::Auto => Self::new(population.finder(), population),
         }
     }
@@ -133,6 +139,7 @@ impl PairFinder {
             Self::AllPairs(_) => Finder::AllPairs,
             Self::Grid(_) => Finder::Grid,
             Self::Sweep(_) => Finder::Sweep,
+            Self::Neighbours(_) => Finder::Neighbours,
         }
     }
 
@@ -143,6 +150,7 @@ impl PairFinder {
             Self::AllPairs(finder) => finder.slots().bytes(),
             Self::Grid(finder) => finder.bytes(),
             Self::Sweep(finder) => finder.bytes(),
+            Self::Neighbours(finder) => finder.bytes(),
         }
     }
 
@@ -159,6 +167,7 @@ impl PairFinder {
             Self::AllPairs(_) => Reorder::None,
             Self::Grid(finder) => finder.reorder(places.moving, balls, names, order),
             Self::Sweep(finder) => finder.reorder(places.moving, names, order),
+            Self::Neighbours(finder) => finder.reorder(places.moving, balls, names, order),
         }
     }
 
@@ -167,6 +176,7 @@ impl PairFinder {
         match self {
             Self::AllPairs(_) | Self::Sweep(_) => {}
             Self::Grid(finder) => finder.observe(candidates),
+            Self::Neighbours(finder) => finder.observe(candidates),
         }
     }
 
@@ -183,6 +193,7 @@ impl PairFinder {
             Self::AllPairs(finder) => finder.arrange(places, balls, names),
             Self::Grid(finder) => finder.arrange(executor, balls, names),
             Self::Sweep(finder) => finder.arrange(places, balls, names),
+            Self::Neighbours(finder) => finder.arrange(executor, places.moving, balls, names),
         }
         #[cfg(debug_assertions)]
         self.check(executor.tier, places);
@@ -195,6 +206,7 @@ impl PairFinder {
             Self::AllPairs(finder) => finder.slots(),
             Self::Grid(finder) => finder.slots(),
             Self::Sweep(finder) => finder.slots(),
+            Self::Neighbours(finder) => finder.slots(),
         }
     }
 
@@ -205,6 +217,7 @@ impl PairFinder {
             Self::AllPairs(finder) => finder.parts(),
             Self::Grid(finder) => finder.parts(),
             Self::Sweep(finder) => finder.parts(),
+            Self::Neighbours(finder) => finder.parts(),
         }
     }
 
@@ -215,6 +228,7 @@ impl PairFinder {
             Self::AllPairs(finder) => finder.find(l, parts, test),
             Self::Grid(finder) => finder.find(l, parts, test),
             Self::Sweep(finder) => finder.find(l, parts, test),
+            Self::Neighbours(finder) => finder.find(l, parts, test),
         }
     }
 }

@@ -371,7 +371,7 @@ impl Culler {
             .arrange(executor, &self.places, &self.balls, names);
         if let Some(intervals) = &self.intervals {
             let order = &self.finder.slots().names[..self.places.len()];
-            self.interval_slots.fill(order, &intervals.ends);
+            self.interval_slots.fill(&self.pool, order, &intervals.ends);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::models::Models;
 use crate::bodies::Places;
-use crate::broad_phase::Population;
+use crate::broad_phase::{Population, Volume};
 use crate::settings::{Finder, Scheme, TestedVolume};
 use crate::volume::DirectionSet;
 
@@ -40,5 +40,9 @@ pub(super) fn population(scheme: Scheme, models: &Models, places: &Places) -> Po
         bodies: places.len(),
         radii: radii.fold([f32::INFINITY, 0.0], |[lo, hi], r| [r.min(lo), r.max(hi)]),
         cheap_test: !scheme.is_oriented_alone(),
+        volume: match scheme.first {
+            Some(TestedVolume::Aabb | TestedVolume::KDop) => Volume::Cube,
+            _ => Volume::Ball,
+        },
     }
 }

@@ -7,6 +7,10 @@ use std::ops::Range;
 use super::SlotTest;
 use crate::broad_phase::Block;
 use crate::simd::{LANES, Lanes, MAX_WIDTH};
+use crate::threads::Threads;
+
+/// Bodies for whose columns waking another thread pays.
+const WORTH_SHARING: usize = 1 << 14;
 
 /// World-aligned slabs in the pair finder's slot order: one column per direction, each padded by [`MAX_WIDTH`] finite
 /// entries.
@@ -20,16 +24,22 @@ pub struct IntervalSlots {
 
 impl IntervalSlots {
     /// Gathers the slabs of all bodies into slot order: `ends[place·slabs + slab]` = [lo, hi], and the place in each slot.
-    pub fn fill(&mut self, order: &[u32], ends: &[[f32; 2]]) {
+    pub fn fill(&mut self, pool: &Threads, order: &[u32], ends: &[[f32; 2]]) {
         let slabs = ends.len().checked_div(order.len()).unwrap_or(0);
         self.lo.resize(slabs, Vec::new());
         self.hi.resize(slabs, Vec::new());
         for (side, columns) in [&mut self.lo, &mut self.hi].into_iter().enumerate() {
-            for (slab, column) in columns.iter_mut().enumerate() {
+            let fill = |slab: usize, column: &mut Vec<f32>| {
                 column.clear();
                 let end = |&place: &u32| ends[place as usize * slabs + slab][side];
                 column.extend(order.iter().map(end));
                 column.resize(order.len() + MAX_WIDTH, 0.0);
+            };
+            if order.len() >= WORTH_SHARING {
+                pool.each(columns, fill);
+            } else {
+                let columns = columns.iter_mut().enumerate();
+                columns.for_each(|(slab, column)| fill(slab, column));
             }
         }
     }
@@ -61,7 +71,7 @@ impl SlotTest for IntervalSlots {
     }
 
     #[inline(always)]
-    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
         let (codes, count) = (block.padded_codes(), block.codes().len());
         let (mut start, mut found) = (0, 0);
         while start < count {

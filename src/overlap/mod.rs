@@ -20,5 +20,5 @@ pub trait SlotTest {
 
     /// Lists the codes of the block's pairs that may touch at the front of `hits`, which has room for the block and a
     /// vector more. Returns their number.
-    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize;
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize;
 }

@@ -30,7 +30,7 @@ impl SlotTest for Slots {
     }
 
     #[inline(always)]
-    fn block<L: Lanes>(&self, l: L, block: &Block, hits: &mut [u32]) -> usize {
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
         let ours = quads_in_columns(l, &self.balls[block.first()..]);
         let (codes, count) = (block.padded_codes(), block.codes().len());
         let (mut start, mut found) = (0, 0);

@@ -47,6 +47,8 @@ choices! {
         Grid = "grid",
         /// Sort along an axis, sweep.
         Sweep = "sweep",
+        /// Candidates within reach and a skin, kept over frames until a body has moved by its skin.
+        Neighbours = "neighbours",
         /// Chosen from the scene.
         Auto = "auto",
     }

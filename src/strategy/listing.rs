@@ -168,7 +168,7 @@ impl SlotTest for PassAll {
         run.len()
     }
     #[inline(always)]
-    fn block<L: Lanes>(&self, _: L, block: &Block, hits: &mut [u32]) -> usize {
+    fn block<L: Lanes>(&self, _: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
         let codes = block.codes();
         hits[..codes.len()].copy_from_slice(codes);
         codes.len()
@@ -202,7 +202,7 @@ impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
     }
 
     #[inline(always)]
-    fn block<L: Lanes>(&mut self, l: L, block: &Block) {
+    fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>) {
         self.counters.tests += block.codes().len() as u64;
         let found = self.test.block(l, block, &mut self.hits);
         let first = block.first();

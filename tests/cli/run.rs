@@ -66,7 +66,7 @@ fn counters_and_hashes_are_the_same_twice_and_in_every_simd_level() {
 #[test]
 fn threads_and_finders_leave_the_pairs_as_they_are() {
     let expected = run(&["--strategy", "sphere"]);
-    for finder in ["all-pairs", "grid", "sweep", "auto"] {
+    for finder in ["all-pairs", "grid", "sweep", "neighbours", "auto"] {
         let one = run(&["--pairs", finder]);
         for strategy in ["sphere", "s-dop-batch"] {
             let flags = ["--pairs", finder, "--threads", "3", "--strategy", strategy];

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod borders;
+mod neighbours;
 mod outside;
 mod scenes;
 #[path = "../support/mod.rs"]

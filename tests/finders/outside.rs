@@ -6,7 +6,7 @@ use std::ops::Range;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::bodies::{Bodies, Places};
-use sdop::broad_phase::{Block, FirstTest, PairFinder, Population, Reorder};
+use sdop::broad_phase::{Block, FirstTest, PairFinder, Population, Reorder, Volume};
 use sdop::settings::Finder;
 use sdop::simd::{Kernel, Lanes, Tier, dispatch};
 use sdop::threads::{Executor, Threads};
@@ -54,6 +54,7 @@ fn no_finder_hangs_or_panics_on_numbers_outside_the_contract() {
                     bodies: n,
                     radii: [1.0, 1.0],
                     cheap_test: true,
+                    volume: [Volume::Ball, Volume::Cube][n % 2],
                 };
                 let mut bodies = Bodies::default();
                 for i in 0..n {

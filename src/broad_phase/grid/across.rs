@@ -5,7 +5,8 @@ use std::ops::Range;
 use super::Grid;
 use super::level::Level;
 use super::near::hand_over;
-use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest};
+use crate::broad_phase::{BLOCK_BODIES, FirstTest, Page};
+use crate::rounding::skin::Reach;
 use crate::rounding::widen;
 use crate::simd::Lanes;
 
@@ -46,14 +47,14 @@ pub fn plan(a: &Level, b: &Level) -> (bool, Search) {
 }
 
 impl Grid {
-    /// Pairs of a slot in `seekers` and one in the level `target`, to which the seekers don't belong.
+    /// Pairs of a slot in `seekers`, whose balls grow by `grown`, and one in the level `target`, to which they don't belong.
     #[inline(always)]
     pub(super) fn across<L: Lanes>(
         &self,
         l: L,
-        seekers: Range<usize>,
+        (seekers, grown): (Range<usize>, Reach),
         target: &Level,
-        block: &mut Block,
+        page: &mut Page,
         test: &mut impl FirstTest,
     ) {
         let starts = target.starts.as_slice();
@@ -61,18 +62,18 @@ impl Grid {
         let all = target.range.start as u32..target.range.end as u32;
         let mut first = seekers.start;
         while first < seekers.end {
-            let mut pen = block.restart(first);
+            let mut pen = page.restart(first);
             for i in first..seekers.end.min(first + BLOCK_BODIES) {
                 let ball = &self.slots.balls[i];
-                let reach = f64::from(widen(ball[3])) + target.widest;
+                let reach = f64::from(widen(grown.of(ball[3]))) + target.widest;
                 let Some([lo, hi]) = target.cells.around(ball, reach) else {
                     continue;
                 };
                 if (0..3).any(|axis| hi[axis] - lo[axis] >= most_span) {
                     if pen.is_full(1) {
                         pen.done();
-                        hand_over(l, block, test);
-                        pen = block.restart(first);
+                        hand_over(l, page, test);
+                        pen = page.restart(first);
                     }
                     pen.push(i - first, all.clone());
                     continue;
@@ -81,8 +82,8 @@ impl Grid {
                     for y in lo[1]..=hi[1] {
                         if pen.is_full(2) {
                             pen.done();
-                            hand_over(l, block, test);
-                            pen = block.restart(first);
+                            hand_over(l, page, test);
+                            pen = page.restart(first);
                         }
                         let row = target.cells.index([lo[0], y, z]) as usize;
                         let end = row + (hi[0] - lo[0]) as usize + 1;
@@ -94,7 +95,7 @@ impl Grid {
                 }
             }
             pen.done();
-            hand_over(l, block, test);
+            hand_over(l, page, test);
             first += BLOCK_BODIES;
         }
     }
@@ -104,6 +105,7 @@ impl Grid {
 mod tests {
     use super::super::cells::Layout;
     use super::*;
+    use crate::broad_phase::Block;
     use crate::simd::{Kernel, Tier, dispatch};
 
     const TARGETS: usize = 24;
@@ -116,7 +118,7 @@ mod tests {
         fn run<L: Lanes>(&mut self, _: L, i: usize, run: Range<usize>) {
             run.for_each(|j| self.0[i - TARGETS][j] += 1);
         }
-        fn block<L: Lanes>(&mut self, _: L, block: &Block) {
+        fn block<L: Lanes>(&mut self, _: L, block: &Block<'_>) {
             for &code in block.codes() {
                 let i = block.first() + (code & 15) as usize;
                 self.0[i - TARGETS][(code >> 4) as usize] += 1;
@@ -131,9 +133,10 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> Count {
             let mut count = Count([[0; TARGETS]; SEEKERS]);
-            let (seekers, mut block) = (self.0.levels[1].range.clone(), Block::new());
+            let (seekers, mut page) = (self.0.levels[1].range.clone(), Page::new());
+            let seekers = (seekers, Reach::NONE);
             self.0
-                .across(l, seekers, &self.0.levels[0], &mut block, &mut count);
+                .across(l, seekers, &self.0.levels[0], &mut page, &mut count);
             count
         }
     }

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use super::cells::{Cells, Layout};
 use crate::broad_phase::{Bounds, Slots};
+use crate::rounding::skin::Reach;
 use crate::rounding::widen;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 use crate::threads::{Executor, Threads};
@@ -21,8 +22,10 @@ pub struct Level {
     pub cells: Cells,
     /// First slot of each cell, and one more entry: the last cell's end.
     pub starts: Vec<u32>,
-    /// Widest ball of this frame, widened.
+    /// Widest ball of this frame, grown and widened.
     pub widest: f64,
+    /// How balls grow before they are looked for.
+    pub reach: Reach,
     layout: Layout,
 }
 
@@ -33,6 +36,7 @@ impl Level {
             cells: Cells::fit(&Bounds::EMPTY, range.len(), layout),
             starts: Vec::new(),
             widest: 0.0,
+            reach: Reach::NONE,
             range,
             layout,
         }
@@ -52,7 +56,8 @@ impl Level {
         let Executor { tier, pool } = executor;
         let range = self.range.clone();
         let (balls, names) = (&balls[range.clone()], &names[range.clone()]);
-        let bounds = bounds(tier, pool, balls);
+        let mut bounds = bounds(tier, pool, balls);
+        bounds.widest = self.reach.of(bounds.widest);
         self.widest = f64::from(widen(bounds.widest));
         self.cells = Cells::fit(&bounds, range.len(), self.layout);
         let (cells, place_cells) = (&self.cells, &mut place_cells[range.clone()]);
@@ -119,7 +124,7 @@ impl Level {
         let [start, end] = [range.start as u32, range.end as u32];
         debug_assert_eq!(ends, [Some(&start), Some(&end)], "cells hold all slots");
         debug_assert!(self.starts.is_sorted(), "cells follow each other");
-        let wider = |ball: &[f32; 4]| f64::from(widen(ball[3])) > self.widest;
+        let wider = |ball: &[f32; 4]| f64::from(widen(self.reach.of(ball[3]))) > self.widest;
         debug_assert!(!balls.iter().any(wider), "the widest ball is the widest");
         debug_assert!(self.cells.size() >= 2.0 * self.widest, "cells hold a ball");
     }

@@ -17,7 +17,8 @@ pub use self::cells::{Cells, Layout};
 
 use self::across::Search;
 use self::level::Level;
-use super::{Block, FirstTest, Reorder, Slots, bytes};
+use super::{FirstTest, Page, Reorder, Slots, bytes};
+use crate::rounding::skin::Reach;
 use crate::simd::Lanes;
 use crate::threads::Executor;
 
@@ -59,6 +60,8 @@ pub struct Grid {
 #[derive(Clone, Debug)]
 struct Part {
     slots: Range<usize>,
+    /// Theirs.
+    seeker: usize,
     level: usize,
     kind: Kind,
 }
@@ -80,12 +83,8 @@ impl Grid {
         order: &mut Vec<u32>,
     ) -> Reorder {
         self.age += 1;
-        let grown = self
-            .planned
-            .is_some_and(|planned| self.candidates > PLAN_GROWTH * planned + balls.len() as u64);
-        let unplanned = self.levels.is_empty() && !balls.is_empty();
         order.clear();
-        if unplanned || (grown && self.age >= PLAN_PAUSE) {
+        if self.needs_plan(balls.len()) {
             order.extend(0..balls.len() as u32);
             self.plan(moving, balls, order);
             for place in order {
@@ -105,6 +104,45 @@ impl Grid {
             return Reorder::Moving;
         }
         Reorder::None
+    }
+
+    /// Whether the levels no longer fit, or there are none.
+    pub(super) fn needs_plan(&self, bodies: usize) -> bool {
+        let most = |planned| PLAN_GROWTH * planned + bodies as u64;
+        let grown = self
+            .planned
+            .is_some_and(|planned| self.candidates > most(planned));
+        (self.levels.is_empty() && bodies > 0) || (grown && self.age >= PLAN_PAUSE)
+    }
+
+    /// Writes an order of places that is the one of the slots, after a frame in which bodies were arranged, for a time in
+    /// which they aren't.
+    pub(super) fn follow_slots(
+        &mut self,
+        moving: usize,
+        names: &[u32],
+        order: &mut Vec<u32>,
+    ) -> Reorder {
+        self.age += 1;
+        order.clear();
+        order.extend_from_slice(&self.slots.names[..names.len()]);
+        if order[moving..] == names[moving..] {
+            return Reorder::Moving;
+        }
+        self.fixed_sorted = false;
+        Reorder::All
+    }
+
+    /// One more frame in which bodies weren't arranged.
+    pub(super) fn rest(&mut self) {
+        self.age += 1;
+    }
+
+    /// From the next frame on, moving bodies grow so before they are looked for.
+    pub(super) fn set_reach(&mut self, reach: Reach) {
+        for level in &mut self.levels[..self.moving_levels] {
+            level.reach = reach;
+        }
     }
 
     fn plan(&mut self, moving: usize, balls: &[[f32; 4]], order: &mut [u32]) {
@@ -144,19 +182,31 @@ impl Grid {
     fn cut(&mut self) {
         self.parts.clear();
         for (index, level) in self.levels[..self.moving_levels].iter().enumerate() {
-            push_parts(&mut self.parts, level, PART, index, Kind::Near);
+            let near = Part {
+                slots: level.range.clone(),
+                seeker: index,
+                level: index,
+                kind: Kind::Near,
+            };
+            push_parts(&mut self.parts, near, PART);
             for (other_index, other) in self.levels.iter().enumerate().skip(index + 1) {
                 let (seeks, search) = across::plan(level, other);
                 let (seeker, target) = if seeks {
-                    (level, other_index)
+                    (index, other_index)
                 } else {
-                    (other, index)
+                    (other_index, index)
                 };
                 let size = match search {
                     Search::Cells => SEEKERS_BY_CELLS,
                     Search::All => SEEKERS_OF_ALL,
                 };
-                push_parts(&mut self.parts, seeker, size, target, Kind::Across(search));
+                let across = Part {
+                    slots: self.levels[seeker].range.clone(),
+                    seeker,
+                    level: target,
+                    kind: Kind::Across(search),
+                };
+                push_parts(&mut self.parts, across, size);
             }
         }
     }
@@ -171,6 +221,21 @@ impl Grid {
         &self.slots
     }
 
+    /// How many bodies are arranged.
+    pub(super) fn bodies(&self) -> usize {
+        self.slot_cells.len()
+    }
+
+    pub(super) fn slots_mut(&mut self) -> &mut Slots {
+        &mut self.slots
+    }
+
+    /// Whether the seekers of a part move, and the bodies that they look for.
+    pub(super) fn moves(&self, part: usize) -> [bool; 2] {
+        let part = &self.parts[part];
+        [part.seeker, part.level].map(|level| level < self.moving_levels)
+    }
+
     pub(super) fn parts(&self) -> usize {
         self.parts.len()
     }
@@ -183,12 +248,15 @@ impl Grid {
 
     #[inline(always)]
     pub(super) fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
-        let mut block = Block::new();
+        let mut page = Page::new();
         for part in &self.parts[parts] {
             let (slots, level) = (part.slots.clone(), &self.levels[part.level]);
             match part.kind {
-                Kind::Near => self.near(l, level, slots, &mut block, test),
-                Kind::Across(Search::Cells) => self.across(l, slots, level, &mut block, test),
+                Kind::Near => self.near(l, level, slots, &mut page, test),
+                Kind::Across(Search::Cells) => {
+                    let grown = self.levels[part.seeker].reach;
+                    self.across(l, (slots, grown), level, &mut page, test);
+                }
                 Kind::Across(Search::All) => {
                     for i in slots {
                         test.run(l, i, level.range.clone());
@@ -199,13 +267,13 @@ impl Grid {
     }
 }
 
-/// Cuts a level's slots into parts of `size`.
-fn push_parts(parts: &mut Vec<Part>, of: &Level, size: usize, level: usize, kind: Kind) {
-    for start in of.range.clone().step_by(size) {
+/// Cuts a part into parts of `size` slots.
+fn push_parts(parts: &mut Vec<Part>, whole: Part, size: usize) {
+    let slots = whole.slots.clone();
+    for start in slots.clone().step_by(size) {
         parts.push(Part {
-            slots: start..of.range.end.min(start + size),
-            level,
-            kind,
+            slots: start..slots.end.min(start + size),
+            ..whole.clone()
         });
     }
 }

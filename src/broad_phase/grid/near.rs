@@ -8,7 +8,7 @@ use std::ops::Range;
 use super::Grid;
 use super::cells::Layout;
 use super::level::Level;
-use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest, Pen};
+use crate::broad_phase::{BLOCK_BODIES, FirstTest, Page, Pen};
 use crate::simd::Lanes;
 
 impl Grid {
@@ -19,19 +19,19 @@ impl Grid {
         l: L,
         level: &Level,
         range: Range<usize>,
-        block: &mut Block,
+        page: &mut Page,
         test: &mut impl FirstTest,
     ) {
         let mut first = range.start;
         while first < range.end {
             let bodies = first..range.end.min(first + BLOCK_BODIES);
-            let pen = block.restart(first);
+            let pen = page.restart(first);
             match (level.cells.layout(), level.cells.forward().try_into()) {
                 (Layout::Box, Ok(rows)) => self.in_space(level, bodies, rows, pen),
                 (Layout::Box, Err(_)) => self.in_box(level, bodies, pen),
                 (Layout::Wrapped, _) => self.wrapped(level, bodies, pen),
             }
-            hand_over(l, block, test);
+            hand_over(l, page, test);
             first += BLOCK_BODIES;
         }
     }
@@ -97,11 +97,11 @@ impl Grid {
     }
 }
 
-/// Hands a block's candidates to the test.
+/// Hands a page's candidates to the test.
 #[inline(always)]
-pub(super) fn hand_over<L: Lanes>(l: L, block: &Block, test: &mut impl FirstTest) {
-    test.block(l, block);
-    for (i, run) in block.long_runs() {
+pub(super) fn hand_over<L: Lanes>(l: L, page: &Page, test: &mut impl FirstTest) {
+    test.block(l, &page.block());
+    for (i, run) in page.long_runs() {
         test.run(l, i, run);
     }
 }

@@ -1,0 +1,16 @@
+# Control of skin_reach.g, one notch tighter: the factor 1 + 32u instead of 1 + 64u. Gappa must fail.
+
+u = 1b-24;
+grown = 1 + 32 * u;
+a = (1 + share) * grown * (1 + ea);
+L = (R * a * (1 + e1) + 1b-56) * (1 + e2);
+s = R * share * (1 + u) + 1b-60;
+needed = R * (1 + 16 * u) + 1b-78 + s * (1 + 32 * u) + 1b-60;
+f = (1 + 2 * u) * (1 + 8 * u) * (1 + u) * (1 + u);
+N = needed * f + 1b-70 * (1 + u);
+A = grown * (1 + ea) * (1 + e1) * (1 + e2);
+
+{ R in [1b-70, 1b63] /\ share in [0, 1] /\ |ea| <= 1b-24 /\ |e1| <= 1b-24 /\ |e2| <= 1b-24 -> L - N >= 0 }
+
+L - N -> R * ((A - (1 + 16 * u) * f) + share * (A - (1 + u) * (1 + 32 * u) * f))
+       + (1b-56 * (1 + e2) - (1b-78 + 1b-60 * (1 + 32 * u) + 1b-60) * f - 1b-70 * (1 + u));

@@ -1,0 +1,133 @@
+//! From the grid's candidates to neighbours: the pairs whose grown balls touch.
+
+use std::ops::Range;
+
+use super::Volume;
+use super::list::Chunk;
+use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest, MOST_CANDIDATES, Slots};
+use crate::rounding::skin::Reach;
+use crate::simd::{Lanes, MAX_WIDTH, quads_in_columns};
+
+/// The codes of sixteen slots of lane 0.
+const CODES: [u32; MAX_WIDTH] = {
+    let mut codes = [0; MAX_WIDTH];
+    let mut slot = 0;
+    while slot < MAX_WIDTH {
+        codes[slot] = (slot as u32) << 4;
+        slot += 1;
+    }
+    codes
+};
+
+/// Which pairs are neighbours.
+#[derive(Clone, Copy)]
+pub struct Pair {
+    /// How the balls of seekers grow, and those of the bodies that they look for.
+    pub grown: [Reach; 2],
+    /// What balls stand for.
+    pub volume: Volume,
+}
+
+impl Pair {
+    /// Bits of the lanes below `count` whose grown balls, or cubes, touch.
+    #[inline(always)]
+    fn touching<L: Lanes>(self, l: L, one: [L::F; 4], other: [L::F; 4], count: usize) -> u32 {
+        let [mine, theirs] = self.grown;
+        let s = mine.of_lanes(l, one[3]) + theirs.of_lanes(l, other[3]);
+        let [dx, dy, dz] = [other[0] - one[0], other[1] - one[1], other[2] - one[2]];
+        let apart = match self.volume {
+            Volume::Ball => l.gt((dx * dx + dy * dy) + dz * dz, s * s),
+            Volume::Cube => l.gt(l.max(l.max(l.abs(dx), l.abs(dy)), l.abs(dz)), s),
+        };
+        !l.bits(apart) & l.bits(l.first(count))
+    }
+}
+
+/// Takes the grid's candidates, and keeps the neighbours.
+pub struct Collect<'a> {
+    slots: &'a Slots,
+    pair: Pair,
+    chunk: &'a mut Chunk,
+    /// How many are of any use.
+    most: usize,
+    hits: [u32; MOST_CANDIDATES + MAX_WIDTH],
+}
+
+impl<'a> Collect<'a> {
+    #[inline(always)]
+    pub fn new(slots: &'a Slots, pair: Pair, chunk: &'a mut Chunk, most: usize) -> Self {
+        Self {
+            slots,
+            pair,
+            chunk,
+            most,
+            hits: [0; MOST_CANDIDATES + MAX_WIDTH],
+        }
+    }
+
+    #[inline(always)]
+    fn keep(&mut self, found: usize) {
+        if self.chunk.len() <= self.most {
+            self.chunk.append(&self.hits[..found]);
+        }
+    }
+}
+
+impl FirstTest for Collect<'_> {
+    #[inline(always)]
+    fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
+        self.chunk.seen += run.len() as u64;
+        let holds = |first: usize| (first..first + BLOCK_BODIES).contains(&i);
+        let first = match self.chunk.first().filter(|&first| holds(first)) {
+            Some(first) => first,
+            None => {
+                self.chunk.open(i);
+                i
+            }
+        };
+        let me = self.slots.balls[i].map(|number| l.splat(number));
+        let (mut start, mut found) = (run.start, 0);
+        while start < run.end {
+            let other = l.load_quads(&self.slots.balls[start..]);
+            let hit = self.pair.touching(l, me, other, run.end - start);
+            let code = (start << 4 | (i - first)) as u32;
+            let code = l.add_u32(l.splat_u32(code), l.load_u32(&CODES));
+            l.compress(hit, code, &mut self.hits[found..]);
+            found += hit.count_ones() as usize;
+            start += L::WIDTH;
+            if found >= MOST_CANDIDATES - MAX_WIDTH {
+                self.keep(found);
+                found = 0;
+            }
+        }
+        self.keep(found);
+    }
+
+    #[inline(always)]
+    fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>) {
+        let (codes, count) = (block.padded_codes(), block.codes().len());
+        self.chunk.seen += count as u64;
+        if self.chunk.first() != Some(block.first()) {
+            self.chunk.open(block.first());
+        }
+        let ours = quads_in_columns(l, &self.slots.balls[block.first()..]);
+        let (mut start, mut found) = (0, 0);
+        while start < count {
+            let code = l.load_u32(&codes[start..]);
+            let (_, lane) = l.split_u32(code);
+            let [x, y, z, r] = &ours;
+            let one = [
+                l.lookup_16(x, lane),
+                l.lookup_16(y, lane),
+                l.lookup_16(z, lane),
+                l.lookup_16(r, lane),
+            ];
+            let other = l.gather_quads(&self.slots.balls, &codes[start..]);
+            let hit = self.pair.touching(l, one, other, count - start);
+            l.compress(hit, code, &mut self.hits[found..]);
+            found += hit.count_ones() as usize;
+            start += L::WIDTH;
+        }
+        self.keep(found);
+    }
+}

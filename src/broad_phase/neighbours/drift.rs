@@ -1,0 +1,87 @@
+//! Whether every ball has stayed within its skin.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::broad_phase::BLOCK_BODIES;
+use crate::rounding::skin::stays;
+use crate::simd::{Kernel, Lanes, dispatch};
+use crate::threads::Executor;
+
+/// Balls that one thread measures at a time.
+const PIECE: usize = 4096;
+
+/// Copies the balls to `slots` and returns true if none has drifted by a share `skin` of its radius since `then`. Otherwise
+/// what `slots` holds is of no use.
+pub fn follow(
+    executor: Executor<'_>,
+    skin: f32,
+    now: &[[f32; 4]],
+    then: &[[f32; 4]],
+    slots: &mut [[f32; 4]],
+) -> bool {
+    let (tier, drifted) = (executor.tier, AtomicBool::new(false));
+    executor.pool.pieces(slots, PIECE, |start, slots| {
+        if drifted.load(Ordering::Relaxed) {
+            return;
+        }
+        let range = start..start + slots.len();
+        let measure = Measure {
+            skin,
+            now: &now[range.clone()],
+            then: &then[range],
+            slots,
+        };
+        if !dispatch(tier, measure) {
+            drifted.store(true, Ordering::Relaxed);
+        }
+    });
+    !drifted.into_inner()
+}
+
+struct Measure<'a> {
+    skin: f32,
+    now: &'a [[f32; 4]],
+    then: &'a [[f32; 4]],
+    slots: &'a mut [[f32; 4]],
+}
+
+impl Kernel for Measure<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> bool {
+        let (now, now_rest) = self.now.as_chunks::<BLOCK_BODIES>();
+        let (then, then_rest) = self.then.as_chunks::<BLOCK_BODIES>();
+        let (slots, slots_rest) = self.slots.as_chunks_mut::<BLOCK_BODIES>();
+        for ((now, then), slots) in now.iter().zip(then).zip(slots) {
+            if !all_stay(l, self.skin, now, then) {
+                return false;
+            }
+            *slots = *now;
+        }
+        slots_rest.copy_from_slice(now_rest);
+        let [now, then] = [now_rest, then_rest].map(|rest| {
+            let mut balls = [[0.0; 4]; BLOCK_BODIES];
+            balls[..rest.len()].copy_from_slice(rest);
+            balls
+        });
+        all_stay(l, self.skin, &now, &then)
+    }
+}
+
+#[inline(always)]
+fn all_stay<L: Lanes>(
+    l: L,
+    skin: f32,
+    now: &[[f32; 4]; BLOCK_BODIES],
+    then: &[[f32; 4]; BLOCK_BODIES],
+) -> bool {
+    // A loop and no closure, which would be compiled apart and without the tier's features.
+    let mut staying = l.first(L::WIDTH);
+    let mut start = 0;
+    while start < BLOCK_BODIES {
+        let (now, then) = (l.load_quads(&now[start..]), l.load_quads(&then[start..]));
+        staying = staying & stays(l, skin, now, then);
+        start += L::WIDTH;
+    }
+    l.bits(staying) == l.bits(l.first(L::WIDTH))
+}

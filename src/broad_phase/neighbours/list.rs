@@ -1,0 +1,197 @@
+//! The list itself: a chunk for each part of the grid's work, codes as in a [`Block`], sixteen slots an entry.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::Volume;
+use super::collect::{Collect, Pair};
+use super::policy::WIDEST;
+use crate::broad_phase::{Block, FirstTest, Grid, MOST_CANDIDATES, bytes};
+use crate::rounding::skin::Reach;
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch};
+use crate::threads::Executor;
+
+/// Pairs a body that a list with the widest skin may hold, and a few more for small scenes: crowds are bound by what is
+/// reported, and there a list would take more memory than all the rest.
+const PAIRS_PER_BODY: usize = 4;
+const FEW_PAIRS: usize = 256;
+
+/// The list of all parts.
+#[derive(Clone, Debug, Default)]
+pub struct List {
+    chunks: Vec<Chunk>,
+    parts: usize,
+    len: usize,
+}
+
+/// The neighbours that one part of the grid's work has found.
+#[derive(Clone, Debug, Default)]
+pub struct Chunk {
+    /// Codes of all entries, and a vector of whatever codes behind them.
+    codes: Vec<u32>,
+    len: usize,
+    /// The slot of lane 0, and where the entry's codes end.
+    entries: Vec<(u32, u32)>,
+    /// Candidates that the grid has handed out.
+    pub seen: u64,
+    /// By how much more room is made than is needed.
+    spare: f64,
+}
+
+impl List {
+    /// Makes the list of a grid that has just been arranged. False, and there is none, if it would be too long.
+    pub fn make(&mut self, executor: Executor<'_>, grid: &Grid, skin: f32, volume: Volume) -> bool {
+        self.parts = grid.parts();
+        if self.chunks.len() < self.parts {
+            self.chunks.resize(self.parts, Chunk::default());
+        }
+        // Room for as many pairs as the widest skin will bring, so that another skin allocates nothing.
+        let spare = f64::from((1.0 + WIDEST) / (1.0 + skin)).powi(3);
+        let most = ((PAIRS_PER_BODY * grid.bodies()) as f64 / spare) as usize + FEW_PAIRS;
+        let listed = AtomicUsize::new(0);
+        let chunks = &mut self.chunks[..self.parts];
+        executor.pool.each(chunks, |part, chunk| {
+            chunk.clear();
+            chunk.spare = spare;
+            // The sum only grows, so whether it ends above `most` depends on no thread.
+            if listed.load(Ordering::Relaxed) > most {
+                return;
+            }
+            let grown = grid.moves(part).map(|moves| match moves {
+                true => Reach::with_skin(skin),
+                false => Reach::with_skin(0.0),
+            });
+            let make = Make {
+                grid,
+                part,
+                pair: Pair { grown, volume },
+                chunk,
+                most,
+            };
+            dispatch(executor.tier, make);
+            listed.fetch_add(chunk.len, Ordering::Relaxed);
+        });
+        self.len = listed.into_inner();
+        self.len <= most
+    }
+
+    /// Pairs in it.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Candidates of the grid that it was made of.
+    pub fn seen(&self) -> u64 {
+        self.chunks[..self.parts]
+            .iter()
+            .map(|chunk| chunk.seen)
+            .sum()
+    }
+
+    pub fn bytes(&self) -> usize {
+        let chunk = |chunk: &Chunk| bytes(&chunk.codes) + bytes(&chunk.entries);
+        bytes(&self.chunks) + self.chunks.iter().map(chunk).sum::<usize>()
+    }
+
+    pub fn parts(&self) -> usize {
+        self.parts
+    }
+
+    #[inline(always)]
+    pub fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
+        for chunk in &self.chunks[parts] {
+            let mut start = 0;
+            for &(first, end) in &chunk.entries {
+                while start < end as usize {
+                    let len = (end as usize - start).min(MOST_CANDIDATES);
+                    test.block(l, &Block::new(first as usize, &chunk.codes[start..], len));
+                    start += len;
+                }
+            }
+        }
+    }
+}
+
+impl Chunk {
+    fn clear(&mut self) {
+        self.codes.clear();
+        self.entries.clear();
+        (self.len, self.seen) = (0, 0);
+    }
+
+    /// The slot of lane 0 of the entry that is being written, if there is one.
+    #[inline(always)]
+    pub fn first(&self) -> Option<usize> {
+        self.entries.last().map(|&(first, _)| first as usize)
+    }
+
+    /// Opens an entry, in place of the last one if that is empty.
+    #[inline(always)]
+    pub fn open(&mut self, first: usize) {
+        if self
+            .entries
+            .last()
+            .is_some_and(|&(_, end)| end as usize == self.len)
+        {
+            let before = self.entries.len().checked_sub(2);
+            let start = before.map_or(0, |before| self.entries[before].1 as usize);
+            if start == self.len {
+                self.entries.pop();
+            }
+        }
+        reserve(&mut self.entries, 1, 1.0);
+        self.entries.push((first as u32, self.len as u32));
+    }
+
+    /// Appends codes to the open entry.
+    #[inline(always)]
+    pub fn append(&mut self, codes: &[u32]) {
+        reserve(&mut self.codes, codes.len() + MAX_WIDTH, self.spare);
+        self.codes.extend_from_slice(codes);
+        self.len += codes.len();
+        if let Some((_, end)) = self.entries.last_mut() {
+            *end = self.len as u32;
+        }
+    }
+
+    /// Closes the list.
+    fn close(&mut self) {
+        reserve(&mut self.codes, MAX_WIDTH, self.spare);
+        self.codes.resize(self.len + MAX_WIDTH, 0);
+    }
+
+    /// How many pairs it holds.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+}
+
+/// Room for more, `spare` times what is needed, and a quarter more than that, so that a list that breathes allocates nothing
+/// and doubles nothing.
+#[inline(always)]
+fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
+    let needed = column.len() + more;
+    if column.capacity() < needed {
+        let room = (1.25 * spare * needed as f64) as usize;
+        column.reserve_exact(room.max(needed) - column.len());
+    }
+}
+
+struct Make<'a> {
+    grid: &'a Grid,
+    part: usize,
+    pair: Pair,
+    chunk: &'a mut Chunk,
+    most: usize,
+}
+
+impl Kernel for Make<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) {
+        let mut collect = Collect::new(self.grid.slots(), self.pair, self.chunk, self.most);
+        self.grid.find(l, self.part..self.part + 1, &mut collect);
+        self.chunk.close();
+    }
+}

@@ -1,0 +1,172 @@
+//! Neighbour lists: candidates within reach and a skin, found by the grid once, tested frame after frame.
+//!
+//! Most pairs that are near each other in one frame are so in the next. A list of the pairs whose balls, grown by a skin
+//! each, touch serves until some ball has drifted by its skin ([`drift`]), which is measured in every frame and never
+//! extrapolated; then the grid makes a new one. Meanwhile slots, and places with them, stay as they are: nothing is sorted,
+//! and updates write in the order in which the list reads. A body that jumps has drifted, so that a new list is made; static
+//! bodies have no skin.
+//!
+//! Lists don't pay where bodies move by a good share of their radius a frame, or where each has many neighbours. By counts
+//! alone ([`policy`]) such frames are the grid's.
+
+mod collect;
+mod drift;
+mod list;
+mod policy;
+
+use std::ops::Range;
+
+use self::list::List;
+use self::policy::Policy;
+use super::{FirstTest, Grid, Reorder, Slots, bytes};
+use crate::rounding::skin::Reach;
+use crate::simd::Lanes;
+use crate::threads::Executor;
+
+/// What a pair finder's balls stand for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Volume {
+    /// Themselves: what is reported has balls that meet.
+    #[default]
+    Ball,
+    /// The cubes about them: what is reported has cubes that meet.
+    Cube,
+}
+
+/// A grid, and the list that was made of it last.
+#[derive(Clone, Debug, Default)]
+pub struct Neighbours {
+    grid: Grid,
+    volume: Volume,
+    list: List,
+    /// The balls by slot when the list was made.
+    then: Vec<[f32; 4]>,
+    state: State,
+    policy: Policy,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum State {
+    /// No list: the grid finds pairs.
+    #[default]
+    Searching,
+    /// The list was made in this frame; places aren't slots.
+    Made,
+    /// Places have taken the order of slots, and slots are yet to take their names.
+    Ordered,
+    /// The list is followed.
+    Followed,
+}
+
+impl Neighbours {
+    /// A finder of such volumes.
+    pub fn new(volume: Volume) -> Self {
+        Self {
+            volume,
+            ..Self::default()
+        }
+    }
+
+    /// What balls stand for.
+    #[cfg(debug_assertions)]
+    pub(super) fn volume(&self) -> Volume {
+        self.volume
+    }
+
+    /// Looks for a better order of places: that of the slots after a list has been made, or what the grid says.
+    pub(super) fn reorder(
+        &mut self,
+        moving: usize,
+        balls: &[[f32; 4]],
+        names: &[u32],
+        order: &mut Vec<u32>,
+    ) -> Reorder {
+        let replan = self.grid.needs_plan(balls.len());
+        match self.state {
+            _ if replan => self.state = State::Searching,
+            State::Searching => {}
+            State::Made => {
+                self.state = State::Ordered;
+                return self.grid.follow_slots(moving, names, order);
+            }
+            State::Ordered | State::Followed => {
+                self.grid.rest();
+                return Reorder::None;
+            }
+        }
+        self.grid.reorder(moving, balls, names, order)
+    }
+
+    /// Follows the list if it may be, or lets the grid arrange the bodies and makes a new one if it pays.
+    pub(super) fn arrange(
+        &mut self,
+        executor: Executor<'_>,
+        moving: usize,
+        balls: &[[f32; 4]],
+        names: &[u32],
+    ) {
+        if matches!(self.state, State::Ordered | State::Followed) {
+            let slots = &mut self.grid.slots_mut().balls[..moving];
+            let (now, then) = (&balls[..moving], &self.then[..moving]);
+            if drift::follow(executor, self.policy.skin(), now, then, slots) {
+                if self.state == State::Ordered {
+                    self.grid.slots_mut().names[..names.len()].copy_from_slice(names);
+                    self.state = State::Followed;
+                }
+                self.policy.followed();
+                return;
+            }
+            self.policy
+                .ended(self.list.len(), self.list.seen(), balls.len());
+        }
+        self.state = State::Searching;
+        let Some(skin) = self.policy.next() else {
+            self.grid.set_reach(Reach::NONE);
+            self.grid.arrange(executor, balls, names);
+            return;
+        };
+        self.grid.set_reach(Reach::with_skin(skin));
+        self.grid.arrange(executor, balls, names);
+        if !self.list.make(executor, &self.grid, skin, self.volume) {
+            self.policy.overflowed();
+            return;
+        }
+        self.then.clear();
+        self.then
+            .extend_from_slice(&self.grid.slots().balls[..moving]);
+        self.state = State::Made;
+        // The grid plans by the candidates that it would have handed out without a skin.
+        let wider = f64::from(1.0 + skin).powi(3);
+        self.grid.observe((self.list.seen() as f64 / wider) as u64);
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.grid.bytes() + bytes(&self.then) + self.list.bytes()
+    }
+
+    pub(super) fn slots(&self) -> &Slots {
+        self.grid.slots()
+    }
+
+    pub(super) fn parts(&self) -> usize {
+        match self.state {
+            State::Searching => self.grid.parts(),
+            _ => self.list.parts(),
+        }
+    }
+
+    /// Hears how many candidates a frame had.
+    pub(super) fn observe(&mut self, candidates: u64) {
+        if self.state == State::Searching {
+            self.grid.observe(candidates);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
+        match self.state {
+            State::Searching => self.grid.find(l, parts, test),
+            _ => self.list.find(l, parts, test),
+        }
+    }
+}

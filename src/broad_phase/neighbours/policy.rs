@@ -1,0 +1,174 @@
+//! When a list pays, and with which skin: by counts of frames and pairs alone, so that no choice depends on the machine.
+//!
+//! A list with a skin of σ radii that served n frames tells the speed of the fastest body, v ≈ σ/(n − ½) radii a frame: as
+//! long as it lasts, another list with a skin of σ′ serves σ′/v frames and one more. A wider skin makes fewer lists, each of
+//! (1 + σ′)³ as many pairs, from as many more candidates.
+
+/// Skins to choose from, in radii. With wider ones than these the frame that makes a list takes more than 1.3 of the grid's.
+const SKINS: [f32; 6] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375];
+
+/// The widest.
+pub const WIDEST: f32 = SKINS[SKINS.len() - 1];
+
+/// The first one, before anything is known of the motion.
+const FIRST: usize = 3;
+
+/// Costs in instructions of AVX2 (10,000 uniform bodies, spheres): to sort a body; to look at a candidate, in a frame of the
+/// grid and in one that makes a list; to follow a list, a body and a pair.
+const SORT: f64 = 160.0;
+const SEARCH: f64 = 25.0;
+const MAKE: f64 = 13.0;
+const FOLLOW: f64 = 35.0;
+const PAIR: f64 = 25.0;
+
+/// Frames of the grid between two attempts: at first, and at most.
+const PAUSE: u32 = 16;
+const LONGEST_PAUSE: u32 = 256;
+
+/// What is known of the motion.
+#[derive(Clone, Debug)]
+pub struct Policy {
+    skin: usize,
+    /// Frames that the present list has served.
+    served: u32,
+    /// Frames of the grid to come.
+    wait: u32,
+    /// How many there will be after the next failure.
+    pause: u32,
+}
+
+impl Default for Policy {
+    fn default() -> Self {
+        Self {
+            skin: FIRST,
+            served: 0,
+            // The first frame places bodies and isn't searched.
+            wait: 1,
+            pause: PAUSE,
+        }
+    }
+}
+
+impl Policy {
+    /// The skin of the list at hand.
+    pub fn skin(&self) -> f32 {
+        SKINS[self.skin]
+    }
+
+    /// The skin of a list to be made in this frame, if it is to be made.
+    pub fn next(&mut self) -> Option<f32> {
+        if self.wait > 0 {
+            self.wait -= 1;
+            return None;
+        }
+        self.served = 1;
+        Some(self.skin())
+    }
+
+    /// The list has served another frame.
+    pub fn followed(&mut self) {
+        self.served += 1;
+    }
+
+    /// A list of so many pairs, made of so many candidates, can't be followed any longer.
+    pub fn ended(&mut self, pairs: usize, candidates: u64, bodies: usize) {
+        let skin = |index: usize| f64::from(SKINS[index]);
+        let wider = |index: usize| (1.0 + skin(index)).powi(3);
+        let speed = skin(self.skin) / (f64::from(self.served) - 0.5);
+        // A body's, if there were no skin.
+        let [pairs, candidates] = [pairs as f64, candidates as f64]
+            .map(|number| number / bodies.max(1) as f64 / wider(self.skin));
+        let cost = |index: usize| {
+            let frames = (skin(index) / speed).floor() + 1.0;
+            let make = SORT + MAKE * candidates * wider(index);
+            make / frames + FOLLOW + PAIR * pairs * wider(index)
+        };
+        let mut best = 0;
+        for index in 1..SKINS.len() {
+            if cost(index) < cost(best) {
+                best = index;
+            }
+        }
+        self.skin = best;
+        if cost(best) < SORT + SEARCH * candidates {
+            self.pause = PAUSE;
+        } else {
+            // Of a list that served one frame alone the widest skin tells most.
+            self.skin = SKINS.len() - 1;
+            self.give_up();
+        }
+    }
+
+    /// The list would have had too many pairs.
+    pub fn overflowed(&mut self) {
+        self.skin = 0;
+        self.give_up();
+    }
+
+    fn give_up(&mut self) {
+        self.wait = self.pause;
+        self.pause = LONGEST_PAUSE.min(2 * self.pause);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What 2000 frames come to in which the fastest body moves by `speed` radii each, where a list without a skin has `each`
+    /// pairs a body: lists made, frames that one served, and the last one's skin.
+    fn frames(speed: f64, each: f64) -> (u32, u32, f32) {
+        let (mut policy, mut drift) = (Policy::default(), None);
+        let (mut made, mut served) = (0, 0);
+        for _ in 0..2000 {
+            if let Some(drift) = &mut drift {
+                *drift += speed;
+                if *drift < f64::from(policy.skin()) {
+                    policy.followed();
+                    served += 1;
+                    continue;
+                }
+                let wider = f64::from(1.0 + policy.skin()).powi(3);
+                let pairs = 1000.0 * each * wider;
+                policy.ended(pairs as usize, (6.0 * pairs) as u64, 1000);
+            }
+            drift = policy.next().map(|_| 0.0);
+            if drift.is_some() {
+                (made, served) = (made + 1, served + 1);
+            }
+        }
+        (made, served, policy.skin())
+    }
+
+    #[test]
+    fn slow_bodies_are_followed_and_fast_ones_searched_for() {
+        let mut widest = 0.0;
+        for speed in [0.0, 0.001, 0.01, 0.03, 0.1] {
+            let (made, served, skin) = frames(speed, 0.75);
+            assert!(served >= 1990, "{speed}: {served}");
+            assert!(
+                f64::from(made) <= 2000.0 * speed / 0.06 + 2.0,
+                "{speed}: {made}"
+            );
+            assert!(speed == 0.0 || skin >= widest, "{speed}: {skin}");
+            widest = if speed == 0.0 { 0.0 } else { skin };
+        }
+        for speed in [1.0, 100.0] {
+            let (made, served, _) = frames(speed, 0.75);
+            assert!(made < 20 && served == made, "{speed}: {made}, {served}");
+        }
+    }
+
+    #[test]
+    fn a_list_that_was_too_long_is_tried_again_seldom() {
+        let mut policy = Policy::default();
+        let made = (0..4000).filter(|_| {
+            let made = policy.next().is_some();
+            if made {
+                policy.overflowed();
+            }
+            made
+        });
+        assert!((12..24).contains(&made.count()));
+    }
+}

@@ -1,0 +1,167 @@
+//! Skins: how far a ball may drift before a list of neighbours must be made anew.
+//!
+//! A list holds the pairs that come within reach while each ball's drift, the distance that its centre has moved plus what
+//! its radius has grown since, is at most its budget B. The drift is measured in f32 and held against the skin
+//! s = max(fl(Rσ), 2⁻⁶⁰) of a share σ of the radius; the budget is what the measurement can hide beyond that,
+//! B = s(1 + 32u) + 2⁻⁶⁰. Both in the order of operations of [`stays`]; a list is made of balls grown by [`Reach`].
+
+use super::{U, exp2};
+use crate::simd::Lanes;
+
+/// 1 + 32u ≥ 1 + 17u + …: what a measured drift below the skin may be in truth, at most. Proof: `skin.g`.
+pub const SKIN_FACTOR: f64 = 1.0 + 32.0 * U;
+
+/// 2⁻⁶⁰: the least skin, whose square underflow cannot take, and as much again for the squares that it can. Proof: `skin.g`.
+pub const SKIN_FLOOR: f64 = exp2(-60);
+
+/// 1 + 64u, by which grown radii exceed (1 + σ)R: the finder's widening, the budget and the sphere test's own margin
+/// together need 47u. Proof: `skin_reach.g`.
+pub const REACH_FACTOR: f64 = 1.0 + 64.0 * U;
+
+/// 2⁻⁵⁶: the same for the floors. Proof: `skin_reach.g`.
+pub const REACH_FLOOR: f32 = exp2(-56) as f32;
+
+/// Whether each ball (x, y, z, R) has drifted by less than its skin since it was `then`: the sum of squares of the
+/// coordinates' differences is below the square of what growth has left of the skin. NaN has drifted.
+#[inline(always)]
+pub fn stays<L: Lanes>(l: L, share: f32, now: [L::F; 4], then: [L::F; 4]) -> L::M {
+    let skin = l.max(then[3] * l.splat(share), l.splat(SKIN_FLOOR as f32));
+    let grown = l.max(now[3] - then[3], l.splat(0.0));
+    let left = l.max(skin - grown, l.splat(0.0));
+    let [dx, dy, dz] = [now[0] - then[0], now[1] - then[1], now[2] - then[2]];
+    l.gt(left * left, (dx * dx + dy * dy) + dz * dz)
+}
+
+/// How radii grow before neighbours are looked for: fl(fl(R·factor) + floor).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    factor: f32,
+    floor: f32,
+}
+
+impl Reach {
+    /// Radii as they are.
+    pub const NONE: Self = Self {
+        factor: 1.0,
+        floor: 0.0,
+    };
+
+    /// By a share of the radius as skin: the sphere test of balls so grown loses no pair of balls that may be reported within
+    /// their budgets.
+    #[must_use]
+    pub fn with_skin(share: f32) -> Self {
+        Self {
+            factor: ((1.0 + f64::from(share)) * REACH_FACTOR) as f32,
+            floor: REACH_FLOOR,
+        }
+    }
+
+    /// The grown radius.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(self, radius: f32) -> f32 {
+        radius * self.factor + self.floor
+    }
+
+    /// The grown radii.
+    #[inline(always)]
+    pub fn of_lanes<L: Lanes>(self, l: L, radii: L::F) -> L::F {
+        radii * l.splat(self.factor) + l.splat(self.floor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{Kernel, Tier, dispatch};
+
+    struct Stays {
+        share: f32,
+        now: [f32; 4],
+        then: [f32; 4],
+    }
+
+    impl Kernel for Stays {
+        type Output = bool;
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> bool {
+            let [now, then] = [self.now, self.then].map(|ball| ball.map(|x| l.splat(x)));
+            l.bits(stays(l, self.share, now, then)) & 1 == 1
+        }
+    }
+
+    fn stays_in(tier: Tier, share: f32, now: [f32; 4], then: [f32; 4]) -> bool {
+        dispatch(tier, Stays { share, now, then })
+    }
+
+    /// Numbers in [0, 1), the same ones each time.
+    fn numbers() -> impl Iterator<Item = f64> {
+        let mut state = 7u64;
+        std::iter::repeat_with(move || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 * exp2(-53)
+        })
+    }
+
+    /// Drifts about as long as the skin, in any direction, with or without growth: whatever passes is within the budget, and
+    /// some of it is beyond the skin.
+    #[test]
+    fn what_passes_is_within_the_budget() {
+        let mut numbers = numbers();
+        let mut next = || numbers.next().unwrap_or(0.0);
+        for tier in Tier::available() {
+            let mut beyond = 0;
+            for n in 0..40_000 {
+                let (share, radius) = (0.25, (0.5 + next()) as f32 * exp2(n % 61 - 30) as f32);
+                let skin = (radius * share).max(SKIN_FLOOR as f32);
+                let grown = match n % 3 {
+                    0 => 0.0,
+                    1 => next(),
+                    _ => -next(),
+                };
+                let left = f64::from(skin) * (1.0 - f64::max(grown, 0.0));
+                let direction = [next() - 0.5, next() - 0.5, next() - 0.5];
+                let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let drift = left * (1.0 + 24.0 * U * (next() - 0.5)) / length;
+                let then = [0.0, radius, -radius, radius];
+                let moved = [0, 1, 2].map(|k| (f64::from(then[k]) + drift * direction[k]) as f32);
+                let now_radius = (f64::from(radius) + f64::from(skin) * grown) as f32;
+                let now = [moved[0], moved[1], moved[2], now_radius];
+                if stays_in(tier, share, now, then) {
+                    let d = [0, 1, 2].map(|k| f64::from(now[k]) - f64::from(then[k]));
+                    let drift = d.iter().map(|x| x * x).sum::<f64>().sqrt();
+                    let growth = f64::from(now_radius) - f64::from(radius);
+                    let widened = growth.max(0.0) * (1.0 + 16.0 * U);
+                    let budget = f64::from(skin) * SKIN_FACTOR + SKIN_FLOOR;
+                    assert!(drift + widened <= budget, "{tier}: {then:?} to {now:?}");
+                    beyond += u32::from(drift + widened > f64::from(skin));
+                }
+            }
+            assert!(beyond > 0, "{tier}: no drift beyond the skin passes");
+        }
+    }
+
+    #[test]
+    fn a_drift_of_the_skin_is_too_long_and_one_unit_less_is_not() {
+        let then = [3.0, -2.0, 5.0, 1.0];
+        for tier in Tier::available() {
+            let to = |x: f32, radius: f32| stays_in(tier, 0.25, [x, -2.0, 5.0, radius], then);
+            assert!(to(3.0, 1.0) && to(3.25f32.next_down(), 1.0) && to(3.25f32.next_down(), 0.1));
+            assert!(!to(3.25, 1.0) && !to(3.25f32.next_up(), 1.0) && !to(2.75, 0.1));
+            assert!(to(3.125f32.next_down(), 1.125) && !to(3.125, 1.125) && !to(3.0, 1.25));
+            assert!(!to(3.0, 7.0), "growth beyond the skin leaves nothing of it");
+            assert!(!to(f32::NAN, 1.0) && !to(f32::INFINITY, 1.0) && !to(1e30, 1.0));
+        }
+    }
+
+    #[test]
+    fn tiny_balls_have_a_skin_that_underflow_cannot_take() {
+        let then = [0.0, 0.0, 0.0, exp2(-70) as f32];
+        for tier in Tier::available() {
+            let to = |x: f64| stays_in(tier, 0.25, [0.0, x as f32, 0.0, then[3]], then);
+            assert!(to(0.0) && to(exp2(-126)) && to(exp2(-61)) && !to(exp2(-60)));
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Neighbour lists: whatever bodies do between two lists, each frame's pairs are those of all pairs, in every tier; and lists
+//! are kept, or there would be nothing to see.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
+use sdop::settings::{Finder, Strategy};
+use sdop::simd::Tier;
+
+use super::scenes::{Scene, uniform};
+use super::{compare, settings};
+
+/// The share of its radius by which a body may drift before the first list ends.
+const FIRST_SKIN: f32 = 0.25;
+
+fn culler(scene: &Scene, strategy: Strategy, finder: Finder, tier: Tier) -> Culler {
+    Culler::builder()
+        .settings(&settings(strategy, finder))
+        .tier(tier)
+        .build(&scene.shapes, &scene.bodies)
+        .unwrap()
+}
+
+/// Culls the frames that `step` makes by neighbour lists in every tier, and by all pairs. Returns how many pairs there were,
+/// and how many tests lists and the grid made.
+fn judge(
+    scene: &Scene,
+    strategy: Strategy,
+    frames: usize,
+    what: &str,
+    mut step: impl FnMut(usize, &mut Bodies),
+) -> (usize, [u64; 2]) {
+    let mut wanted = culler(scene, strategy, Finder::AllPairs, Tier::detect());
+    let mut grid = culler(scene, strategy, Finder::Grid, Tier::detect());
+    let of = |&tier: &Tier| culler(scene, strategy, Finder::Neighbours, tier);
+    let mut lists: Vec<Culler> = Tier::available().iter().map(of).collect();
+    let (mut bodies, mut pairs) = (scene.bodies.clone(), 0);
+    for frame in 0..frames {
+        step(frame, &mut bodies);
+        let wanted = [wanted.cull(&bodies).unwrap().sorted()];
+        pairs += wanted[0].len();
+        grid.cull(&bodies).unwrap();
+        for (tier, culler) in Tier::available().iter().zip(&mut lists) {
+            let found = [culler.cull(&bodies).unwrap().sorted()];
+            let what = format!("{what}, {strategy}, {tier}, frame {frame}");
+            compare(&found, &wanted, &what);
+        }
+        let counts = lists.iter().map(|culler| *culler.counters());
+        assert!(counts.clone().all(|other| other == *lists[0].counters()));
+    }
+    let tests = [&lists[0], &grid].map(|culler| {
+        let counters = culler.counters();
+        counters.sphere.tests + counters.aabb.tests + counters.ordop.tests
+    });
+    (pairs, tests)
+}
+
+/// Pairs of balls along x, each pair by itself, `apart` between their centres; R is what the finder is given.
+fn couples(apart: impl Fn(usize, f32) -> f32, fixed: bool) -> (Scene, f32) {
+    let mut scene = Scene::new("couples", &[1.0], 600, |_, _| [0.0; 3]);
+    let radius = scene.shapes[0].ball.radius * (1.0 + 8.0 * 0.5f32.powi(24)) + 0.5f32.powi(70);
+    for (pair, centres) in scene.bodies.translation.chunks_exact_mut(2).enumerate() {
+        let [y, z] = [pair % 20, pair / 20].map(|k| 4.0 * k as f32);
+        centres[0] = [0.0, y, z];
+        centres[1] = [apart(pair, radius), y, z];
+    }
+    for (body, dynamic) in scene.bodies.dynamic.iter_mut().enumerate() {
+        *dynamic = body % 2 == 0 || !fixed;
+    }
+    (scene, radius)
+}
+
+/// Two bodies that a list doesn't hold, since they were just out of its reach, come together in one frame: by their skins,
+/// by a unit in the last place less or more, by half more, and back again.
+#[test]
+fn bodies_that_move_by_their_skins_meet_whom_they_meet() {
+    for fixed in [false, true] {
+        let movers = if fixed { 1.0 } else { 2.0 };
+        for share in [0.5, 0.9, 0.99, 1.0, 1.01, 1.5, 2.0, 8.0] {
+            for nudge in [-1, 0, 1] {
+                // A skin each, and a little more and less than that, beyond touching.
+                let beyond = |pair: usize| 1.0 + (pair as f32 - 150.0) * 2e-6;
+                let apart = |pair: usize, r: f32| 2.0 * r + movers * FIRST_SKIN * r * beyond(pair);
+                let (scene, radius) = couples(apart, fixed);
+                let by = f32::to_bits(share * FIRST_SKIN * radius).wrapping_add_signed(nudge);
+                let by = f32::from_bits(by);
+                let (pairs, _) = judge(&scene, Strategy::Sphere, 8, "couples", |frame, bodies| {
+                    let home = scene.bodies.translation.iter();
+                    for (body, (t, home)) in bodies.translation.iter_mut().zip(home).enumerate() {
+                        let sign = [1.0, -1.0][body % 2];
+                        let away = [0.0, 1.0, 0.0, -1.0, 1.0, 1.0, 0.0, 1.0][frame];
+                        t[0] = home[0]
+                            + if bodies.dynamic[body] {
+                                sign * away * by
+                            } else {
+                                0.0
+                            };
+                    }
+                });
+                assert!(share < 0.999 || pairs > 300, "{share}, {nudge}: {pairs}");
+            }
+        }
+    }
+}
+
+/// Bodies that keep their course, by so many radii a frame, and turn round now and then.
+fn fly(scene: &Scene, speed: f32, seed: u64) -> impl FnMut(usize, &mut Bodies) {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let radii: Vec<f32> = scene.shapes.iter().map(|s| s.ball.radius).collect();
+    let course: Vec<[f32; 3]> = (0..scene.bodies.len())
+        .map(|_| uniform(&mut rng, 2.0).map(|x| (x - 1.0) * speed))
+        .collect();
+    move |frame, bodies| {
+        let sign = if frame / 12 % 2 == 0 { 1.0 } else { -1.0 };
+        for body in 0..bodies.len() {
+            let radius = radii[bodies.shape[body] as usize];
+            for (x, by) in bodies.translation[body].iter_mut().zip(course[body]) {
+                *x += if bodies.dynamic[body] {
+                    sign * radius * by
+                } else {
+                    0.0
+                };
+            }
+        }
+    }
+}
+
+#[test]
+fn lists_are_followed_at_any_speed_and_lose_nothing() {
+    let scenes = [
+        Scene::new("uniform", &[1.0], 500, |_, rng| uniform(rng, 20.0)),
+        Scene::new("radii 1:16", &[0.25, 1.0, 4.0], 300, |_, rng| {
+            uniform(rng, 30.0)
+        }),
+        Scene::new("far off", &[0.7], 300, |_, rng| {
+            uniform(rng, 14.0).map(|x| x - 3e4)
+        }),
+    ];
+    for scene in &scenes {
+        for strategy in [
+            Strategy::Sphere,
+            Strategy::Aabb,
+            Strategy::SDopSequential,
+            Strategy::OrDop,
+        ] {
+            for speed in [0.0, 0.003, 0.03, 0.3, 3.0] {
+                let what = format!("{}, {speed} r a frame", scene.name);
+                let fly = fly(scene, speed, 5);
+                let (pairs, [lists, grid]) = judge(scene, strategy, 40, &what, fly);
+                assert!(pairs > 500, "{what}: {pairs} pairs");
+                let slow = speed < 0.1 && scene.name == "uniform" && strategy == Strategy::Sphere;
+                assert!(
+                    !slow || 2 * lists < grid,
+                    "{what}: {lists} tests, {grid} by the grid"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_body_that_jumps_or_grows_between_two_lists_is_found() {
+    let scene = Scene::new("jumps", &[1.0], 400, |_, rng| uniform(rng, 18.0));
+    for seed in 0..4 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let step = |frame: usize, bodies: &mut Bodies| {
+            // One body in every third frame, to anywhere; otherwise nobody moves.
+            if frame.is_multiple_of(3) {
+                let body = rng.random_range(0..400);
+                if bodies.dynamic[body] {
+                    bodies.translation[body] = uniform(&mut rng, 18.0);
+                }
+            }
+        };
+        judge(&scene, Strategy::SDopSequential, 40, "jumps", step);
+    }
+    // World-aligned boxes grow and shrink as their bodies turn.
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let turn = |_: usize, bodies: &mut Bodies| {
+        for (q, &moves) in bodies.rotation.iter_mut().zip(&bodies.dynamic) {
+            if moves {
+                q[rng.random_range(0..4)] += rng.random_range(-0.05..0.05);
+            }
+        }
+    };
+    judge(&scene, Strategy::Aabb, 40, "turns", turn);
+}
