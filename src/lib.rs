@@ -69,6 +69,7 @@
 //! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
 //! | `lab` | scenes, effects, the exact judge, measurements and studies |
 //! | `cli` (default) | the command line; implies `lab` |
+//! | `mpi` | one program on many ranks under `mpirun`; links the system's MPI |
 //! | `internals` | the inner rooms as modules, for tests and benches: no promise is made about them |
 
 pub mod bodies;

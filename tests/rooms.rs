@@ -29,6 +29,7 @@ const ROOMS: &[&str] = &[
     "lab/number",
     "lab/random",
     "lab/hash",
+    "lab/mpi",
     "lab/tightness",
     "lab/effects",
     "lab/scene",

@@ -16,6 +16,7 @@ mod mesh;
 mod output;
 mod palette;
 mod prices;
+mod ranks;
 mod record;
 mod report;
 mod reproduce;
@@ -60,6 +61,30 @@ enum Command {
     Man(man::Args),
 }
 
+impl Command {
+    /// Whether its work can be shared by the ranks of `mpirun`. Another command would be run by each of them, all of it.
+    fn takes_ranks(&self) -> bool {
+        match self {
+            Self::Reproduce(_)
+            | Self::Run(_)
+            | Self::Cost(_)
+            | Self::Advise(_)
+            | Self::Mesh(_)
+            | Self::Tradeoff(_)
+            | Self::Verify(_)
+            | Self::Cases(_)
+            | Self::Check(_)
+            | Self::Bench(_)
+            | Self::View(_)
+            | Self::Record(_)
+            | Self::Cmp(_)
+            | Self::Report(_)
+            | Self::Completions(_)
+            | Self::Man(_) => false,
+        }
+    }
+}
+
 /// How a command ended when its input was good.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
@@ -75,6 +100,7 @@ impl Cli {
     /// # Errors
     /// Bad input: exit code 2.
     pub fn run(self) -> miette::Result<Outcome> {
+        ranks::refuse(self.command.takes_ranks())?;
         match self.command {
             Command::Reproduce(args) => reproduce::run(&args),
             Command::Run(args) => run::run(&args),

@@ -6,6 +6,7 @@ pub mod hash;
 pub mod hull_test;
 pub mod judge;
 pub mod measure;
+pub mod mpi;
 pub mod number;
 pub mod random;
 pub mod record;

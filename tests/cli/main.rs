@@ -4,6 +4,7 @@
 
 mod files;
 mod mesh;
+mod ranks;
 mod recording;
 mod report;
 mod reproduce;

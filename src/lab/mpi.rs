@@ -1,0 +1,146 @@
+//! Ranks: one program, started many times by `mpirun` or a scheduler, whose copies talk by MPI.
+//!
+//! Without the feature `mpi` nothing is linked, and [`launched`] is there to refuse a start as many ranks. With it, a program
+//! that is run alone stays an ordinary one: MPI starts with [`Ranks::start`] and not before. [`Ending`] sees to it that no
+//! rank waits for one that failed.
+
+use std::env;
+
+/// What launchers call the number of ranks: OpenMPI, and the PMI of MPICH and of Slurm.
+const SIZES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
+
+/// Set by any launcher that speaks `PMIx`, which leaves the number to be asked for; Slurm says it besides.
+const PMIX: [&str; 2] = ["PMIX_RANK", "SLURM_STEP_NUM_TASKS"];
+
+/// How many ranks of this program were started, as its launcher's environment says; 1 for a program that is run alone.
+#[must_use]
+pub fn launched() -> usize {
+    ranks(|name| env::var(name).ok())
+}
+
+fn ranks(var: impl Fn(&str) -> Option<String>) -> usize {
+    let number = |name: &str| var(name).and_then(|text| text.trim().parse().ok());
+    let [rank, tasks] = PMIX;
+    let pmix = || var(rank).and_then(|_| number(tasks));
+    let said = SIZES.into_iter().find_map(number).or_else(pmix);
+    said.unwrap_or(1).max(1)
+}
+
+/// How a rank's part ends. Held by `main` from the beginning: a rank that panics ends all of them.
+#[derive(Debug)]
+pub struct Ending;
+
+impl Ending {
+    /// Waits for the other ranks to end well, too. Nothing happens when MPI was not started.
+    pub fn well(self) {
+        #[cfg(feature = "mpi")]
+        started::finish();
+    }
+
+    /// Ends all ranks at once with this exit code: others may wait for what this one will not send. Returns when MPI was not
+    /// started.
+    pub fn badly(self, code: i32) {
+        abort(code);
+    }
+}
+
+impl Drop for Ending {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            abort(PANICKED);
+        }
+    }
+}
+
+/// The exit code of a Rust program that panicked.
+const PANICKED: i32 = 101;
+
+fn abort(code: i32) {
+    #[cfg(feature = "mpi")]
+    started::abort(code);
+    #[cfg(not(feature = "mpi"))]
+    let _ = code;
+}
+
+#[cfg(feature = "mpi")]
+pub use started::Ranks;
+
+#[cfg(feature = "mpi")]
+mod started {
+    use std::sync::{Mutex, PoisonError};
+
+    use mpi::Threading;
+    use mpi::environment::Universe;
+    use mpi::topology::{Communicator as _, SimpleCommunicator};
+
+    /// MPI while it runs. It can't be started twice.
+    static UNIVERSE: Mutex<Option<Universe>> = Mutex::new(None);
+
+    /// This program as one of many ranks.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Ranks {
+        /// Its number, from 0.
+        pub rank: usize,
+        /// How many there are.
+        pub size: usize,
+    }
+
+    impl Ranks {
+        /// Starts MPI, once: a second call tells the same numbers. Its functions are for the thread that starts it.
+        #[must_use]
+        pub fn start() -> Self {
+            let mut universe = UNIVERSE.lock().unwrap_or_else(PoisonError::into_inner);
+            if universe.is_none() {
+                let started = mpi::initialize_with_threading(Threading::Funneled);
+                *universe = started.map(|(universe, _)| universe);
+            }
+            let world = SimpleCommunicator::world();
+            Self {
+                rank: world.rank().unsigned_abs() as usize,
+                size: world.size().unsigned_abs() as usize,
+            }
+        }
+
+        /// All ranks.
+        #[must_use]
+        pub fn world(self) -> SimpleCommunicator {
+            SimpleCommunicator::world()
+        }
+    }
+
+    pub(super) fn finish() {
+        let mut universe = UNIVERSE.lock().unwrap_or_else(PoisonError::into_inner);
+        drop(universe.take());
+    }
+
+    pub(super) fn abort(code: i32) {
+        // Never waits: a panic may hold the lock.
+        let runs = UNIVERSE.try_lock().map_or(true, |held| held.is_some());
+        if runs {
+            SimpleCommunicator::world().abort(code);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn launchers_say_how_many_ranks_there_are() {
+        let told = |vars: &[(&str, &str)]| {
+            ranks(|name| {
+                let var = vars.iter().find(|(known, _)| *known == name);
+                var.map(|(_, text)| (*text).to_owned())
+            })
+        };
+        assert_eq!(told(&[]), 1);
+        assert_eq!(told(&[("OMPI_COMM_WORLD_SIZE", "8")]), 8);
+        assert_eq!(told(&[("PMI_SIZE", "3")]), 3);
+        let tasks = ("SLURM_STEP_NUM_TASKS", "5");
+        assert_eq!(told(&[("PMIX_RANK", "0"), tasks]), 5);
+        assert_eq!(told(&[tasks]), 1, "Slurm starts ordinary programs, too");
+        assert_eq!(told(&[("PMI_SIZE", "many")]), 1);
+        assert_eq!(told(&[("PMI_SIZE", "0")]), 1);
+    }
+}
