@@ -152,9 +152,9 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
         out,
         "convex hull: {} vertices, volume {} unit³",
         report.hull_vertices,
-        decimal(report.hull_volume)
+        volume(report.hull_volume, report)
     )?;
-    if is_flat(report) {
+    if is_flat(report.hull_volume, report) {
         writeln!(
             out,
             "warning: the mesh is flat, or nearly so: its hull has no volume to compare with"
@@ -163,7 +163,7 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
     let mut rows = table(&["volume", "size, unit³", "size / hull"]);
     for row in &report.volumes {
         let over_hull = row.over_hull.map_or("–".to_owned(), |x| format!("{x:.3}"));
-        rows.add_row([row.name.clone(), decimal(row.volume), over_hull]);
+        rows.add_row([row.name.clone(), volume(row.volume, report), over_hull]);
     }
     writeln!(out, "{rows}")?;
     match &report.written {
@@ -172,8 +172,13 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
     }
 }
 
-/// Whether the hull's volume is nothing beside the ball's.
-fn is_flat(report: &Report) -> bool {
+/// Whether a volume is nothing beside the ball's.
+fn is_flat(volume: f64, report: &Report) -> bool {
     let radius = f64::from(report.ball[3]);
-    report.hull_volume <= 1e-9 * radius.powi(3)
+    volume <= 1e-9 * radius.powi(3)
+}
+
+/// A volume; what is far below the ball's is rounding.
+fn volume(volume: f64, report: &Report) -> String {
+    decimal(if is_flat(volume, report) { 0.0 } else { volume })
 }

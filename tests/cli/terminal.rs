@@ -63,8 +63,13 @@ fn numbers_of_a_mesh_are_plain_and_a_flat_one_is_said_to_be() {
     std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     let shown = stdout(&["mesh", text(&path)]);
     assert!(shown.contains("warning: the mesh is flat"), "{shown}");
-    for odd in ["e0", "e-", "-0", "0000000"] {
-        assert!(!shown.contains(odd), "{odd}: {shown}");
+    for number in shown
+        .split_whitespace()
+        .filter(|word| word.parse::<f64>().is_ok())
+    {
+        for odd in ["e", "-0", "0000000"] {
+            assert!(!number.contains(odd), "{number}: {shown}");
+        }
     }
 }
 

@@ -62,7 +62,7 @@ impl<'a> Truth<'a> {
         let required = match entry.work {
             Work::Boxes => self.boxes.as_slice(),
             Work::Spheres => &self.spheres,
-            Work::SDop => &[],
+            Work::SDop | Work::Hulls | Work::Meshes => &[],
         };
         let twice = pairs.windows(2).find(|two| two[0] == two[1]);
         let faults = [
@@ -97,7 +97,7 @@ impl<'a> Truth<'a> {
                 meet(a, b) || meet(&loosened(a, entry.slack), &loosened(b, entry.slack))
             }
             // What the sphere test's rounding may add: `sdop::rounding::sphere`.
-            Work::Spheres | Work::SDop => relative_gap(self.frame, [i, j]) <= 15.0 * U,
+            _ => relative_gap(self.frame, [i, j]) <= 15.0 * U,
         };
         pairs.iter().copied().find(|pair| !touch(pair))
     }

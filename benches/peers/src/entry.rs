@@ -20,6 +20,10 @@ pub enum Work {
     Spheres,
     /// Pairs of spheres whose or-DOPs overlap (k = 18, two-sided): the whole S-DOP.
     SDop,
+    /// All pairs of convex hulls.
+    Hulls,
+    /// All pairs of triangle meshes.
+    Meshes,
 }
 
 impl Work {
@@ -29,6 +33,8 @@ impl Work {
             Self::Boxes => "boxes",
             Self::Spheres => "spheres",
             Self::SDop => "s-dop",
+            Self::Hulls => "hulls",
+            Self::Meshes => "meshes",
         }
     }
 
@@ -37,7 +43,8 @@ impl Work {
         match self {
             Self::Boxes => Claim::Aabb,
             Self::Spheres => Claim::Sphere,
-            Self::SDop => Claim::Mesh,
+            Self::Hulls => Claim::Hull,
+            Self::SDop | Self::Meshes => Claim::Mesh,
         }
     }
 }

@@ -14,12 +14,16 @@ use parry3d::shape::{ConvexPolyhedron, Shape as Solid, TriMesh};
 use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::lab::hull_test::{HullGraph, PosedHull, may_touch};
+use sdop::lab::measure::contestant::Contestant;
 use sdop::lab::scene::{Scene, SceneFile};
 use sdop::lab::tradeoff::truth::samples;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::Shape;
 use sdop_reference::exact::{meeting, mesh::Mesh};
 use serde::Serialize;
+
+use crate::boxes::Frame;
+use crate::entry::{Engine, Entry, Setup, Work};
 
 /// Measures narrow phases on the pairs that culling leaves
 #[derive(clap::Args)]
@@ -51,6 +55,75 @@ struct MethodTiming {
 
 /// Whether two bodies touch, for one method.
 type Judge<'a> = Box<dyn Fn(&Bodies, [u32; 2]) -> miette::Result<bool> + 'a>;
+
+const PARRY: &str = "0.31.1";
+
+/// Tests of single pairs, asked for all of them: judged beside engines, and timed here alone.
+pub const ENTRIES: [Entry; 3] = [
+    entry(
+        "sdop GJK on hulls",
+        env!("CARGO_PKG_VERSION"),
+        Work::Hulls,
+        |setup| Ok(Box::new(AllPairs::new(hulls(&setup.scene.shapes)))),
+    ),
+    entry("parry3d GJK on hulls", PARRY, Work::Hulls, |setup| {
+        Ok(Box::new(AllPairs::new(parry(&setup.scene.shapes, convex)?)))
+    }),
+    entry("parry3d meshes", PARRY, Work::Meshes, |setup| {
+        Ok(Box::new(AllPairs::new(parry(&setup.scene.shapes, mesh)?)))
+    }),
+];
+
+const fn entry(
+    name: &'static str,
+    version: &'static str,
+    work: Work,
+    new: fn(&Setup<'_>) -> miette::Result<Engine>,
+) -> Entry {
+    Entry {
+        name,
+        version,
+        work,
+        threads: 1,
+        slack: 0,
+        ages: false,
+        new,
+    }
+}
+
+/// A test of single pairs as an engine.
+struct AllPairs {
+    test: Judge<'static>,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl AllPairs {
+    fn new(test: Judge<'static>) -> Self {
+        Self {
+            test,
+            pairs: Vec::new(),
+        }
+    }
+}
+
+impl Contestant<Frame> for AllPairs {
+    fn frame(&mut self, frame: &Frame) {
+        self.pairs.clear();
+        for j in 0..frame.bodies.len() as u32 {
+            for i in 0..j {
+                let answer = (self.test)(&frame.bodies, [i, j]);
+                assert!(answer.is_ok(), "{answer:?}");
+                if matches!(answer, Ok(true)) {
+                    self.pairs.push([i, j]);
+                }
+            }
+        }
+    }
+
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        self.pairs.clone()
+    }
+}
 
 /// Repeats of each timing; the median counts.
 const REPEATS: usize = 3;

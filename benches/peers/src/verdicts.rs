@@ -17,6 +17,7 @@ use serde::Serialize;
 use crate::boxes::{Frame, Slabs};
 use crate::entry::{Engine, Entry, Setup};
 use crate::facts::{self, Facts};
+use crate::narrow;
 use crate::roster::roster;
 
 /// Answer one case as an engine does: read it from standard input, print the pairs of each frame
@@ -53,12 +54,19 @@ const MOST_BYTES: u64 = 1 << 30;
 const SCENE: &str =
     "name = 'case'\nframes = 1\n[[bodies]]\nshape = 'box'\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n";
 
+/// Engines, and tests of single pairs.
+fn everyone() -> Vec<Entry> {
+    [roster(), narrow::ENTRIES.to_vec()].concat()
+}
+
 /// Runs `answer`. An engine whose set of bodies changes is made anew; one without bodies isn't asked.
 ///
 /// # Errors
 /// An engine that isn't here, a case that can't be read.
 pub fn answer(args: &AnswerArgs) -> miette::Result<()> {
-    let entry = roster().into_iter().find(|entry| entry.name == args.engine);
+    let entry = everyone()
+        .into_iter()
+        .find(|entry| entry.name == args.engine);
     let entry = entry.ok_or_else(|| miette!("no engine is called `{}`", args.engine))?;
     let read = ndjson::read(std::io::stdin().lock(), MOST_BYTES);
     let case = read.map_err(|problem| miette!("{problem}"))?.case;
@@ -76,11 +84,20 @@ pub fn answer(args: &AnswerArgs) -> miette::Result<()> {
         if !frame.boxes.is_empty() {
             let engine = match &mut engine {
                 Some(engine) => engine,
-                none => none.insert((entry.new)(&Setup {
-                    scene: &scene,
-                    first: &frame,
-                    threads: 1,
-                })?),
+                none => {
+                    let setup = Setup {
+                        scene: &scene,
+                        first: &frame,
+                        threads: 1,
+                    };
+                    match (entry.new)(&setup) {
+                        Ok(made) => none.insert(made),
+                        Err(problem) => {
+                            let why = serde_json::json!({ "frame": number, "skipped": problem.to_string() });
+                            return writeln!(out, "{why}").into_diagnostic();
+                        }
+                    }
+                }
             };
             engine.frame(&frame);
             engine.settle();
@@ -162,7 +179,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         seed: args.seed,
         rows: Vec::new(),
     };
-    for entry in roster() {
+    for entry in everyone() {
         let subject = Program {
             command: format!("exec '{}' answer '{}'", program.display(), entry.name),
             wire: Wire::Ndjson,
@@ -234,15 +251,15 @@ fn page(verdicts: &Verdicts) -> String {
     let Verdicts { facts, seed, rows } = verdicts;
     let mut page = format!(
         "# Verdicts\n\n{facts}- published cases and those of seed {seed}; one thread, made anew for each case\n\n\
-         | engine | claim | cases | passed | failed | errors | pairs required | missed | smallest miss, ulps | extra | by rounding | against |\n\
-         |---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n"
+         | engine | claim | cases | passed | failed | errors | skipped | pairs required | missed | smallest miss, ulps | extra | by rounding | against |\n\
+         |---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n"
     );
     for row in rows {
         let ulps = row.smallest_miss_ulps.map(|ulps| ulps.to_string());
         // Writing to a String cannot fail.
         let _ = writeln!(
             page,
-            "| {} {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+            "| {} {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
             row.engine,
             row.version,
             row.claim,
@@ -250,6 +267,7 @@ fn page(verdicts: &Verdicts) -> String {
             row.passed,
             row.failed,
             row.errors,
+            row.skipped,
             row.required,
             row.missed,
             ulps.unwrap_or_default(),

@@ -16,6 +16,9 @@ use crate::threads::Executor;
 const PAIRS_PER_BODY: usize = 4;
 const FEW_PAIRS: usize = 256;
 
+/// Room that a list is given, in lengths of its own.
+const ROOM: f64 = 1.5;
+
 /// The list of all parts.
 #[derive(Clone, Debug, Default)]
 pub struct List {
@@ -154,10 +157,12 @@ impl Chunk {
         }
     }
 
-    /// Closes the list.
+    /// Closes the list, with room for those that follow it.
     fn close(&mut self) {
         reserve(&mut self.codes, MAX_WIDTH, self.spare);
         self.codes.resize(self.len + MAX_WIDTH, 0);
+        leave_room(&mut self.codes, self.spare);
+        leave_room(&mut self.entries, 1.0);
     }
 
     /// How many pairs it holds.
@@ -167,14 +172,21 @@ impl Chunk {
     }
 }
 
-/// Room for more, `spare` times what is needed, and a quarter more than that, so that a list that breathes allocates nothing
-/// and doubles nothing.
+/// Room for more: `spare` times what is needed by now, and half as much beyond that.
 #[inline(always)]
 fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
     let needed = column.len() + more;
     if column.capacity() < needed {
-        let room = (1.25 * spare * needed as f64) as usize;
+        let room = (ROOM * spare * needed as f64) as usize;
         column.reserve_exact(room.max(needed) - column.len());
+    }
+}
+
+/// Lists breathe from one to the next: a column that was filled to the brim would be allocated anew by the next one.
+fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
+    let [least, room] = [1.0, ROOM].map(|times| (times * spare * column.len() as f64) as usize);
+    if column.capacity() < least {
+        column.reserve_exact(room - column.len());
     }
 }
 

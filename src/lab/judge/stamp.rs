@@ -97,6 +97,7 @@ groups! {
             hard_touch_within_an_ulp = "hard/touch-within-an-ulp";
             hard_unequal_sizes = "hard/unequal-sizes";
             hard_vertex_on_face = "hard/vertex-on-face";
+            hard_finder_borders = "hard/finder-borders";
 }
 
 #[cfg(test)]
