@@ -1,8 +1,9 @@
 """Rewrites Rust sources so that cargo-mutants' mutants sleep in them, each to be woken by its number.
 
 `a + b` becomes `match (a, b) { (a, b) => match awake() { 7 => a - b, 8 => a * b, _ => a + b } }`; a function's body starts
-with `if awake() == 9 { return 0; }`; a match arm gets the guard `if awake() != 10`. Constants can't ask at run time who is
-awake: their mutants, and those that don't compile beside the original, are left for a build of their own.
+with `if awake() == 9 { return 0; }`; a match arm gets the guard `if awake() != 10`, and one that has a guard another; a field is
+that of its struct's base. Constants can't ask at run time who is awake: their mutants, and those that don't compile beside the
+original, are left for a build of their own.
 """
 
 import re
@@ -47,8 +48,7 @@ def offset(source, place):
 def applied(source, mutant):
     """The source with this one mutant awake, as cargo-mutants would write it."""
     start, end = (offset(source, mutant["span"][at]) for at in ("start", "end"))
-    new = mutant["replacement"] if mutant["genre"] in ("BinaryOperator", "FnValue") else ""
-    return source[:start] + new.encode() + source[end:]
+    return source[:start] + mutant["replacement"].encode() + source[end:]
 
 
 class File:
@@ -123,11 +123,36 @@ class File:
 
     def match_arm(self, node):
         pattern = node.child_by_field_name("pattern")
-        mutants = [] if pattern.child_by_field_name("condition") else self.take("MatchArm", node.start_byte, node)
+        if condition := pattern.child_by_field_name("condition"):
+            return self.guarded_arm(node, pattern, condition)
+        mutants = self.take("MatchArm", node.start_byte, node)
         if not mutants:
             return None
         guard = f"{pattern.text.decode()} if {AWAKE} != {mutants[0]['n']}"
         return self.plain(node, lambda child: guard if child == pattern else None)
+
+    def guarded_arm(self, node, pattern, condition):
+        mutants = self.take("MatchArmGuard", condition.start_byte, node)
+        if not mutants:
+            return None
+        arms = "".join(f"{m['n']} => {m['replacement']}, " for m in mutants)
+        guard = f"match {AWAKE} {{ {arms} _ => {self.emit(condition)} }}"
+        whole = self.between(pattern.start_byte, condition.start_byte) + guard
+        return self.plain(node, lambda child: whole if child == pattern else None)
+
+    def field_initializer(self, node):
+        return self.field(node, node.child_by_field_name("field"), node.child_by_field_name("value"))
+
+    def shorthand_field_initializer(self, node):
+        return self.field(node, node.children[-1], node.children[-1])
+
+    def field(self, node, name, value):
+        mutants = self.take("StructField", node.start_byte, node)
+        if not mutants:
+            return None
+        base = next(field for field in node.parent.children if field.type == "base_field_initializer").children[1]
+        name, base, value = name.text.decode(), self.emit(base), self.emit(value)
+        return f"{name}: if {AWAKE} == {mutants[0]['n']} {{ ({base}).{name} }} else {{ {value} }}"
 
     def function_item(self, node):
         body, result = node.child_by_field_name("body"), node.child_by_field_name("return_type")
@@ -147,6 +172,9 @@ def is_constant(node):
     start = node.start_byte
     while node := node.parent:
         length = node.child_by_field_name("length") if node.type == "array_expression" else None
+        guard = node.child_by_field_name("condition") if node.type == "match_pattern" else None
+        if guard is not None and guard.start_byte <= start:
+            continue
         if node.type in CONSTANT or (length is not None and length.start_byte <= start):
             return True
         if node.type == "function_item":
@@ -158,6 +186,6 @@ def is_constant(node):
 def culprits(text, start, end):
     """The mutants that an error between these bytes of a rewritten file points at."""
     before, own = text[:start].decode()[-400:], text[start:end].decode()
-    number = r"(\d+) => (?=\{? ?\S* ?)|== (\d+) \{ (?:return|v__)|awake\(\) != (\d+)"
+    number = r"(\d+) => (?=\{? ?\S* ?)|== (\d+) \{ (?:return|v__|\()|awake\(\) != (\d+)"
     found = re.findall(number, before) or re.findall(number, own)
     return {int(next(filter(None, groups))) for groups in found[-1:]}

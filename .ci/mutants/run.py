@@ -6,7 +6,7 @@ process wakes one by its number. What can't sleep is built by itself. A mutant i
 times its time and ten seconds more. Two tiers run in the copy, scalar and AVX-512: a lane of every other tier is tested by
 itself, as a crate of the room `simd`.
 
-    .ci/mutants/run.py [--only REGEX] [--sample N] [--slowest SECONDS] [--outcomes FILE]
+    .ci/mutants/run.py [--only REGEX] [--sample N] [--slowest SECONDS] [--threads N] [--outcomes FILE]
 
 Goes on where FILE (target/mutants/outcomes.jsonl) ends; a line an outcome: number, name, how (`caught`, `endless`,
 `survived`, `doesn't compile`), by which test.
@@ -35,7 +35,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 WORK = TOP / "target/mutants"
 FEATURES = ["-p", "sdop", "--no-default-features", "--features", "proptest"]
 SUITES = ["golden_pairs", "finders", "near_misses", "against_reference", "worst_case", "world", "naive_margins", "finder_costs",
-          "volume"]
+          "volume", "misuse", "crowds", "hard_cases", "cost"]
 ENVIRONMENT = os.environ | {
     "CARGO_PROFILE_TEST_OPT_LEVEL": "1",
     "CARGO_PROFILE_TEST_DEBUG": "none",
@@ -219,7 +219,7 @@ class Outcomes:
         return [mutant for mutant in mutants if mutant["name"] not in self.known]
 
 
-def wake(mutants, tests, outcomes):
+def wake(mutants, tests, outcomes, threads):
     """Asks the tests about each, those first that caught the most in its file."""
     caught = collections.defaultdict(collections.Counter)
 
@@ -232,7 +232,7 @@ def wake(mutants, tests, outcomes):
                 return outcomes.add(mutant, how, by)
         return outcomes.add(mutant, "survived")
 
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+    with concurrent.futures.ThreadPoolExecutor(threads) as pool:
         for _ in pool.map(one, mutants):
             pass
 
@@ -290,11 +290,14 @@ def main():
     options.add_argument("--only", default="", help="mutants whose name has this regular expression")
     options.add_argument("--sample", type=int, help="so many of them, drawn by a fixed seed")
     options.add_argument("--slowest", type=float, default=15, help="seconds of CPU: a survivor is asked by every faster test")
+    options.add_argument("--threads", type=int, default=os.cpu_count(), help="so many tests at a time")
     options.add_argument("--outcomes", type=pathlib.Path, default=WORK / "outcomes.jsonl")
     options = options.parse_args()
     WORK.mkdir(parents=True, exist_ok=True)
     listed = subprocess.run(["cargo", "mutants", "--list", "--json"], cwd=TOP, stdout=subprocess.PIPE, check=True).stdout
-    mutants = [mutant | {"n": n} for n, mutant in enumerate(json.loads(listed), 1)]
+    # A module that is public behind a feature alone has two declarations, and its mutants are listed twice.
+    unlike = {mutant["name"]: mutant for mutant in json.loads(listed)}.values()
+    mutants = [mutant | {"n": n} for n, mutant in enumerate(unlike, 1)]
     outcomes = Outcomes(options.outcomes)
     chosen = [mutant for mutant in mutants if re.search(options.only, mutant["name"])]
     if options.sample is not None:
@@ -314,7 +317,8 @@ def main():
             asleep = settle(tree, own, prepare, check)
             print(f"{name}: {len(asleep)} of {len(own)} sleep", flush=True)
             binaries = build(tree, *test) or sys.exit(f"the tree {name} doesn't build")
-            wake([mutant for mutant in own if mutant["n"] in asleep], units(tree, binaries, options.slowest), outcomes)
+            wake([mutant for mutant in own if mutant["n"] in asleep], units(tree, binaries, options.slowest), outcomes,
+                 options.threads)
     one_by_one(outcomes.missing(wanted), outcomes)
     sys.exit(f"{unexplained} survivors have no reason" if (unexplained := report(chosen, outcomes)) else 0)
 
