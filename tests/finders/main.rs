@@ -6,6 +6,7 @@
 mod borders;
 mod neighbours;
 mod outside;
+mod plan;
 mod scenes;
 #[path = "../support/mod.rs"]
 mod support;
