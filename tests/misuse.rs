@@ -95,6 +95,52 @@ fn construction_names_what_is_wrong() {
 }
 
 #[test]
+fn a_shape_of_no_sound_size_is_refused_by_name() {
+    let bodies = row(3);
+    let outcome = |change: fn(&mut Shape, f32), size: f32| {
+        let mut shapes = shapes();
+        change(&mut shapes[0], size);
+        Culler::new(&shapes, &bodies).map(drop)
+    };
+    let sizes: [fn(&mut Shape, f32); 3] = [
+        |shape, size| shape.reach = size,
+        |shape, size| shape.ball.radius = size,
+        |shape, size| shape.ball.centre.y = size,
+    ];
+    for (number, change) in sizes.into_iter().enumerate() {
+        for size in [2f32.powi(60).next_up(), f32::INFINITY, f32::NAN] {
+            let told = outcome(change, size).unwrap_err().to_string();
+            assert!(told.starts_with("body 0: shape box"), "{told}");
+        }
+        assert!(number == 2 || outcome(change, -1.0).is_err(), "{number}");
+        assert_eq!(outcome(change, 2f32.powi(60)), Ok(()), "{number}");
+    }
+}
+
+#[test]
+fn every_quaternion_with_a_finite_norm_above_zero_is_a_rotation() {
+    let is_taken = |rotation: [f32; 4]| {
+        let mut bodies = row(3);
+        bodies.rotation[1] = rotation;
+        Culler::new(&shapes(), &bodies).is_ok()
+    };
+    for size in [1.0, f32::MAX, f32::from_bits(1)] {
+        for pattern in 1..81 {
+            let sign = |place: i32| (pattern / 3i32.pow(place as u32) % 3 - 1) as f32;
+            let rotation = [sign(0), sign(1), sign(2), sign(3)].map(|x| x * size);
+            assert_eq!(is_taken(rotation), rotation != [0.0; 4], "{rotation:?}");
+        }
+    }
+    for place in 0..4 {
+        for wrong in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let mut rotation = UNTURNED;
+            rotation[place] = wrong;
+            assert!(!is_taken(rotation), "{rotation:?}");
+        }
+    }
+}
+
+#[test]
 fn another_number_of_bodies_is_an_error_until_refresh() {
     let bodies = row(200);
     for mut culler in cullers(&bodies) {

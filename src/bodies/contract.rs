@@ -198,3 +198,20 @@ fn is_invertible(q: &[f32; 4]) -> bool {
     let norm2 = x * x + y * y + z * z + w * w;
     norm2 > 0.0 && norm2 < f64::INFINITY
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_bodies_are_taken_as_can_be_numbered() {
+        assert_eq!(check_number(0), Ok(()));
+        assert_eq!(check_number(MOST_BODIES), Ok(()));
+        let told = check_number(MOST_BODIES + 1).map_err(|error| error.to_string());
+        let [more, most] = [MOST_BODIES + 1, MOST_BODIES];
+        assert_eq!(
+            told,
+            Err(format!("body {most}: number {more} of {most} at most"))
+        );
+    }
+}

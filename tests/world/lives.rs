@@ -106,6 +106,32 @@ fn ids_are_never_given_again() {
 }
 
 #[test]
+fn a_world_counts_its_bodies_and_what_its_culler_does() {
+    let way = CullSettings::all_pairs();
+    let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
+    assert!(world.is_empty() && world.len() == 0);
+    let ids: Vec<_> = (0..5)
+        .map(|_| world.insert(Body::default()).unwrap())
+        .collect();
+    assert!(!world.is_empty() && world.len() == 5);
+    world.cull().unwrap();
+    assert_eq!((world.pairs().len(), world.counters().reported), (10, 10));
+    let seconds = world.seconds().total;
+    assert!(seconds > 0.0);
+    for (left, &id) in (0..5).rev().zip(&ids) {
+        world.remove(id).unwrap();
+        assert_eq!((world.len(), world.is_empty()), (left, left == 0));
+        if left % 2 == 0 {
+            world.cull().unwrap();
+            assert_eq!((world.len(), world.is_empty()), (left, left == 0));
+        }
+    }
+    // Four bodies, two, and none were culled: 6 pairs, 1 and 0 were added where `left` is even.
+    assert_eq!(world.counters().reported, 10 + 6 + 1);
+    assert!(world.seconds().total > seconds && world.slots() == 5);
+}
+
+#[test]
 fn interest_ends_with_its_body() {
     let way = CullSettings {
         strategy: Strategy::SDopObjectOfInterest,

@@ -329,3 +329,30 @@ fn touching_spheres_meet_wherever_f64_puts_them() {
     }
     assert!(rounded > tried / 2, "{rounded}: f32 alone would do");
 }
+
+/// What doesn't move stands elsewhere, as seen from an origin that does.
+#[test]
+fn a_static_body_is_met_when_the_origin_comes_to_it() {
+    for way in ways() {
+        let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
+        let there = |x: f64| Body {
+            translation: [x, 0.1, 0.0],
+            ..Body::default()
+        };
+        let still = world.insert(there(1e6 + 0.1).fixed()).unwrap();
+        let mover = world.insert(there(-1e6)).unwrap();
+        world.cull().unwrap();
+        assert_eq!(world.pairs().len(), 0, "{way:?}");
+        for (x, meets) in [(1e6 + 0.9, true), (-1e6, false), (1e6 - 0.7, true)] {
+            let rotation = Body::default().rotation;
+            let t = there(x).translation;
+            world.set_pose(mover, rotation, t).unwrap();
+            for _ in 0..2 {
+                world.cull().unwrap();
+                let meets = meets && way.strategy != Strategy::None;
+                let wanted = if meets { vec![[still, mover]] } else { vec![] };
+                assert_eq!(world.pairs().collect::<Vec<_>>(), wanted, "{way:?}, {x}");
+            }
+        }
+    }
+}
