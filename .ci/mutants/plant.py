@@ -125,7 +125,9 @@ class File:
         pattern = node.child_by_field_name("pattern")
         if condition := pattern.child_by_field_name("condition"):
             return self.guarded_arm(node, pattern, condition)
-        mutants = self.take("MatchArm", node.start_byte, node)
+        # An arm with a guard covers nothing for the compiler: another one must.
+        others = (arm.child_by_field_name("pattern") for arm in node.parent.children if arm.type == "match_arm")
+        mutants = self.take("MatchArm", node.start_byte, node) if any(other.text == b"_" for other in others) else []
         if not mutants:
             return None
         guard = f"{pattern.text.decode()} if {AWAKE} != {mutants[0]['n']}"

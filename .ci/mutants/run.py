@@ -159,7 +159,7 @@ def ask(tree, name, command, number, seconds):
     """Runs tests with this mutant awake: how it ended, and by which test or signal."""
     environment = ENVIRONMENT | {"MUTANT": str(number), "CARGO_MANIFEST_DIR": str(tree)}
     try:
-        done = subprocess.run(["nice", *command, "-q"], cwd=tree, env=environment, stdin=subprocess.DEVNULL, timeout=900,
+        done = subprocess.run(["nice", *command, "-q"], cwd=tree, env=environment, stdin=subprocess.DEVNULL, timeout=120,
                               capture_output=True, text=True, errors="replace",
                               preexec_fn=functools.partial(limited, seconds))
     except subprocess.TimeoutExpired:
