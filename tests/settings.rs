@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use sdop::settings::*;
+use sdop::simd::Tier;
 
 #[test]
 fn every_name_reads_back_as_its_choice() {
@@ -113,4 +114,40 @@ fn settings_that_cannot_be_carried_out_are_refused() {
         cone("{ body = 1, direction = [0, 0, 1], half_angle = 30, range = 0 }"),
         "interest: range 0"
     );
+}
+
+#[test]
+fn a_builder_keeps_each_setting_and_no_other() {
+    let settings = CullSettings {
+        strategy: Strategy::KDop,
+        pairs: Finder::Sweep,
+        k: DirectionSet::K26,
+        overlap: Overlap::Full,
+        updates: Updates::Lazy,
+        interest: Some(Interest::Bodies(vec![1])),
+        budget: Some(Budget::Tests(7)),
+        order: Order::OldestAnswer,
+        ..CullSettings::default()
+    };
+    let new = sdop::Culler::builder;
+    let one_by_one = new()
+        .threads(2)
+        .tier(Tier::SCALAR)
+        .strategy(settings.strategy)
+        .finder(settings.pairs)
+        .k(settings.k)
+        .overlap(settings.overlap)
+        .updates(settings.updates)
+        .interest(Interest::Bodies(vec![1]))
+        .budget(Budget::Tests(7))
+        .order(settings.order);
+    let at_once = new().threads(2).tier(Tier::SCALAR).settings(&settings);
+    assert_eq!(one_by_one, at_once);
+    let others = [
+        new().settings(&settings),
+        new().settings(&settings).threads(2),
+        new().settings(&settings).tier(Tier::SCALAR),
+        new().threads(2).tier(Tier::SCALAR),
+    ];
+    assert!(!others.contains(&at_once));
 }

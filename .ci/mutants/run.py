@@ -35,7 +35,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 WORK = TOP / "target/mutants"
 FEATURES = ["-p", "sdop", "--no-default-features", "--features", "proptest"]
 SUITES = ["golden_pairs", "finders", "near_misses", "against_reference", "worst_case", "world", "naive_margins", "finder_costs",
-          "volume", "misuse", "crowds", "hard_cases", "cost"]
+          "volume", "misuse", "crowds", "cost", "accounts", "settings"]
 ENVIRONMENT = os.environ | {
     "CARGO_PROFILE_TEST_OPT_LEVEL": "1",
     "CARGO_PROFILE_TEST_DEBUG": "none",

@@ -137,3 +137,20 @@ fn plans_are_as_recorded() {
         "{other:?} is the first that differs of\n{found}"
     );
 }
+
+#[test]
+fn bodies_stand_as_given_or_those_that_move_first() {
+    let scene = &hard_scenes()[3];
+    let (given, sorted) = (Places::as_given(&scene.bodies), Places::new(&scene.bodies));
+    let everyone: Vec<u32> = (0..scene.bodies.len() as u32).collect();
+    assert_eq!((given.moving, &given.body), (everyone.len(), &everyone));
+    assert_eq!(given.shape, scene.bodies.shape);
+    assert!(!given.is_empty() && Places::new(&hard_scenes()[0].bodies).is_empty());
+    let moves = |&body: &u32| scene.bodies.dynamic[body as usize];
+    let (moving, fixed): (Vec<u32>, Vec<u32>) = everyone.iter().partition(|&body| moves(body));
+    assert_eq!(
+        (sorted.moving, sorted.len()),
+        (moving.len(), everyone.len())
+    );
+    assert_eq!(sorted.body, [moving, fixed].concat());
+}
