@@ -109,7 +109,7 @@ fn ids_are_never_given_again() {
 fn a_world_counts_its_bodies_and_what_its_culler_does() {
     let way = CullSettings::all_pairs();
     let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
-    assert!(world.is_empty() && world.len() == 0);
+    assert_eq!((world.is_empty(), world.len()), (true, 0));
     let ids: Vec<_> = (0..5)
         .map(|_| world.insert(Body::default()).unwrap())
         .collect();
