@@ -1,15 +1,16 @@
 //! What a culler keeps account of: seconds of stages that add up to those of frames, none of which is counted twice or is the
-//! caller's own.
+//! caller's own; and the tests of a budget, which are spent in the order asked for.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 use sdop::bodies::Bodies;
 use sdop::counters::Seconds;
 use sdop::culler::Culler;
 use sdop::mesh::shapes::ProceduralShape;
-use sdop::settings::{CullSettings, Strategy, Updates};
+use sdop::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
 use sdop::volume::{Shape, ShapeSpec};
 
 /// Clocks are read in nanoseconds, and sums of f64 round.
@@ -101,5 +102,86 @@ fn what_the_caller_does_with_portions_is_not_counted() {
         let stages = own.update + own.pair_finding + own.ordop;
         assert!(stages <= own.total + SLACK, "{own:?}");
         assert!(threads > 1 || own.pair_finding > -SLACK, "{own:?}");
+    }
+}
+
+/// The body that the order `interest-first` puts in front.
+const OF_INTEREST: u32 = 5;
+
+/// Whether candidates stand in the order asked for; `refined` has the frame in which each pair was refined last.
+fn is_in_order(
+    order: Order,
+    list: &[[u32; 2]],
+    bodies: &Bodies,
+    refined: &HashMap<[u32; 2], usize>,
+) -> bool {
+    let away = |[a, b]: [u32; 2]| {
+        let [a, b] = [a, b].map(|body| bodies.translation[body as usize][0]);
+        (a - b).abs() as usize
+    };
+    let rank = |pair: &[u32; 2]| match order {
+        Order::AsFound => 0,
+        Order::InterestFirst => usize::from(!pair.contains(&OF_INTEREST)),
+        Order::LargestOverlap => away(*pair),
+        Order::OldestAnswer => refined.get(pair).copied().unwrap_or(0),
+    };
+    order == Order::AsFound || list.is_sorted_by_key(|pair| (rank(pair), *pair))
+}
+
+/// Boxes in a row, whose distances are integers: what is refined, and in which order, is known.
+#[test]
+fn a_budget_of_tests_is_spent_in_the_order_asked_for() {
+    let mesh = ProceduralShape::Box {
+        x: 2.0,
+        y: 9.0,
+        z: 9.0,
+    };
+    let shapes = [Shape::build(&mesh.build().unwrap(), &ShapeSpec::default()).unwrap()];
+    let mut bodies = Bodies::default();
+    for x in [0u8, 14, 3, 30, 7, 1, 20, 9, 12, 40, 33, 26] {
+        bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [f32::from(x), 0.0, 0.0]);
+    }
+    let culler = |strategy, order, budget| {
+        let culler = Culler::builder().strategy(strategy).order(order);
+        let culler = culler.interest(Interest::Bodies(vec![OF_INTEREST]));
+        culler.budget(budget).build(&shapes, &bodies).unwrap()
+    };
+    let mut whole = culler(Strategy::SDopBatch, Order::AsFound, Budget::Tests(0));
+    let touching = whole.cull(&bodies).unwrap().sorted();
+    let as_found: Vec<_> = whole.potentially_colliding().collect();
+    assert!(as_found.len() > 20 && 3 < touching.len() && touching.len() < 10);
+    for &order in Order::ALL {
+        for (budget, spent) in [
+            (Budget::Tests(0), 0),
+            (Budget::Tests(1), 1),
+            (Budget::Tests(7), 7),
+            (Budget::Tests(1000), as_found.len()),
+            (Budget::Microseconds(0), 0),
+            (Budget::Microseconds(60_000_000), as_found.len()),
+        ] {
+            let mut culler = culler(Strategy::SDopTimeCritical, order, budget);
+            let mut refined = HashMap::new();
+            for frame in 1..9 {
+                let before = *culler.counters();
+                let found = culler.cull(&bodies).unwrap().sorted();
+                let list: Vec<_> = culler.potentially_colliding().collect();
+                let way = format!("{order}, {budget:?}, frame {frame}: {list:?}");
+                assert_eq!(list.len(), as_found.len(), "{way}");
+                assert!(order != Order::AsFound || list == as_found, "{way}");
+                assert!(is_in_order(order, &list, &bodies, &refined), "{way}");
+                let (paid, rest) = list.split_at(spent);
+                let mut wanted: Vec<_> = rest.to_vec();
+                wanted.extend(paid.iter().filter(|pair| touching.contains(pair)));
+                wanted.sort_unstable();
+                assert_eq!(found, wanted, "{way}");
+                let own = culler.counters().since(&before);
+                assert_eq!(
+                    (own.ordop.tests, own.untested),
+                    (spent as u64, rest.len() as u64)
+                );
+                assert_eq!(own.sphere.hits, list.len() as u64, "{way}");
+                refined.extend(paid.iter().map(|&pair| (pair, frame)));
+            }
+        }
     }
 }

@@ -185,6 +185,40 @@ fn a_body_that_collides_with_all_joins_others_that_do_not() {
 }
 
 #[test]
+fn a_body_brings_its_own_groups_to_a_slot_that_another_has_left() {
+    let way = CullSettings::all_pairs();
+    let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
+    let alone = Body {
+        groups: Groups { member: 1, mask: 2 },
+        ..Body::default()
+    };
+    let [a, b] = [(); 2].map(|()| world.insert(alone).unwrap());
+    world.cull().unwrap();
+    world.remove(b).unwrap();
+    world.cull().unwrap();
+    let c = world.insert(Body::default()).unwrap();
+    assert_eq!(c.slot(), b.slot());
+    for (body, pairs) in [(Body::default(), 1), (alone, 0), (Body::default(), 1)] {
+        world.set(c, body).unwrap();
+        world.cull().unwrap();
+        assert_eq!(world.pairs().len(), pairs, "{a} and {c}");
+    }
+    world.remove(c).unwrap();
+    world.cull().unwrap();
+    world.insert(alone).unwrap();
+    world.cull().unwrap();
+    assert_eq!(world.pairs().len(), 0);
+    let d = world.insert(Body::default()).unwrap();
+    world.cull().unwrap();
+    assert_eq!(world.pairs().len(), 2, "{d} collides with both");
+    world.remove(d).unwrap();
+    world.cull().unwrap();
+    world.insert(alone).unwrap();
+    world.cull().unwrap();
+    assert_eq!(world.pairs().len(), 0, "whoever takes its place does not");
+}
+
+#[test]
 fn a_shape_added_late_is_as_good_as_one_from_the_start() {
     // Some bodies have margins, and so take models of their own before the other shapes come.
     let body = |i: u8, shape: u32| Body {
