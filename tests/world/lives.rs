@@ -185,6 +185,44 @@ fn a_body_that_collides_with_all_joins_others_that_do_not() {
 }
 
 #[test]
+fn a_body_that_becomes_static_or_is_moved_as_such_counts_as_it_is_now() {
+    for way in super::ways().into_iter().step_by(7) {
+        let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
+        let [here, away] = [0.5, 30.0].map(|x| Body {
+            translation: [x, 0.0, 0.0],
+            ..Body::default()
+        });
+        world.insert(Body::default()).unwrap();
+        let other = world.insert(Body::default().fixed()).unwrap();
+        let id = world.insert(away).unwrap();
+        let mut count = |change: &dyn Fn(&mut World) -> Result<(), WorldError>| {
+            change(&mut world).unwrap();
+            world.cull().unwrap();
+            world.pairs().len()
+        };
+        let culled = |pairs: usize| {
+            if way.strategy == Strategy::None {
+                0
+            } else {
+                pairs
+            }
+        };
+        for (body, pairs) in [(here, 3), (here.fixed(), 2), (away.fixed(), 1), (here, 3)] {
+            assert_eq!(
+                count(&|world| world.set(id, body)),
+                culled(pairs),
+                "{way:?}"
+            );
+        }
+        let turn = here.rotation;
+        for (x, pairs) in [(30.0, 1), (0.5, 3), (-30.0, 1)] {
+            let moved = count(&|world| world.set_pose(other, turn, [x, 0.0, 0.0]));
+            assert_eq!(moved, culled(pairs), "{way:?}");
+        }
+    }
+}
+
+#[test]
 fn a_body_brings_its_own_groups_to_a_slot_that_another_has_left() {
     let way = CullSettings::all_pairs();
     let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
