@@ -28,6 +28,15 @@ pub struct ContractError {
     pub hint: &'static str,
 }
 
+impl ContractError {
+    /// The same, with the body's number in a set in which this one's bodies begin at `first`.
+    #[cfg(feature = "lab")]
+    pub(crate) fn numbered(self, first: usize) -> Self {
+        let body = self.body + first;
+        Self { body, ..self }
+    }
+}
+
 /// The most bodies that a culler can number: one a quad of its table of balls, and a vector of padding.
 pub const MOST_BODIES: usize = MOST_QUADS - MAX_WIDTH;
 

@@ -40,6 +40,8 @@ pub struct Start<'a> {
     pub shapes: &'a [Shape],
     /// The initial poses.
     pub bodies: &'a Bodies,
+    /// The runs of bodies of the whole scene that may move; `bodies` may be a part of it.
+    pub moving: &'a [Range<usize>],
     /// The initial velocities.
     pub velocities: &'a Velocities,
 }
@@ -62,6 +64,10 @@ pub trait Effect: Send {
         velocities: &mut Velocities,
         dynamic: &[Range<usize>],
     ) -> u64;
+
+    /// From now on the bodies are these of the scene, by their numbers in ascending order: an effect that draws bodies from
+    /// the whole scene needs to know them.
+    fn renumber(&mut self, _numbers: &[u32]) {}
 }
 
 /// An effect that a scene lists but can't have.
@@ -207,6 +213,25 @@ impl Effects {
             .try_for_each(|run| check_poses(bodies, run.clone()))
     }
 
+    /// Replaces the set of bodies: their `numbers` in the scene in ascending order, their velocities, and the runs among
+    /// them that this process moves. How far each effect has come stays.
+    pub fn replace(
+        &mut self,
+        numbers: &[u32],
+        velocities: Velocities,
+        moving: Vec<Range<usize>>,
+    ) {
+        for (_, effect) in &mut self.running {
+            effect.renumber(numbers);
+        }
+        (self.velocities, self.dynamic) = (velocities, moving);
+    }
+
+    /// Takes the velocities out, for a [`Self::replace`] to come.
+    pub fn take_velocities(&mut self) -> Velocities {
+        std::mem::take(&mut self.velocities)
+    }
+
     /// The velocities of all bodies now.
     #[must_use]
     pub fn velocities(&self) -> &Velocities {
@@ -221,7 +246,7 @@ impl Effects {
 }
 
 /// The runs of consecutive `true`.
-fn runs(flags: &[bool]) -> Vec<Range<usize>> {
+pub(crate) fn runs(flags: &[bool]) -> Vec<Range<usize>> {
     let mut end = 0;
     let groups = flags.chunk_by(|a, b| a == b).map(|group| {
         let start = end;

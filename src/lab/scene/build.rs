@@ -1,17 +1,20 @@
 //! From a scene file to a scene: each group is checked, its shapes are made, its bodies are placed by the seed.
 
+use std::ops::Range;
+
 use toml::Spanned;
 
+use super::density::PowerSums;
 use super::error::SceneError;
 use super::file::{Placement, SceneFile};
-use super::group::{Group, Purpose};
+use super::group::{Draws, Group, Purpose};
 use super::library::{Form, Library};
 use super::placement::Placer;
-use super::{Scene, density};
+use super::{Scene, Share};
 use crate::bodies::Bodies;
 use crate::bodies::contract::{ContractError, check_bodies};
 use crate::lab::effects::{Velocities, world_centre};
-use crate::lab::number::Positive;
+use crate::lab::number::{Interval, Positive};
 
 impl SceneFile {
     /// Builds the scene: reads meshes, builds shapes, places bodies.
@@ -20,22 +23,37 @@ impl SceneFile {
     /// Everything that a value can't show alone: exclusive keys, missing or broken meshes, a box too small, bodies
     /// outside of the contract, effects or culling that the scene can't have.
     pub fn build(&self) -> Result<Scene, SceneError> {
-        let groups = self.groups()?;
+        self.build_share(0, 1)
+    }
+
+    /// Builds the share of rank `rank` of `ranks`: the same scene with a part of its bodies, each as in the whole.
+    ///
+    /// Shapes are made for all bodies, so that all ranks number them alike. With
+    /// [`Seeding::ByBody`](super::file::Seeding::ByBody) a rank draws poses and velocities of its own bodies alone.
+    ///
+    /// # Errors
+    /// As [`Self::build`]; what is wrong with a body alone, only the rank that holds it finds.
+    pub fn build_share(&self, rank: usize, ranks: usize) -> Result<Scene, SceneError> {
+        let groups = self.groups(ranks)?;
+        let share = share_of(&groups, rank, ranks);
         let mut library = Library::default();
         let (mut bodies, mut velocities) = (Bodies::default(), Velocities::default());
-        for group in &groups {
-            self.add_shapes(group, &mut library, &mut bodies)?;
+        let mut sizes = Sizes::default();
+        for (group, run) in runs(&groups) {
+            let held = share.within(&run);
+            self.add_shapes(group, held, &mut library, &mut bodies, &mut sizes)?;
         }
-        let side = self.side(&groups, &library, &bodies)?;
-        for group in &groups {
-            self.add_poses(group, side, &library, &mut bodies)?;
-            self.add_velocities(group, &mut velocities);
+        let side = self.side(&groups, &sizes)?;
+        for ((group, run), widest) in runs(&groups).zip(&sizes.widest) {
+            let held = share.within(&run);
+            self.add_poses(group, held.clone(), (side, *widest), &library, &mut bodies)?;
+            self.add_velocities(group, held, &mut velocities);
         }
         let (shapes, construct_seconds) = library.into_shapes();
         check_bodies(&bodies, &shapes)
             .and_then(|()| velocities.check(bodies.len()))
-            .map_err(|error| self.contract_error(&groups, &error))?;
-        self.spec.cull.check(bodies.len())?;
+            .map_err(|error| self.contract_error(&groups, &error.numbered(share.held.start)))?;
+        self.spec.cull.check(share.all)?;
         let scene = Scene {
             name: self.spec.name.clone(),
             seed: self.spec.seed,
@@ -44,6 +62,7 @@ impl SceneFile {
             side,
             shapes,
             bodies,
+            share: (ranks > 1).then_some(share),
             velocities,
             effects: self.spec.effects.clone(),
             cull: self.spec.cull.clone(),
@@ -55,22 +74,31 @@ impl SceneFile {
         }
     }
 
-    /// Draws the group's radii, makes the shapes and adds one shape and dynamic entry a body.
+    /// Draws the radii of all the group's bodies, makes their shapes, and adds one shape and dynamic entry a body held.
     fn add_shapes(
         &self,
         group: &Group<'_>,
+        held: Range<usize>,
         library: &mut Library,
         bodies: &mut Bodies,
+        sizes: &mut Sizes,
     ) -> Result<(), SceneError> {
         let mesh = library.mesh(self, group.form)?;
-        let mut draws = group.stream(Purpose::Radius);
-        for _ in 0..group.bodies {
-            let radius = group
-                .spec
-                .radius
-                .as_ref()
-                .map(|range| draws.radius(*range.get_ref()));
-            let shape = library.shape(mesh, group.origin, radius, &self.spec.cull);
+        let mut draws = group.draws(Purpose::Radius);
+        let range = group.spec.radius.as_ref().map(|range| *range.get_ref());
+        let uniform = group.is_uniform();
+        let mut widest = 0.0_f32;
+        let mut last = None;
+        for index in 0..group.bodies {
+            let radius = match range {
+                Some(range) if range.min < range.max => Some(draws.of(index).radius(range)),
+                Some(range) => Some(range.min),
+                None => None,
+            };
+            let shape = match last {
+                Some((known, shape)) if known == radius => Ok(shape),
+                _ => library.shape(mesh, group.origin, radius, &self.spec.cull),
+            };
             let shape = shape.map_err(|(message, hint)| {
                 let span = match group.form {
                     Form::File(name) | Form::Procedural(name, _) => name.span(),
@@ -81,19 +109,23 @@ impl SceneFile {
                     hint,
                 )
             })?;
-            bodies.shape.push(shape);
-            bodies.dynamic.push(!group.spec.fixed);
+            last = Some((radius, shape));
+            let radius = library.get(shape).ball.radius;
+            widest = widest.max(radius);
+            if uniform {
+                sizes.uniform.add(radius);
+            }
+            if held.contains(&index) {
+                bodies.shape.push(shape);
+                bodies.dynamic.push(!group.spec.fixed);
+            }
         }
+        sizes.widest.push(widest);
         Ok(())
     }
 
     /// The box's side: given, or from the seeded bodies' radii and the wished density.
-    fn side(
-        &self,
-        groups: &[Group<'_>],
-        library: &Library,
-        bodies: &Bodies,
-    ) -> Result<Option<f32>, SceneError> {
+    fn side(&self, groups: &[Group<'_>], sizes: &Sizes) -> Result<Option<f32>, SceneError> {
         let Some(bounds) = &self.spec.bounds else {
             return Ok(None);
         };
@@ -116,26 +148,18 @@ impl SceneFile {
                 );
             }
         };
-        let mut first = 0;
-        let mut radii = Vec::new();
-        for group in groups {
-            let shapes = &bodies.shape[first..first + group.bodies];
-            first += group.bodies;
-            match &group.spec.placement {
-                _ if group.spec.poses.is_some() => {}
-                Some(placement) if *placement.get_ref() != Placement::Uniform => {
-                    let hint = "give the side instead of partners";
-                    return wrong(
-                        placement.span(),
-                        "`partners` is the density of uniform placement",
-                        hint,
-                    );
-                }
-                _ => radii.extend(shapes.iter().map(|&shape| library.get(shape).ball.radius)),
+        for group in groups.iter().filter(|group| group.spec.poses.is_none()) {
+            if let (Some(placement), false) = (&group.spec.placement, group.is_uniform()) {
+                let hint = "give the side instead of partners";
+                return wrong(
+                    placement.span(),
+                    "`partners` is the density of uniform placement",
+                    hint,
+                );
             }
         }
         let Positive(wished) = *partners.get_ref();
-        let side = density::side(radii.into_iter(), wished);
+        let side = sizes.uniform.side(wished);
         if side > 0.0 {
             return Ok(Some(side));
         }
@@ -146,17 +170,19 @@ impl SceneFile {
         )
     }
 
+    /// Adds the poses of the bodies held; the second pair is the box's side and the radius of the group's largest ball.
     fn add_poses(
         &self,
         group: &Group<'_>,
-        side: Option<f32>,
+        held: Range<usize>,
+        (side, widest): (Option<f32>, f32),
         library: &Library,
         bodies: &mut Bodies,
     ) -> Result<(), SceneError> {
         let Some(poses) = &group.spec.poses else {
-            return self.place(group, side, library, bodies);
+            return self.place(group, held, (side, widest), library, bodies);
         };
-        for pose in poses.get_ref() {
+        for pose in &poses.get_ref()[held] {
             let [qx, qy, qz, qw, tx, ty, tz] = *pose.get_ref();
             bodies.rotation.push([qx, qy, qz, qw]);
             bodies.translation.push([tx, ty, tz]);
@@ -167,7 +193,8 @@ impl SceneFile {
     fn place(
         &self,
         group: &Group<'_>,
-        side: Option<f32>,
+        held: Range<usize>,
+        (side, widest): (Option<f32>, f32),
         library: &Library,
         bodies: &mut Bodies,
     ) -> Result<(), SceneError> {
@@ -180,9 +207,6 @@ impl SceneFile {
                 "add [box] with side = … or partners = …",
             ));
         };
-        let shapes = bodies.shape[first..first + group.bodies].to_vec();
-        let radius = |shape: &u32| library.get(*shape).ball.radius;
-        let widest = shapes.iter().map(radius).fold(0.0, f32::max);
         let half = 0.5 * side;
         if half < widest {
             let bounds = self.spec.bounds.as_ref().map_or(count_span, Spanned::span);
@@ -196,21 +220,28 @@ impl SceneFile {
         }
         let wished = group.spec.placement.as_ref();
         let placement = wished.map_or(Placement::Uniform, |placement| *placement.get_ref());
+        let mut centres = group.draws(Purpose::Centre);
         let placer = Placer::new(
             placement,
             group.bodies,
             half,
             widest,
-            group.stream(Purpose::Centre),
+            centres.common(),
         );
-        let mut placer = placer.map_err(|(message, hint)| {
+        let placer = placer.map_err(|(message, hint)| {
             self.wrong(wished.map_or(count_span, Spanned::span), &message, &hint)
         })?;
-        let mut turns = group.stream(Purpose::Rotation);
-        for shape in &shapes {
-            let ball = library.get(*shape).ball;
+        let mut turns = group.draws(Purpose::Rotation);
+        for index in centres.visited(&held) {
+            let (turns, centres) = (turns.of(index), centres.of(index));
             let rotation = turns.rotation();
-            let centre = placer.centre(ball.radius);
+            if !held.contains(&index) {
+                placer.centre(0.0, centres);
+                continue;
+            }
+            let shape = bodies.shape[first + index - held.start];
+            let ball = library.get(shape).ball;
+            let centre = placer.centre(ball.radius, centres);
             // The ball's centre is placed: t is what brings it there, the ball's centre itself for origin = "ball".
             let offset = world_centre(ball.centre.to_array(), &rotation, &[0.0; 3]);
             bodies.rotation.push(rotation);
@@ -222,21 +253,21 @@ impl SceneFile {
     }
 
     /// Draws or copies velocities, and the angular velocities of dynamic bodies where the scene lists `spin`.
-    fn add_velocities(&self, group: &Group<'_>, velocities: &mut Velocities) {
-        let (spec, all) = (group.spec, velocities.linear.len() + group.bodies);
+    fn add_velocities(&self, group: &Group<'_>, held: Range<usize>, velocities: &mut Velocities) {
+        let (spec, all) = (group.spec, velocities.linear.len() + held.len());
         let (linear, angular) = (&mut velocities.linear, &mut velocities.angular);
         if let Some(given) = &spec.velocities {
-            linear.extend(given.get_ref().iter().map(|v| *v.get_ref()));
+            linear.extend(given.get_ref()[held.clone()].iter().map(|v| *v.get_ref()));
         } else if let Some(speed) = &spec.speed {
-            let mut draws = group.stream(Purpose::Velocity);
-            linear.extend((0..group.bodies).map(|_| draws.vector(*speed.get_ref())));
+            let draws = group.draws(Purpose::Velocity);
+            linear.extend(vectors(draws, *speed.get_ref(), &held));
         } else {
             linear.resize(all, [0.0; 3]);
         }
         match &self.spec.effects.spin {
             Some(spin) if !spec.fixed => {
-                let mut draws = group.stream(Purpose::Spin);
-                angular.extend((0..group.bodies).map(|_| draws.vector(spin.get_ref().rate)));
+                let draws = group.draws(Purpose::Spin);
+                angular.extend(vectors(draws, spin.get_ref().rate, &held));
             }
             _ => angular.resize(all, [0.0; 3]),
         }
@@ -270,4 +301,43 @@ impl SceneFile {
         }
         self.wrong(span, &error.to_string(), error.hint)
     }
+}
+
+/// What is known of radii once all shapes are made.
+#[derive(Default)]
+struct Sizes {
+    /// Of bodies that are spread uniformly.
+    uniform: PowerSums,
+    /// The largest of each group.
+    widest: Vec<f32>,
+}
+
+/// Each group with its run of bodies in the whole scene.
+fn runs<'a, 'b>(
+    groups: &'b [Group<'a>],
+) -> impl Iterator<Item = (&'b Group<'a>, Range<usize>)> + use<'a, 'b> {
+    groups.iter().scan(0, |next, group| {
+        let first = *next;
+        *next += group.bodies;
+        Some((group, first..*next))
+    })
+}
+
+fn share_of(groups: &[Group<'_>], rank: usize, ranks: usize) -> Share {
+    let moving = runs(groups).filter(|(group, _)| !group.spec.fixed);
+    let moving = moving.map(|(_, run)| run).collect();
+    let all = groups.iter().map(|group| group.bodies).sum();
+    Share::of_rank(rank, ranks, all, moving)
+}
+
+/// Drawn vectors of the bodies held.
+fn vectors(
+    mut draws: Draws,
+    length: Interval,
+    held: &Range<usize>,
+) -> impl Iterator<Item = [f32; 3]> {
+    draws.visited(held).filter_map(move |index| {
+        let vector = draws.of(index).vector(length);
+        held.contains(&index).then_some(vector)
+    })
 }

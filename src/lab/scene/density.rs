@@ -7,16 +7,30 @@
 
 use std::f64::consts::PI;
 
-/// The side of the cube in which spheres of these radii have `partners` overlaps each, in the mean.
-pub(super) fn side(radii: impl Iterator<Item = f32>, partners: f32) -> f32 {
-    let (mut n, mut s1, mut s2, mut s3) = (0.0, 0.0, 0.0, 0.0);
-    for r in radii.map(f64::from) {
-        n += 1.0;
-        s1 += r;
-        s2 += r * r;
-        s3 += r * r * r;
+/// The power sums of radii, added up in the order of the bodies.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PowerSums {
+    n: f64,
+    s1: f64,
+    s2: f64,
+    s3: f64,
+}
+
+impl PowerSums {
+    /// Adds a sphere.
+    pub(super) fn add(&mut self, radius: f32) {
+        let r = f64::from(radius);
+        self.n += 1.0;
+        self.s1 += r;
+        self.s2 += r * r;
+        self.s3 += r * r * r;
     }
-    let cubes = 2.0 * n * s3 + 6.0 * s1 * s2 - 8.0 * s3;
-    let volume = 4.0 / 3.0 * PI * cubes / (n * f64::from(partners));
-    libm::cbrt(volume) as f32
+
+    /// The side of the cube in which spheres of these radii have `partners` overlaps each, in the mean.
+    pub(super) fn side(&self, partners: f32) -> f32 {
+        let Self { n, s1, s2, s3 } = *self;
+        let cubes = 2.0 * n * s3 + 6.0 * s1 * s2 - 8.0 * s3;
+        let volume = 4.0 / 3.0 * PI * cubes / (n * f64::from(partners));
+        libm::cbrt(volume) as f32
+    }
 }

@@ -9,6 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
 use super::error::{SceneError, Source};
+use crate::choice::choices;
 use crate::files;
 use crate::lab::effects::EffectsSpec;
 use crate::lab::number::{Interval, Positive, Real};
@@ -35,6 +36,9 @@ pub struct SceneSpec {
     /// Where all random draws start.
     #[serde(default = "first_seed")]
     pub seed: u64,
+    /// Which draws are a body's own.
+    #[serde(default)]
+    pub seeding: Seeding,
     /// Frames to cull: the initial state and `frames − 1` steps.
     pub frames: NonZeroU32,
     /// Seconds a step.
@@ -111,6 +115,22 @@ pub enum Placement {
         /// The slice's thickness for centres.
         thickness: Positive,
     },
+}
+
+choices! {
+    /// Which draws are a body's own.
+    Seeding, "seeding", {
+        /// Bodies of a group draw one after the other: whoever wants the last draws for all.
+        ByGroup = "by-group",
+        /// Each body has streams of its own, so that any share of a scene can be made without the rest.
+        ByBody = "by-body",
+    }
+}
+
+impl Default for Seeding {
+    fn default() -> Self {
+        Self::ByGroup
+    }
 }
 
 fn first_seed() -> u64 {

@@ -5,13 +5,16 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::error::SceneError;
-use super::file::{GroupSpec, SceneFile};
+use super::file::{GroupSpec, Placement, SceneFile, Seeding};
 use super::library::Form;
 use crate::lab::random::Stream;
 use crate::volume::Origin;
 
-/// The most bodies of a scene: a hundred bytes each, in several copies, fit into memory.
+/// The most bodies that a process holds of a scene: a hundred bytes each, in several copies, fit into memory.
 const MOST_BODIES: usize = 1 << 24;
+
+/// The most that a u32 numbers, with a bit to spare.
+const MOST_NUMBERED: usize = (1 << 31) - 1;
 
 /// The independent streams of draws that a group has, in the order of their numbers.
 #[derive(Clone, Copy)]
@@ -28,6 +31,7 @@ pub(super) struct Group<'a> {
     pub(super) spec: &'a GroupSpec,
     pub(super) number: u64,
     pub(super) seed: u64,
+    pub(super) seeding: Seeding,
     pub(super) form: Form<'a>,
     pub(super) origin: Origin,
     pub(super) bodies: usize,
@@ -38,20 +42,73 @@ impl Group<'_> {
     pub(super) fn stream(&self, purpose: Purpose) -> Stream {
         Stream::new(self.seed, self.number * 8 + purpose as u64)
     }
+
+    /// Whether its bodies are placed by the seed, uniformly in the box.
+    pub(super) fn is_uniform(&self) -> bool {
+        let placement = self.spec.placement.as_ref().map(Spanned::get_ref);
+        self.spec.poses.is_none() && matches!(placement, None | Some(Placement::Uniform))
+    }
+
+    /// The draws of the group's bodies for one purpose.
+    pub(super) fn draws(&self, purpose: Purpose) -> Draws {
+        Draws {
+            seed: self.seed,
+            seeding: self.seeding,
+            stream: self.stream(purpose),
+            number: self.number * 8 + purpose as u64,
+        }
+    }
+}
+
+/// Streams of bodies are numbered from here on, above those of groups and effects.
+const OF_BODIES: u64 = 1 << 63;
+
+/// What a group's bodies draw from for one purpose.
+pub(super) struct Draws {
+    seed: u64,
+    seeding: Seeding,
+    stream: Stream,
+    number: u64,
+}
+
+impl Draws {
+    /// The bodies of the group that must draw, in order, so that those in `wanted` have what is theirs.
+    pub(super) fn visited(&self, wanted: &Range<usize>) -> Range<usize> {
+        match self.seeding {
+            Seeding::ByGroup => 0..wanted.end,
+            Seeding::ByBody => wanted.clone(),
+        }
+    }
+
+    /// What the group draws from for all its bodies, before any of them.
+    pub(super) fn common(&mut self) -> &mut Stream {
+        &mut self.stream
+    }
+
+    /// What the next body draws from, the group's body `index`.
+    pub(super) fn of(&mut self, index: usize) -> &mut Stream {
+        if self.seeding == Seeding::ByBody {
+            // Fewer than 2²⁸ groups, and a group has fewer than 2³² bodies.
+            let stream = OF_BODIES | self.number << 32 | index as u64;
+            self.stream = Stream::new(self.seed, stream);
+        }
+        &mut self.stream
+    }
 }
 
 impl SceneFile {
-    /// Checks each group's keys against each other.
-    pub(super) fn groups(&self) -> Result<Vec<Group<'_>>, SceneError> {
+    /// Checks each group's keys against each other, of a scene that so many ranks share.
+    pub(super) fn groups(&self, ranks: usize) -> Result<Vec<Group<'_>>, SceneError> {
         let mut groups = Vec::new();
         let mut total = 0_usize;
         for (number, spec) in self.spec.bodies.iter().enumerate() {
             let group = self.group(number as u64, spec)?;
             total = total.saturating_add(group.bodies);
-            if total > MOST_BODIES {
+            if total.div_ceil(ranks) > MOST_BODIES || total > MOST_NUMBERED {
                 let span = group.spec.count.as_ref().map_or(spec.span(), Spanned::span);
                 let message = format!("{total} bodies are too many");
-                let hint = format!("a scene has up to {MOST_BODIES} bodies");
+                let most = MOST_BODIES.saturating_mul(ranks).min(MOST_NUMBERED);
+                let hint = format!("a scene has up to {most} bodies");
                 return Err(self.wrong(span, &message, &hint));
             }
             groups.push(group);
@@ -86,6 +143,7 @@ impl SceneFile {
             spec,
             number,
             seed: self.spec.seed,
+            seeding: self.spec.seeding,
             form,
             origin,
             bodies,

@@ -11,9 +11,11 @@ pub mod file;
 mod group;
 mod library;
 mod placement;
+mod share;
 
 pub use error::SceneError;
 pub use file::SceneFile;
+pub use share::Share;
 
 use crate::bodies::Bodies;
 use crate::lab::effects::{EffectError, Effects, EffectsSpec, Start, Velocities};
@@ -37,6 +39,8 @@ pub struct Scene {
     pub shapes: Vec<Shape>,
     /// The initial poses.
     pub bodies: Bodies,
+    /// Which bodies of the scene these are, if not all.
+    pub share: Option<Share>,
     /// The initial velocities.
     pub velocities: Velocities,
     /// What is simulated.
@@ -48,17 +52,26 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Which bodies of the scene these are.
+    #[must_use]
+    pub fn share(&self) -> Share {
+        let all = || Share::whole(&self.bodies);
+        self.share.clone().unwrap_or_else(all)
+    }
+
     /// The scene's effects, for a run from its initial state.
     ///
     /// # Errors
     /// An effect that the scene can't have, such as walls without a box.
     pub fn start_effects(&self) -> Result<Effects, EffectError> {
+        let share = self.share();
         let start = Start {
             seed: self.seed,
             dt: self.dt,
             side: self.side,
             shapes: &self.shapes,
             bodies: &self.bodies,
+            moving: &share.moving,
             velocities: &self.velocities,
         };
         Effects::new(&self.effects, &start)

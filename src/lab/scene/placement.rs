@@ -4,16 +4,15 @@ use super::file::Placement;
 use crate::lab::number::Positive;
 use crate::lab::random::Stream;
 
-/// Draws sphere centres of one group.
+/// Places the sphere centres of one group.
 pub(super) struct Placer {
     placement: Placement,
     half: f32,
     clusters: Vec<[f32; 3]>,
-    draws: Stream,
 }
 
 impl Placer {
-    /// A placer for `count` spheres of radius up to `widest` in the box with walls at ±`half`.
+    /// A placer for `count` spheres of radius up to `widest` in the box with walls at ±`half`; `draws` are the group's own.
     ///
     /// # Errors
     /// Clusters or a slice that don't fit: the problem and what would fit.
@@ -22,7 +21,7 @@ impl Placer {
         count: usize,
         half: f32,
         widest: f32,
-        mut draws: Stream,
+        draws: &mut Stream,
     ) -> Result<Self, (String, String)> {
         let side = 2.0 * half;
         let room = half - widest;
@@ -45,7 +44,7 @@ impl Placer {
                     return Err((problem, format!("the radius can be up to {room}")));
                 }
                 // Whole clusters inside of the walls, spheres included.
-                clusters.extend((0..number).map(|_| point(&mut draws, [room - radius; 3])));
+                clusters.extend((0..number).map(|_| point(draws, [room - radius; 3])));
             }
             Placement::Plane {
                 thickness: Positive(thickness),
@@ -65,25 +64,24 @@ impl Placer {
             placement,
             half,
             clusters,
-            draws,
         })
     }
 
-    /// The centre of the next sphere: wholly inside of the box.
-    pub(super) fn centre(&mut self, radius: f32) -> [f32; 3] {
+    /// The centre of a sphere with these draws: wholly inside of the box.
+    pub(super) fn centre(&self, radius: f32, draws: &mut Stream) -> [f32; 3] {
         let limit = self.half - radius;
         match self.placement {
-            Placement::Uniform => point(&mut self.draws, [limit; 3]),
+            Placement::Uniform => point(draws, [limit; 3]),
             Placement::Plane {
                 thickness: Positive(thickness),
-            } => point(&mut self.draws, [limit, limit, 0.5 * thickness]),
+            } => point(draws, [limit, limit, 0.5 * thickness]),
             Placement::Clusters {
                 radius: Positive(spread),
                 ..
             } => {
                 // A u32 counted them, and there is one at least.
-                let cluster = self.clusters[self.draws.index(self.clusters.len() as u32) as usize];
-                let offset = self.draws.ball(spread);
+                let cluster = self.clusters[draws.index(self.clusters.len() as u32) as usize];
+                let offset = draws.ball(spread);
                 // Rounding may carry a centre an ulp beyond.
                 [0, 1, 2].map(|axis| (cluster[axis] + offset[axis]).clamp(-limit, limit))
             }

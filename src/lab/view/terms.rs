@@ -54,6 +54,7 @@ pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>
             angular: at_rest,
         },
         bodies,
+        share: None,
         effects: EffectsSpec::default(),
         cull,
         construct_seconds: 0.0,
