@@ -34,6 +34,7 @@ const ROOMS: &[&str] = &[
     "lab/effects",
     "lab/scene",
     "lab/simulate",
+    "lab/domain",
     "lab/hull_test",
     "lab/measure",
     "lab/record",

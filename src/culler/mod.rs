@@ -184,9 +184,22 @@ impl Culler {
         Ok(())
     }
 
-    /// From now on, these are the bodies of interest.
-    pub(crate) fn set_interest(&mut self, bodies: Vec<u32>) {
-        self.settings.interest = Some(Interest::Bodies(bodies));
+    /// From now on, these bodies are of interest.
+    pub(crate) fn set_interest(&mut self, interest: Interest) {
+        self.settings.interest = Some(interest);
+    }
+
+    /// A body's ball centre, and how far from it the body can matter to any pair ([`border`](crate::rounding::border)).
+    #[cfg(feature = "lab")]
+    pub(crate) fn reach(&self, shape: u32, q: [f32; 4], t: [f32; 3]) -> ([f32; 3], f32) {
+        use crate::rounding::border::{reach, reach_of_box};
+        let frame = &self.models.frames[shape as usize];
+        let [x, y, z, inflated] = frame.sphere(q, t);
+        let reach = match self.needs.intervals {
+            Some(_) => reach_of_box(inflated, t, frame.reach()),
+            None => reach(inflated),
+        };
+        ([x, y, z], reach)
     }
 
     /// The pair finder in use: the one of the settings, or what `auto` has picked.

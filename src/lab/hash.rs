@@ -46,6 +46,41 @@ impl PairsHash {
     }
 }
 
+/// `pairs_digest` of a run: 128 bits that don't depend on the order of pairs, so that parts add up.
+///
+/// Each pair of each frame becomes two numbers of 64 bits, scrambled from frame, i and j; each is summed modulo 2⁶⁴ over
+/// all. Two runs whose digests differ report different pairs. Equal digests of different pairs are a chance in 2¹²⁸, but no
+/// secret: whoever wants to, finds some.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PairsDigest(pub [u64; 2]);
+
+impl PairsDigest {
+    /// Adds some pairs i < j of a frame.
+    pub fn add(&mut self, frame: u32, pairs: impl Iterator<Item = [u32; 2]>) {
+        let frame = scrambled(u64::from(frame) + 1);
+        for [i, j] in pairs {
+            let pair = u64::from(i) << 32 | u64::from(j);
+            let first = scrambled(scrambled(pair ^ frame).wrapping_add(frame));
+            let second = scrambled(scrambled(pair.wrapping_add(frame)) ^ first.rotate_left(32));
+            self.0[0] = self.0[0].wrapping_add(first);
+            self.0[1] = self.0[1].wrapping_add(second);
+        }
+    }
+
+    /// In hexadecimal.
+    #[must_use]
+    pub fn finish(self) -> String {
+        format!("{:016x}{:016x}", self.0[0], self.0[1])
+    }
+}
+
+/// A one-to-one map of 64 bits in which each bit depends on all (the output function of SplitMix64, Steele et al. 2014).
+fn scrambled(x: u64) -> u64 {
+    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ x >> 31
+}
+
 /// Bytes in lower-case hexadecimal.
 pub(crate) fn hex(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(2 * bytes.len());
@@ -59,6 +94,32 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn digest(frames: &[(u32, &[[u32; 2]])]) -> String {
+        let mut digest = PairsDigest::default();
+        for (frame, pairs) in frames {
+            digest.add(*frame, pairs.iter().copied());
+        }
+        digest.finish()
+    }
+
+    #[test]
+    fn digest_sees_every_change_but_that_of_order() {
+        let whole = digest(&[(0, &[[1, 2], [1, 3]]), (1, &[[1, 2]])]);
+        assert_eq!(
+            whole,
+            digest(&[(1, &[[1, 2]]), (0, &[[1, 3]]), (0, &[[1, 2]])])
+        );
+        for other in [
+            digest(&[(0, &[[1, 2], [1, 3]]), (1, &[[1, 3]])]),
+            digest(&[(0, &[[1, 2], [1, 3]]), (2, &[[1, 2]])]),
+            digest(&[(0, &[[1, 2]]), (1, &[[1, 2], [1, 3]])]),
+            digest(&[(0, &[[1, 2], [1, 3]]), (1, &[[1, 2], [1, 2]])]),
+            digest(&[(0, &[[1, 2], [1, 3]])]),
+        ] {
+            assert_ne!(whole, other);
+        }
+    }
 
     #[test]
     fn hash_is_sha256_of_the_documented_bytes() {

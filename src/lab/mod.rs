@@ -1,6 +1,7 @@
 //! The laboratory: scenes, their simulation, and the studies that judge and measure the culler. An engine needs none of it.
 
 pub mod cost;
+pub mod domain;
 pub mod effects;
 pub mod hash;
 pub mod hull_test;

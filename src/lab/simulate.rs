@@ -13,8 +13,8 @@ use crate::bodies::contract::ContractError;
 use crate::counters::{Counters, Seconds};
 use crate::culler::{CullError, Culler};
 use crate::lab::effects::{EffectError, EffectReport, Effects};
-use crate::lab::hash::PairsHash;
 use crate::lab::hash::volumes_sha256;
+use crate::lab::hash::{PairsDigest, PairsHash};
 use crate::lab::scene::Scene;
 use crate::pairs::PairList;
 use crate::settings::Finder;
@@ -132,6 +132,8 @@ pub struct Summary {
     pub volumes_sha256: String,
     /// The hash of all reported pairs; `None` for the control, which reports none.
     pub pairs_sha256: Option<String>,
+    /// The order-free digest of the same pairs.
+    pub pairs_digest: Option<String>,
 }
 
 /// Why a scene can't be run on.
@@ -228,9 +230,10 @@ impl<'a> Simulation<'a> {
         mut self,
         mut observe: impl FnMut(&Frame<'_>) -> Result<(), E>,
     ) -> Result<Summary, E> {
-        let mut hash = PairsHash::default();
+        let (mut hash, mut digest) = (PairsHash::default(), PairsDigest::default());
         while let Some(frame) = self.next_frame()? {
             hash.frame(frame.number, &frame.pairs.sorted());
+            digest.add(frame.number, frame.pairs.iter());
             observe(&frame)?;
         }
         let culls = self.scene.cull.strategy.scheme().culls();
@@ -241,6 +244,7 @@ impl<'a> Simulation<'a> {
             finder: self.culler.finder(),
             volumes_sha256: volumes_sha256(&self.scene.shapes),
             pairs_sha256: culls.then(|| hash.finish()),
+            pairs_digest: culls.then(|| digest.finish()),
         })
     }
 }

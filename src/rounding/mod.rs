@@ -13,6 +13,7 @@
 //! notch tighter and must fail), and the largest error that hill climbing has found in 10⁷ steps
 //! (`benches/worst_case.rs`; a shorter search is in the tests).
 
+pub mod border;
 pub mod pose;
 pub mod skin;
 pub mod slab;

@@ -351,7 +351,7 @@ impl World {
         let living = |id: &BodyId| self.slot(*id).is_ok();
         let slots = self.interest.iter().filter(|id| living(id));
         let slots = slots.map(|id| id.slot).collect();
-        self.culler.set_interest(slots);
+        self.culler.set_interest(Interest::Bodies(slots));
     }
 
     fn id(&self, slot: u32) -> BodyId {

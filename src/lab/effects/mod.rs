@@ -215,12 +215,7 @@ impl Effects {
 
     /// Replaces the set of bodies: their `numbers` in the scene in ascending order, their velocities, and the runs among
     /// them that this process moves. How far each effect has come stays.
-    pub fn replace(
-        &mut self,
-        numbers: &[u32],
-        velocities: Velocities,
-        moving: Vec<Range<usize>>,
-    ) {
+    pub fn replace(&mut self, numbers: &[u32], velocities: Velocities, moving: Vec<Range<usize>>) {
         for (_, effect) in &mut self.running {
             effect.renumber(numbers);
         }

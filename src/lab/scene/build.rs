@@ -221,13 +221,7 @@ impl SceneFile {
         let wished = group.spec.placement.as_ref();
         let placement = wished.map_or(Placement::Uniform, |placement| *placement.get_ref());
         let mut centres = group.draws(Purpose::Centre);
-        let placer = Placer::new(
-            placement,
-            group.bodies,
-            half,
-            widest,
-            centres.common(),
-        );
+        let placer = Placer::new(placement, group.bodies, half, widest, centres.common());
         let placer = placer.map_err(|(message, hint)| {
             self.wrong(wished.map_or(count_span, Spanned::span), &message, &hint)
         })?;

@@ -1,0 +1,38 @@
+//! The corpus of hard cases on ranks: whatever breaks a culler, at borders.
+
+use sdop::lab::verify::compare::settings;
+use sdop::lab::verify::hard::{FILES, Group};
+use sdop::settings::{CullSettings, Finder, Strategy};
+use sdop::volume::{Axes, DirectionSet};
+
+use crate::{pairs_alone, pairs_on};
+
+#[test]
+fn ranks_report_the_pairs_of_one_process_in_every_group() {
+    let ways = [
+        (Strategy::Sphere, Finder::Grid),
+        (Strategy::SDopSequential, Finder::Sweep),
+        (Strategy::OrDop, Finder::Neighbours),
+        (Strategy::Aabb, Finder::Grid),
+        (Strategy::Obb, Finder::AllPairs),
+    ];
+    for (name, text) in FILES {
+        let group = Group::parse(text).unwrap();
+        let cases = group.cases(DirectionSet::K18, Axes::Principal).unwrap();
+        for frames in &cases.runs {
+            for (strategy, finder) in ways {
+                let base = CullSettings {
+                    pairs: finder,
+                    ..CullSettings::default()
+                };
+                let settings = settings(strategy, &base, frames[0].len());
+                let shapes = &cases.shapes.built;
+                let alone = pairs_alone(shapes, frames, &settings);
+                for ranks in [2, 3, 8] {
+                    let shared = pairs_on(ranks, shapes, frames, &settings);
+                    assert_eq!(shared, alone, "{name}: {strategy} over {finder} on {ranks}");
+                }
+            }
+        }
+    }
+}

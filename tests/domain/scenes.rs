@@ -1,0 +1,246 @@
+//! Whole scenes: the digest, the hash and what must add up, over ranks, strategies and finders.
+
+use sdop::lab::scene::SceneFile;
+use sdop::settings::{Finder, Interest, Strategy, Updates};
+
+use crate::{RANKS, alone, ghosts, on, parse};
+
+const EFFECTS: &str = "
+    [effects]
+    motion = true
+    walls = \"specular\"
+    spin = { rate = [0.1, 1.0] }
+    gravity = { acceleration = [0.0, 0.0, -9.81], period = 0.7 }
+    brownian = { share = 0.05, speed = [1.0, 4.0] }
+";
+
+/// Boxes, L-shapes about a corner of their file, and a tenth that never moves, placed as said.
+fn scene(radius: &str, placement: &str, box_of: &str) -> SceneFile {
+    let group = |shape: &str, rest: &str| {
+        format!(
+            "[[bodies]]\nshape = \"{shape}\"\nradius = {radius}\nplacement = {placement}\n{rest}\n"
+        )
+    };
+    let groups = [
+        group("box", "count = 110\nspeed = [0.5, 6.0]"),
+        group("l-shape", "count = 110\nspeed = [0.5, 6.0]"),
+        group("needle", "count = 24\nstatic = true"),
+    ];
+    parse(&format!(
+        "name = \"domain\"\nframes = 8\ndt = 0.0166\n[box]\n{box_of}\n{}{EFFECTS}",
+        groups.concat()
+    ))
+}
+
+/// Unit balls on a lattice: each touches its neighbours, and any plane cuts through rows of touching ones.
+fn straddling() -> SceneFile {
+    let at = |i: i32| [i % 6, i / 6 % 6, i / 36].map(|x| 2 * x - 5);
+    let poses = (0..216).map(|i| {
+        let [x, y, z] = at(i);
+        format!("[0, 0, 0, 1, {x}, {y}, {z}]")
+    });
+    let poses: Vec<_> = poses.collect();
+    parse(&format!(
+        "name = \"straddling\"\nframes = 4\n[[bodies]]\nshape = \"icosphere\"\nradius = 1.0\nposes = [{}]\n
+         velocities = [{}]\n[effects]\nmotion = true\n",
+        poses.join(", "),
+        vec!["[0.5, -0.25, 0.125]"; 216].join(", ")
+    ))
+}
+
+fn scenes() -> [(&'static str, SceneFile); 5] {
+    let clusters = "{ clusters = { number = 3, radius = 2.5 } }";
+    let plane = "{ plane = { thickness = 1.0 } }";
+    [
+        ("uniform", scene("1.0", "\"uniform\"", "partners = 2.5")),
+        (
+            "mixed",
+            scene("[0.25, 4.0]", "\"uniform\"", "partners = 2.5"),
+        ),
+        ("clustered", scene("0.5", clusters, "side = 40.0")),
+        ("plane", scene("0.5", plane, "side = 20.0")),
+        ("straddling", straddling()),
+    ]
+}
+
+#[test]
+fn the_pairs_of_any_number_of_ranks_are_those_of_one_process() {
+    let strategies = Strategy::ALL.iter().filter(|s| !s.scheme().has_budget());
+    for (name, mut file) in scenes() {
+        for &strategy in strategies.clone() {
+            file.spec.cull.strategy = strategy;
+            file.spec.cull.interest = Some(Interest::Bodies((0..200).step_by(7).collect()));
+            file.spec.cull.pairs = Finder::AllPairs;
+            let whole = alone(&file);
+            for &finder in Finder::ALL {
+                file.spec.cull.pairs = finder;
+                for ranks in RANKS {
+                    let what = format!("{name}, {strategy} over {finder} on {ranks} ranks");
+                    let summary = on(ranks, &file).unwrap();
+                    let shared = &summary.whole;
+                    assert_eq!(shared.pairs_digest, whole.pairs_digest, "{what}");
+                    assert_eq!(shared.pairs_sha256, whole.pairs_sha256, "{what}");
+                    assert_eq!(shared.volumes_sha256, whole.volumes_sha256, "{what}");
+                    assert_eq!(shared.counters.reported, whole.counters.reported, "{what}");
+                    for volume in strategy.scheme().volumes() {
+                        let updates = |summary: &sdop::lab::simulate::Summary| {
+                            summary.counters.of(volume).updates
+                        };
+                        assert_eq!(updates(shared), updates(&whole), "{what}: {volume} updates");
+                    }
+                    for (ours, theirs) in shared.effects.iter().zip(&whole.effects) {
+                        let counts =
+                            |e: &sdop::lab::effects::EffectReport| (e.steps, e.visited, e.changed);
+                        assert_eq!(counts(ours), counts(theirs), "{what}: {}", ours.name);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn one_rank_counts_what_one_process_counts() {
+    for (name, mut file) in scenes() {
+        for &strategy in Strategy::ALL.iter().filter(|s| !s.scheme().has_budget()) {
+            for updates in [Updates::Eager, Updates::Lazy] {
+                file.spec.cull.strategy = strategy;
+                file.spec.cull.updates = updates;
+                file.spec.cull.interest = Some(Interest::Bodies(vec![3, 50]));
+                let counters = on(1, &file).unwrap().whole.counters;
+                assert_eq!(counters, alone(&file).counters, "{name}, {strategy}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_cone_that_a_body_looks_along_sees_the_same_from_every_rank() {
+    let mut file = scene("1.0", "\"uniform\"", "partners = 2.5");
+    file.spec.cull.strategy = Strategy::SDopObjectOfInterest;
+    for cone in [
+        "{ body = 17, direction = [0, 0, 1], half_angle = 40 }",
+        "{ apex = [1, 2, 3], direction = [1, 0, 1], half_angle = 60, range = 6.0 }",
+    ] {
+        file.spec.cull.interest = Some(cone.parse().unwrap());
+        let whole = alone(&file);
+        assert!(
+            whole.counters.ordop.tests < whole.counters.sphere.hits,
+            "some are of no interest"
+        );
+        for ranks in RANKS {
+            let shared = on(ranks, &file).unwrap().whole;
+            assert_eq!(shared.pairs_sha256, whole.pairs_sha256, "{cone} on {ranks}");
+        }
+    }
+}
+
+#[test]
+fn ghosts_are_a_skin_of_the_domain_and_owners_are_kept_while_bodies_are_slow() {
+    let text = "name = \"many\"\nframes = 12\n[box]\nside = 40.0\n[[bodies]]\nshape = \"box\"\nradius = 0.5\ncount = 8000
+        speed = [0.5, 1.0]\n[effects]\nmotion = true\nwalls = \"specular\"\n[cull]\npairs = \"grid\"\n";
+    let summary = on(8, &parse(text)).unwrap();
+    for line in &summary.ranks {
+        assert!((900..1100).contains(&line.bodies), "{line:?}");
+        // A cell of side 20 with a border of 1 + ½ skin on three sides: (22.3/20)³ − 1 at the corner of eight is 0.2.
+        let a_frame = line.ghosts / 12;
+        assert!((100..350).contains(&a_frame), "{line:?}");
+        // A skin of a quarter of the radius lasts seven steps of a sixtieth at speed 1.
+        assert!((2..=3).contains(&line.renewals), "{line:?}");
+        assert_eq!(line.cuts, 1);
+    }
+    assert_eq!(ghosts(&on(1, &parse(text)).unwrap().ranks), 0);
+}
+
+#[test]
+fn shares_hold_the_bodies_of_the_whole() {
+    for seeding in ["by-group", "by-body"] {
+        for placement in ["\"uniform\"", "{ clusters = { number = 5, radius = 2.0 } }"] {
+            let group = |shape: &str| {
+                format!(
+                    "[[bodies]]\nshape = \"{shape}\"\ncount = 37\nradius = [0.25, 1.0]\nspeed = [1.0, 2.0]\nplacement = {placement}\n"
+                )
+            };
+            let file = parse(&format!(
+                "name = \"shares\"\nseeding = \"{seeding}\"\nframes = 1\n[box]\nside = 20.0\n{}{}[effects]\nspin = {{ rate = [0.1, 1.0] }}\n",
+                group("box"),
+                group("l-shape")
+            ));
+            let whole = file.build().unwrap();
+            let mut next = 0;
+            for rank in 0..5 {
+                let part = file.build_share(rank, 5).unwrap();
+                let held = part.share().held;
+                assert_eq!(held.start, next);
+                next = held.end;
+                assert_eq!(part.bodies.shape, whole.bodies.shape[held.clone()]);
+                assert_eq!(part.bodies.dynamic, whole.bodies.dynamic[held.clone()]);
+                assert_eq!(part.bodies.rotation, whole.bodies.rotation[held.clone()]);
+                assert_eq!(
+                    part.bodies.translation,
+                    whole.bodies.translation[held.clone()]
+                );
+                assert_eq!(
+                    part.velocities.linear,
+                    whole.velocities.linear[held.clone()]
+                );
+                assert_eq!(part.velocities.angular, whole.velocities.angular[held]);
+                assert_eq!(part.shapes.len(), whole.shapes.len());
+                assert_eq!(part.side, whole.side);
+            }
+            assert_eq!(next, whole.bodies.len());
+        }
+    }
+}
+
+#[test]
+fn by_body_each_body_draws_for_itself() {
+    let file = |count: u32| {
+        parse(&format!(
+            "name = \"own\"\nseeding = \"by-body\"\nframes = 1\n[box]\nside = 20.0\n[[bodies]]\nshape = \"box\"\ncount = {count}\nspeed = [1.0, 2.0]\n"
+        ))
+    };
+    let (few, many) = (file(10).build().unwrap(), file(100).build().unwrap());
+    assert_eq!(few.bodies.translation, many.bodies.translation[..10]);
+    assert_eq!(few.velocities.linear, many.velocities.linear[..10]);
+    let mut different: Vec<_> = many
+        .bodies
+        .translation
+        .iter()
+        .map(|t| t.map(f32::to_bits))
+        .collect();
+    different.sort_unstable();
+    different.dedup();
+    assert_eq!(different.len(), 100);
+}
+
+#[test]
+fn what_needs_one_order_over_all_pairs_is_refused_on_many_ranks() {
+    let refusal = |file: &SceneFile| on(2, file).unwrap_err().to_string();
+    let mut file = scene("1.0", "\"uniform\"", "partners = 2.5");
+    file.spec.cull.strategy = Strategy::SDopTimeCritical;
+    file.spec.cull.budget = Some(sdop::settings::Budget::Tests(10));
+    assert_eq!(refusal(&file), "strategy s-dop-time-critical on 2 ranks");
+    assert!(on(1, &file).is_ok());
+    let response = parse(
+        "name = \"r\"\nframes = 2\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n[effects]\nresponse = \"elastic\"\n",
+    );
+    assert_eq!(refusal(&response), "effect response on 2 ranks");
+}
+
+#[test]
+fn a_body_that_leaves_the_contract_is_named_by_its_number_on_every_rank() {
+    let text = "name = \"far\"\nframes = 3\ndt = 1.0\n[[bodies]]\nshape = \"box\"
+        poses = [[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 5, 0, 0], [0, 0, 0, 1, 9, 0, 0], [0, 0, 0, 1, 1e18, 0, 0]]
+        velocities = [[0, 0, 0], [0, 0, 0], [0, 0, 0], [1e18, 0, 0]]\n[effects]\nmotion = true\n";
+    let file = parse(text);
+    let all = sdop::lab::domain::local::on_ranks(3, |net| {
+        use sdop::lab::domain::{Network as _, Rank, run};
+        let scene = file.build_share(net.rank(), 3).unwrap();
+        let rank = Rank::new(net, scene, sdop::Tier::detect(), 1).unwrap();
+        run(rank, |_| ()).unwrap_err().to_string()
+    });
+    let said = "frame 1: body 3: translation [2e18, 0.0, 0.0]";
+    assert!(all.iter().all(|error| error.ends_with(said)), "{all:?}");
+    assert!(all.iter().any(|error| error == said), "{all:?}");
+}
