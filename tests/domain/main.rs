@@ -29,19 +29,22 @@ fn parse(text: &str) -> SceneFile {
     SceneFile::parse(text, "scene.toml", Path::new("")).unwrap()
 }
 
+fn build(text: &str) -> Scene {
+    parse(text).build().unwrap()
+}
+
 /// A scene on so many ranks, as rank 0 tells it.
-fn on(ranks: usize, file: &SceneFile) -> Result<DomainSummary, DomainError> {
+fn on(ranks: usize, scene: &Scene) -> Result<DomainSummary, DomainError> {
     let mut all = on_ranks(ranks, |net| {
-        let scene = file.build_share(net.rank(), ranks).unwrap();
-        run(Rank::new(net, scene, Tier::detect(), 1)?, |_| ())
+        let share = share_of(scene, net.rank(), ranks);
+        run(Rank::new(net, share, Tier::detect(), 1)?, |_| ())
     });
     all.swap_remove(0)
 }
 
 /// A scene in one process.
-fn alone(file: &SceneFile) -> sdop::lab::simulate::Summary {
-    let scene = file.build().unwrap();
-    sdop::lab::simulate::run::<SimulationError>(&scene, Tier::detect(), |_| Ok(())).unwrap()
+fn alone(scene: &Scene) -> sdop::lab::simulate::Summary {
+    sdop::lab::simulate::run::<SimulationError>(scene, Tier::detect(), |_| Ok(())).unwrap()
 }
 
 /// A scene of given bodies, for frames whose poses come from the test.

@@ -1,9 +1,9 @@
 //! Whole scenes: the digest, the hash and what must add up, over ranks, strategies and finders.
 
-use sdop::lab::scene::SceneFile;
+use sdop::lab::scene::Scene;
 use sdop::settings::{Finder, Interest, Strategy, Updates};
 
-use crate::{RANKS, alone, ghosts, on, parse};
+use crate::{RANKS, alone, build, ghosts, on, parse};
 
 const EFFECTS: &str = "
     [effects]
@@ -15,7 +15,7 @@ const EFFECTS: &str = "
 ";
 
 /// Boxes, L-shapes about a corner of their file, and a tenth that never moves, placed as said.
-fn scene(radius: &str, placement: &str, box_of: &str) -> SceneFile {
+fn scene(radius: &str, placement: &str, box_of: &str) -> Scene {
     let group = |shape: &str, rest: &str| {
         format!(
             "[[bodies]]\nshape = \"{shape}\"\nradius = {radius}\nplacement = {placement}\n{rest}\n"
@@ -26,21 +26,21 @@ fn scene(radius: &str, placement: &str, box_of: &str) -> SceneFile {
         group("l-shape", "count = 110\nspeed = [0.5, 6.0]"),
         group("needle", "count = 24\nstatic = true"),
     ];
-    parse(&format!(
+    build(&format!(
         "name = \"domain\"\nframes = 8\ndt = 0.0166\n[box]\n{box_of}\n{}{EFFECTS}",
         groups.concat()
     ))
 }
 
 /// Unit balls on a lattice: each touches its neighbours, and any plane cuts through rows of touching ones.
-fn straddling() -> SceneFile {
+fn straddling() -> Scene {
     let at = |i: i32| [i % 6, i / 6 % 6, i / 36].map(|x| 2 * x - 5);
     let poses = (0..216).map(|i| {
         let [x, y, z] = at(i);
         format!("[0, 0, 0, 1, {x}, {y}, {z}]")
     });
     let poses: Vec<_> = poses.collect();
-    parse(&format!(
+    build(&format!(
         "name = \"straddling\"\nframes = 4\n[[bodies]]\nshape = \"icosphere\"\nradius = 1.0\nposes = [{}]\n
          velocities = [{}]\n[effects]\nmotion = true\n",
         poses.join(", "),
@@ -48,7 +48,7 @@ fn straddling() -> SceneFile {
     ))
 }
 
-fn scenes() -> [(&'static str, SceneFile); 5] {
+fn scenes() -> [(&'static str, Scene); 5] {
     let clusters = "{ clusters = { number = 3, radius = 2.5 } }";
     let plane = "{ plane = { thickness = 1.0 } }";
     [
@@ -66,17 +66,17 @@ fn scenes() -> [(&'static str, SceneFile); 5] {
 #[test]
 fn the_pairs_of_any_number_of_ranks_are_those_of_one_process() {
     let strategies = Strategy::ALL.iter().filter(|s| !s.scheme().has_budget());
-    for (name, mut file) in scenes() {
+    for (name, mut scene) in scenes() {
         for &strategy in strategies.clone() {
-            file.spec.cull.strategy = strategy;
-            file.spec.cull.interest = Some(Interest::Bodies((0..200).step_by(7).collect()));
-            file.spec.cull.pairs = Finder::AllPairs;
-            let whole = alone(&file);
+            scene.cull.strategy = strategy;
+            scene.cull.interest = Some(Interest::Bodies((0..200).step_by(7).collect()));
+            scene.cull.pairs = Finder::AllPairs;
+            let whole = alone(&scene);
             for &finder in Finder::ALL {
-                file.spec.cull.pairs = finder;
+                scene.cull.pairs = finder;
                 for ranks in RANKS {
                     let what = format!("{name}, {strategy} over {finder} on {ranks} ranks");
-                    let summary = on(ranks, &file).unwrap();
+                    let summary = on(ranks, &scene).unwrap();
                     let shared = &summary.whole;
                     assert_eq!(shared.pairs_digest, whole.pairs_digest, "{what}");
                     assert_eq!(shared.pairs_sha256, whole.pairs_sha256, "{what}");
@@ -101,14 +101,14 @@ fn the_pairs_of_any_number_of_ranks_are_those_of_one_process() {
 
 #[test]
 fn one_rank_counts_what_one_process_counts() {
-    for (name, mut file) in scenes() {
+    for (name, mut scene) in scenes() {
         for &strategy in Strategy::ALL.iter().filter(|s| !s.scheme().has_budget()) {
             for updates in [Updates::Eager, Updates::Lazy] {
-                file.spec.cull.strategy = strategy;
-                file.spec.cull.updates = updates;
-                file.spec.cull.interest = Some(Interest::Bodies(vec![3, 50]));
-                let counters = on(1, &file).unwrap().whole.counters;
-                assert_eq!(counters, alone(&file).counters, "{name}, {strategy}");
+                scene.cull.strategy = strategy;
+                scene.cull.updates = updates;
+                scene.cull.interest = Some(Interest::Bodies(vec![3, 50]));
+                let counters = on(1, &scene).unwrap().whole.counters;
+                assert_eq!(counters, alone(&scene).counters, "{name}, {strategy}");
             }
         }
     }
@@ -116,20 +116,20 @@ fn one_rank_counts_what_one_process_counts() {
 
 #[test]
 fn a_cone_that_a_body_looks_along_sees_the_same_from_every_rank() {
-    let mut file = scene("1.0", "\"uniform\"", "partners = 2.5");
-    file.spec.cull.strategy = Strategy::SDopObjectOfInterest;
+    let mut scene = scene("1.0", "\"uniform\"", "partners = 2.5");
+    scene.cull.strategy = Strategy::SDopObjectOfInterest;
     for cone in [
         "{ body = 17, direction = [0, 0, 1], half_angle = 40 }",
         "{ apex = [1, 2, 3], direction = [1, 0, 1], half_angle = 60, range = 6.0 }",
     ] {
-        file.spec.cull.interest = Some(cone.parse().unwrap());
-        let whole = alone(&file);
+        scene.cull.interest = Some(cone.parse().unwrap());
+        let whole = alone(&scene);
         assert!(
             whole.counters.ordop.tests < whole.counters.sphere.hits,
             "some are of no interest"
         );
         for ranks in RANKS {
-            let shared = on(ranks, &file).unwrap().whole;
+            let shared = on(ranks, &scene).unwrap().whole;
             assert_eq!(shared.pairs_sha256, whole.pairs_sha256, "{cone} on {ranks}");
         }
     }
@@ -139,7 +139,7 @@ fn a_cone_that_a_body_looks_along_sees_the_same_from_every_rank() {
 fn ghosts_are_a_skin_of_the_domain_and_owners_are_kept_while_bodies_are_slow() {
     let text = "name = \"many\"\nframes = 12\n[box]\nside = 40.0\n[[bodies]]\nshape = \"box\"\nradius = 0.5\ncount = 8000
         speed = [0.5, 1.0]\n[effects]\nmotion = true\nwalls = \"specular\"\n[cull]\npairs = \"grid\"\n";
-    let summary = on(8, &parse(text)).unwrap();
+    let summary = on(8, &build(text)).unwrap();
     for line in &summary.ranks {
         assert!((900..1100).contains(&line.bodies), "{line:?}");
         // A cell of side 20 with a border of 1 + ½ skin on three sides: (22.3/20)³ − 1 at the corner of eight is 0.2.
@@ -149,7 +149,7 @@ fn ghosts_are_a_skin_of_the_domain_and_owners_are_kept_while_bodies_are_slow() {
         assert!((2..=3).contains(&line.renewals), "{line:?}");
         assert_eq!(line.cuts, 1);
     }
-    assert_eq!(ghosts(&on(1, &parse(text)).unwrap().ranks), 0);
+    assert_eq!(ghosts(&on(1, &build(text)).unwrap().ranks), 0);
 }
 
 #[test]
@@ -216,13 +216,13 @@ fn by_body_each_body_draws_for_itself() {
 
 #[test]
 fn what_needs_one_order_over_all_pairs_is_refused_on_many_ranks() {
-    let refusal = |file: &SceneFile| on(2, file).unwrap_err().to_string();
-    let mut file = scene("1.0", "\"uniform\"", "partners = 2.5");
-    file.spec.cull.strategy = Strategy::SDopTimeCritical;
-    file.spec.cull.budget = Some(sdop::settings::Budget::Tests(10));
-    assert_eq!(refusal(&file), "strategy s-dop-time-critical on 2 ranks");
-    assert!(on(1, &file).is_ok());
-    let response = parse(
+    let refusal = |file: &Scene| on(2, file).unwrap_err().to_string();
+    let mut scene = scene("1.0", "\"uniform\"", "partners = 2.5");
+    scene.cull.strategy = Strategy::SDopTimeCritical;
+    scene.cull.budget = Some(sdop::settings::Budget::Tests(10));
+    assert_eq!(refusal(&scene), "strategy s-dop-time-critical on 2 ranks");
+    assert!(on(1, &scene).is_ok());
+    let response = build(
         "name = \"r\"\nframes = 2\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n[effects]\nresponse = \"elastic\"\n",
     );
     assert_eq!(refusal(&response), "effect response on 2 ranks");

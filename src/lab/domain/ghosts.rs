@@ -9,7 +9,7 @@ use crate::rounding::border::may_meet;
 pub(super) type Balls = [([f32; 3], f32)];
 
 /// Which bodies travel between this rank and each other one, by their places here, in the order of their poses in a message.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Plan {
     send: Vec<Vec<u32>>,
     receive: Vec<Vec<u32>>,
@@ -27,6 +27,12 @@ pub(super) struct Border {
 }
 
 impl Plan {
+    /// Nothing travels.
+    pub fn none(ranks: usize) -> Self {
+        let [send, receive] = [(); 2].map(|()| vec![Vec::new(); ranks]);
+        Self { send, receive }
+    }
+
     /// Finds the ghosts that others need of `held`, all owned, sends them, and adds those received. Collective.
     pub fn make(
         network: &impl Network,

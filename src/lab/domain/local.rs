@@ -69,6 +69,7 @@ impl Network for LocalRank {
     }
 
     fn exchange(&self, outgoing: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
+        assert_eq!(outgoing.len(), self.to.len(), "a message a rank");
         for (to, message) in self.to.iter().zip(outgoing) {
             // A rank that has panicked receives nothing: whoever waits for it, panics next.
             let _ = to.send(message);

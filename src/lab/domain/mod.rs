@@ -22,12 +22,16 @@ mod error;
 mod ghosts;
 mod held;
 pub mod local;
+#[cfg(feature = "mpi")]
+mod mpi;
 mod network;
 mod rank;
 mod run;
 
 pub use cut::Cuts;
 pub use error::DomainError;
+#[cfg(feature = "mpi")]
+pub use mpi::MpiNetwork;
 pub use network::Network;
 pub use rank::{Rank, RankFrame};
 pub use run::{BorderSeconds, DomainSummary, RankLine, run};

@@ -110,7 +110,7 @@ impl<'a, N: Network> Rank<'a, N> {
             effects,
             held: Held::new(share.held.start, bodies),
             cuts: None,
-            plan: Plan::default(),
+            plan: Plan::none(network.size()),
             then: Vec::new(),
             skin: 0.0,
             next: 0,
