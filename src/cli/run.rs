@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use sdop::Tier;
 use sdop::counters::{Counters, Seconds};
+use sdop::lab::domain::{BorderSeconds, RankLine};
 use sdop::lab::effects::EffectReport;
 use sdop::lab::record::{FrameLine, Header, Recorder};
 use sdop::lab::scene::Scene;
@@ -15,6 +16,9 @@ use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+#[cfg(feature = "mpi")]
+mod ranks;
+
 use super::Outcome;
 use super::output::{Format, emit, progress, table};
 use super::scene_args::{MachineArgs, SceneArgs};
@@ -23,6 +27,7 @@ use super::scene_args::{MachineArgs, SceneArgs};
 ///
 /// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of each stage and hashes.
 /// Counters and hashes depend on scene, seed and flags alone, not on the CPU or threads; with --budget-us they depend on the clock.
+/// Under mpirun, ranks share the scene and report the same pairs; built with the feature `mpi`.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
@@ -65,11 +70,26 @@ struct Report<'a> {
     simd: &'static str,
     threads: usize,
     counters: Map<String, Value>,
-    seconds: Seconds,
+    seconds: Terms,
     effects: Vec<EffectLine>,
     volumes_sha256: &'a str,
     pairs_sha256: Option<&'a str>,
+    pairs_digest: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ranks: Option<&'a [RankLine]>,
 }
+
+/// The terms of T: those of culling, and what borders between ranks add.
+#[derive(Serialize)]
+struct Terms {
+    #[serde(flatten)]
+    culling: Seconds,
+    #[serde(flatten)]
+    border: Option<BorderSeconds>,
+}
+
+/// What ranks say besides.
+type Shared<'a> = Option<(BorderSeconds, &'a [RankLine])>;
 
 #[derive(Serialize)]
 struct EffectLine {
@@ -83,6 +103,10 @@ struct EffectLine {
 /// # Errors
 /// A bad scene, settings that it can't have, a body that leaves the contract, a recording that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
+    #[cfg(feature = "mpi")]
+    if sdop::lab::mpi::launched() > 1 {
+        return ranks::run(args);
+    }
     let scene = args.scene.build()?;
     let tier = args.machine.tier();
     let mut recorder = match &args.record {
@@ -112,14 +136,23 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(recorder) = recorder {
         recorder.finish()?;
     }
-    let report = report(&scene, tier, threads, &summary);
-    emit(args.format, &report, |report| {
-        text(report, &scene, &summary)
-    })?;
+    print(args, &scene, &summary, None)?;
     Ok(Outcome::Passed)
 }
 
-fn report<'a>(scene: &'a Scene, tier: Tier, threads: usize, summary: &'a Summary) -> Report<'a> {
+/// Prints what a run says of itself.
+fn print(args: &Args, scene: &Scene, summary: &Summary, shared: Shared<'_>) -> miette::Result<()> {
+    let (tier, threads) = (args.machine.tier(), args.threads.into());
+    let report = report(scene, (tier, threads), summary, shared);
+    emit(args.format, &report, |report| text(report, scene, summary))
+}
+
+fn report<'a>(
+    scene: &'a Scene,
+    (tier, threads): (Tier, usize),
+    summary: &'a Summary,
+    shared: Shared<'a>,
+) -> Report<'a> {
     let CullSettings {
         strategy,
         pairs,
@@ -134,7 +167,7 @@ fn report<'a>(scene: &'a Scene, tier: Tier, threads: usize, summary: &'a Summary
     Report {
         scene: &scene.name,
         seed: scene.seed,
-        bodies: scene.bodies.len(),
+        bodies: scene.share().all,
         frames: scene.frames,
         strategy: strategy.name(),
         pairs: pairs.name(),
@@ -148,10 +181,15 @@ fn report<'a>(scene: &'a Scene, tier: Tier, threads: usize, summary: &'a Summary
         simd: tier.name(),
         threads,
         counters: counters(*strategy, &summary.counters),
-        seconds: summary.seconds,
+        seconds: Terms {
+            culling: summary.seconds,
+            border: shared.map(|(border, _)| border),
+        },
         effects: summary.effects.iter().map(effect_line).collect(),
         volumes_sha256: &summary.volumes_sha256,
         pairs_sha256: summary.pairs_sha256.as_deref(),
+        pairs_digest: summary.pairs_digest.as_deref(),
+        ranks: shared.map(|(_, ranks)| ranks),
     }
 }
 
@@ -208,7 +246,7 @@ fn write_text(
     } else {
         format!("{} ({})", report.pairs, report.finder)
     };
-    let dynamic = scene.bodies.dynamic.iter().filter(|&&d| d).count();
+    let dynamic: usize = scene.share().moving.iter().map(|run| run.len()).sum();
     writeln!(
         out,
         "{}, seed {}: {} bodies ({dynamic} dynamic), {} frames",
@@ -226,7 +264,7 @@ fn write_text(
         report.simd,
         report.threads
     )?;
-    writeln!(out, "{}", stages(&summary.seconds, report.frames))?;
+    writeln!(out, "{}", stages(&report.seconds, report.frames))?;
     writeln!(out, "{}", volumes(scene.cull.strategy, &summary.counters))?;
     let Counters {
         reported, untested, ..
@@ -239,26 +277,85 @@ fn write_text(
     )?;
     writeln!(out, "{}", effects(&summary.effects))?;
     writeln!(out, "volumes sha256 {}", report.volumes_sha256)?;
-    let hash = report.pairs_sha256.unwrap_or("– (nothing is culled)");
-    writeln!(out, "pairs sha256   {hash}")
+    let hash = match report.pairs_digest {
+        None => "– (nothing is culled)",
+        Some(_) => report
+            .pairs_sha256
+            .unwrap_or("– (too many to sort in one place)"),
+    };
+    writeln!(out, "pairs sha256   {hash}")?;
+    if let Some(digest) = report.pairs_digest {
+        writeln!(out, "pairs digest   {digest}")?;
+    }
+    match report.ranks {
+        None => Ok(()),
+        Some(ranks) => writeln!(out, "{}", rank_rows(ranks, report.frames)),
+    }
 }
 
 /// Seconds by stage. Construction happens once, so it has no time a frame.
-fn stages(seconds: &Seconds, frames: u32) -> comfy_table::Table {
+fn stages(seconds: &Terms, frames: u32) -> comfy_table::Table {
+    let Terms {
+        culling: seconds,
+        border,
+    } = seconds;
     let mut rows = table(&["stage", "seconds", "ns / frame"]);
     rows.add_row(["construct", &format!("{:.6}", seconds.construct), "once"]);
-    for (stage, value) in [
+    let border = border.iter().flat_map(|border| {
+        [
+            ("ghosts", border.ghosts),
+            ("migration", border.migration),
+            ("waiting", border.waiting),
+        ]
+    });
+    let culling = [
         ("effects", seconds.effects),
         ("update", seconds.update),
         ("pair finding", seconds.pair_finding),
         ("or-dop", seconds.ordop),
         ("culling, total", seconds.total),
-    ] {
+    ];
+    for (stage, value) in culling.into_iter().chain(border) {
         let each = 1e9 * value / f64::from(frames);
         rows.add_row([
             stage,
             format!("{value:.6}").as_str(),
             format!("{each:.0}").as_str(),
+        ]);
+    }
+    rows
+}
+
+/// What each rank had to do.
+fn rank_rows(ranks: &[RankLine], frames: u32) -> comfy_table::Table {
+    let mut rows = table(&[
+        "rank",
+        "bodies",
+        "ghosts",
+        "ghosts' bytes",
+        "migrated",
+        "renewals",
+        "cuts",
+        "ms / frame: culling",
+        "ghosts",
+        "migration",
+        "waiting",
+    ]);
+    for line in ranks {
+        let a_frame = |count: u64| (count / u64::from(frames)).to_string();
+        let ms = |seconds: f64| format!("{:.3}", 1e3 * seconds / f64::from(frames));
+        rows.add_row([
+            line.rank.to_string(),
+            line.bodies.to_string(),
+            a_frame(line.ghosts),
+            a_frame(line.ghost_bytes),
+            line.migrated.to_string(),
+            line.renewals.to_string(),
+            line.cuts.to_string(),
+            ms(line.culling_seconds),
+            ms(line.seconds.ghosts),
+            ms(line.seconds.migration),
+            ms(line.seconds.waiting),
         ]);
     }
     rows

@@ -28,6 +28,7 @@ fn json_is_the_documented_object() {
     assert_eq!(keys(&report), [
         "scene", "seed", "bodies", "frames", "strategy", "pairs", "finder", "k", "axes", "overlap", "updates", "interest", "budget",
         "simd", "threads", "counters", "seconds", "effects", "volumes_sha256", "pairs_sha256",
+        "pairs_digest",
     ]);
     #[rustfmt::skip]
     assert_eq!(keys(&report["counters"]), [
@@ -47,6 +48,7 @@ fn json_is_the_documented_object() {
     assert_eq!(report["scene"], "paper-50");
     assert_eq!(report["frames"], 20);
     assert_eq!(report["pairs_sha256"].as_str().unwrap().len(), 64);
+    assert_eq!(report["pairs_digest"].as_str().unwrap().len(), 32);
 }
 
 #[test]
@@ -114,6 +116,7 @@ fn counters_follow_from_bodies_frames_and_strategy() {
 
     let none = run(&["--strategy", "none"]);
     assert_eq!(none["pairs_sha256"], Value::Null);
+    assert_eq!(none["pairs_digest"], Value::Null);
     let counts = none["counters"].as_object().unwrap();
     assert!(counts.values().all(|count| *count == 0), "{counts:?}");
 }

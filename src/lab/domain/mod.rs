@@ -26,6 +26,7 @@ pub mod local;
 mod mpi;
 mod network;
 mod rank;
+mod renew;
 mod run;
 
 pub use cut::Cuts;

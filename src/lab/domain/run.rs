@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::error::DomainError;
 use super::network::{Network, tell_first};
-use super::rank::{Rank, Work};
+use super::rank::Rank;
 use crate::counters::{Counters, Seconds};
 use crate::lab::effects::EffectReport;
 use crate::lab::hash::{PairsDigest, PairsHash, volumes_sha256};
@@ -77,8 +77,8 @@ pub fn run<N: Network>(
     mut rank: Rank<'_, N>,
     mut observe: impl FnMut(u32),
 ) -> Result<DomainSummary, DomainError> {
-    let network = rank.network();
-    let gathers = rank.scene().share().all <= GATHERED;
+    let network = rank.network;
+    let gathers = rank.scene.share().all <= GATHERED;
     let (mut hash, mut digest) = (PairsHash::default(), PairsDigest::default());
     let mut reported = 0;
     while let Some(frame) = rank.next_frame()? {
@@ -92,12 +92,12 @@ pub fn run<N: Network>(
         observe(number);
     }
     network.sum(&mut digest.0);
-    let scene = rank.scene();
+    let scene = &rank.scene;
     let culls = scene.cull.strategy.scheme().culls();
     let mut counters = own_counters(&rank, reported);
     sum_counters(network, &mut counters);
-    let culling = *rank.culler().seconds();
-    let mut effects = rank.effects().reports().to_vec();
+    let culling = *rank.culler.seconds();
+    let mut effects = rank.effects.reports().to_vec();
     combine_effects(network, &mut effects);
     let seconds = Seconds {
         construct: scene.construct_seconds + culling.construct,
@@ -126,7 +126,7 @@ pub fn run<N: Network>(
         ghosts,
         migration,
         waiting,
-    } = rank.work().seconds;
+    } = rank.work.seconds;
     let [ghosts, migration, waiting] = largest(network, [ghosts, migration, waiting]);
     Ok(DomainSummary {
         border: BorderSeconds {
@@ -146,7 +146,7 @@ pub fn run<N: Network>(
                 total,
             },
             effects,
-            finder: rank.culler().finder(),
+            finder: rank.culler.finder(),
             volumes_sha256: volumes_sha256(&scene.shapes),
             pairs_sha256: (culls && gathers && network.rank() == 0).then(|| hash.finish()),
             pairs_digest: culls.then(|| digest.finish()),
@@ -175,10 +175,7 @@ fn gathered(network: &impl Network, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
 fn updates_of_a_ghost<N: Network>(
     rank: &Rank<'_, N>,
 ) -> impl Iterator<Item = TestedVolume> + use<N> {
-    let (scheme, updates) = (
-        rank.scene().cull.strategy.scheme(),
-        rank.scene().cull.updates,
-    );
+    let (scheme, updates) = (rank.scene.cull.strategy.scheme(), rank.scene.cull.updates);
     let refining = scheme.refining.filter(|_| updates == Updates::Eager);
     scheme.first.into_iter().chain(refining)
 }
@@ -187,10 +184,10 @@ fn updates_of_a_ghost<N: Network>(
 fn own_counters<N: Network>(rank: &Rank<'_, N>, reported: u64) -> Counters {
     let mut counters = Counters {
         reported,
-        ..*rank.culler().counters()
+        ..*rank.culler.counters()
     };
     for volume in updates_of_a_ghost(rank) {
-        counters.of_mut(volume).updates -= rank.work().moving_ghosts;
+        counters.of_mut(volume).updates -= rank.work.moving_ghosts;
     }
     counters
 }
@@ -229,7 +226,7 @@ fn largest<const N: usize>(network: &impl Network, seconds: [f64; N]) -> [f64; N
 
 /// Every rank's line. Collective.
 fn lines<N: Network>(rank: &Rank<'_, N>) -> Vec<RankLine> {
-    let work: &Work = rank.work();
+    let work = &rank.work;
     let updates = updates_of_a_ghost(rank).count() as u64;
     let BorderSeconds {
         ghosts,
@@ -246,12 +243,12 @@ fn lines<N: Network>(rank: &Rank<'_, N>) -> Vec<RankLine> {
         work.migrated,
         work.renewals,
         work.cuts,
-        rank.culler().seconds().total.to_bits(),
+        rank.culler.seconds().total.to_bits(),
         ghosts.to_bits(),
         migration.to_bits(),
         waiting.to_bits(),
     ];
-    let all = rank.network().gather(&mine);
+    let all = rank.network.gather(&mine);
     let (all, _) = all.as_chunks::<13>();
     let line = |(rank, line): (usize, &[u64; 13])| {
         let seconds = |at: usize| f64::from_bits(line[at]);
