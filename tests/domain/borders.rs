@@ -208,3 +208,34 @@ fn near_touching_pairs_on_either_side() {
         &[bodies(all.into_iter().chain(crowd))],
     );
 }
+/// Pairs that stand as far apart as the skin lets them be forgotten, and then come to touch, each by a little less than a skin:
+/// the ghosts found before must have been those that are needed now.
+#[test]
+fn pairs_that_come_together_by_a_skin_each() {
+    let ball = shape("icosphere", 1.0);
+    let (reach, step) = (ball.ball.radius, 0.2499 * ball.ball.radius);
+    let frame = |apart: f32| {
+        // The right one has the higher number, then the lower; a crowd on either side keeps the first plane on the right ones.
+        let pair = |i: usize| {
+            let (y, z) = ((i % 8) as f32 * 5.0, (i / 8) as f32 * 5.0);
+            let (left, right) = ((0, [-reach - apart, y, z]), (0, [reach + apart, y, z]));
+            if i % 2 == 0 {
+                [left, right]
+            } else {
+                [right, left]
+            }
+        };
+        let crowd = |i: usize| {
+            (
+                0,
+                [
+                    if i.is_multiple_of(2) { -90.0 } else { 90.0 },
+                    0.3 * i as f32,
+                    40.0,
+                ],
+            )
+        };
+        bodies((0..24).flat_map(pair).chain((0..200).map(crowd)))
+    };
+    judge("a skin each", &[ball.clone()], &[frame(step), frame(0.0)]);
+}
