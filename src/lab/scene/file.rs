@@ -37,7 +37,7 @@ pub struct SceneSpec {
     #[serde(default = "first_seed")]
     pub seed: u64,
     /// Which draws are a body's own.
-    #[serde(default)]
+    #[serde(default = "by_group")]
     pub seeding: Seeding,
     /// Frames to cull: the initial state and `frames − 1` steps.
     pub frames: NonZeroU32,
@@ -127,10 +127,8 @@ choices! {
     }
 }
 
-impl Default for Seeding {
-    fn default() -> Self {
-        Self::ByGroup
-    }
+fn by_group() -> Seeding {
+    Seeding::ByGroup
 }
 
 fn first_seed() -> u64 {
