@@ -29,12 +29,15 @@ impl MpiNetwork {
     fn exchange_pieces(&self, outgoing: &[&[u8]], lengths: &[usize]) -> Vec<u8> {
         let (counts, starts) = table(outgoing.iter().map(|piece| piece.len()));
         let (their_counts, their_starts) = table(lengths.iter().copied());
-        let sent = outgoing.concat();
-        let mut received = vec![0; lengths.iter().sum()];
+        // A byte more than is sent: the address of an empty Vec is 1, which OpenMPI takes for MPI_IN_PLACE.
+        let mut sent = outgoing.concat();
+        sent.push(0);
+        let mut received = vec![0; lengths.iter().sum::<usize>() + 1];
         let send = Partition::new(&sent[..], &counts[..], &starts[..]);
         let mut receive =
             PartitionMut::new(&mut received[..], &their_counts[..], &their_starts[..]);
         self.world.all_to_all_varcount_into(&send, &mut receive);
+        received.pop();
         received
     }
 }
