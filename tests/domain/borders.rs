@@ -80,7 +80,7 @@ fn touching_across_a_cut() {
         let at = |i: i32| std::array::from_fn(|k| if k == axis { step * i as f32 } else { 0.0 });
         judge(
             "touching",
-            &[ball.clone()],
+            std::slice::from_ref(&ball),
             &[bodies((0..n).map(|i| (0, at(i))))],
         );
     }
@@ -219,7 +219,7 @@ fn pairs_that_come_together_by_a_skin_each() {
         let pair = |i: usize| {
             let (y, z) = ((i % 8) as f32 * 5.0, (i / 8) as f32 * 5.0);
             let (left, right) = ((0, [-reach - apart, y, z]), (0, [reach + apart, y, z]));
-            if i % 2 == 0 {
+            if i.is_multiple_of(2) {
                 [left, right]
             } else {
                 [right, left]
@@ -237,5 +237,9 @@ fn pairs_that_come_together_by_a_skin_each() {
         };
         bodies((0..24).flat_map(pair).chain((0..200).map(crowd)))
     };
-    judge("a skin each", &[ball.clone()], &[frame(step), frame(0.0)]);
+    judge(
+        "a skin each",
+        std::slice::from_ref(&ball),
+        &[frame(step), frame(0.0)],
+    );
 }
