@@ -65,8 +65,8 @@ impl Command {
     /// Whether its work can be shared by the ranks of `mpirun`. Another command would be run by each of them, all of it.
     fn takes_ranks(&self) -> bool {
         match self {
-            Self::Run(_) => true,
             Self::Reproduce(_)
+            | Self::Run(_)
             | Self::Cost(_)
             | Self::Advise(_)
             | Self::Mesh(_)

@@ -16,9 +16,6 @@ use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-#[cfg(feature = "mpi")]
-mod ranks;
-
 use super::Outcome;
 use super::output::{Format, emit, progress, table};
 use super::scene_args::{MachineArgs, SceneArgs};
@@ -27,7 +24,6 @@ use super::scene_args::{MachineArgs, SceneArgs};
 ///
 /// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of each stage and hashes.
 /// Counters and hashes depend on scene, seed and flags alone, not on the CPU or threads; with --budget-us they depend on the clock.
-/// Under mpirun, ranks share the scene and report the same pairs; built with the feature `mpi`.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
@@ -103,10 +99,6 @@ struct EffectLine {
 /// # Errors
 /// A bad scene, settings that it can't have, a body that leaves the contract, a recording that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    #[cfg(feature = "mpi")]
-    if sdop::lab::mpi::launched() > 1 {
-        return ranks::run(args);
-    }
     let scene = args.scene.build()?;
     let tier = args.machine.tier();
     let mut recorder = match &args.record {
