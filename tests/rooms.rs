@@ -30,6 +30,7 @@ const ROOMS: &[&str] = &[
     "lab/random",
     "lab/hash",
     "lab/mpi",
+    "lab/sweep",
     "lab/tightness",
     "lab/effects",
     "lab/scene",

@@ -12,6 +12,7 @@ mod cost;
 mod files;
 mod judge;
 mod man;
+mod merge;
 mod mesh;
 mod output;
 mod palette;
@@ -22,6 +23,7 @@ mod report;
 mod reproduce;
 mod run;
 mod scene_args;
+mod sweep;
 mod tradeoff;
 mod verify;
 mod view;
@@ -50,6 +52,7 @@ enum Command {
     Mesh(mesh::Args),
     Tradeoff(tradeoff::Args),
     Verify(verify::Args),
+    Merge(merge::Args),
     Cases(cases::Args),
     Check(check::Args),
     Bench(bench::Args),
@@ -65,13 +68,14 @@ impl Command {
     /// Whether its work can be shared by the ranks of `mpirun`. Another command would be run by each of them, all of it.
     fn takes_ranks(&self) -> bool {
         match self {
+            Self::Verify(args) => args.is_sweep(),
             Self::Reproduce(_)
             | Self::Run(_)
             | Self::Cost(_)
             | Self::Advise(_)
             | Self::Mesh(_)
             | Self::Tradeoff(_)
-            | Self::Verify(_)
+            | Self::Merge(_)
             | Self::Cases(_)
             | Self::Check(_)
             | Self::Bench(_)
@@ -109,6 +113,7 @@ impl Cli {
             Command::Mesh(args) => mesh::run(&args),
             Command::Tradeoff(args) => tradeoff::run(&args),
             Command::Verify(args) => verify::run(&args),
+            Command::Merge(args) => merge::run(&args),
             Command::Cases(args) => cases::run(&args),
             Command::Check(args) => check::run(&args),
             Command::Bench(args) => bench::run(&args),

@@ -2,24 +2,26 @@
 
 mod report;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use clap::builder::PossibleValuesParser;
 use miette::{IntoDiagnostic as _, WrapErr as _};
-use rayon::prelude::*;
 use sdop::Tier;
-use sdop::lab::scene::SceneFile;
+use sdop::lab::scene::{Scene, SceneFile};
+use sdop::lab::sweep::Merged;
 use sdop::lab::verify::hard::{FILES, Group, page};
-use sdop::lab::verify::rounds::{Failure, Ledger, RoundError, Source, group, round};
-use sdop::lab::verify::scenes::scene;
+use sdop::lab::verify::rounds::{Failure, Ledger};
 use sdop::lab::verify::shrink::Smallest;
-use sdop::lab::verify::ways::{Rotation, variants};
+pub use sdop::lab::verify::units::NAME;
+use sdop::lab::verify::units::{Origin, Settings, Verification};
 
 use super::Outcome;
 use super::files::{self, ReadArgs};
 use super::judge::{self, ReportFormat};
-use super::output::{emit, print, progress};
+use super::output::{Format, emit, print, progress};
+use super::sweep::{self, SweepArgs};
 use report::Report;
 
 /// Judge the optimised culler by the exact reference
@@ -31,11 +33,16 @@ use report::Report;
 /// matrix end in exit code 1, the first two with the smallest scene that shows it.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100"
+    after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100\n          \
+    mpirun -n 64 sdop verify --seeds 10000 --out target/verify\n          \
+    sdop verify --seeds 10000 --shard 3/64 --out shards"
 )]
 pub struct Args {
     /// Scenes to run and judge, meshes included
     scenes: Vec<PathBuf>,
+    /// One group of hard cases instead of all; may be repeated
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FILES.iter().map(|file| file.0)))]
+    group: Vec<String>,
     /// Seeded rounds: each judges 8,192 near and 89,400 random pairs
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(..=1_000_000))]
     seeds: u64,
@@ -43,7 +50,7 @@ pub struct Args {
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     first_seed: u64,
     /// Start no round after so many seconds
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", conflicts_with = "shard")]
     time: Option<u64>,
     /// Frames of each scene
     #[arg(long, value_name = "N", default_value_t = 20)]
@@ -51,7 +58,7 @@ pub struct Args {
     /// One SIMD tier alone, instead of all that the CPU has
     #[arg(long, value_name = "TIER")]
     simd: Option<Tier>,
-    /// Where the scene that shows a missed pair is written
+    /// Where the scene that shows a missed pair is written, and shards and journals
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// Write the hard cases' exact answers and their page into this directory, and judge nothing
@@ -63,7 +70,16 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t)]
     format: ReportFormat,
     #[command(flatten)]
+    sweep: SweepArgs,
+    #[command(flatten)]
     outside: judge::Outside,
+}
+
+impl Args {
+    /// Whether its work is cut into units, which many can share.
+    pub fn is_sweep(&self) -> bool {
+        self.record_hard_cases.is_none() && self.outside.exec.is_none()
+    }
 }
 
 /// Runs the command.
@@ -84,117 +100,119 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
             args.format,
         );
     }
+    sweep::enter(&args.sweep)?;
     let format = args.format.plain()?;
-    let start = Instant::now();
+    let run = verification(args)?;
+    let mut taken = Taken::default();
+    let mut take = |unit, result: &str| taken.take(&run, unit, result);
+    let Some(finished) = args.sweep.run(&run, &args.out, &mut take)? else {
+        return Ok(Outcome::Passed);
+    };
+    let outcome = taken.report(&run, finished.seconds, format, &args.out)?;
+    finished.clear()?;
+    Ok(outcome)
+}
+
+/// The report of merged shards. A scene whose frames show a failure is read again, if it is where it was.
+///
+/// # Errors
+/// Results of another command, a CPU that lacks a tier, a directory that can't be written.
+pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
+    let settings = merged.header.settings().into_diagnostic()?;
+    let run = Verification::new(settings)?;
+    let mut taken = Taken::default();
+    for (&unit, result) in &merged.done {
+        taken.take(&run, unit, result)?;
+    }
+    taken.report(&run, merged.seconds, format, out)
+}
+
+fn verification(args: &Args) -> miette::Result<Verification> {
+    let deadline = args.time.map(Duration::from_secs);
+    // A time beyond the clock's end is none.
+    let deadline = deadline.and_then(|time| Instant::now().checked_add(time));
     // A scene that can't be built is said before the long work.
     let most = args.files.max_bytes();
     let build = |path: &PathBuf| SceneFile::read_within(path, most).and_then(|file| file.build());
-    let scenes = args
-        .scenes
-        .iter()
-        .map(build)
-        .collect::<Result<Vec<_>, _>>()?;
+    let scenes = args.scenes.iter().map(build);
+    let scenes = scenes.collect::<Result<Vec<Scene>, _>>()?;
     let tiers = match args.simd {
         Some(tier) => vec![tier],
         None => [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat(),
     };
-    let rotation = Rotation::new(&tiers);
-    let mut report = Report::new(&tiers);
-    let mut failures = Vec::new();
-    let mut add = |name: String, ledger: Ledger| {
-        report.add(name, &ledger);
-        failures.extend(ledger.failures);
+    let name = |scene: &Scene| {
+        let (name, bodies) = (&scene.name, scene.bodies.len());
+        format!("{name}, {bodies} bodies, {} frames", args.frames)
     };
-    add("hard cases".to_owned(), hard_cases(&rotation)?);
-    // A time beyond the clock's end is none.
-    let deadline = args.time.map(Duration::from_secs);
-    let deadline = deadline.and_then(|time| start.checked_add(time));
-    let [near, random] = rounds(args, &rotation, deadline)?;
-    add("near pairs".to_owned(), near);
-    add("random pairs".to_owned(), random);
-    for built in &scenes {
-        let bar = progress(args.frames as u64, &built.name);
-        let ledger = scene(built, args.frames, &rotation, |n| {
-            bar.set_position(n as u64)
-        })?;
-        bar.finish_and_clear();
-        let (name, bodies, frames) = (&built.name, built.bodies.len(), args.frames);
-        add(format!("{name}, {bodies} bodies, {frames} frames"), ledger);
-    }
-    report.finish(start.elapsed(), &rotation);
-    emit(format, &report, Report::tables)?;
-    if report.passed() {
-        return Ok(Outcome::Passed);
-    }
-    if let Some(failure) = failures.first() {
-        show(failure, &args.out)?;
-    }
-    Ok(Outcome::Failed)
-}
-
-fn hard_cases(rotation: &Rotation) -> miette::Result<Ledger> {
-    let files = FILES.iter().enumerate();
-    let jobs: Vec<_> = files
-        .flat_map(|(n, file)| variants().map(move |variant| (n, file.1, variant)))
-        .collect();
-    let bar = progress(jobs.len() as u64, "hard cases");
-    let judged: Result<Vec<Ledger>, RoundError> = jobs
-        .par_iter()
-        .map(|(n, text, variant)| {
-            let ledger = group(*n, &Group::parse(text)?, *variant, rotation);
-            bar.inc(1);
-            ledger
-        })
-        .collect();
-    bar.finish_and_clear();
-    Ok(sum(judged.into_diagnostic()?))
-}
-
-/// Near and random rounds. With a deadline, as many as it allows.
-fn rounds(
-    args: &Args,
-    rotation: &Rotation,
-    deadline: Option<Instant>,
-) -> miette::Result<[Ledger; 2]> {
-    let variants: Vec<_> = variants().collect();
-    let jobs = args.seeds * variants.len() as u64;
-    let bar = progress(jobs, "seeded rounds");
-    let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
-    let job = || -> Result<[Ledger; 2], RoundError> {
-        let mut ledgers = [Ledger::default(), Ledger::default()];
-        loop {
-            let late = deadline.is_some_and(|end| Instant::now() >= end);
-            let n = next.fetch_add(1, Ordering::Relaxed);
-            if late || n >= jobs || failed.load(Ordering::Relaxed) {
-                return Ok(ledgers);
-            }
-            let seed = args.first_seed.wrapping_add(n / variants.len() as u64);
-            let variant = variants[n as usize % variants.len()];
-            for (source, ledger) in [Source::Near, Source::Random].into_iter().zip(&mut ledgers) {
-                let judged = round(source, seed, variant, rotation)
-                    .inspect_err(|_| failed.store(true, Ordering::Relaxed))?;
-                ledger.add(judged);
-            }
-            bar.inc(1);
-        }
+    let groups = match &args.group[..] {
+        [] => FILES.iter().map(|file| file.0.to_owned()).collect(),
+        named => named.to_vec(),
     };
-    let workers = rayon::current_num_threads();
-    let parts: Result<Vec<_>, RoundError> = (0..workers).into_par_iter().map(|_| job()).collect();
-    bar.finish_and_clear();
-    let mut sums = [Ledger::default(), Ledger::default()];
-    for part in parts.into_diagnostic()? {
-        for (sum, ledger) in sums.iter_mut().zip(part) {
-            sum.add(ledger);
-        }
-    }
-    Ok(sums)
+    let run = Verification::new(Settings {
+        groups,
+        first_seed: args.first_seed,
+        seeds: args.seeds,
+        scenes: scenes.iter().map(name).collect(),
+        frames: args.frames,
+        tiers: tiers.iter().map(|tier| tier.name().to_owned()).collect(),
+    })?;
+    Ok(run.with_scenes(scenes, deadline))
 }
 
-fn sum(ledgers: Vec<Ledger>) -> Ledger {
-    ledgers.into_iter().fold(Ledger::default(), |mut all, one| {
-        all.add(one);
-        all
-    })
+/// What units have given.
+#[derive(Default)]
+struct Taken {
+    ledgers: BTreeMap<Origin, Ledger>,
+    /// The first unit of each that knows of a failure.
+    failed: BTreeMap<Origin, usize>,
+}
+
+impl Taken {
+    fn take(&mut self, run: &Verification, unit: usize, result: &str) -> miette::Result<()> {
+        for (origin, ledger, failed) in run.take(unit, result)? {
+            self.ledgers.entry(origin).or_default().add(ledger);
+            if failed {
+                self.failed.entry(origin).or_insert(unit);
+            }
+        }
+        Ok(())
+    }
+
+    /// Prints the report; a failure is looked up and shrunk.
+    fn report(
+        self,
+        run: &Verification,
+        seconds: f64,
+        format: Format,
+        out: &Path,
+    ) -> miette::Result<Outcome> {
+        let settings = run.settings();
+        let mut report = Report::new(&settings.tiers);
+        let scenes = settings.scenes.iter().enumerate();
+        let scenes = scenes.map(|(n, name)| (Origin::Scene(n), name.as_str()));
+        let rounds = [
+            (Origin::Hard, "hard cases"),
+            (Origin::Near, "near pairs"),
+            (Origin::Random, "random pairs"),
+        ];
+        for (origin, name) in rounds.into_iter().chain(scenes) {
+            let none = Ledger::default();
+            report.add(name.to_owned(), self.ledgers.get(&origin).unwrap_or(&none));
+        }
+        report.finish(seconds, run.rotation());
+        emit(format, &report, Report::tables)?;
+        if report.passed() {
+            return Ok(Outcome::Passed);
+        }
+        if let Some((origin, &unit)) = self.failed.first_key_value() {
+            let judged = run.judge(unit)?.into_iter().filter(|(of, _)| of == origin);
+            match judged.flat_map(|(_, ledger)| ledger.failures).next() {
+                Some(failure) => show(&failure, out)?,
+                None => print("the failure doesn't show on this machine")?,
+            }
+        }
+        Ok(Outcome::Failed)
+    }
 }
 
 /// Shrinks a failure and says where the scene is.

@@ -15,6 +15,7 @@ pub mod report;
 pub mod reproduce;
 pub mod scene;
 pub mod simulate;
+pub mod sweep;
 pub mod tightness;
 pub mod tradeoff;
 pub mod verify;

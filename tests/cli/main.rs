@@ -9,6 +9,7 @@ mod recording;
 mod report;
 mod reproduce;
 mod run;
+mod sweep;
 mod terminal;
 mod view;
 

@@ -3,9 +3,6 @@
 
 mod coverage;
 
-use std::time::Duration;
-
-use sdop::Tier;
 use sdop::lab::verify::Predicate;
 use sdop::lab::verify::matrix::Matrix;
 use sdop::lab::verify::rounds::{Judged, Ledger};
@@ -19,7 +16,7 @@ use coverage::Coverage;
 #[derive(Serialize)]
 pub struct Report {
     /// Tiers that took part.
-    simd: Vec<&'static str>,
+    simd: Vec<String>,
     /// Wall time.
     seconds: f64,
     /// Pairs missed, over all sources.
@@ -69,9 +66,9 @@ struct StrategyReport {
 }
 
 impl Report {
-    pub fn new(tiers: &[Tier]) -> Self {
+    pub fn new(tiers: &[String]) -> Self {
         Self {
-            simd: tiers.iter().map(|tier| tier.name()).collect(),
+            simd: tiers.to_vec(),
             seconds: 0.0,
             missed: 0,
             differ: 0,
@@ -103,8 +100,8 @@ impl Report {
         });
     }
 
-    pub fn finish(&mut self, elapsed: Duration, rotation: &Rotation) {
-        self.seconds = elapsed.as_secs_f64();
+    pub fn finish(&mut self, seconds: f64, rotation: &Rotation) {
+        self.seconds = seconds;
         self.coverage = Coverage::of(&self.matrix, rotation);
     }
 

@@ -8,7 +8,8 @@ use crate::settings::{Budget, CullSettings, Interest, Strategy};
 use crate::volume::Shape;
 
 /// What a comparison counted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Count {
     /// Pairs judged.
     pub judged: u64,

@@ -68,6 +68,16 @@ impl Matrix {
         *self.0.entry(Cell::of(way, mode)).or_default() += lists;
     }
 
+    /// Sets how many lists were judged in a cell.
+    pub fn fill(&mut self, cell: Cell, lists: u64) {
+        self.0.insert(cell, lists);
+    }
+
+    /// The cells in which lists were judged, and how many.
+    pub fn filled(&self) -> impl Iterator<Item = (&Cell, u64)> {
+        self.0.iter().map(|(cell, &lists)| (cell, lists))
+    }
+
     /// Adds another matrix.
     pub fn add(&mut self, other: &Self) {
         for (&cell, lists) in &other.0 {

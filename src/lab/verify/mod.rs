@@ -19,6 +19,7 @@ pub mod naive;
 pub mod rounds;
 pub mod scenes;
 pub mod shrink;
+pub mod units;
 pub mod ways;
 
 pub use answers::{Answers, Predicate};

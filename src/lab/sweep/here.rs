@@ -1,0 +1,146 @@
+//! Units done by this process alone, on the threads of the usual pool.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+
+use super::{Event, Sweep, attempt};
+
+/// Does these units; `on` hears of each as it ends. Timed units are done one at a time, on this thread. When one fails, those
+/// under way are still finished and told.
+///
+/// # Errors
+/// A unit that fails, the first that is seen; what `on` says.
+pub fn here(
+    work: &dyn Sweep,
+    units: &[usize],
+    on: &mut dyn FnMut(Event) -> miette::Result<()>,
+) -> miette::Result<()> {
+    if work.timed() {
+        for &unit in units {
+            on(one(work, unit)?)?;
+        }
+        return Ok(());
+    }
+    let stopped = AtomicBool::new(false);
+    rayon::in_place_scope(|scope| {
+        let (send, receive) = mpsc::channel();
+        for &unit in units {
+            let (send, stopped) = (send.clone(), &stopped);
+            scope.spawn(move |_| {
+                if !stopped.load(Ordering::Relaxed) {
+                    // Nobody listens once `on` has failed.
+                    let _ = send.send(one(work, unit));
+                }
+            });
+        }
+        drop(send);
+        let mut ended = Ok(());
+        for event in receive {
+            let told = event.and_then(&mut *on);
+            if told.is_err() {
+                stopped.store(true, Ordering::Relaxed);
+            }
+            ended = ended.and(told);
+        }
+        ended
+    })
+}
+
+fn one(work: &dyn Sweep, unit: usize) -> miette::Result<Event> {
+    if !work.starts(unit) {
+        return Ok(Event::Left { unit });
+    }
+    attempt(work, unit).map(|result| Event::Done { unit, result })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::super::Header;
+    use super::*;
+    use std::collections::BTreeMap;
+    use std::sync::atomic::AtomicUsize;
+
+    /// Unit 5 fails, unit 7 panics when asked to, unit 3 is too late.
+    struct Squares {
+        units: usize,
+        timed: bool,
+        running: AtomicUsize,
+    }
+
+    impl Sweep for Squares {
+        fn header(&self) -> miette::Result<Header> {
+            let header = Header::new(
+                "squares",
+                &BTreeMap::<String, u8>::new(),
+                BTreeMap::new(),
+                self.units,
+            );
+            Ok(header.unwrap())
+        }
+        fn name(&self, unit: usize) -> String {
+            format!("square of {unit}")
+        }
+        fn run(&self, unit: usize) -> miette::Result<String> {
+            let beside = self.running.fetch_add(1, Ordering::SeqCst);
+            assert!(!self.timed || beside == 0, "timed units run alone");
+            self.running.fetch_sub(1, Ordering::SeqCst);
+            assert!(unit != 7, "planted");
+            miette::ensure!(unit != 5, "five");
+            Ok((unit * unit).to_string())
+        }
+        fn timed(&self) -> bool {
+            self.timed
+        }
+        fn starts(&self, unit: usize) -> bool {
+            unit != 3
+        }
+    }
+
+    fn run(units: &[usize], timed: bool) -> (miette::Result<()>, Vec<Event>) {
+        let work = Squares {
+            units: 10,
+            timed,
+            running: AtomicUsize::new(0),
+        };
+        let mut told = Vec::new();
+        let mut on = |event| {
+            told.push(event);
+            Ok(())
+        };
+        let ended = here(&work, units, &mut on);
+        told.sort_by_key(|event| match event {
+            Event::Started { unit, .. } | Event::Done { unit, .. } | Event::Left { unit } => *unit,
+        });
+        (ended, told)
+    }
+
+    #[test]
+    fn every_unit_is_done_or_left_out_once() {
+        for timed in [false, true] {
+            let (ended, told) = run(&[0, 2, 3, 4], timed);
+            ended.unwrap();
+            let done = |unit: usize| Event::Done {
+                unit,
+                result: (unit * unit).to_string(),
+            };
+            assert_eq!(told, [done(0), done(2), Event::Left { unit: 3 }, done(4)]);
+        }
+    }
+
+    #[test]
+    fn a_unit_that_fails_or_panics_is_named() {
+        for (unit, why) in [(5, "five"), (7, "panicked")] {
+            for timed in [false, true] {
+                let (ended, _) = run(&[0, unit], timed);
+                let error = ended.unwrap_err();
+                assert_eq!(
+                    error.to_string(),
+                    format!("unit {unit}, square of {unit}, failed")
+                );
+                assert!(format!("{error:?}").contains(why));
+            }
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Work cut into units, so that many processes and machines can share it: each unit has its place in one order and a result
+//! of its own, and results are taken in that order. What comes out doesn't depend on who did what, or when.
+//!
+//! > [`Sweep`] → [`here()`] or, under `mpirun`, [`coordinate`](ranks::coordinate) → [`Event`]s → [`InOrder`] → the result
+//!
+//! A [`Journal`] keeps what is done while a run goes on; a shard's file keeps a part of the units for a merge. Both begin with
+//! the [`Header`] that says of which work they are, and are refused for any other.
+
+mod file;
+mod header;
+mod here;
+mod merge;
+mod order;
+#[cfg(feature = "mpi")]
+pub mod ranks;
+mod shard;
+
+pub use file::{Journal, Units, UnitsError, write_shard};
+pub use header::{Header, code, digest};
+pub use here::here;
+pub use merge::{MergeError, Merged, merge};
+pub use order::InOrder;
+pub use shard::{Shard, ShardError};
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use miette::{WrapErr as _, miette};
+
+/// Work cut into units.
+pub trait Sweep: Sync {
+    /// What the work is: equal headers, equal results.
+    ///
+    /// # Errors
+    /// Settings that have no form as text.
+    fn header(&self) -> miette::Result<Header>;
+
+    /// What people call a unit.
+    fn name(&self, unit: usize) -> String;
+
+    /// Does a unit: its result as a line of text, which any process can take.
+    ///
+    /// # Errors
+    /// What stands against it.
+    fn run(&self, unit: usize) -> miette::Result<String>;
+
+    /// Whether units are timed, so that none may run beside another on a machine.
+    fn timed(&self) -> bool {
+        false
+    }
+
+    /// Whether a unit may still be started; otherwise it is left out.
+    fn starts(&self, _unit: usize) -> bool {
+        true
+    }
+}
+
+/// What happens to a unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// A rank begins it.
+    Started {
+        /// The unit.
+        unit: usize,
+        /// The rank; 0 without MPI.
+        rank: usize,
+    },
+    /// It is done.
+    Done {
+        /// The unit.
+        unit: usize,
+        /// Its result, a line.
+        result: String,
+    },
+    /// It was too late to start it.
+    Left {
+        /// The unit.
+        unit: usize,
+    },
+}
+
+/// Does a unit; what goes wrong names it, a panic included.
+fn attempt(work: &dyn Sweep, unit: usize) -> miette::Result<String> {
+    let run = AssertUnwindSafe(|| work.run(unit));
+    let ended = catch_unwind(run).unwrap_or_else(|_| Err(miette!("it panicked, which is a bug")));
+    ended.wrap_err_with(|| format!("unit {unit}, {}, failed", work.name(unit)))
+}

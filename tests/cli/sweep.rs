@@ -1,0 +1,216 @@
+//! Work shared by many: shards and their merge, journals that are gone on from. All of it gives the result of one process.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use serde_json::Value;
+
+use super::{refusal, sdop, text};
+
+const SCENE: &str = r#"
+name = "small"
+frames = 9
+[box]
+side = 5.0
+[[bodies]]
+shape = "torus"
+count = 12
+radius = [0.5, 1.0]
+speed = [0.5, 2.0]
+[effects]
+motion = true
+walls = "specular"
+"#;
+
+/// Units of every kind in a moment: two groups of hard cases, a seed, two blocks of a scene's frames. That leaves cells of the
+/// matrix empty, and so the exit code is 1.
+const VERIFY: [&str; 14] = [
+    "verify", "--group", "coincident", "--group", "counts", "--seeds", "1", "--frames", "7", "--simd",
+    "scalar", "--format", "json", "--out",
+];
+
+struct Place {
+    directory: tempfile::TempDir,
+    scene: PathBuf,
+}
+
+impl Place {
+    fn new() -> Self {
+        let directory = tempfile::tempdir().unwrap();
+        let scene = directory.path().join("small.toml");
+        fs::write(&scene, SCENE).unwrap();
+        Self { directory, scene }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.directory.path().join(name)
+    }
+
+    fn verify(&self, more: &[&str]) -> Output {
+        let out = [text(self.directory.path()), text(&self.scene)];
+        sdop(&[&VERIFY[..], &out, more].concat())
+    }
+
+    /// The file that a shard leaves.
+    fn shard(&self, index: usize, of: usize, more: &[&str]) -> PathBuf {
+        let output = self.verify(&[&["--shard", &format!("{index}/{of}")], more].concat());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        self.path(&format!("verify-{index}-of-{of}.units"))
+    }
+
+    fn refused(&self, more: &[&str]) -> String {
+        let out = [text(self.directory.path()), text(&self.scene)];
+        refusal(&[&VERIFY[..], &out, more].concat())
+    }
+}
+
+/// The report without what a clock has said.
+fn report(output: &Output) -> Value {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let mut report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_ne!(report["seconds"].take(), Value::Null);
+    assert_eq!(report["missed"], 0);
+    report
+}
+
+fn merge(place: &Place, shards: &[&Path]) -> Output {
+    let shards: Vec<&str> = shards.iter().map(|path| text(path)).collect();
+    let out = ["-o", text(place.directory.path()), "--format", "json"];
+    sdop(&[&["merge"], &shards[..], &out].concat())
+}
+
+fn merge_refused(shards: &[&Path]) -> String {
+    let shards: Vec<&str> = shards.iter().map(|path| text(path)).collect();
+    refusal(&[&["merge"], &shards[..]].concat())
+}
+
+fn lines(path: &Path) -> Vec<String> {
+    let text = fs::read_to_string(path).unwrap();
+    text.lines().map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn shards_merged_are_the_whole() {
+    let place = Place::new();
+    let whole = report(&place.verify(&[]));
+    assert_eq!(whole["sources"].as_array().unwrap().len(), 4);
+    assert!(!place.path("verify.journal").exists());
+    let shards = [1, 2, 3].map(|index| place.shard(index, 3, &[]));
+    let [one, two, three] = shards.each_ref().map(PathBuf::as_path);
+    assert_eq!(report(&merge(&place, &[two, three, one])), whole);
+    assert!(!place.path("verify-1-of-3.journal").exists());
+
+    // One process, and two who share: no part of the work is in both or in none.
+    let alone = place.shard(1, 1, &[]);
+    assert_eq!(report(&merge(&place, &[&alone])), whole);
+
+    for (shards, told) in [
+        (&[three, one][..], "1 of 3 shards are missing: 2"),
+        (&[one], "2 of 3 shards are missing: 2, 3"),
+        (&[one, two, two, three], "are both shard 2/3"),
+        (&[one, two, alone.as_path()], "there are 3 shards here and 1 there"),
+    ] {
+        let message = merge_refused(shards);
+        assert!(message.contains(told), "{message}");
+    }
+}
+
+#[test]
+fn shards_of_different_work_are_not_merged() {
+    let place = Place::new();
+    let one = place.shard(1, 2, &[]);
+    let told = |other: &Path, told: &str| {
+        let message = merge_refused(&[&one, other]);
+        assert!(message.contains("are not of one work"), "{message}");
+        assert!(message.contains(told), "{message}");
+    };
+    let other = place.shard(2, 2, &["--first-seed", "7"]);
+    told(&other, "the setting `first_seed` is 1 here and 7 there");
+    fs::write(&place.scene, SCENE.replace("1.0", "1.1")).unwrap();
+    let other = place.shard(2, 2, &[]);
+    told(&other, "the input scene 1 (small, 12 bodies, 7 frames) is");
+
+    // Another program's: as this one would write it.
+    fs::write(&place.scene, SCENE).unwrap();
+    let other = place.shard(2, 2, &[]);
+    let mut header: Value = serde_json::from_str(&lines(&other)[0]).unwrap();
+    header["code"] = Value::from("0.0.9 0123456789abcdef");
+    let rest = lines(&other)[1..].concat();
+    fs::write(&other, format!("{header}\n{rest}")).unwrap();
+    let message = merge_refused(&[&one, &other]);
+    assert!(message.contains("the digest at its end is not that of its lines"), "{message}");
+    reseal(&other);
+    told(&other, "and 0.0.9 0123456789abcdef there");
+}
+
+/// Gives a changed file the digest that its lines have now.
+fn reseal(path: &Path) {
+    let mut lines = lines(path);
+    let end = lines.pop().unwrap();
+    let body = lines.concat();
+    let seconds = end.split(' ').nth(1).unwrap();
+    let digest = sha256(body.as_bytes());
+    fs::write(path, format!("{body}end {seconds} {digest}\n")).unwrap();
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    use sha2::Digest as _;
+    let digest = sha2::Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[test]
+fn a_shard_that_lacks_a_unit_is_no_shard() {
+    let place = Place::new();
+    let one = place.shard(1, 1, &[]);
+    let mut lines = lines(&one);
+    let lost = lines.remove(5);
+    fs::write(&one, lines.concat()).unwrap();
+    reseal(&one);
+    let message = merge_refused(&[&one]);
+    assert!(lost.starts_with("done 4 "), "{lost}");
+    assert!(message.contains("has not the units of shard 1/1; unit 4 is the first"), "{message}");
+}
+
+#[test]
+fn an_interrupted_run_is_gone_on_from() {
+    let place = Place::new();
+    let whole = report(&place.verify(&["--resume"]));
+    let shard = place.shard(1, 1, &[]);
+    assert_eq!(report(&merge(&place, &[&shard])), whole);
+
+    // What a kill leaves: some units, in the order in which they were done, one begun, one torn.
+    let mut left = lines(&shard);
+    let header = left.remove(0).replace(r#""shard":{"index":1,"of":1}"#, r#""shard":null"#);
+    let [early, late] = [3, 20].map(|n| left[n].clone());
+    let torn = &left[9][..20];
+    let journal = place.path("verify.journal");
+    fs::write(&journal, format!("{header}start 11 2\n{late}{early}{torn}")).unwrap();
+
+    let resumed = place.verify(&["--resume"]);
+    assert_eq!(report(&resumed), whole);
+    let said = String::from_utf8(resumed.stderr).unwrap();
+    for told in [
+        "2 of 26 units are done already",
+        "last line was torn (20 bytes) and is dropped",
+        "rank 2 had begun unit 11, hard cases counts, k = ",
+    ] {
+        assert!(said.contains(told), "{said}");
+    }
+    assert!(!journal.exists());
+}
+
+#[test]
+fn a_journal_of_other_work_is_refused() {
+    let place = Place::new();
+    let shard = place.shard(1, 2, &[]);
+    let journal = place.path("verify-1-of-2.journal");
+    fs::copy(&shard, &journal).unwrap();
+    let message = place.refused(&["--shard", "1/2"]);
+    assert!(message.contains("is the journal of a run that was interrupted"), "{message}");
+    let message = place.refused(&["--shard", "1/2", "--resume", "--seeds", "2"]);
+    assert!(message.contains("the setting `seeds` is 2 here and 1 there"), "{message}");
+}
