@@ -35,11 +35,15 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// What was taken has become a result: the journal is no longer needed.
+    /// What was taken has become a result: neither the journal nor other ranks are needed any more.
     ///
     /// # Errors
     /// The system refuses to remove it.
     pub fn clear(self) -> miette::Result<()> {
+        #[cfg(feature = "mpi")]
+        if mpi::launched() > 1 {
+            sdop::lab::sweep::ranks::dismiss(Ranks::start());
+        }
         match self.journal {
             Some(journal) => Ok(journal.remove()?),
             None => Ok(()),

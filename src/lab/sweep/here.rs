@@ -5,8 +5,8 @@ use std::sync::mpsc;
 
 use super::{Event, Sweep, attempt};
 
-/// Does these units; `on` hears of each as it ends. Timed units are done one at a time, on this thread. When one fails, those
-/// under way are still finished and told.
+/// Does these units; `on` hears of each as it ends. Those that need all threads come last, one at a time. When one fails,
+/// those under way are still finished and told.
 ///
 /// # Errors
 /// A unit that fails, the first that is seen; what `on` says.
@@ -15,12 +15,20 @@ pub fn here(
     units: &[usize],
     on: &mut dyn FnMut(Event) -> miette::Result<()>,
 ) -> miette::Result<()> {
-    if work.timed() {
-        for &unit in units {
-            on(one(work, unit)?)?;
-        }
-        return Ok(());
+    let (alone, beside): (Vec<usize>, Vec<usize>) =
+        units.iter().partition(|&&unit| work.alone(unit));
+    side_by_side(work, &beside, on)?;
+    for unit in alone {
+        on(one(work, unit)?)?;
     }
+    Ok(())
+}
+
+fn side_by_side(
+    work: &dyn Sweep,
+    units: &[usize],
+    on: &mut dyn FnMut(Event) -> miette::Result<()>,
+) -> miette::Result<()> {
     let stopped = AtomicBool::new(false);
     rayon::in_place_scope(|scope| {
         let (send, receive) = mpsc::channel();

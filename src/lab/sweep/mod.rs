@@ -48,6 +48,11 @@ pub trait Sweep: Sync {
         false
     }
 
+    /// Whether a unit uses all threads of a process itself, or must have them: such units are done one after the other.
+    fn alone(&self, _unit: usize) -> bool {
+        self.timed()
+    }
+
     /// Whether a unit may still be started; otherwise it is left out.
     fn starts(&self, _unit: usize) -> bool {
         true

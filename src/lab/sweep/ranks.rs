@@ -98,14 +98,17 @@ pub fn serve(ranks: Ranks, work: &dyn Sweep) -> miette::Result<()> {
         let unit = letter.text.parse().into_diagnostic()?;
         match run(unit) {
             Ok(result) => ranks.post(0, DONE, &format!("{unit} {result}")),
-            Err(error) => ranks.post(0, FAILED, &format!("{error:?}")),
+            Err(error) => {
+                let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
+                ranks.post(0, FAILED, &causes.join(": "));
+            }
         }
     }
 }
 
 /// Has these units done by the other ranks; `on` hears of each as it begins and ends. Of units that are timed, one at a time
 /// is under way on a node, unless its ranks are to share their cores. When one fails, those under way are still
-/// finished and told.
+/// finished and told. The ranks wait for more until [`dismiss`].
 ///
 /// # Errors
 /// A unit that fails, a rank that has other work, what `on` says.
@@ -137,12 +140,16 @@ pub fn coordinate(
         }
         office.read(letter, on)?;
     }
-    for rank in 1..ranks.size {
-        ranks.post(rank, STOP, "");
-    }
     match office.failed {
         Some(error) => Err(error),
         None => Ok(()),
+    }
+}
+
+/// Lets the other ranks end. Until then they sleep: rank 0 may have work left that needs a quiet machine.
+pub fn dismiss(ranks: Ranks) {
+    for rank in 1..ranks.size {
+        ranks.post(rank, STOP, "");
     }
 }
 

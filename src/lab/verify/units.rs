@@ -302,6 +302,11 @@ impl Sweep for Verification {
         serde_json::to_string(&texts.collect::<Vec<_>>()).into_diagnostic()
     }
 
+    /// A block's frames are judged on all threads, since the answers of several blocks are too many to hold.
+    fn alone(&self, unit: usize) -> bool {
+        matches!(self.unit(unit), Unit::Frames(..))
+    }
+
     fn starts(&self, unit: usize) -> bool {
         let rounds = matches!(self.unit(unit), Unit::Rounds(..));
         !rounds || self.deadline.is_none_or(|end| Instant::now() < end)
