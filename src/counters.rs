@@ -28,6 +28,7 @@ impl AddAssign for VolumeCounters {
 
 /// All counters of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "lab", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counters {
     /// Bounding spheres.
     pub sphere: VolumeCounters,
@@ -98,7 +99,7 @@ impl Counters {
 
 /// Wall time by stage, in seconds. Sums over frames, except for `construct`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "lab", derive(serde::Serialize))]
+#[cfg_attr(feature = "lab", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seconds {
     /// Co: building every volume, once.
     pub construct: f64,

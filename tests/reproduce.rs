@@ -1,4 +1,4 @@
-//! The paper's experiments, small: counts and hashes that no CPU may change, the closed form, shards, verdicts.
+//! The paper's experiments, small: counts and hashes that no CPU may change, the closed form, verdicts.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -13,10 +13,12 @@ use sdop::lab::reproduce::closed_form::{probability, relative_reach};
 use sdop::lab::reproduce::immediate::{Handing, PairLoop};
 use sdop::lab::reproduce::readings::{Reading, cell, table};
 use sdop::lab::reproduce::sensitivity::{self, Bounce, Interpretation, Start};
+use sdop::lab::reproduce::units::{Experiments, Found};
 use sdop::lab::reproduce::{
-    Estimate, PaperScene, Plan, Results, Shard, claims, rates, run_scene, study,
+    Estimate, PaperScene, Plan, Results, Run, claims, rates, run_scene, study,
 };
 use sdop::lab::scene::SceneFile;
+use sdop::lab::sweep::Sweep as _;
 use sdop::settings::{Axes, Overlap, Strategy};
 use sdop::simd::Tier;
 
@@ -37,7 +39,7 @@ fn plan(seeds: u64, tier: Tier) -> Plan {
 
 fn run(plan: &Plan) -> Results {
     let mut steps = 0;
-    let results = plan.run(|_| steps += 1).unwrap();
+    let results = plan.run(|| steps += 1).unwrap();
     assert_eq!(steps, plan.steps());
     results
 }
@@ -45,7 +47,7 @@ fn run(plan: &Plan) -> Results {
 #[test]
 fn counts_and_hashes_are_golden() {
     let results = run(&plan(1, Tier::detect()));
-    let line = |run: &sdop::lab::reproduce::Run| {
+    let line = |run: &Run| {
         let [sphere, ordop] =
             [run.counters.sphere, run.counters.ordop].map(|v| [v.updates, v.tests, v.hits]);
         let hash = run.pairs_sha256.as_deref().map_or("-", |hash| &hash[..16]);
@@ -77,23 +79,39 @@ fn every_tier_counts_the_same() {
     }
 }
 
+/// Units travel as text: what is read is what was written, to the bit, and joined it has the counts of one process.
 #[test]
-fn shards_share_out_the_seeds() {
-    let whole = plan(7, Tier::SCALAR);
-    let mut seeds: Vec<u64> = (1..=3)
-        .flat_map(|index| whole.clone().shard(Shard { index, of: 3 }).unwrap().seeds)
-        .collect();
-    seeds.sort_unstable();
-    assert_eq!(seeds, whole.seeds);
-    for (index, of) in [(0, 3), (4, 3), (8, 9)] {
-        let error = whole.clone().shard(Shard { index, of }).unwrap_err();
-        assert!(
-            error
-                .to_string()
-                .contains(&format!("shard {index} of {of}")),
-            "{error}"
-        );
+fn units_joined_have_the_golden_counts() {
+    let mut plan = plan(2, Tier::detect());
+    plan.frames = 2;
+    let whole = run(&plan);
+    let experiments = Experiments::new(&plan, true).unwrap();
+    let header = experiments.header().unwrap();
+    assert_eq!(header.units, 2 * 3 + 6);
+    let mut joined = Results::of_header(&header).unwrap();
+    for unit in 0..header.units {
+        let text = experiments.run(unit).unwrap();
+        let found: Found = serde_json::from_str(&text).unwrap();
+        assert_eq!(serde_json::to_string(&found).unwrap(), text);
+        joined.take(&text).unwrap();
     }
+    let counts = |results: &Results| {
+        let of = |run: &Run| (run.scene.clone(), run.seed, run.strategy, run.counters);
+        let counts: Vec<_> = results.runs.iter().map(of).collect();
+        (
+            counts,
+            results.survival.clone(),
+            results.volumes_sha256.clone(),
+        )
+    };
+    assert_eq!(counts(&joined), counts(&whole));
+    let hashes = |results: &Results| -> Vec<_> {
+        let hash = |run: &Run| run.pairs_sha256.clone();
+        results.runs.iter().map(hash).collect()
+    };
+    assert_eq!(hashes(&joined), hashes(&whole));
+    assert_eq!(joined.passes.len(), whole.passes.len());
+    assert_eq!(joined.interpretations, sensitivity::sweep(&plan).unwrap());
 }
 
 /// The loops that test the claim of the paper's sequential algorithm report what the culler does, whatever they wait for.

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
 
+use super::sweep;
+
 /// How much is read of a file.
 #[derive(clap::Args)]
 pub struct ReadArgs {
@@ -48,13 +50,21 @@ pub fn read(path: &Path) -> miette::Result<String> {
 /// The variable in which `sdop record` names itself to what it runs.
 pub const COMMAND: &str = "SDOP_COMMAND";
 
-/// The command that makes these results again: `sdop record`'s, or this one's. Absolute paths are this machine's own business.
+/// The command that makes these results again: `sdop record`'s, or this one's. Absolute paths are this machine's own business,
+/// and who shared the work changes no result.
 pub fn command() -> String {
     if let Ok(command) = std::env::var(COMMAND) {
         return command;
     }
     let mut command = "cargo run --release --".to_owned();
-    for argument in std::env::args().skip(1) {
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        if argument == "--shard" {
+            arguments.next();
+        }
+        if sweep::SHARING.iter().any(|flag| argument.starts_with(flag)) {
+            continue;
+        }
         let absolute = Path::new(&argument).is_absolute();
         command.push(' ');
         command.push_str(if absolute { "DIR" } else { &argument });

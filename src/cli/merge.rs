@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use sdop::lab::sweep::{Units, merge};
 
 use super::output::Format;
-use super::{Outcome, verify};
+use super::{Outcome, reproduce, verify};
 
 /// Put the shards of a sweep together
 ///
@@ -37,6 +37,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let merged = merge(files)?;
     match merged.header.command.as_str() {
         verify::NAME => verify::merged(&merged, &args.out, args.format),
+        reproduce::NAME => reproduce::merged(&merged, &args.out, args.format),
         other => miette::bail!("this program knows no units of `sdop {other}`"),
     }
 }

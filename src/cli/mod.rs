@@ -69,8 +69,8 @@ impl Command {
     fn takes_ranks(&self) -> bool {
         match self {
             Self::Verify(args) => args.is_sweep(),
-            Self::Reproduce(_)
-            | Self::Run(_)
+            Self::Reproduce(_) => true,
+            Self::Run(_)
             | Self::Cost(_)
             | Self::Advise(_)
             | Self::Mesh(_)

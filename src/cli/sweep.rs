@@ -10,6 +10,7 @@ use sdop::lab::mpi;
 use sdop::lab::mpi::Ranks;
 use sdop::lab::sweep::{Event, Header, InOrder, Journal, Shard, Sweep, Units, here, write_shard};
 
+use super::files::command;
 use super::output::{print, progress};
 
 /// How units are shared.
@@ -26,6 +27,9 @@ pub struct SweepArgs {
     #[arg(long)]
     share_cores: bool,
 }
+
+/// The flags of [`SweepArgs`].
+pub const SHARING: [&str; 3] = ["--shard", "--resume", "--share-cores"];
 
 /// Work of which all units are done and taken.
 pub struct Finished {
@@ -91,6 +95,7 @@ impl SweepArgs {
         }
         let header = Header {
             shard: self.shard,
+            line: command(),
             ..work.header()?
         };
         if self.shard.is_none() {

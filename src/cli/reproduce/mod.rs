@@ -5,19 +5,21 @@ mod rows;
 mod summary;
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use miette::{IntoDiagnostic as _, miette};
 use sdop::lab::cost::calibrate::Effort;
 use sdop::lab::measure::conditions::Conditions;
-use sdop::lab::measure::machine::Machine;
-use sdop::lab::reproduce::{Plan, Results, Shard, sensitivity};
+pub use sdop::lab::reproduce::units::NAME;
+use sdop::lab::reproduce::units::{Experiments, Settings};
+use sdop::lab::reproduce::{Plan, Results};
+use sdop::lab::sweep::{Merged, Sweep as _};
 use sdop::settings::Strategy;
 
 use super::Outcome;
 use super::files::{command, write};
-use super::output::{Format, csv_text, emit, progress};
+use super::output::{Format, csv_text, emit};
 use super::scene_args::MachineArgs;
+use super::sweep::{self, SweepArgs};
 pub use figures::draw_costs;
 use rows::Tables;
 
@@ -29,7 +31,8 @@ use rows::Tables;
 /// different pairs.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples: sdop reproduce --quick\n          sdop reproduce --out results --seeds 20"
+    after_help = "Examples: sdop reproduce --quick\n          sdop reproduce --out results --seeds 20\n          \
+    sdop reproduce --seeds 640 --shard 3/10 --out shards"
 )]
 pub struct Args {
     /// A look at everything within seconds: few seeds, wide intervals
@@ -41,9 +44,8 @@ pub struct Args {
     /// Frames a run [default: 400, with --quick 100]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
-    /// Run part i of n: every n-th seed from the i-th on
-    #[arg(long, value_name = "i/n", value_parser = shard)]
-    shard: Option<Shard>,
+    #[command(flatten)]
+    sweep: SweepArgs,
     /// Where tables go
     #[arg(long, value_name = "DIR", default_value = "target/reproduce")]
     out: PathBuf,
@@ -89,42 +91,78 @@ const FULL: Size = Size {
 /// # Errors
 /// Scenes that can't be read, a shard that doesn't exist, results that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    let plan = plan(args)?;
-    let start = Instant::now();
+    sweep::enter(&args.sweep)?;
+    let experiments = Experiments::new(&plan(args)?, !args.quick)?;
     let before = Conditions::before();
-    let bar = progress(plan.steps() as u64, "reproduce");
-    let results = plan.run(|what| {
-        bar.set_message(what.to_owned());
-        bar.inc(1);
-    })?;
-    bar.finish_and_clear();
-    let machine = Machine::here(plan.tier);
-    let mut tables = Tables::new(&results, &machine, args.shard, command(), before);
-    if !args.quick {
-        tables.interpretations = sensitivity::sweep(&plan)?;
-    }
+    let mut results = Results::of_header(&experiments.header()?)?;
+    let mut take = |_, result: &str| results.take(result);
+    let Some(finished) = args.sweep.run(&experiments, &args.out, &mut take)? else {
+        return Ok(Outcome::Passed);
+    };
+    let machine = experiments.settings().machine;
     let paper = args.paper.as_ref().unwrap_or(&args.out);
-    write_tables(&args.out, &tables)?;
-    figures::draw_all(&paper.join("figures"), &tables)?;
-    let seconds = start.elapsed().as_secs_f64();
-    let summary = summary::write(&tables);
-    write(&paper.join("summary.md"), &summary)?;
-    match args.format {
-        Format::Csv => emit(Format::Csv, &tables.table_1, |_| String::new())?,
-        format => emit(format, &tables, |tables| {
-            let place = format!(
-                "{}, {}",
-                paper.join("summary.md").display(),
-                args.out.display()
-            );
-            summary::brief(tables, seconds, &place)
-        })?,
+    let tables = Tables::new(&results, &machine, command(), before);
+    let written = Written {
+        numbers: &args.out,
+        paper,
+        seconds: finished.seconds,
+    };
+    written.write(&tables, args.format)?;
+    finished.clear()?;
+    Ok(outcome(&results))
+}
+
+/// What merged shards give.
+///
+/// # Errors
+/// Results of another command, a CPU that lacks the tier, files that can't be written.
+pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
+    let settings: Settings = merged.header.settings().into_diagnostic()?;
+    let mut results = Results::of_header(&merged.header)?;
+    for result in merged.done.values() {
+        results.take(result)?;
     }
-    Ok(if lists_agree(&results) {
+    let unknown = Conditions::default();
+    let line = merged.header.line.clone();
+    let tables = Tables::new(&results, &settings.machine, line, unknown);
+    let written = Written {
+        numbers: out,
+        paper: out,
+        seconds: merged.seconds,
+    };
+    written.write(&tables, format)?;
+    Ok(outcome(&results))
+}
+
+/// Where results go, and how long they took.
+struct Written<'a> {
+    numbers: &'a Path,
+    paper: &'a Path,
+    seconds: f64,
+}
+
+impl Written<'_> {
+    fn write(&self, tables: &Tables, format: Format) -> miette::Result<()> {
+        write_tables(self.numbers, tables)?;
+        figures::draw_all(&self.paper.join("figures"), tables)?;
+        let summary = self.paper.join("summary.md");
+        write(&summary, summary::write(tables))?;
+        match format {
+            Format::Csv => emit(Format::Csv, &tables.table_1, |_| String::new()),
+            format => emit(format, tables, |tables| {
+                let place = format!("{}, {}", summary.display(), self.numbers.display());
+                summary::brief(tables, self.seconds, &place)
+            }),
+        }
+    }
+}
+
+fn outcome(results: &Results) -> Outcome {
+    if lists_agree(results) {
         Outcome::Passed
     } else {
         Outcome::Failed
-    })
+    }
 }
 
 fn plan(args: &Args) -> miette::Result<Plan> {
@@ -139,17 +177,8 @@ fn plan(args: &Args) -> miette::Result<Plan> {
             args.scenes.display()
         ));
     }
-    let plan = Plan::new(
-        &args.scenes,
-        seeds,
-        frames,
-        size.effort,
-        args.machine.tier(),
-    );
-    Ok(match args.shard {
-        Some(shard) => plan.shard(shard)?,
-        None => plan,
-    })
+    let tier = args.machine.tier();
+    Ok(Plan::new(&args.scenes, seeds, frames, size.effort, tier))
 }
 
 /// Whether sequential and listed S-DOP reported the same pairs in every run.
@@ -174,12 +203,4 @@ fn write_tables(directory: &Path, tables: &Tables) -> miette::Result<()> {
         )?;
     }
     Ok(())
-}
-
-fn shard(text: &str) -> Result<Shard, String> {
-    let parts = text
-        .split_once('/')
-        .and_then(|(index, of)| Some((index.parse().ok()?, of.parse().ok()?)));
-    let (index, of) = parts.ok_or("expected i/n, as in 1/4")?;
-    Ok(Shard { index, of })
 }

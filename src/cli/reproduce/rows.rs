@@ -12,7 +12,7 @@ use sdop::lab::reproduce::closed_form::{probability, relative_reach};
 use sdop::lab::reproduce::rates::{self, Rate};
 use sdop::lab::reproduce::readings::{self, Cell};
 use sdop::lab::reproduce::sensitivity::Interpretation;
-use sdop::lab::reproduce::{Estimate, PaperScene, Results, Run, Shard, claims, study};
+use sdop::lab::reproduce::{Estimate, PaperScene, Results, Run, claims, study};
 use sdop::settings::Strategy;
 use serde::Serialize;
 use serde_json::Value;
@@ -25,7 +25,6 @@ use crate::cli::output::csv_text;
 pub struct Tables {
     pub command: String,
     pub machine: Machine,
-    pub shard: Option<Shard>,
     pub seeds: Vec<u64>,
     pub frames: u32,
     pub volumes_sha256: String,
@@ -138,13 +137,7 @@ struct CheckRow<'a> {
 
 impl Tables {
     /// All tables of the results.
-    pub fn new(
-        results: &Results,
-        machine: &Machine,
-        shard: Option<Shard>,
-        command: String,
-        before: Conditions,
-    ) -> Self {
+    pub fn new(results: &Results, machine: &Machine, command: String, before: Conditions) -> Self {
         let counts: Vec<CountRow> = results.runs.iter().map(count_row).collect();
         let survival = |row: &sdop::lab::reproduce::Survival| SurvivalRow {
             k: row.k.k(),
@@ -155,7 +148,6 @@ impl Tables {
         Self {
             command,
             machine: machine.clone(),
-            shard,
             seeds: results.plan.seeds.clone(),
             frames: results.plan.frames,
             volumes_sha256: results.volumes_sha256.clone(),
@@ -176,7 +168,7 @@ impl Tables {
             survival: results.survival.iter().map(survival).collect(),
             claims: claims::all(results),
             study: study::all(results),
-            interpretations: Vec::new(),
+            interpretations: results.interpretations.clone(),
             counts,
             times: results.runs.iter().map(time_row).collect(),
         }

@@ -40,7 +40,7 @@ const DENSEST: usize = (SIZES.len() - 1) * SIDES.len();
 pub const SCENES: usize = SIZES.len() * SIDES.len();
 
 /// How long to calibrate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Effort {
     /// Turns of each calibration scene in a pass.
     pub turns: usize,

@@ -11,12 +11,12 @@ pub mod predict;
 pub mod study;
 pub mod table;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::counters::VolumeCounters;
 
 /// The prices of one volume, in seconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct VolumeCosts {
     /// Co: building the volume of every shape and an empty culler, once.
     pub construct: f64,

@@ -15,7 +15,7 @@ use crate::simd::Tier;
 use crate::volume::Shape;
 
 /// What one variant did in a run.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Culled {
     /// Its frames' times.
     pub times: Times,
@@ -28,7 +28,7 @@ pub struct Culled {
 }
 
 /// One pass.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Pass {
     /// A variant's work each.
     pub culled: Vec<Culled>,

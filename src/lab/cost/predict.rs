@@ -12,7 +12,7 @@ use super::VolumeCosts;
 use crate::lab::measure::counts::{Counts, Volume};
 
 /// Prices of one volume.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Price {
     /// The volume.
     #[serde(rename = "name")]
@@ -23,7 +23,7 @@ pub struct Price {
 }
 
 /// Prices of one variant's volumes, in the order of its tests.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Prices {
     /// The variant's name.
     pub variant: String,

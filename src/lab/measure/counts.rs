@@ -43,7 +43,7 @@ impl From<TestedVolume> for Volume {
 }
 
 /// What a run has counted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Counts {
     /// The culler's counters.
     pub culler: Counters,

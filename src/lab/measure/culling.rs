@@ -14,7 +14,7 @@ use crate::simd::Tier;
 use crate::volume::Shape;
 
 /// Seconds of one frame, stage by stage.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Stages {
     /// World-space updates.
     pub update: f64,

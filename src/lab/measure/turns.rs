@@ -129,7 +129,7 @@ pub fn turn_frames(bodies: usize) -> usize {
 }
 
 /// The times of one contestant's frames, in the order of their measurement.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Times {
     warm: Vec<Stages>,
     cold: Vec<Stages>,

@@ -9,7 +9,7 @@ use crate::simd::Tier;
 use crate::volume::Shape;
 
 /// One way to cull.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Variant {
     /// What tables call it.
     pub name: String,

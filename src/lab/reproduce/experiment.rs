@@ -3,23 +3,24 @@
 use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::immediate::{self, Immediacy};
+use super::immediate::Immediacy;
+use super::sensitivity::Interpretation;
 use super::survival::Survival;
+use super::units::Experiments;
 use crate::choice::choices;
 use crate::counters::{Counters, Seconds};
 use crate::lab::cost::calibrate::{Calibration, Effort};
 use crate::lab::cost::pass::{Culled, Pass, Simulated, pass};
 use crate::lab::cost::table::{self, Cost};
 use crate::lab::hash::PairsHash;
-use crate::lab::hash::volumes_sha256;
 use crate::lab::measure::contestant::Contestant;
 use crate::lab::measure::culling::Culling;
 use crate::lab::measure::turns::Regime;
 use crate::lab::measure::variant::Variant;
-use crate::lab::scene::{Scene, SceneError, SceneFile};
+use crate::lab::scene::{Scene, SceneError};
 use crate::lab::simulate::SimulationError;
 use crate::settings::Strategy;
 use crate::simd::Tier;
@@ -61,7 +62,7 @@ impl PaperScene {
 }
 
 /// The scene whose or-DOPs are compared by k.
-const COMPARED: PaperScene = PaperScene::Paper500;
+pub(super) const COMPARED: PaperScene = PaperScene::Paper500;
 
 /// What to run.
 #[derive(Clone, Debug)]
@@ -80,17 +81,8 @@ pub struct Plan {
     pub tier: Tier,
 }
 
-/// One of n parts of a plan, which other machines may run: part i has every n-th seed, beginning with the i-th.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Shard {
-    /// Counted from 1.
-    pub index: usize,
-    /// The number of parts.
-    pub of: usize,
-}
-
 /// One strategy in one run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// The scene's name.
     pub scene: String,
@@ -138,6 +130,8 @@ pub struct Results {
     pub variants: Vec<(PaperScene, Vec<Variant>)>,
     /// One an or-DOP and test.
     pub survival: Vec<Survival>,
+    /// What the paper doesn't state, swept; of none unless that was asked for.
+    pub interpretations: Vec<Interpretation>,
     /// Hash of the calibrated scene's volumes.
     pub volumes_sha256: String,
 }
@@ -153,17 +147,6 @@ pub enum ReproduceError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
-    /// A shard without seeds.
-    #[error("shard {index} of {of} has none of the {seeds} seeds")]
-    #[diagnostic(help("a shard is i/n with 1 ≤ i ≤ n, and n at most the number of seeds"))]
-    Shard {
-        /// As given.
-        index: usize,
-        /// As given.
-        of: usize,
-        /// The seeds there are.
-        seeds: usize,
-    },
 }
 
 impl Plan {
@@ -180,108 +163,29 @@ impl Plan {
         }
     }
 
-    /// Keeps a shard's seeds.
-    ///
-    /// # Errors
-    /// A shard that doesn't exist or has no seed.
-    pub fn shard(mut self, shard: Shard) -> Result<Self, ReproduceError> {
-        let Shard { index, of } = shard;
-        if index == 0 || index > of || index > self.seeds.len() {
-            return Err(ReproduceError::Shard {
-                index,
-                of,
-                seeds: self.seeds.len(),
-            });
-        }
-        self.seeds = self.seeds.into_iter().skip(index - 1).step_by(of).collect();
-        Ok(self)
-    }
-
     /// How many times [`Plan::run`] reports progress.
     #[must_use]
     pub fn steps(&self) -> usize {
-        self.names.len() * self.seeds.len()
+        (self.names.len() + 1) * self.seeds.len()
     }
 
-    /// Runs everything. `done` is called with each scene that was finished for one seed.
+    /// Runs everything but the interpretations, here. `done` is called as often as [`Plan::steps`] says.
     ///
     /// # Errors
     /// Scene files that can't be read or don't suit the strategies.
-    pub fn run(&self, mut done: impl FnMut(&str)) -> Result<Results, ReproduceError> {
-        let load = |scene: PaperScene| {
-            SceneFile::read(&self.scenes.join(scene.name()).with_extension("toml"))
-        };
-        let mut compared = load(COMPARED)?;
-        let volumes_sha256 = volumes_sha256(&compared.build()?.shapes);
-        let mut prepared = Vec::new();
-        for &name in &self.names {
-            let file = load(name)?;
-            let scene = file.build()?;
-            let variants = variants(&scene, &STRATEGIES);
-            let calibration = Calibration::new(&scene, &variants, self.tier, self.effort)?;
-            prepared.push(Prepared {
-                name,
-                bodies: scene.bodies.len(),
-                file,
-                variants,
-                calibration,
-            });
+    pub fn run(&self, mut done: impl FnMut()) -> Result<Results, ReproduceError> {
+        let experiments = Experiments::new(self, false)?;
+        let mut results = experiments.nothing_yet();
+        for unit in 0..experiments.units() {
+            results.add(experiments.find(unit)?);
+            done();
         }
-        let (mut runs, mut passes) = (Vec::new(), Vec::new());
-        let (mut survival, mut immediacies) = (Survival::every(), Vec::new());
-        let most = prepared.iter().map(|scene| scene.bodies).max();
-        for &seed in &self.seeds {
-            for Prepared {
-                name,
-                bodies,
-                file,
-                variants,
-                calibration,
-            } in &mut prepared
-            {
-                file.spec.seed = seed;
-                let scene = file.build()?;
-                let (of_seed, pass) =
-                    run_pass(&scene, variants, self.frames, self.tier, Some(calibration))?;
-                runs.extend(of_seed);
-                passes.push((*name, pass));
-                if Some(*bodies) == most {
-                    immediacies.push(immediate::measure(&scene, *name, self.tier)?);
-                }
-                done(&scene.name);
-            }
-            compared.spec.seed = seed;
-            let scene = compared.build()?;
-            for row in &mut survival {
-                row.shares.push(row.share(&scene, self.tier)?);
-            }
-        }
-        Ok(Results {
-            plan: self.clone(),
-            runs,
-            passes,
-            immediacies,
-            variants: prepared
-                .into_iter()
-                .map(|scene| (scene.name, scene.variants))
-                .collect(),
-            survival,
-            volumes_sha256,
-        })
+        Ok(results)
     }
 }
 
-/// A scene of the plan, and what is made for it once.
-struct Prepared {
-    name: PaperScene,
-    bodies: usize,
-    file: SceneFile,
-    variants: Vec<Variant>,
-    calibration: Calibration,
-}
-
 /// The strategies as variants of the scene's settings.
-fn variants(scene: &Scene, strategies: &[Strategy]) -> Vec<Variant> {
+pub(super) fn variants(scene: &Scene, strategies: &[Strategy]) -> Vec<Variant> {
     let variant = |&strategy: &Strategy| Variant::strategy(&scene.cull, strategy);
     strategies.iter().map(variant).collect()
 }
@@ -301,7 +205,7 @@ pub fn run_scene(
 }
 
 /// The same as a pass, with its calibration.
-fn run_pass(
+pub(super) fn run_pass(
     scene: &Scene,
     variants: &[Variant],
     frames: u32,

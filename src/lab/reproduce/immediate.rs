@@ -55,7 +55,7 @@ impl Handing {
 }
 
 /// What each way takes in one scene with one seed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Immediacy {
     /// The scene.
     pub scene: PaperScene,

@@ -17,11 +17,10 @@ pub mod readings;
 pub mod sensitivity;
 pub mod study;
 mod survival;
+pub mod units;
 
 pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};
-pub use experiment::{
-    PaperScene, Plan, ReproduceError, Results, Run, STRATEGIES, Shard, run_scene,
-};
+pub use experiment::{PaperScene, Plan, ReproduceError, Results, Run, STRATEGIES, run_scene};
 pub use survival::Survival;
 
 use crate::settings::Strategy;

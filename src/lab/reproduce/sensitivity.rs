@@ -75,33 +75,71 @@ pub struct Interpretation {
     pub likelihood: f64,
 }
 
+/// Sphere tests and hits, or-DOP tests and hits: for each N of Table 1.
+pub type Counted = [[u64; 4]; 4];
+
+/// Every way to read what the paper doesn't state.
+#[must_use]
+pub fn ways() -> Vec<(Start, Bounce)> {
+    let bounces = |&start: &Start| Bounce::ALL.iter().map(move |&bounce| (start, bounce));
+    Start::ALL.iter().flat_map(bounces).collect()
+}
+
+/// What is counted under one reading: after every length, for every kind of or-DOP.
+///
+/// # Errors
+/// Scenes that can't be read, built or simulated.
+pub fn counted(plan: &Plan, way: (Start, Bounce)) -> Result<Vec<Counted>, ReproduceError> {
+    let lengths = lengths(plan);
+    let mut all = vec![[[0; 4]; 4]; lengths.len() * kinds().len()];
+    for (column, bodies) in TABLE_1_BODIES.into_iter().enumerate() {
+        let counters = count(plan, way, bodies, &lengths)?;
+        for (counted, counters) in all.iter_mut().zip(counters.iter().flatten()) {
+            let (sphere, ordop) = (counters.sphere, counters.ordop);
+            counted[column] = [sphere.tests, sphere.hits, ordop.tests, ordop.hits];
+        }
+    }
+    Ok(all)
+}
+
+/// What a reading's counts say of Table 1.
+#[must_use]
+pub fn interpretations(
+    plan: &Plan,
+    (start, bounce): (Start, Bounce),
+    counted: &[Counted],
+) -> Vec<Interpretation> {
+    let lengths = lengths(plan);
+    let of = |frames: u32| kinds().into_iter().map(move |kind| (frames, kind));
+    let all = lengths.into_iter().flat_map(of).zip(counted);
+    let interpretation =
+        |((frames, kind), counted)| interpretation((start, bounce, frames), kind, counted);
+    all.map(interpretation).collect()
+}
+
+/// The likeliest first.
+pub fn sort(interpretations: &mut [Interpretation]) {
+    interpretations.sort_by(|a, b| b.likelihood.total_cmp(&a.likelihood));
+}
+
 /// All interpretations, the likeliest first.
 ///
 /// # Errors
 /// Scenes that can't be read, built or simulated.
 pub fn sweep(plan: &Plan) -> Result<Vec<Interpretation>, ReproduceError> {
-    let lengths: Vec<u32> = {
-        let mut lengths = LENGTHS.map(|length| length.min(plan.frames)).to_vec();
-        lengths.dedup();
-        lengths
-    };
     let mut found = Vec::new();
-    for &start in Start::ALL {
-        for &bounce in Bounce::ALL {
-            let mut of_bodies = Vec::new();
-            for bodies in TABLE_1_BODIES {
-                of_bodies.push(count(plan, (start, bounce), bodies, &lengths)?);
-            }
-            for (length, &frames) in lengths.iter().enumerate() {
-                for (number, variant) in kinds().into_iter().enumerate() {
-                    let counters = [0, 1, 2, 3].map(|column| of_bodies[column][length][number]);
-                    found.push(interpretation((start, bounce, frames), variant, &counters));
-                }
-            }
-        }
+    for way in ways() {
+        found.extend(interpretations(plan, way, &counted(plan, way)?));
     }
-    found.sort_by(|a, b| b.likelihood.total_cmp(&a.likelihood));
+    sort(&mut found);
     Ok(found)
+}
+
+/// After how many frames counts are looked at.
+fn lengths(plan: &Plan) -> Vec<u32> {
+    let mut lengths = LENGTHS.map(|length| length.min(plan.frames)).to_vec();
+    lengths.dedup();
+    lengths
 }
 
 /// Every kind of or-DOP.
@@ -170,13 +208,13 @@ fn run(scene: &Scene, lengths: &[u32], tier: Tier) -> Result<Vec<Vec<Counters>>,
 fn interpretation(
     (start, bounce, frames): (Start, Bounce, u32),
     (k, axes, overlap): (DirectionSet, Axes, Overlap),
-    counters: &[Counters; 4],
+    counted: &Counted,
 ) -> Interpretation {
     let share = |hits: u64, tests: u64| 100.0 * hits as f64 / tests as f64;
-    let sphere = counters.map(|c| share(c.sphere.hits, c.sphere.tests));
-    let sequential = counters.map(|c| share(c.ordop.hits, c.ordop.tests));
-    let list = counters.map(|c| share(c.ordop.hits, c.ordop.tests + c.sphere.hits));
-    let alone = counters.map(|c| share(c.ordop.hits, c.sphere.tests));
+    let sphere = counted.map(|[tests, hits, ..]| share(hits, tests));
+    let sequential = counted.map(|[.., tests, hits]| share(hits, tests));
+    let list = counted.map(|[_, listed, tests, hits]| share(hits, tests + listed));
+    let alone = counted.map(|[tests, .., hits]| share(hits, tests));
     let percent = [sphere, alone, sequential, list];
     let (sigma, likelihood) = likelihood(&percent);
     Interpretation {

@@ -29,6 +29,8 @@ pub struct Header {
     pub inputs: BTreeMap<String, String>,
     /// How many units there are.
     pub units: usize,
+    /// The command as a reader types it, for pages. Other places for files make no other work.
+    pub line: String,
     /// The part that this file is of, if it is one.
     pub shard: Option<Shard>,
 }
@@ -73,6 +75,7 @@ impl Header {
             settings: serde_json::from_value(serde_json::to_value(settings)?)?,
             inputs,
             units,
+            line: String::new(),
             shard: None,
         })
     }

@@ -54,12 +54,9 @@ fn head(out: &mut String, tables: &Tables) -> Result {
         tables.command
     )?;
     let (first, last) = (seeds.first().unwrap_or(&0), seeds.last().unwrap_or(&0));
-    let part = tables.shard.map_or(String::new(), |shard| {
-        format!(" (part {} of {})", shard.index, shard.of)
-    });
     writeln!(
         out,
-        "- {} seeds, {first} to {last}{part}, {frames} frames each, the same trajectories for every strategy",
+        "- {} seeds, {first} to {last}, {frames} frames each, the same trajectories for every strategy",
         seeds.len()
     )?;
     writeln!(
