@@ -44,10 +44,15 @@ pub fn may_meet(distance: f64, reach: f32, widest: f32, skin: f32) -> bool {
 
 /// Whether a ball (centre, w) has drifted, in any coordinate and by growth together, by no more than the skin.
 pub fn stays(now: ([f32; 3], f32), then: ([f32; 3], f32), skin: f32) -> bool {
-    let moved = |axis: usize| (f64::from(now.0[axis]) - f64::from(then.0[axis])).abs();
-    let grown = (f64::from(now.1) - f64::from(then.1)).max(0.0);
-    let drift = moved(0).max(moved(1)).max(moved(2)) + grown;
-    drift <= f64::from(skin) * DRIFT_FACTOR
+    let further = |now: f32, then: f32| f64::from(now) - f64::from(then);
+    // NaN is no growth of 0, and stays nowhere.
+    let grown = if now.1 <= then.1 {
+        0.0
+    } else {
+        further(now.1, then.1)
+    };
+    let most = f64::from(skin) * DRIFT_FACTOR;
+    (0..3).all(|axis| further(now.0[axis], then.0[axis]).abs() + grown <= most)
 }
 
 /// A skin of this share of a reach.
@@ -94,6 +99,8 @@ mod tests {
         );
         assert!(!stays(([1.2, 2.0, 3.0], 1.1), then, 0.25));
         assert!(!stays(([f32::NAN, 2.0, 3.0], 1.0), then, 0.25));
+        assert!(!stays(([1.0, 2.0, f32::NAN], 1.0), then, 0.25));
+        assert!(!stays(([1.0, 2.0, 3.0], f32::NAN), then, 0.25));
         assert!(!stays(([1.0e9, 2.0, 3.0], 1.0), then, 0.25));
     }
 
