@@ -196,7 +196,7 @@ mod tests {
         Record {
             number,
             shape: number % 3,
-            dynamic: number % 2 == 0,
+            dynamic: number.is_multiple_of(2),
             rotation: [x, 1.0, -2.0, 0.5],
             translation: [x, -x, 1.0e-40],
             velocities: owned.then_some([[x, 2.0, 3.0], [4.0, 5.0, -x]]),
