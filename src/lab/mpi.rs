@@ -1,7 +1,7 @@
 //! Ranks: one program, started many times by `mpirun` or a scheduler, whose copies talk by MPI.
 //!
 //! Without the feature `mpi` nothing is linked, and [`launched`] is there to refuse a start as many ranks. With it, a program
-//! that is run alone stays an ordinary one: MPI starts with [`Ranks::start`] and not before. [`Ending`] sees to it that no
+//! that is run alone stays an ordinary one: MPI starts with `Ranks::start` and not before. [`Ending`] sees to it that no
 //! rank waits for one that failed.
 
 use std::env;

@@ -1,7 +1,7 @@
 //! Work cut into units, so that many processes and machines can share it: each unit has its place in one order and a result
 //! of its own, and results are taken in that order. What comes out doesn't depend on who did what, or when.
 //!
-//! > [`Sweep`] → [`here()`] or, under `mpirun`, [`coordinate`](ranks::coordinate) → [`Event`]s → [`InOrder`] → the result
+//! > [`Sweep`] → [`here()`] or, under `mpirun`, `coordinate` → [`Event`]s → [`InOrder`] → the result
 //!
 //! A [`Journal`] keeps what is done while a run goes on; a shard's file keeps a part of the units for a merge. Both begin with
 //! the [`Header`] that says of which work they are, and are refused for any other.
