@@ -1,6 +1,7 @@
 //! S-DOP culling between rapier's broad phase and its narrow phase.
 #![allow(
     clippy::duplicate_mod,
+    clippy::unnecessary_cast,
     reason = "one source serves rapier's two crates, f32 and f64"
 )]
 
