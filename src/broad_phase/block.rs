@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::simd::MAX_WIDTH;
+use crate::simd::{Lanes, MAX_WIDTH};
 
 /// Slots whose candidates share a block.
 pub const BLOCK_BODIES: usize = MAX_WIDTH;
@@ -61,6 +61,29 @@ impl<'a> Block<'a> {
     #[inline(always)]
     pub fn padded_codes(&self) -> &'a [u32] {
         self.padded
+    }
+
+    /// The codes from number `start` on, and the balls of their pairs: those of the block's own slots, which `ours` has in
+    /// columns, and the others'.
+    #[inline(always)]
+    pub fn balls<L: Lanes>(
+        &self,
+        l: L,
+        start: usize,
+        ours: &[[f32; MAX_WIDTH]; 4],
+        balls: &[[f32; 4]],
+    ) -> (L::I, [[L::F; 4]; 2]) {
+        let codes = &self.padded[start..];
+        let code = l.load_u32(codes);
+        let (_, lane) = l.split_u32(code);
+        let [x, y, z, r] = ours;
+        let one = [
+            l.lookup_16(x, lane),
+            l.lookup_16(y, lane),
+            l.lookup_16(z, lane),
+            l.lookup_16(r, lane),
+        ];
+        (code, [one, l.gather_quads(balls, codes)])
     }
 }
 

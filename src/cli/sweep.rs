@@ -145,7 +145,7 @@ impl SweepArgs {
         Ok(Finished { seconds, journal })
     }
 
-    /// A journal, where one is asked for or much can be lost.
+    /// A journal, with `--resume` or `--shard`, or when there are many ranks.
     fn journal(
         &self,
         directory: &Path,
@@ -192,15 +192,24 @@ impl SweepArgs {
             bar.inc(1);
             order.put(unit, result)
         };
+        let ended = self.units(work, &left, &mut on);
+        bar.finish_and_clear();
+        ended
+    }
+
+    /// Does these units, by other ranks if there are some.
+    fn units(
+        &self,
+        work: &dyn Sweep,
+        units: &[usize],
+        on: &mut dyn FnMut(Event) -> miette::Result<()>,
+    ) -> miette::Result<()> {
         #[cfg(feature = "mpi")]
         if mpi::launched() > 1 {
             let ranks = Ranks::start();
-            let share = self.share_cores;
-            return sdop::lab::sweep::ranks::coordinate(ranks, work, &left, share, &mut on);
+            return sdop::lab::sweep::ranks::coordinate(ranks, work, units, self.share_cores, on);
         }
-        here(work, &left, &mut on)?;
-        bar.finish_and_clear();
-        Ok(())
+        here(work, units, on)
     }
 }
 

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use super::SlotTest;
 use crate::broad_phase::{Block, Slots};
+use crate::rounding::sphere::apart;
 use crate::simd::{LANES, Lanes, quads_in_columns};
 
 impl SlotTest for Slots {
@@ -32,19 +33,10 @@ impl SlotTest for Slots {
     #[inline(always)]
     fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
         let ours = quads_in_columns(l, &self.balls[block.first()..]);
-        let (codes, count) = (block.padded_codes(), block.codes().len());
+        let count = block.codes().len();
         let (mut start, mut found) = (0, 0);
         while start < count {
-            let code = l.load_u32(&codes[start..]);
-            let (_, lane) = l.split_u32(code);
-            let [x, y, z, r] = &ours;
-            let one = [
-                l.lookup_16(x, lane),
-                l.lookup_16(y, lane),
-                l.lookup_16(z, lane),
-                l.lookup_16(r, lane),
-            ];
-            let other = l.gather_quads(&self.balls, &codes[start..]);
+            let (code, [one, other]) = block.balls(l, start, &ours, &self.balls);
             let hit = touching(l, one, other, count - start);
             l.compress(hit, code, &mut hits[found..]);
             found += hit.count_ones() as usize;
@@ -59,6 +51,5 @@ impl SlotTest for Slots {
 fn touching<L: Lanes>(l: L, one: [L::F; 4], other: [L::F; 4], count: usize) -> u32 {
     let (dx, dy, dz) = (other[0] - one[0], other[1] - one[1], other[2] - one[2]);
     let s = other[3] + one[3];
-    let apart = l.gt((dx * dx + dy * dy) + dz * dz, s * s);
-    !l.bits(apart) & l.bits(l.first(count))
+    !l.bits(apart(l, [dx, dy, dz], s)) & l.bits(l.first(count))
 }

@@ -6,6 +6,7 @@
 use super::exp2;
 use super::pose::{Rotation, transform};
 use super::up;
+use crate::simd::Lanes;
 
 /// 1 + 8u, at least 1 + 6u once rounded; 1 + 2u misses. Found: 7.986u of the 8u by which rounding can favour d² over s².
 /// Proofs: `sphere_decision.g`, `sphere_radius.g`.
@@ -51,6 +52,12 @@ pub fn world_ball(rotation: &Rotation, t: [f32; 3], c: [f32; 3], r: f32) -> ([f3
         centre,
         up(f64::from(r) + 1.0001 * moved + CENTRE_ERROR * size + CENTRE_FLOOR),
     )
+}
+
+/// Whether balls are apart whose centres differ by d and whose radii add up to s: d² > s².
+#[inline(always)]
+pub fn apart<L: Lanes>(l: L, [dx, dy, dz]: [L::F; 3], s: L::F) -> L::M {
+    l.gt((dx * dx + dy * dy) + dz * dz, s * s)
 }
 
 #[cfg(test)]

@@ -19,15 +19,7 @@ fn repository() -> tempfile::TempDir {
             format!("scene,bodies,hits,ms,ms_low,ms_high\na,500,7,{ms}\n"),
         )
         .unwrap();
-        let adopted = command(&["record", "times", "--adopt", "--name", machine])
-            .current_dir(root.path())
-            .output()
-            .unwrap();
-        assert!(
-            adopted.status.success(),
-            "{}",
-            String::from_utf8_lossy(&adopted.stderr)
-        );
+        adopt(root.path(), "times", machine);
     }
     std::fs::write(root.path().join("README.md"), PAGE).unwrap();
     root
@@ -46,6 +38,14 @@ fn edit(path: &Path, from: &str, to: &str) {
     let before = std::fs::read_to_string(path).unwrap();
     assert!(before.contains(from));
     std::fs::write(path, before.replacen(from, to, 1)).unwrap();
+}
+
+/// Describes the files of an experiment that are there already.
+fn adopt(root: &Path, experiment: &str, machine: &str) {
+    let adopt = ["record", experiment, "--adopt", "--name", machine];
+    let adopted = command(&adopt).current_dir(root).output().unwrap();
+    let said = String::from_utf8_lossy(&adopted.stderr);
+    assert!(adopted.status.success(), "{said}");
 }
 
 #[test]
@@ -136,14 +136,7 @@ fn a_page_that_belongs_to_a_record_is_its_copy() {
         "machine = \"box\"\n",
     )
     .unwrap();
-    let adopt = ["record", "reproduce", "--adopt", "--name", "box"];
-    assert!(
-        command(&adopt)
-            .current_dir(root.path())
-            .status()
-            .unwrap()
-            .success()
-    );
+    adopt(root.path(), "reproduce", "box");
     let rendered = sdop(&["report", "--root", text(root.path())]);
     assert_eq!(rendered.status.code(), Some(0));
     assert_eq!(check(root.path()).0, Some(0));
@@ -175,14 +168,7 @@ fn a_record_older_than_the_code_must_be_called_so() {
     git(root.path(), &["init", "-q"]);
     git(root.path(), &["add", "."]);
     git(root.path(), &["commit", "-q", "-m", "code"]);
-    let adopt = ["record", "times", "--adopt", "--name", "box"];
-    assert!(
-        command(&adopt)
-            .current_dir(root.path())
-            .status()
-            .unwrap()
-            .success()
-    );
+    adopt(root.path(), "times", "box");
     std::fs::write(root.path().join("README.md"), PAGE).unwrap();
     let (code, said) = check(root.path());
     assert_eq!(code, Some(0), "{said}");
@@ -223,14 +209,7 @@ fn a_record_compares_with_what_a_commit_had() {
     git(root.path(), &["commit", "-q", "-m", "records"]);
     let table = root.path().join("data/record/box/times/times.csv");
     edit(&table, ",7,", ",8,");
-    let adopt = ["record", "times", "--adopt", "--name", "box"];
-    assert!(
-        command(&adopt)
-            .current_dir(root.path())
-            .status()
-            .unwrap()
-            .success()
-    );
+    adopt(root.path(), "times", "box");
     let compared = |first| {
         let arguments = ["cmp", first, "data/record/box/times"];
         command(&arguments)

@@ -6,6 +6,7 @@ use super::Volume;
 use super::list::Chunk;
 use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest, MOST_CANDIDATES, Slots};
 use crate::rounding::skin::Reach;
+use crate::rounding::sphere;
 use crate::simd::{Lanes, MAX_WIDTH, quads_in_columns};
 
 /// The codes of sixteen slots of lane 0.
@@ -36,7 +37,7 @@ impl Pair {
         let s = mine.of_lanes(l, one[3]) + theirs.of_lanes(l, other[3]);
         let [dx, dy, dz] = [other[0] - one[0], other[1] - one[1], other[2] - one[2]];
         let apart = match self.volume {
-            Volume::Ball => l.gt((dx * dx + dy * dy) + dz * dz, s * s),
+            Volume::Ball => sphere::apart(l, [dx, dy, dz], s),
             Volume::Cube => l.gt(l.max(l.max(l.abs(dx), l.abs(dy)), l.abs(dz)), s),
         };
         !l.bits(apart) & l.bits(l.first(count))
@@ -105,7 +106,7 @@ impl FirstTest for Collect<'_> {
 
     #[inline(always)]
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>) {
-        let (codes, count) = (block.padded_codes(), block.codes().len());
+        let count = block.codes().len();
         self.chunk.seen += count as u64;
         if self.chunk.first() != Some(block.first()) {
             self.chunk.open(block.first());
@@ -113,16 +114,7 @@ impl FirstTest for Collect<'_> {
         let ours = quads_in_columns(l, &self.slots.balls[block.first()..]);
         let (mut start, mut found) = (0, 0);
         while start < count {
-            let code = l.load_u32(&codes[start..]);
-            let (_, lane) = l.split_u32(code);
-            let [x, y, z, r] = &ours;
-            let one = [
-                l.lookup_16(x, lane),
-                l.lookup_16(y, lane),
-                l.lookup_16(z, lane),
-                l.lookup_16(r, lane),
-            ];
-            let other = l.gather_quads(&self.slots.balls, &codes[start..]);
+            let (code, [one, other]) = block.balls(l, start, &ours, &self.slots.balls);
             let hit = self.pair.touching(l, one, other, count - start);
             l.compress(hit, code, &mut self.hits[found..]);
             found += hit.count_ones() as usize;

@@ -60,10 +60,8 @@ impl List {
             if listed.load(Ordering::Relaxed) > most {
                 return;
             }
-            let grown = grid.moves(part).map(|moves| match moves {
-                true => Reach::with_skin(skin),
-                false => Reach::with_skin(0.0),
-            });
+            let share = |moves| if moves { skin } else { 0.0 };
+            let grown = grid.moves(part).map(|moves| Reach::with_skin(share(moves)));
             let make = Make {
                 grid,
                 part,

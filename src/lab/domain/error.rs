@@ -12,7 +12,7 @@ pub enum DomainError {
     /// What depends on the whole scene at once.
     #[error("{what} on {ranks} ranks")]
     Unsupported {
-        /// What the scene asks for.
+        /// What the scene needs.
         what: String,
         /// How many ranks there are.
         ranks: usize,
