@@ -1,6 +1,6 @@
 # One coordinate of R x + t in f64 from a computed row r: within 8 * 2^-53 m, m = max(|x|_inf, |t|_inf) in [1, 2] (powers of
 # two scale out). A row is a unit vector, so by Cauchy-Schwarz its partial products with |x_i| <= m sum to sqrt(2) m, sqrt(3) m.
-# With the entries' own errors (pose_entry.g, LEMMAS.md) the coordinate is within 22 * 2^-53 m.
+# With the entries' own errors (pose_entry.g, LEMMAS.md) the coordinate is within 24 * 2^-53 m.
 
 @rnd = float<53, ne>;
 p = rnd(r1 * x1); q = rnd(r2 * x2); v = rnd(r3 * x3);

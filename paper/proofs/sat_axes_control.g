@@ -7,12 +7,14 @@ Square = (xx + yy) + zz;
 n = rnd(sqrt(square));
 N = sqrt(Square);
 v = N * (K + e);
-q = rnd(v / n);
+o = rnd(1 / n);
+q = rnd(v * o);
 
 { Square in [0x1p-4, 4] /\ xx + yy <> 0 /\ xx / (xx + yy) in [0, 1] /\ (xx + yy) / Square in [0, 1] /\
-  |K| <= 1 /\ |e| <= 22b-53
+  |K| <= 1 /\ |e| <= 24b-53
   -> |q - K| <= 1b-49 }
 
 v / n -> (K + e) / (1 + (n - N) / N) { n <> 0, N <> 0, 1 + (n - N) / N <> 0 };
 (K + e) / (1 + (n - N) / N) - K -> (e - K * ((n - N) / N)) / (1 + (n - N) / N) { N <> 0, 1 + (n - N) / N <> 0 };
-q - K -> (q - v / n) + ((K + e) / (1 + (n - N) / N) - K) { n <> 0, N <> 0, 1 + (n - N) / N <> 0 };
+v * o - v / n -> v / n * ((o - 1 / n) / (1 / n)) { n <> 0 };
+q - K -> (q - v * o) + (v * o - v / n) + ((K + e) / (1 + (n - N) / N) - K) { n <> 0, N <> 0, 1 + (n - N) / N <> 0 };

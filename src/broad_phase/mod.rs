@@ -72,22 +72,6 @@ impl Slots {
             [x[slot], y[slot], z[slot], r[slot]]
         }
     }
-
-    /// A vector of balls as columns.
-    #[inline(always)]
-    pub fn load<L: Lanes>(&self, l: L, start: usize) -> [L::F; 4] {
-        let [x, y, z, r] = &self.columns;
-        if x.is_empty() {
-            l.load_quads(&self.balls[start..])
-        } else {
-            [
-                l.load(&x[start..]),
-                l.load(&y[start..]),
-                l.load(&z[start..]),
-                l.load(&r[start..]),
-            ]
-        }
-    }
 }
 
 /// Bytes that a column has taken, used or not.

@@ -9,23 +9,46 @@ use std::ops::Range;
 use super::SlotTest;
 use crate::broad_phase::{Block, Slots};
 use crate::rounding::sphere::apart;
-use crate::simd::{LANES, Lanes, quads_in_columns};
+use crate::simd::{LANES, Lanes, MAX_WIDTH, quads_in_columns};
 
 impl SlotTest for Slots {
     #[inline(always)]
     fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
         let me = self.ball(i).map(|number| l.splat(number));
-        let mut found = 0;
-        let mut start = run.start;
-        while start < run.end {
-            let hit = touching(l, me, self.load(l, start), run.end - start);
-            // Seldom more than one vector in six has a hit when runs are long.
-            if hit != 0 {
-                let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
-                l.compress(hit, slot, &mut hits[found..]);
-                found += hit.count_ones() as usize;
+        let [x, y, z, r] = &self.columns;
+        let (mut start, mut found) = (run.start, 0);
+        if x.is_empty() {
+            while start < run.end {
+                let other = l.load_quads(&self.balls[start..]);
+                found += list(
+                    l,
+                    me,
+                    other,
+                    start..run.end,
+                    &mut hits[found..found + MAX_WIDTH],
+                );
+                start += L::WIDTH;
             }
-            start += L::WIDTH;
+            return found;
+        }
+        // Equally long, they need one check of bounds a vector.
+        let [y, z, r] = [y, z, r].map(|column| &column[..x.len()]);
+        while start < run.end {
+            let vector = start..start + L::WIDTH;
+            let other = [
+                l.load(&x[vector.clone()]),
+                l.load(&y[vector.clone()]),
+                l.load(&z[vector.clone()]),
+                l.load(&r[vector.clone()]),
+            ];
+            found += list(
+                l,
+                me,
+                other,
+                start..run.end,
+                &mut hits[found..found + MAX_WIDTH],
+            );
+            start = vector.end;
         }
         found
     }
@@ -44,6 +67,23 @@ impl SlotTest for Slots {
         }
         found
     }
+}
+
+/// Writes the slots of a vector of balls that touch `me`, the vector being the first of `run`'s; how many.
+///
+/// No branch upon them: it would be foreseen badly, and cost the more the more pairs touch.
+#[inline(always)]
+fn list<L: Lanes>(
+    l: L,
+    me: [L::F; 4],
+    other: [L::F; 4],
+    run: Range<usize>,
+    hits: &mut [u32],
+) -> usize {
+    let hit = touching(l, me, other, run.end - run.start);
+    let slot = l.add_u32(l.splat_u32(run.start as u32), l.load_u32(&LANES));
+    l.compress(hit, slot, hits);
+    hit.count_ones() as usize
 }
 
 /// Bits of the lanes below `count` that no gap separates.

@@ -1,8 +1,9 @@
 //! The f64 pose: x ↦ R(q)x + t with R(q) the rotation matrix of q over |q|² (design: exact poses are rational maps).
 //!
-//! Products of two f32 are exact in f64, so the numerator of an entry rounds thrice at most, |q|² thrice and the division
-//! once: |δr_ij| ≤ (2 + 4|r_ij|)·2⁻⁵³, and 22·2⁻⁵³·max(|x|∞, |t|∞) bounds a transformed coordinate. f64 here costs one
-//! matrix a body and frame; in f32 the same bound would be larger than all margins together.
+//! Products of two f32 are exact in f64, so the numerator of an entry rounds thrice at most, |q|² thrice, its reciprocal and
+//! their product once each: |δr_ij| ≤ (2 + 6|r_ij|)·2⁻⁵³, and 24·2⁻⁵³·max(|x|∞, |t|∞) bounds a transformed coordinate. One
+//! division serves all nine entries: eighteen of them were a third of an or-DOP's update. f64 here costs one matrix a body
+//! and frame; in f32 the same bound would be larger than all margins together.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -11,12 +12,12 @@ use super::{down, exp2, up};
 /// Rows of a rotation matrix.
 pub type Rotation = [[f64; 3]; 3];
 
-/// 22·2⁻⁵³: error of one coordinate of [`transform`], as a multiple of max(|x|∞, |t|∞). Found: 8.99·2⁻⁵³.
+/// 24·2⁻⁵³: error of one coordinate of [`transform`], as a multiple of max(|x|∞, |t|∞). Found: 8.99·2⁻⁵³.
 /// Proofs: `pose_entry.g`, `pose_point.g`.
-pub const COORDINATE_ERROR: f64 = 22.0 * exp2(-53);
+pub const COORDINATE_ERROR: f64 = 24.0 * exp2(-53);
 
 /// 2⁻⁴⁶ = 128·2⁻⁵³, the margin of a re-fitted world extent as a multiple of max(ρ, |t|∞): for a direction with
-/// coefficients in {−1, 0, 1} the three coordinates bring 3·22, the two sums at most 4 + 6, the addition of the margin 6.
+/// coefficients in {−1, 0, 1} the three coordinates bring 3·24, the two sums at most 4 + 6, the addition of the margin 6.
 pub const REFIT_MARGIN: f64 = exp2(-46);
 
 /// 2⁻¹²⁰: covers subnormal vertices and translations that are read as zero.
@@ -31,11 +32,17 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// 1.
+    fn one() -> Self;
     /// 2.
     fn two() -> Self;
 }
 
 impl Real for f64 {
+    #[inline(always)]
+    fn one() -> Self {
+        1.0
+    }
     #[inline(always)]
     fn two() -> Self {
         2.0
@@ -51,32 +58,32 @@ pub fn rotation(q: [f32; 4]) -> Rotation {
 #[inline(always)]
 pub fn rotation_of<N: Real>([x, y, z, w]: [N; 4]) -> [[N; 3]; 3] {
     let (xx, yy, zz, ww) = (x * x, y * y, z * z, w * w);
-    let square = xx + yy + zz + ww;
+    let over = N::one() / (xx + yy + zz + ww);
     [
         [
-            ((xx - yy) + (ww - zz)) / square,
-            twice(x * y, -(w * z), square),
-            twice(x * z, w * y, square),
+            ((xx - yy) + (ww - zz)) * over,
+            twice(x * y, -(w * z), over),
+            twice(x * z, w * y, over),
         ],
         [
-            twice(x * y, w * z, square),
-            ((yy - xx) + (ww - zz)) / square,
-            twice(y * z, -(w * x), square),
+            twice(x * y, w * z, over),
+            ((yy - xx) + (ww - zz)) * over,
+            twice(y * z, -(w * x), over),
         ],
         [
-            twice(x * z, -(w * y), square),
-            twice(y * z, w * x, square),
-            ((zz - xx) + (ww - yy)) / square,
+            twice(x * z, -(w * y), over),
+            twice(y * z, w * x, over),
+            ((zz - xx) + (ww - yy)) * over,
         ],
     ]
 }
 
 #[inline(always)]
-fn twice<N: Real>(a: N, b: N, square: N) -> N {
-    N::two() * (a + b) / square
+fn twice<N: Real>(a: N, b: N, over: N) -> N {
+    N::two() * (a + b) * over
 }
 
-/// R·x, each coordinate within (22 − 3)·2⁻⁵³·|x|∞.
+/// R·x, each coordinate within (24 − 3)·2⁻⁵³·|x|∞.
 pub fn rotate(r: &Rotation, x: [f32; 3]) -> [f64; 3] {
     rotate_of(r, x.map(f64::from))
 }
@@ -105,22 +112,25 @@ pub fn transform(r: &Rotation, x: [f32; 3], t: [f32; 3]) -> [f64; 3] {
 ///
 /// Against the exactly posed orthonormal basis an entry errs by u of itself and an f64 part below 2⁻⁴⁷.
 pub fn world_axes(r: &Rotation, basis: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
-    let (scale, basis) = (norm(basis[0]), basis.map(|column| column.map(f64::from)));
-    axes_of(r, basis, scale).map(|axis| axis.map(|x| x as f32))
+    let (unit, basis) = (
+        over_norm(basis[0]),
+        basis.map(|column| column.map(f64::from)),
+    );
+    axes_of(r, basis, unit).map(|axis| axis.map(|x| x as f32))
 }
 
-/// The same before rounding, for numbers that are f32 each; `scale` is ‖basis‖.
+/// The same before rounding, for numbers that are f32 each; `unit` is 1/‖basis‖, of [`over_norm`].
 #[inline(always)]
-pub fn axes_of<N: Real>(r: &[[N; 3]; 3], basis: [[N; 3]; 3], scale: N) -> [[N; 3]; 3] {
+pub fn axes_of<N: Real>(r: &[[N; 3]; 3], basis: [[N; 3]; 3], unit: N) -> [[N; 3]; 3] {
     let [[a, b, c], [d, e, f], [g, h, i]] = [
         rotate_of(r, basis[0]),
         rotate_of(r, basis[1]),
         rotate_of(r, basis[2]),
     ];
     [
-        [a / scale, b / scale, c / scale],
-        [d / scale, e / scale, f / scale],
-        [g / scale, h / scale, i / scale],
+        [a * unit, b * unit, c * unit],
+        [d * unit, e * unit, f * unit],
+        [g * unit, h * unit, i * unit],
     ]
 }
 
@@ -128,6 +138,11 @@ pub fn axes_of<N: Real>(r: &[[N; 3]; 3], basis: [[N; 3]; 3], scale: N) -> [[N; 3
 pub fn norm(v: [f32; 3]) -> f64 {
     let [x, y, z] = v.map(f64::from);
     (x * x + y * y + z * z).sqrt()
+}
+
+/// One over the [`norm`] of an f32 vector that isn't zero.
+pub fn over_norm(v: [f32; 3]) -> f64 {
+    1.0 / norm(v)
 }
 
 /// A world-aligned extent [lo, hi] rounded outward, from the extremes of d·p over points computed by [`transform`],

@@ -99,6 +99,10 @@ impl Neg for Eight {
 
 impl Real for Eight {
     #[inline(always)]
+    fn one() -> Self {
+        Self::splat(1.0)
+    }
+    #[inline(always)]
     fn two() -> Self {
         Self::splat(2.0)
     }

@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use self::row::{O, Q, S, SHAPE, T};
 use crate::bodies::contract::is_within_limit;
 use crate::bodies::{Bodies, Places};
-use crate::rounding::pose::{norm, rotate, rotation, world_axes};
+use crate::rounding::pose::{over_norm, rotate, rotation, world_axes};
 use crate::rounding::sphere::{inflate_radius, world_ball};
 use crate::rounding::up;
 use crate::simd::{ROW, prefetch};
@@ -40,8 +40,8 @@ pub struct ShapeFrame {
     reach: f32,
     /// The basis, column after column, then the centre: sixteen such rows are transposed into vectors.
     row: [f32; ROW],
-    /// The length of each of the basis' columns.
-    scale: f64,
+    /// One over the length of each of the basis' columns.
+    unit: f64,
 }
 
 impl ShapeFrame {
@@ -61,7 +61,7 @@ impl ShapeFrame {
             inflated: None,
             reach: shape.reach,
             row,
-            scale: norm(columns[0]),
+            unit: over_norm(columns[0]),
         };
         frame.with_radius(shape.ball.radius)
     }

@@ -1,7 +1,6 @@
 //! or-DOP updates: the basis is turned with the body, its slabs stay.
 //!
-//! Sixteen bodies at a time, in two halves: a row takes eighteen divisions of f64, a vector of which costs little more than
-//! one alone.
+//! Sixteen bodies at a time, in two halves of eight f64.
 
 use std::ops::Range;
 
@@ -177,7 +176,7 @@ impl Posed<'_> {
     #[inline(always)]
     fn make<L: Lanes>(&self, l: L, places: &[u32; BODIES], rows: &mut [[f32; ROW]; BODIES]) {
         let (mut rotations, mut frames) = ([[0.0; 4]; BODIES], [[0.0; ROW]; BODIES]);
-        let (mut ends, mut scales) = ([[0.0; 4]; BODIES], [[0.0; EIGHT]; BODIES / EIGHT]);
+        let (mut ends, mut units) = ([[0.0; 4]; BODIES], [[0.0; EIGHT]; BODIES / EIGHT]);
         let mut centred = true;
         for lane in 0..BODIES {
             let place = places[lane] as usize;
@@ -190,7 +189,7 @@ impl Posed<'_> {
             rotations[lane] = self.bodies.rotation[body];
             ends[lane] = [x, y, z, f32::from_bits(SHAPE + shape)];
             frames[lane] = frame.row;
-            scales[lane / EIGHT][lane % EIGHT] = frame.scale;
+            units[lane / EIGHT][lane % EIGHT] = frame.unit;
             centred &= frame.inflated.is_some();
         }
         let q = quads_in_columns(l, &rotations);
@@ -199,7 +198,7 @@ impl Posed<'_> {
         turn_rows(l, &frames, &mut shapes);
         let mut made = [[0.0; BODIES]; ROW];
         (made[T], made[T + 1], made[T + 2], made[S]) = (x, y, z, shape);
-        for (half, scale) in scales.into_iter().enumerate() {
+        for (half, unit) in units.into_iter().enumerate() {
             let start = half * EIGHT;
             let eight = |column: &[f32; BODIES]| Eight::of(&column[start..]);
             let turn = rotation_of([eight(&q[0]), eight(&q[1]), eight(&q[2]), eight(&q[3])]);
@@ -210,7 +209,7 @@ impl Posed<'_> {
                     eight(&shapes[j + 2]),
                 ]
             });
-            let axes = axes_of(&turn, basis, Eight(scale));
+            let axes = axes_of(&turn, basis, Eight(unit));
             for (number, along) in axes.as_flattened().iter().enumerate() {
                 made[Q + number][start..start + EIGHT].copy_from_slice(&along.rounded());
             }
