@@ -1,0 +1,22 @@
+//! Compiles the scene and the culling dispatcher against the system's Bullet.
+
+fn main() {
+    println!("cargo:rerun-if-changed=native");
+    #[cfg(feature = "debian")]
+    compile();
+}
+
+#[cfg(feature = "debian")]
+fn compile() {
+    cc::Build::new()
+        .cpp(true)
+        .std("c++17")
+        .opt_level(3)
+        .define("NDEBUG", None)
+        .include("/usr/include/bullet")
+        .file("native/scene.cpp")
+        .compile("sdop_bullet_scene");
+    for library in ["BulletDynamics", "BulletCollision", "LinearMath"] {
+        println!("cargo:rustc-link-lib={library}");
+    }
+}
