@@ -13,7 +13,7 @@ fn compile() {
         .std("c++17")
         .opt_level(3)
         .define("NDEBUG", None)
-        .include("/usr/include/bullet")
+        .flag("-isystem/usr/include/bullet") // its headers warn
         .file("native/scene.cpp")
         .compile("sdop_bullet_scene");
     for library in ["BulletDynamics", "BulletCollision", "LinearMath"] {

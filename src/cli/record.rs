@@ -176,7 +176,7 @@ fn execute(experiment: &Experiment, more: &[String], out: &Path) -> miette::Resu
 }
 
 fn planted(step: &Step) -> bool {
-    matches!(step, Step::Rapier(_, arguments) if arguments.contains("--without-margin"))
+    matches!(step, Step::Rapier(_, arguments) | Step::Bullet(_, arguments) if arguments.contains("--without-margin"))
 }
 
 /// A step's command, and the file that its output becomes.
@@ -209,12 +209,18 @@ fn prepared(step: &Step, out: &Path) -> miette::Result<(Command, Option<&'static
             (command, None)
         }
         Step::Rapier(file, arguments) => {
-            let mut command = cargo(&["run", "--release", "--quiet", "-p", "sdop-rapier", "--"]);
+            let mut command = cargo(&RAPIER);
             command.args(arguments.split(' '));
             let dropped = out.with_extension("dropped");
             if arguments.starts_with("check") {
                 command.arg("--cases").arg(dropped);
             }
+            command.arg("--out").arg(out.join(file));
+            (command, None)
+        }
+        Step::Bullet(file, arguments) => {
+            let mut command = cargo(&BULLET);
+            command.args(arguments.split(' '));
             command.arg("--out").arg(out.join(file));
             (command, None)
         }
@@ -242,6 +248,19 @@ const PEERS: [&str; 8] = [
     "sdop-peers",
     "--features",
     "physx,debian",
+    "--",
+];
+
+const RAPIER: [&str; 6] = ["run", "--release", "--quiet", "-p", "sdop-rapier", "--"];
+
+const BULLET: [&str; 8] = [
+    "run",
+    "--release",
+    "--quiet",
+    "-p",
+    "sdop-bullet",
+    "--features",
+    "debian",
     "--",
 ];
 

@@ -5,23 +5,22 @@
 use std::ffi::c_void;
 
 use sdop::mesh::TriangleMesh;
-use sdop::world::PairTest;
 use serde::{Deserialize, Serialize};
 
 use crate::plan::{Kind, Mode};
 
 unsafe extern "C" {
-    fn sdop_test_new() -> *mut PairTest;
-    fn sdop_test_free(test: *mut PairTest);
+    fn sdop_test_new() -> *mut c_void;
+    fn sdop_test_free(test: *mut c_void);
     fn sdop_test_add(
-        test: *mut PairTest,
+        test: *mut c_void,
         vertices: *const [f32; 3],
         vertex_count: usize,
         triangles: *const [u32; 3],
         triangle_count: usize,
         margin: f32,
     ) -> u32;
-    fn scene_new(test: *const PairTest, mode: u32) -> *mut c_void;
+    fn scene_new(test: *const c_void, mode: u32) -> *mut c_void;
     fn scene_free(scene: *mut c_void);
     fn scene_gravity(scene: *mut c_void, gravity: *const [f32; 3]);
     fn scene_wall(scene: *mut c_void, normal: *const [f32; 3], d: f32, restitution: f32);
@@ -80,11 +79,14 @@ pub struct Counts {
     pub test_ns: f64,
 }
 
+/// Vertices and triangles that a shape looks at.
+type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
+
 /// A scene, and the meshes that its shapes look at.
 pub struct Scene {
     scene: *mut c_void,
-    test: *mut PairTest,
-    meshes: Vec<(Vec<[f32; 3]>, Vec<[u32; 3]>)>,
+    test: *mut c_void,
+    meshes: Vec<Mesh>,
 }
 
 /// A shape that bodies can have.

@@ -40,7 +40,14 @@ impl Stage {
         let walls = if plan.scene == SceneKind::Pile { 5 } else { 6 };
         for wall in 0..walls {
             // The floor first, the ceiling last.
-            let (axis, sign) = [(1, 1.0), (0, 1.0), (0, -1.0), (2, 1.0), (2, -1.0), (1, -1.0)][wall];
+            let (axis, sign) = [
+                (1, 1.0),
+                (0, 1.0),
+                (0, -1.0),
+                (2, 1.0),
+                (2, -1.0),
+                (1, -1.0),
+            ][wall];
             let mut normal = [0.0; 3];
             normal[axis] = sign;
             scene.wall(normal, -half, restitution);

@@ -1,6 +1,6 @@
 //! The experiments that can be recorded: the steps of each, and which of its files every machine must find alike.
 
-use super::rapier::{RAPIER_CONTACTS, RAPIER_TIMES};
+use super::engines::{BULLET, RAPIER_CONTACTS, RAPIER_TIMES};
 
 /// One program that runs for an experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,8 +11,11 @@ pub enum Step {
     SdopPrints(&'static str, &'static [&'static str]),
     /// The peers' program, with `--out DIR` at the end.
     Peers(&'static [&'static str]),
-    /// The physics engine's program, whose result becomes a file; its arguments in a line. Margins that are left out must be seen.
+    /// The program of the filter in rapier, whose result becomes a file; its arguments in a line. Margins that are left out must be
+    /// seen.
     Rapier(&'static str, &'static str),
+    /// The same in Bullet.
+    Bullet(&'static str, &'static str),
     /// A bench that prints its own table, which becomes a file.
     Bench(&'static str, &'static str),
     /// Criterion's estimates of some benches, as one table.
@@ -347,6 +350,13 @@ pub const EXPERIMENTS: &[Experiment] = &[
         name: "rapier/times",
         about: "the filter in a physics engine: steps timed in turns",
         steps: RAPIER_TIMES,
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
+        name: "bullet",
+        about: "the filter in Bullet: every verdict judged by its contacts, steps timed in turns",
+        steps: BULLET,
         deterministic: &[],
         scenes: &[],
     },

@@ -9,11 +9,11 @@ mod clock;
 mod columns;
 mod compare;
 mod digits;
+mod engines;
 mod experiment;
 mod manifest;
 pub mod pages;
 mod provenance;
-mod rapier;
 mod store;
 mod table;
 

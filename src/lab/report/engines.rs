@@ -1,4 +1,4 @@
-//! The runs of the filter in a physics engine, `examples/rapier`.
+//! The runs of the filter in physics engines, `examples/rapier` and `examples/bullet`.
 
 use super::experiment::Step;
 
@@ -139,5 +139,65 @@ pub(super) const RAPIER_TIMES: &[Step] = &[
     Step::Rapier(
         "pile-ball-500.json",
         "measure --scene pile --kind ball --bodies 500 --steps 300 --calibrate 60 --modes plain,dispatcher",
+    ),
+];
+
+/// Judged and timed.
+pub(super) const BULLET: &[Step] = &[
+    Step::Bullet(
+        "pile-hull-100.json",
+        "--scene pile --kind hull --bodies 100 --steps 1000",
+    ),
+    Step::Bullet(
+        "pile-hull-500.json",
+        "--scene pile --kind hull --bodies 500 --steps 1000",
+    ),
+    Step::Bullet(
+        "pile-hull-5000.json",
+        "--scene pile --kind hull --bodies 5000 --steps 60",
+    ),
+    Step::Bullet(
+        "pile-mesh-100.json",
+        "--scene pile --kind mesh --bodies 100 --steps 1000",
+    ),
+    Step::Bullet(
+        "pile-mesh-500.json",
+        "--scene pile --kind mesh --bodies 500 --steps 100",
+    ),
+    Step::Bullet(
+        "pile-mesh-40-fine.json",
+        "--scene pile --kind mesh --bodies 40 --steps 100 --detail fine",
+    ),
+    Step::Bullet(
+        "pile-box-500.json",
+        "--scene pile --kind box --bodies 500 --steps 300",
+    ),
+    Step::Bullet(
+        "pile-ball-500.json",
+        "--scene pile --kind ball --bodies 500 --steps 300",
+    ),
+    Step::Bullet(
+        "tumbler-hull-500.json",
+        "--scene tumbler --kind hull --bodies 500 --steps 300",
+    ),
+    Step::Bullet(
+        "tumbler-mesh-100.json",
+        "--scene tumbler --kind mesh --bodies 100 --steps 300",
+    ),
+    Step::Bullet(
+        "cloud-hull-300.json",
+        "--scene cloud --kind hull --bodies 300 --steps 1000",
+    ),
+    Step::Bullet(
+        "cloud-mesh-300.json",
+        "--scene cloud --kind mesh --bodies 300 --steps 1000",
+    ),
+    Step::Bullet(
+        "pile-hull-60-without-margin.json",
+        "--scene pile --kind hull --bodies 60 --steps 150 --without-margin",
+    ),
+    Step::Bullet(
+        "pile-mesh-60-without-margin.json",
+        "--scene pile --kind mesh --bodies 60 --steps 150 --without-margin",
     ),
 ];
