@@ -28,6 +28,7 @@ use block::{BLOCK_BODIES, Page, Pen};
 pub use block::{Block, MOST_CANDIDATES};
 pub use bounds::Bounds;
 pub use grid::{Cells, Grid, Layout};
+use neighbours::List;
 pub use neighbours::{Neighbours, Volume};
 pub use sweep::Sweep;
 
@@ -90,6 +91,14 @@ pub enum PairFinder {
     Sweep(Sweep),
     /// Candidates that are kept.
     Neighbours(Neighbours),
+}
+
+/// Where a frame's candidates come from.
+enum Search<'a> {
+    AllPairs(&'a AllPairs),
+    Grid(&'a Grid),
+    Sweep(&'a Sweep),
+    List(&'a List),
 }
 
 /// Which places take other bodies.
@@ -194,25 +203,40 @@ impl PairFinder {
         }
     }
 
+    /// Where this frame's candidates come from. Neighbour lists leave frames in which they don't pay to the grid: one copy of
+    /// its search, compiled once, serves both finders.
+    #[inline(always)]
+    fn search(&self) -> Search<'_> {
+        match self {
+            Self::AllPairs(finder) => Search::AllPairs(finder),
+            Self::Grid(finder) => Search::Grid(finder),
+            Self::Sweep(finder) => Search::Sweep(finder),
+            Self::Neighbours(finder) => match finder.list() {
+                Some(list) => Search::List(list),
+                None => Search::Grid(finder.grid()),
+            },
+        }
+    }
+
     /// Into how many parts the work is cut.
     #[must_use]
     pub fn parts(&self) -> usize {
-        match self {
-            Self::AllPairs(finder) => finder.parts(),
-            Self::Grid(finder) => finder.parts(),
-            Self::Sweep(finder) => finder.parts(),
-            Self::Neighbours(finder) => finder.parts(),
+        match self.search() {
+            Search::AllPairs(finder) => finder.parts(),
+            Search::Grid(finder) => finder.parts(),
+            Search::Sweep(finder) => finder.parts(),
+            Search::List(list) => list.parts(),
         }
     }
 
     /// Hands the candidates of the given parts to `test`, in order.
     #[inline(always)]
     pub fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
-        match self {
-            Self::AllPairs(finder) => finder.find(l, parts, test),
-            Self::Grid(finder) => finder.find(l, parts, test),
-            Self::Sweep(finder) => finder.find(l, parts, test),
-            Self::Neighbours(finder) => finder.find(l, parts, test),
+        match self.search() {
+            Search::AllPairs(finder) => finder.find(l, parts, test),
+            Search::Grid(finder) => finder.find(l, parts, test),
+            Search::Sweep(finder) => finder.find(l, parts, test),
+            Search::List(list) => list.find(l, parts, test),
         }
     }
 }

@@ -11,7 +11,7 @@ use super::files::write;
 use super::output::{print, rows};
 
 /// Pages whose numbers come from records.
-const PAGES: [&str; 14] = [
+const PAGES: [&str; 15] = [
     "README.md",
     "ARCHITECTURE.md",
     "benches/README.md",
@@ -19,6 +19,7 @@ const PAGES: [&str; 14] = [
     "benches/peers/VERDICTS.md",
     "examples/rapier/ENGINES.md",
     "examples/rapier/README.md",
+    "examples/bullet/README.md",
     "tests/README.md",
     "paper/guide.md",
     "paper/artifact.md",

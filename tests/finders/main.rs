@@ -303,7 +303,7 @@ fn many_bodies_give_the_list_of_one_thread_on_any_number() {
 
 #[test]
 fn auto_is_one_of_the_others_in_list_and_count() {
-    for (n, side, wanted) in [(60, 9.0, Finder::AllPairs), (400, 16.0, Finder::Grid)] {
+    for (n, side, wanted) in [(60, 9.0, Finder::AllPairs), (400, 16.0, Finder::Neighbours)] {
         let scene = Scene::new("auto", &[1.0], n, |_, rng| uniform(rng, side));
         let [auto, named] = [Finder::Auto, wanted].map(|finder| {
             let settings = settings(Strategy::SDopSequential, finder);

@@ -14,13 +14,10 @@ mod drift;
 mod list;
 mod policy;
 
-use std::ops::Range;
-
-use self::list::List;
+pub(super) use self::list::List;
 use self::policy::Policy;
-use super::{FirstTest, Grid, Reorder, Slots, bytes};
+use super::{Grid, Reorder, Slots, bytes};
 use crate::rounding::skin::Reach;
-use crate::simd::Lanes;
 use crate::threads::Executor;
 
 /// What a pair finder's balls stand for.
@@ -148,25 +145,22 @@ impl Neighbours {
         self.grid.slots()
     }
 
-    pub(super) fn parts(&self) -> usize {
-        match self.state {
-            State::Searching => self.grid.parts(),
-            _ => self.list.parts(),
-        }
+    /// The list, in frames that follow one.
+    #[inline(always)]
+    pub(super) fn list(&self) -> Option<&List> {
+        (self.state != State::Searching).then_some(&self.list)
     }
 
-    /// Hears how many candidates a frame had.
+    /// The grid, whose frame it is otherwise.
+    #[inline(always)]
+    pub(super) fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Notes how many candidates a frame had.
     pub(super) fn observe(&mut self, candidates: u64) {
         if self.state == State::Searching {
             self.grid.observe(candidates);
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
-        match self.state {
-            State::Searching => self.grid.find(l, parts, test),
-            _ => self.list.find(l, parts, test),
         }
     }
 }

@@ -21,6 +21,9 @@ const MAKE: f64 = 13.0;
 const FOLLOW: f64 = 35.0;
 const PAIR: f64 = 25.0;
 
+/// A list must promise to take at most this share of the grid's time: where it hardly pays, it may as well cost.
+const WORTH: f64 = 0.8;
+
 /// Frames of the grid between two attempts: at first, and at most.
 const PAUSE: u32 = 16;
 const LONGEST_PAUSE: u32 = 256;
@@ -90,7 +93,7 @@ impl Policy {
             }
         }
         self.skin = best;
-        if cost(best) < SORT + SEARCH * candidates {
+        if cost(best) < WORTH * (SORT + SEARCH * candidates) {
             self.pause = PAUSE;
         } else {
             // Of a list that served one frame alone the widest skin tells most.

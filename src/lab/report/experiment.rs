@@ -1,5 +1,6 @@
 //! The experiments that can be recorded: the steps of each, and which of its files every machine must find alike.
 
+use super::costs;
 use super::engines::{BULLET, RAPIER_CONTACTS, RAPIER_TIMES};
 
 /// One program that runs for an experiment.
@@ -96,6 +97,27 @@ pub const EXPERIMENTS: &[Experiment] = &[
         name: "tradeoff",
         about: "precision against time on the paper's 500 bodies",
         steps: &[Step::Sdop(&["tradeoff", "data/scenes/paper-500.toml"])],
+        deterministic: &[],
+        scenes: PAPER_500,
+    },
+    Experiment {
+        name: "cost/quiet",
+        about: "the formula predicted against measured, every strategy and scene",
+        steps: costs::QUIET,
+        deterministic: &[],
+        scenes: PAPER,
+    },
+    Experiment {
+        name: "cost/loaded",
+        about: "the same while all processors do other work",
+        steps: costs::LOADED,
+        deterministic: &[],
+        scenes: PAPER,
+    },
+    Experiment {
+        name: "cost/bench",
+        about: "the formula by criterion in one run",
+        steps: &[Step::Bench("total_cost.md", "total_cost")],
         deterministic: &[],
         scenes: PAPER_500,
     },

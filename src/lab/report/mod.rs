@@ -8,6 +8,7 @@
 mod clock;
 mod columns;
 mod compare;
+mod costs;
 mod digits;
 mod engines;
 mod experiment;
