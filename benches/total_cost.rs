@@ -81,7 +81,7 @@ fn another_pass(file: &SceneFile, variants: &[Variant], calibration: &mut Calibr
             Tier::detect(),
             &mut frames,
             calibration,
-            &mut |_, _, _| (),
+            &mut (),
         )?)
     };
     made().unwrap_or_else(|error| panic!("{error}"))

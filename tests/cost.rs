@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use sdop::counters::pair_count;
 use sdop::lab::cost::calibrate::{Calibration, Effort, scenes};
-use sdop::lab::cost::pass::{Simulated, pass};
+use sdop::lab::cost::pass::{Observer, Simulated, pass};
 use sdop::lab::cost::predict::Terms;
 use sdop::lab::cost::table::cost;
 use sdop::lab::measure::contestant::Contestant;
@@ -33,19 +33,25 @@ fn scene() -> Scene {
     SceneFile::read(&path).unwrap().build().unwrap()
 }
 
+/// How many pairs each variant reports.
+struct Reported(Vec<u64>);
+
+impl Observer for Reported {
+    fn frame(&mut self, number: usize, _: u32, culling: &Culling) {
+        self.0[number] += culling.pairs().len() as u64;
+    }
+}
+
 fn counters(scene: &Scene, tier: Tier) -> Vec<Counts> {
     let variant = |&strategy: &Strategy| Variant::strategy(&scene.cull, strategy);
     let variants: Vec<Variant> = STRATEGIES.iter().map(variant).collect();
-    let mut reported = vec![0; variants.len()];
+    let mut reported = Reported(vec![0; variants.len()]);
     let mut frames = Simulated::new(scene, FRAMES).unwrap();
-    let mut count = |variant: usize, _, culling: &Culling| {
-        reported[variant] += culling.pairs().len() as u64;
-    };
-    let pass = pass(scene, &variants, tier, &mut frames, None, &mut count).unwrap();
+    let pass = pass(scene, &variants, tier, &mut frames, None, &mut reported).unwrap();
     let counted: Vec<Counts> = pass.culled.iter().map(|culled| culled.counts).collect();
     assert!(pass.culled.iter().all(|culled| culled.frames == FRAMES));
     assert_eq!(
-        reported,
+        reported.0,
         counted
             .iter()
             .map(|c| c.culler.reported)
@@ -143,7 +149,7 @@ fn every_volume_gets_prices_and_terms_that_add_up() {
         tier,
         &mut frames,
         Some(&mut calibration),
-        &mut |_, _, _| (),
+        &mut (),
     )
     .unwrap();
     for (regime, prices) in Regime::ALL.iter().zip(&passed.prices) {

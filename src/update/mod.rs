@@ -5,6 +5,7 @@
 
 mod eight;
 mod intervals;
+mod lines;
 pub mod row;
 mod rows;
 

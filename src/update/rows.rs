@@ -5,6 +5,7 @@
 use std::ops::Range;
 
 use super::eight::{EIGHT, Eight};
+use super::lines::Lines;
 use super::row::{O, Q, S, SHAPE, T};
 use super::{AHEAD, CENTRE, ShapeFrame};
 use crate::bodies::Bodies;
@@ -25,7 +26,7 @@ const BODIES: usize = MAX_WIDTH;
 #[derive(Clone, Debug, Default)]
 pub struct OrDopRows {
     /// One row per body.
-    pub rows: Vec<[f32; ROW]>,
+    pub rows: Lines,
     made: Vec<u32>,
     missing: Vec<u32>,
 }
@@ -55,7 +56,7 @@ impl OrDopRows {
 
     /// Room for another number of bodies.
     pub(crate) fn resize(&mut self, bodies: usize) {
-        self.rows.resize(bodies, [0.0; ROW]);
+        self.rows.resize(bodies);
         self.made.resize(bodies, 0);
     }
 
@@ -93,7 +94,7 @@ impl OrDopRows {
                 self.missing.push(place);
             }
         }
-        let (places, rows) = (self.missing.as_slice(), self.rows.as_mut_slice());
+        let (places, rows) = (self.missing.as_slice(), &mut *self.rows);
         dispatch(
             tier,
             Listed {

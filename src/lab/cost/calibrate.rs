@@ -27,7 +27,7 @@ use crate::volume::{Ball, Shape};
 
 /// Bodies of the calibration scenes, as parts of the scene's number. Near it, though none within a tenth of it: a price isn't
 /// the same at any number of bodies (loops end where the CPU foresees it, or don't), and its curve is straight nearby.
-const SIZES: [f64; 4] = [0.88, 0.89, 1.11, 1.12];
+const SIZES: [f64; 4] = [0.82, 0.89, 1.12, 1.2];
 /// Sides of the calibration scenes' boxes, as multiples of the scene's. A vector of lanes that has a hit or none is a
 /// branch, and how often it is foreseen follows a curve in density and in the number of pairs: so both are near the
 /// scene's, on both sides of it.

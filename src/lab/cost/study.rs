@@ -109,7 +109,7 @@ pub fn study(file: &SceneFile, plan: &Plan, mut done: impl FnMut()) -> Result<Re
             plan.tier,
             &mut frames,
             calibration,
-            &mut |_, _, _| (),
+            &mut (),
         )?);
         done();
     }

@@ -13,7 +13,7 @@ use super::units::Experiments;
 use crate::choice::choices;
 use crate::counters::{Counters, Seconds};
 use crate::lab::cost::calibrate::{Calibration, Effort};
-use crate::lab::cost::pass::{Culled, Pass, Simulated, pass};
+use crate::lab::cost::pass::{Culled, Observer, Pass, Simulated, pass};
 use crate::lab::cost::table::{self, Cost};
 use crate::lab::hash::PairsHash;
 use crate::lab::measure::contestant::Contestant;
@@ -204,6 +204,26 @@ pub fn run_scene(
     run_pass(scene, &variants, frames, tier, None).map(|(runs, _)| runs)
 }
 
+/// Hashes what each variant reports, between turns.
+struct Hashing {
+    hashes: Vec<PairsHash>,
+    /// Variant, frame and pairs.
+    reported: Vec<(usize, u32, Vec<[u32; 2]>)>,
+}
+
+impl Observer for Hashing {
+    fn frame(&mut self, number: usize, frame: u32, culling: &Culling) {
+        self.reported.push((number, frame, culling.pairs()));
+    }
+
+    fn between_turns(&mut self) {
+        for (number, frame, mut pairs) in self.reported.drain(..) {
+            pairs.sort_unstable();
+            self.hashes[number].frame(frame, &pairs);
+        }
+    }
+}
+
 /// The same as a pass, with its calibration.
 pub(super) fn run_pass(
     scene: &Scene,
@@ -212,20 +232,18 @@ pub(super) fn run_pass(
     tier: Tier,
     calibration: Option<&mut Calibration>,
 ) -> Result<(Vec<Run>, Pass), SimulationError> {
-    let mut hashes = vec![PairsHash::default(); variants.len()];
-    let mut simulated = Simulated::new(scene, frames)?;
-    let mut reported = |variant: usize, frame, culling: &Culling| {
-        let mut pairs = culling.pairs();
-        pairs.sort_unstable();
-        hashes[variant].frame(frame, &pairs);
+    let mut hashing = Hashing {
+        hashes: vec![PairsHash::default(); variants.len()],
+        reported: Vec::new(),
     };
+    let mut simulated = Simulated::new(scene, frames)?;
     let pass = pass(
         scene,
         variants,
         tier,
         &mut simulated,
         calibration,
-        &mut reported,
+        &mut hashing,
     )?;
     let bodies = &scene.bodies;
     let radius = |&shape: &u32| f64::from(scene.shapes[shape as usize].ball.radius);
@@ -259,7 +277,7 @@ pub(super) fn run_pass(
     let runs = variants
         .iter()
         .zip(&pass.culled)
-        .zip(hashes)
+        .zip(hashing.hashes)
         .map(run)
         .collect();
     Ok((runs, pass))

@@ -199,7 +199,7 @@ pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>,
     let culled = |budgets: &[Budget]| -> Result<Vec<Culled>, TradeoffError> {
         let variants: Vec<Variant> = budgets.iter().copied().map(variant).collect();
         let mut frames = Simulated::new(scene, frames)?;
-        let pass = pass(scene, &variants, tier, &mut frames, None, &mut |_, _, _| ())?;
+        let pass = pass(scene, &variants, tier, &mut frames, None, &mut ())?;
         Ok(pass.culled)
     };
     let spent = |culled: &Culled| {

@@ -112,7 +112,7 @@ pub fn study(
             plan.tier,
             &mut frames,
             calibration,
-            &mut |_, _, _| (),
+            &mut (),
         )?;
         passes.push(pass);
     }

@@ -62,14 +62,7 @@ pub fn measure(
     let mut passes = Vec::new();
     for _ in 0..PASSES {
         let frames = &mut windows.clone();
-        passes.push(pass(
-            scene,
-            variants,
-            tier,
-            frames,
-            None,
-            &mut |_, _, _| (),
-        )?);
+        passes.push(pass(scene, variants, tier, frames, None, &mut ())?);
         done();
     }
     Ok(passes)
