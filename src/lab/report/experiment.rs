@@ -355,6 +355,17 @@ pub const EXPERIMENTS: &[Experiment] = &[
         &[Step::Bench("oracle.md", "oracle")],
     ),
     Experiment {
+        name: "instructions",
+        about: "instructions of a frame's culling, by callgrind",
+        steps: &[Step::Script("instructions.csv", &[".ci/instructions"])],
+        deterministic: &[],
+        scenes: &[
+            "data/scenes/paper-500.toml",
+            "data/scenes/crowded-500.toml",
+            "data/scenes/uniform-10k.toml",
+        ],
+    },
+    Experiment {
         name: "bounds",
         about: "the long search for the worst rounding error of every bound",
         steps: &[Step::Bench("bounds.md", "worst_case")],
