@@ -8,7 +8,7 @@ use crate::simd::ROW;
 /// Bytes of a cache line, as many as a row has.
 const LINE: usize = ROW * size_of::<f32>();
 
-/// Rows, each on one cache line. A clone may lie across lines until it is resized.
+/// Rows, each on one cache line. Those of a clone may lie across two, which takes time and changes nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     floats: Vec<f32>,
