@@ -5,8 +5,8 @@
 //! with a level for each size, at about 100 of radii 1 : 1000. The sweep stayed behind the grid at every number of
 //! bodies from 16 to 10,000, in cubes, planes, lines and clusters, with one giant and with radii 1 : 1000 (1.4 to 9
 //! times), so it is there to be compared with and never picked. Neighbour lists leave the frames in which they don't pay to the
-//! grid, by counts as well: they took 0.34 to 0.66 of the grid's time on 10,000 bodies in a cube, a plane, clusters and with mixed
-//! radii, and within 2 % of it where bodies move too fast (an Intel with AVX-512, frames in turns).
+//! grid, by counts as well: frames of spheres took 0.42 to 0.66 of the grid's time on 10,000 bodies in a cube, a plane, clusters
+//! and with mixed radii, and up to 6 % more where bodies move too fast (an Intel with AVX-512, runs in turns).
 
 use super::Volume;
 use crate::settings::Finder;

@@ -2,206 +2,26 @@
 
 use super::experiment::Step;
 
-/// Nothing else runs.
-pub(super) const QUIET: &[Step] = &[
-    Step::SdopPrints(
-        "paper-50.json",
-        &[
-            "cost",
-            "data/scenes/paper-50.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::SdopPrints(
-        "paper-150.json",
-        &[
-            "cost",
-            "data/scenes/paper-150.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::SdopPrints(
-        "paper-300.json",
-        &[
-            "cost",
-            "data/scenes/paper-300.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::SdopPrints(
-        "paper-350.json",
-        &[
-            "cost",
-            "data/scenes/paper-350.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::SdopPrints(
-        "paper-500.json",
-        &[
-            "cost",
-            "data/scenes/paper-500.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::SdopPrints(
-        "crowded-500.json",
-        &[
-            "cost",
-            "data/scenes/crowded-500.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::SdopPrints(
-        "sparse-500.json",
-        &[
-            "cost",
-            "data/scenes/sparse-500.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-];
+/// The same steps for each scene, which are named once.
+macro_rules! costs {
+    ($($scene:literal),+) => {
+        /// Nothing else runs.
+        pub(super) const QUIET: &[Step] = &[$(Step::SdopPrints(
+            concat!($scene, ".json"),
+            &["cost", concat!("data/scenes/", $scene, ".toml"), "--seeds", "15", "--format", "json"],
+        )),+];
 
-/// As many other processes as processors.
-pub(super) const LOADED: &[Step] = &[
-    Step::Script(
-        "paper-50.json",
-        &[
-            ".ci/beside_load",
-            "cargo",
-            "run",
-            "--release",
-            "--quiet",
-            "--",
-            "cost",
-            "data/scenes/paper-50.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::Script(
-        "paper-150.json",
-        &[
-            ".ci/beside_load",
-            "cargo",
-            "run",
-            "--release",
-            "--quiet",
-            "--",
-            "cost",
-            "data/scenes/paper-150.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::Script(
-        "paper-300.json",
-        &[
-            ".ci/beside_load",
-            "cargo",
-            "run",
-            "--release",
-            "--quiet",
-            "--",
-            "cost",
-            "data/scenes/paper-300.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::Script(
-        "paper-350.json",
-        &[
-            ".ci/beside_load",
-            "cargo",
-            "run",
-            "--release",
-            "--quiet",
-            "--",
-            "cost",
-            "data/scenes/paper-350.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::Script(
-        "paper-500.json",
-        &[
-            ".ci/beside_load",
-            "cargo",
-            "run",
-            "--release",
-            "--quiet",
-            "--",
-            "cost",
-            "data/scenes/paper-500.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::Script(
-        "crowded-500.json",
-        &[
-            ".ci/beside_load",
-            "cargo",
-            "run",
-            "--release",
-            "--quiet",
-            "--",
-            "cost",
-            "data/scenes/crowded-500.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-    Step::Script(
-        "sparse-500.json",
-        &[
-            ".ci/beside_load",
-            "cargo",
-            "run",
-            "--release",
-            "--quiet",
-            "--",
-            "cost",
-            "data/scenes/sparse-500.toml",
-            "--seeds",
-            "15",
-            "--format",
-            "json",
-        ],
-    ),
-];
+        /// As many other processes as processors.
+        pub(super) const LOADED: &[Step] = &[$(Step::Script(
+            concat!($scene, ".json"),
+            &[
+                ".ci/beside_load", "cargo", "run", "--release", "--quiet", "--",
+                "cost", concat!("data/scenes/", $scene, ".toml"), "--seeds", "15", "--format", "json",
+            ],
+        )),+];
+    };
+}
+
+costs! {
+    "paper-50", "paper-150", "paper-300", "paper-350", "paper-500", "crowded-500", "sparse-500"
+}
