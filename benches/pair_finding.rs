@@ -89,44 +89,5 @@ fn finders(criterion: &mut Criterion) {
     }
 }
 
-/// Frames of a swarm whose times are sorted.
-const FRAMES: usize = 400;
-
-/// Frame times of lists and of the grid by motion, since a list's worst frame is the one that makes it: the means are what
-/// criterion would tell, and hide that. Only when asked for by name: it takes minutes.
-fn motion(_: &mut Criterion) {
-    if !std::env::args().any(|argument| argument == "motion") {
-        return;
-    }
-    println!("motion/finder/bodies: ns a body, p50 p99 max; tests a body");
-    for n in [10_000, 100_000, 1_000_000] {
-        for most in [0.01, 0.1, 0.3] {
-            for finder in [Finder::Grid, Finder::Neighbours] {
-                let mut swarm = Swarm::moving(Kind::Uniform, n, most);
-                let mut culler = swarm.culler(finder, 1);
-                let tests = culler.counters().sphere.tests;
-                let mut times: Vec<f64> = (0..FRAMES.min(40_000_000 / n))
-                    .map(|_| {
-                        swarm.sway();
-                        let before = culler.seconds().total;
-                        culler.cull(&swarm.bodies).unwrap();
-                        (culler.seconds().total - before) * 1e9 / n as f64
-                    })
-                    .collect();
-                times.sort_by(f64::total_cmp);
-                let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
-                let tests = (culler.counters().sphere.tests - tests) as f64;
-                println!(
-                    "{most}/{finder}/{n}: {:.1} {:.1} {:.1}; {:.2}",
-                    at(0.5),
-                    at(0.99),
-                    at(1.0),
-                    tests / (n * times.len()) as f64
-                );
-            }
-        }
-    }
-}
-
-criterion_group!(benches, pair_finding, finders, motion);
+criterion_group!(benches, pair_finding, finders);
 criterion_main!(benches);

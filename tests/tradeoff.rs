@@ -224,7 +224,51 @@ fn counts(path: &Path) -> Vec<serde_json::Value> {
     for row in result["interest"].as_array().unwrap() {
         parts.extend(["bodies", "tests", "reported", "precision"].map(|key| row[key].clone()));
     }
+    for varied in result["variations"].as_array().unwrap() {
+        let keys = ["aspect", "mix", "bodies", "triangles", "motion", "partners"];
+        parts.extend(keys.map(|key| varied[key].clone()));
+        let lines = varied["lines"].as_array().unwrap();
+        parts.extend(lines.iter().map(|line| line["pairs"].clone()));
+    }
     parts
+}
+
+/// The scene's 50 bodies and 20 mm of a frame's motion, changed as `lab::tradeoff::vary` says.
+fn changes_are_what_they_say(path: &Path) {
+    let result: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let of = |aspect: &str, key: &str| -> Vec<f64> {
+        let all = result["variations"].as_array().unwrap().iter();
+        let own = all.filter(|varied| varied["aspect"] == aspect);
+        own.map(|varied| varied[key].as_f64().unwrap()).collect()
+    };
+    // Three groups of 20, 15 and 15, each rounded.
+    assert_eq!(of("bodies", "bodies"), [6.0, 50.0, 500.0, 2000.0]);
+    let partners = of("bodies", "partners");
+    assert!(
+        partners[2..]
+            .iter()
+            .all(|p| (p / partners[1] - 1.0).abs() < 0.4),
+        "the density stays: {partners:?}"
+    );
+    let triangles = of("triangles", "triangles");
+    assert!(
+        triangles[0] <= 100.0 && triangles[0] < triangles[1],
+        "{triangles:?}"
+    );
+    let motion = of("motion", "motion");
+    for (way, factor) in motion.iter().zip([0.1, 1.0, 10.0, 40.0]) {
+        let expected = factor * motion[1];
+        assert!((way / expected - 1.0).abs() < 0.2, "{motion:?}"); // walls turn some back
+    }
+    // Balls hit as their spheres do, needles hardly ever.
+    let narrow = |mix: &str| {
+        let all = result["variations"].as_array().unwrap().iter();
+        let varied = all.clone().find(|varied| varied["mix"] == mix).unwrap();
+        let pairs = |line: usize| varied["lines"][line]["pairs"].as_f64().unwrap();
+        pairs(varied["lines"].as_array().unwrap().len() - 1) / pairs(0)
+    };
+    assert!(narrow("needles") < 0.2 && narrow("balls") > 0.9);
 }
 
 #[test]
@@ -248,6 +292,8 @@ fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
         counts(&here.join("one/tradeoff.json")),
         counts(&here.join("two/tradeoff.json"))
     );
+
+    changes_are_what_they_say(&here.join("one/tradeoff.json"));
 
     let again = sdop(
         &[

@@ -117,8 +117,13 @@ impl Swarm {
 
     /// A culler of the bodies' spheres that is used to them.
     pub fn culler(&mut self, finder: Finder, threads: usize) -> Culler {
+        self.culler_by(Strategy::Sphere, finder, threads)
+    }
+
+    /// The same by another strategy.
+    pub fn culler_by(&mut self, strategy: Strategy, finder: Finder, threads: usize) -> Culler {
         let settings = CullSettings {
-            strategy: Strategy::Sphere,
+            strategy,
             pairs: finder,
             ..CullSettings::all_pairs()
         };

@@ -58,6 +58,7 @@ fn write_page(out: &mut String, recorded: &Recorded) -> std::fmt::Result {
     figure_4(out, result)?;
     section(out, "When does an or-DOP pay?", &tables::break_even(result))?;
     pays(out, result)?;
+    variations(out, result)?;
     survival(out, result)?;
     sizes(out, result)?;
     section(out, "Time-critical", &tables::budgets(result))?;
@@ -156,6 +157,23 @@ fn pays(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
         )?;
     }
     writeln!(out)
+}
+
+/// What moves the choice, beside density.
+fn variations(out: &mut String, result: &Tradeoff) -> std::fmt::Result {
+    section(
+        out,
+        "When something else changes",
+        &tables::variations(result),
+    )?;
+    writeln!(
+        out,
+        "The scene with one thing changed, and the cheapest total for each price of a check, with each variant's own pairs. *bodies* \
+         and *motion* keep the density and find pairs by `auto` on frames that follow one another; theirs are means of warm frames, \
+         since neighbour lists are made anew in some frames only. *motion* has ten times the bodies, and changes the time step: bodies \
+         turn as much further as they move. *triangles* are collapsed edge by edge; they change what an or-DOP costs to build \
+         (Co, the dearest of those compared) and what the exact check costs, hardly the volumes. *shapes* have the scene's radii.\n"
+    )
 }
 
 /// P(hit | spheres hit) beside the earlier study.

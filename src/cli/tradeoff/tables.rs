@@ -5,7 +5,7 @@ use sdop::lab::cost::predict::Terms;
 use sdop::lab::cost::table::Compared;
 use sdop::lab::measure::turns::median;
 use sdop::lab::tradeoff::decide::{CHECKS, Decision};
-use sdop::lab::tradeoff::pays::Standing;
+use sdop::lab::tradeoff::pays::{Line, Standing};
 use sdop::lab::tradeoff::shapes::ShapeSurvival;
 use sdop::lab::tradeoff::{Estimate, Tradeoff, VariantResult};
 use sdop::settings::{Axes, Overlap};
@@ -66,6 +66,8 @@ pub fn text(result: &Tradeoff) -> String {
         interest(result).to_string(),
         "Cp (ns) above which each pays, spheres alone before it, by density".into(),
         break_even(result).to_string(),
+        "Which variant, when one thing about the scene is changed".into(),
+        variations(result).to_string(),
         "Survivors per sphere hit (two bodies of one shape, principal axes)".into(),
         shapes(result).to_string(),
         "The price of safety".into(),
@@ -87,11 +89,7 @@ pub fn decisions(result: &Tradeoff) -> Table {
         .decisions
         .chunk_by(|a, b| (a.partners, a.class) == (b.partners, b.class))
     {
-        let cell = |decision: &Decision| match decision.tied.as_slice() {
-            [] => decision.best.clone(),
-            [one] => format!("{} (tied: {one})", decision.best),
-            [one, rest @ ..] => format!("{} (tied: {one} and {} more)", decision.best, rest.len()),
-        };
+        let cell = |decision: &Decision| with_ties(&decision.best, &decision.tied);
         let first = [
             format!("{:.2}", decisions[0].partners),
             decisions[0].class.to_string(),
@@ -99,6 +97,66 @@ pub fn decisions(result: &Tradeoff) -> Table {
         rows.add_row(first.into_iter().chain(decisions.iter().map(cell)));
     }
     rows
+}
+
+fn with_ties(best: &str, tied: &[String]) -> String {
+    match tied {
+        [] => best.to_owned(),
+        [one] => format!("{best} (tied: {one})"),
+        [one, rest @ ..] => format!("{best} (tied: {one} and {} more)", rest.len()),
+    }
+}
+
+/// A line a change of the scene, a column a price of a check: what to use, and what is tied with it.
+pub fn variations(result: &Tradeoff) -> Table {
+    let checks = CHECKS.map(nanoseconds);
+    let header = [
+        "changed",
+        "bodies",
+        "triangles per mesh",
+        "radii per frame",
+        "sphere overlaps per body",
+        "Co of an or-DOP ms",
+        "exact check µs",
+        "spheres, warm µs",
+        "best at 1000 ns, warm µs",
+    ];
+    let header = [&header[..], &checks.each_ref().map(String::as_str)].concat();
+    rows(&header, &result.variations, |varied| {
+        let construct = |line: &Line| line.ordop.map(|_| line.construct);
+        let construct = varied
+            .lines
+            .iter()
+            .filter_map(construct)
+            .fold(0.0, f64::max);
+        let changed = match varied.mix {
+            Some(mix) => format!("{}: {mix}", varied.aspect),
+            None => varied.aspect.to_string(),
+        };
+        let mut cells = vec![
+            changed,
+            varied.bodies.to_string(),
+            format!("{:.0}", varied.triangles),
+            format!("{:.3}", varied.motion),
+            format!("{:.2}", varied.partners),
+            format!("{:.1}", 1e3 * construct),
+            format!("{:.1}", 1e6 * varied.narrow_phase.miss),
+        ];
+        let best = varied.best.iter().find(|best| best.check == 1e-6);
+        let best = best.and_then(|best| varied.lines.iter().find(|line| line.name == best.name));
+        for line in [varied.lines.first(), best] {
+            cells.push(line.map_or("–".into(), |line| {
+                plus_minus(&Estimate::in_order(&line.times), 1e6, 1)
+            }));
+        }
+        cells.extend(
+            varied
+                .best
+                .iter()
+                .map(|best| with_ties(&best.name, &best.tied)),
+        );
+        cells
+    })
 }
 
 fn nanoseconds(seconds: f64) -> String {

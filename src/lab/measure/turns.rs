@@ -182,9 +182,21 @@ impl Times {
     /// Mean seconds of a frame of either regime.
     #[must_use]
     pub fn mean(&self) -> f64 {
-        let all = self.warm.iter().chain(&self.cold);
-        all.map(Stages::total).sum::<f64>() / (self.warm.len() + self.cold.len()) as f64
+        mean(self.warm.iter().chain(&self.cold))
     }
+
+    /// Mean seconds of a frame of one regime.
+    #[must_use]
+    pub fn mean_of(&self, regime: Regime) -> f64 {
+        mean(self.of(regime).iter())
+    }
+}
+
+fn mean<'a>(frames: impl Iterator<Item = &'a Stages>) -> f64 {
+    let (sum, count) = frames.fold((0.0, 0_u32), |(sum, count), frame| {
+        (sum + frame.total(), count + 1)
+    });
+    sum / f64::from(count)
 }
 
 /// A median with the quartiles around it.

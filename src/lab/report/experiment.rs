@@ -340,6 +340,11 @@ pub const EXPERIMENTS: &[Experiment] = &[
         &[Step::Bench("radii.md", "radii")],
     ),
     kernels(
+        "kernels/motion",
+        "the finders that auto chooses between, by motion: p50, p99 and the worst frame",
+        &[Step::Bench("motion.md", "motion")],
+    ),
+    kernels(
         "kernels/roofline",
         "each kernel beside the CPU's ceilings",
         &[Step::Bench("roofline.md", "roofline")],

@@ -164,6 +164,7 @@ mod tests {
             ordop: None,
             times: times.to_vec(),
             pairs: 0.0,
+            construct: 0.0,
         }
     }
 

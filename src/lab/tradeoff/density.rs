@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 use super::TradeoffError;
 use super::counts::Tally;
 use super::pays::{Line, OrDopKind, Stretch, break_even, envelope};
-use super::timing::measure;
-use super::truth::samples;
+use super::timing::{PASSES, measure};
+use super::truth::{Sample, samples};
 use super::variant::{Variant, s_dops};
-use crate::lab::cost::pass::Pass;
-use crate::lab::measure::turns::Regime;
+use crate::lab::cost::pass::{Pass, Simulated, pass};
+use crate::lab::measure::turns::{Regime, Times, median};
 use crate::lab::number::Positive;
 use crate::lab::scene::{Scene, SceneFile};
 use crate::settings::{CullSettings, Overlap, Strategy};
@@ -20,6 +20,10 @@ use crate::simd::Tier;
 
 /// Densities as multiples of the scene's.
 const FACTORS: [f32; 7] = [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
+/// Bodies times frames of a timed run, about.
+const RUN_BODIES: usize = 500_000;
+/// Frames of a timed run whose pairs are counted.
+const RUN_SAMPLES: u32 = 6;
 
 /// Break-evens at one density.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,18 +83,65 @@ pub fn lines(
     tier: Tier,
     count: u32,
 ) -> Result<Vec<Line>, TradeoffError> {
-    let samples = samples(scene, count)?;
-    let truth = vec![Vec::new(); samples.len()];
     let passes = measure(scene, variants, tier, count, || ())?;
+    let median = |times: &Times| times.quartiles(Regime::Warm).median;
+    lines_of(
+        (scene, variants, tier),
+        &samples(scene, count)?,
+        &passes,
+        median,
+    )
+}
+
+/// The same on frames that follow one another from the scene's first on, by the mean of warm ones: a finder may do more in
+/// some of them than in others.
+///
+/// # Errors
+/// Settings that can't be carried out, a body that leaves the contract.
+pub fn lines_of_a_run(
+    scene: &Scene,
+    variants: &[Variant],
+    tier: Tier,
+) -> Result<Vec<Line>, TradeoffError> {
+    let frames = scene
+        .frames
+        .min((RUN_BODIES / scene.bodies.len().max(1)).clamp(24, 80) as u32);
+    let mut passes = Vec::new();
+    for _ in 0..PASSES {
+        let mut run = Simulated::new(scene, frames)?;
+        passes.push(pass(scene, variants, tier, &mut run, None, &mut ())?);
+    }
+    let first = Scene {
+        frames,
+        ..scene.clone()
+    };
+    let mean = |times: &Times| times.mean_of(Regime::Warm);
+    lines_of(
+        (scene, variants, tier),
+        &samples(&first, RUN_SAMPLES)?,
+        &passes,
+        mean,
+    )
+}
+
+/// A line a variant: times from passes, pairs from sample frames.
+fn lines_of(
+    (scene, variants, tier): (&Scene, &[Variant], Tier),
+    samples: &[Sample],
+    passes: &[Pass],
+    statistic: impl Fn(&Times) -> f64,
+) -> Result<Vec<Line>, TradeoffError> {
+    let truth = vec![Vec::new(); samples.len()];
     let mut lines = Vec::new();
     for (at, variant) in variants.iter().enumerate() {
-        let tally = Tally::of(scene, variant, tier, &samples, &truth)?;
-        let of = |pass: &Pass| pass.culled[at].times.quartiles(Regime::Warm).median;
+        let tally = Tally::of(scene, variant, tier, samples, &truth)?;
+        let of = |value: &dyn Fn(&Pass) -> f64| passes.iter().map(value).collect::<Vec<f64>>();
         lines.push(Line {
             name: variant.name.clone(),
             decides: variant.decides(),
             ordop: OrDopKind::of(variant),
-            times: passes.iter().map(of).collect(),
+            times: of(&|pass| statistic(&pass.culled[at].times)),
+            construct: median(of(&|pass| pass.culled[at].construct)),
             pairs: tally.reported as f64 / f64::from(tally.frames),
         });
     }

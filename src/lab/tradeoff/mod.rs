@@ -20,6 +20,7 @@ mod study;
 pub mod timing;
 pub mod truth;
 pub mod variant;
+pub mod vary;
 
 pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate};
 pub use result::{Tradeoff, VariantResult};

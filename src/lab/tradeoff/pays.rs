@@ -26,6 +26,8 @@ pub struct Line {
     pub times: Vec<f64>,
     /// Np, pairs per frame.
     pub pairs: f64,
+    /// Co, seconds once.
+    pub construct: f64,
 }
 
 /// One kind of or-DOP.
@@ -195,6 +197,7 @@ mod tests {
             ordop: None,
             times: vec![time],
             pairs,
+            construct: 0.0,
         }
     }
 

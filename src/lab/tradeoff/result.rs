@@ -11,6 +11,7 @@ use super::pays::{Standing, Stretch};
 use super::safety::SafetyRow;
 use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
+use super::vary::Variation;
 use crate::lab::cost::table::{Cost, PriceRow};
 use crate::lab::measure::conditions::Conditions;
 use crate::lab::measure::counts::Volume;
@@ -92,6 +93,8 @@ pub struct Tradeoff {
     pub cheapest: Vec<Stretch>,
     /// The scene at other densities.
     pub densities: Vec<Density>,
+    /// The scene with other numbers of bodies, triangles, motion and shapes.
+    pub variations: Vec<Variation>,
     /// Time-critical culling by tests.
     pub budgets: Vec<BudgetRow>,
     /// Time-critical culling by the clock.

@@ -14,6 +14,7 @@ use super::shapes;
 use super::timing::{PASSES, Windows};
 use super::truth::{Judge, NarrowPhase, Sample, Truth, samples};
 use super::variant::{self, Variant};
+use super::vary;
 use super::{Estimate, TradeoffError};
 use crate::choice::choices;
 use crate::culler::Culler;
@@ -152,7 +153,7 @@ pub fn steps(file: &SceneFile, plan: &Plan) -> Result<u64, TradeoffError> {
     let variants = variant::all(&scene, 1).len() as u64;
     let runs = plan.seeds.max(1);
     let once = Once::ALL.len() as u64;
-    Ok(runs * (1 + variants) + passes_of(plan) as u64 + density::steps() + once)
+    Ok(runs * (1 + variants) + passes_of(plan) as u64 + density::steps() + vary::steps() + once)
 }
 
 fn judged_run(file: &SceneFile, plan: &Plan, seed: u64) -> Result<Run, TradeoffError> {
@@ -267,6 +268,7 @@ fn finish(
     step(Once::Interest.name());
     let interest = interest::sweep(scene, tier, &first.samples, &first.truth)?;
     let densities = density::sweep(file, tier, plan.samples.min(6), || step("density"))?;
+    let variations = vary::sweep(file, tier, plan.samples.min(6), || step("variations"))?;
     step(Once::Safety.name());
     let safety = safety::compare(scene, plan.samples)?;
     step(Once::Shapes.name());
@@ -294,6 +296,7 @@ fn finish(
         rows,
         cheapest,
         densities,
+        variations,
         budgets,
         clock,
         interest,
@@ -325,6 +328,10 @@ fn line(row: &VariantResult) -> Line {
         ordop: None,
         times: row.times.clone(),
         pairs: row.reported.mean,
+        construct: row
+            .warm
+            .as_ref()
+            .map_or(0.0, |cost| cost.construct.measured.mean),
     }
 }
 

@@ -1,0 +1,97 @@
+//! What motion costs the finders that `auto` chooses between: update and finding, nanoseconds a body and frame, and the
+//! frames' spread, since a list's worst frame is the one that makes it. `cargo bench --bench motion` prints a Markdown table.
+//!
+//! Cullers take turns of eight frames on one swarm, so that each sees the same motion and the same machine; the first frame of
+//! a turn, before which others ran, isn't counted.
+
+mod common;
+
+use common::swarm::{Kind, Swarm};
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
+use sdop::lab::measure::contestant::Contestant;
+use sdop::lab::measure::turns::{Regime, Turns};
+use sdop::settings::{Finder, Strategy};
+
+/// Turns of a row at most, and bodies times frames.
+const TURNS: usize = 60;
+const WORK: usize = 48_000_000;
+/// Frames of a turn.
+const FRAMES: usize = 8;
+/// By how many radii a coordinate changes per frame, at most.
+const MOTIONS: [f32; 4] = [0.01, 0.03, 0.1, 0.3];
+const FINDERS: [Finder; 3] = [Finder::Grid, Finder::Neighbours, Finder::Auto];
+
+fn main() {
+    println!(
+        "| bodies | radii per frame | strategy | finder | tests a body | mean | p50 | p99 | most | p50 of grid's |"
+    );
+    println!("|--:|--:|---|---|--:|--:|--:|--:|--:|--:|");
+    for bodies in [10_000, 100_000, 1_000_000] {
+        for most in MOTIONS {
+            for strategy in [Strategy::Sphere, Strategy::SDopBatch] {
+                compare(bodies, most, strategy);
+            }
+        }
+    }
+}
+
+/// A culler with its frames' seconds.
+struct Entrant {
+    culler: Culler,
+    seconds: Vec<f64>,
+}
+
+impl Contestant for Entrant {
+    fn frame(&mut self, bodies: &Bodies) {
+        // A swarm stays within the contract.
+        let _ = self.culler.cull(bodies);
+    }
+
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        self.culler.pairs().sorted()
+    }
+}
+
+fn compare(bodies: usize, most: f32, strategy: Strategy) {
+    let mut swarm = Swarm::moving(Kind::Uniform, bodies, most);
+    let mut entrants = FINDERS.map(|finder| Entrant {
+        culler: swarm.culler_by(strategy, finder, 1),
+        seconds: Vec::new(),
+    });
+    let tests = entrants
+        .each_ref()
+        .map(|entrant| entrant.culler.counters().sphere.tests);
+    let mut turns = Turns::default();
+    for _ in 0..TURNS.min(WORK / bodies / FRAMES) {
+        let frames: [Bodies; FRAMES] = std::array::from_fn(|_| {
+            swarm.sway();
+            swarm.bodies.clone()
+        });
+        turns.round(&mut entrants, &frames, |timed| {
+            if timed.regime == Regime::Warm {
+                timed.contestant.seconds.push(timed.seconds);
+            }
+        });
+    }
+    let each = |entrant: &mut Entrant| {
+        entrant.seconds.sort_by(f64::total_cmp);
+        let a_body = 1e9 / bodies as f64;
+        let frames = entrant.seconds.len() as f64;
+        let at = |share: f64| entrant.seconds[((frames - 1.0) * share) as usize] * a_body;
+        let mean = entrant.seconds.iter().sum::<f64>() / frames * a_body;
+        [mean, at(0.5), at(0.99), at(1.0)]
+    };
+    let times = entrants.each_mut().map(each);
+    for (((finder, entrant), [mean, half, late, last]), before) in
+        FINDERS.iter().zip(&entrants).zip(times).zip(tests)
+    {
+        let tests = (entrant.culler.counters().sphere.tests - before) as f64;
+        let frames = (entrant.seconds.len() / (FRAMES - 1) * FRAMES) as f64;
+        println!(
+            "| {bodies} | {most} | {strategy} | {finder} | {:.2} | {mean:.1} | {half:.1} | {late:.1} | {last:.1} | {:.2} |",
+            tests / (bodies as f64 * frames),
+            half / times[0][1],
+        );
+    }
+}
