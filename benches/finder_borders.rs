@@ -1,7 +1,7 @@
 //! The long search for a pair that a finder loses on a border between cells: `cargo bench --bench finder_borders -- SCENES`.
 //!
-//! One search a thread from seeds of its own, over the scenes of `lab::verify::borders`; fails when a finder's list isn't that
-//! of all pairs, or when one panics.
+//! One search a thread from seeds of its own, over the scenes of `lab::verify::borders`; prints a Markdown table, and fails when a
+//! finder's list isn't that of all pairs, or when one panics.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -73,14 +73,13 @@ fn main() -> ExitCode {
             }
         })
     });
-    println!("{} scenes, {} pairs by all pairs", sum.scenes, sum.pairs);
     println!(
-        "{} whose cells a division would count otherwise",
-        sum.divides
+        "| scenes | a division would count other cells in | pairs | scenes that lose a pair | that have one too many | panics |"
     );
+    println!("|--:|--:|--:|--:|--:|--:|");
     println!(
-        "{} with a pair missed, {} with one too many, {} panics",
-        sum.missed, sum.surplus, sum.panicked
+        "| {} | {} | {} | {} | {} | {} |",
+        sum.scenes, sum.divides, sum.pairs, sum.missed, sum.surplus, sum.panicked
     );
     match sum.missed + sum.surplus + sum.panicked {
         0 => ExitCode::SUCCESS,

@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use glam::{BVec4A, Vec4};
 use miette::Diagnostic;
 use thiserror::Error;
 
@@ -198,7 +199,13 @@ pub(crate) fn has_sound_size(shape: &Shape) -> bool {
 
 #[inline]
 pub(crate) fn is_within_limit(v: &[f32; 3]) -> bool {
-    (v[0].abs() <= LIMIT) & (v[1].abs() <= LIMIT) & (v[2].abs() <= LIMIT)
+    within_limit(Vec4::new(v[0], v[1], v[2], 0.0)).all()
+}
+
+/// Which of a ball's coordinates are at most 2⁶⁰ in size, and whether its radius, the fourth, is finite.
+#[inline]
+pub(crate) fn within_limit(ball: Vec4) -> BVec4A {
+    ball.abs().cmple(Vec4::new(LIMIT, LIMIT, LIMIT, f32::MAX))
 }
 
 fn is_invertible(q: &[f32; 4]) -> bool {

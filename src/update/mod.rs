@@ -15,8 +15,10 @@ pub use rows::{OrDopRows, Posed};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use glam::{BVec4A, Vec4};
+
 use self::row::{O, Q, S, SHAPE, T};
-use crate::bodies::contract::is_within_limit;
+use crate::bodies::contract::{is_within_limit, within_limit};
 use crate::bodies::{Bodies, Places};
 use crate::rounding::pose::{over_norm, rotate, rotation, world_axes};
 use crate::rounding::sphere::{inflate_radius, world_ball};
@@ -164,7 +166,7 @@ pub fn update_spheres(
     let (first, is_sound) = (range.start, AtomicBool::new(true));
     pool.pieces(&mut spheres[range], SPHERES, |start, spheres| {
         let start = first + start;
-        let mut sound = true;
+        let mut sound = BVec4A::new(true, true, true, true);
         let who = places.body[start..].iter().zip(&places.shape[start..]);
         for (place, (sphere, (&body, &shape))) in (start..).zip(spheres.iter_mut().zip(who)) {
             if let Some(&later) = places.body.get(place + AHEAD) {
@@ -172,18 +174,22 @@ pub fn update_spheres(
             }
             let (body, frame) = (body as usize, &frames[shape as usize]);
             let t = bodies.translation[body];
-            sound &= is_within_limit(&t);
             // The rotation lies elsewhere in memory: reading it for nothing doubles the time of a million bodies.
             *sphere = match frame.inflated {
-                Some(inflated) => [t[0], t[1], t[2], inflated],
+                Some(inflated) => {
+                    let ball = Vec4::new(t[0], t[1], t[2], inflated);
+                    sound &= within_limit(ball);
+                    ball.to_array()
+                }
                 None => {
                     let sphere = frame.sphere(bodies.rotation[body], t);
-                    sound &= sphere.iter().all(|x| x.is_finite());
+                    let fine = is_within_limit(&t) & sphere.iter().all(|x| x.is_finite());
+                    sound &= BVec4A::new(fine, fine, fine, fine);
                     sphere
                 }
             };
         }
-        if !sound {
+        if !sound.all() {
             is_sound.store(false, Ordering::Relaxed);
         }
     });

@@ -8,7 +8,7 @@
 use std::time::Instant;
 
 use miette::miette;
-use sdop::lab::measure::turns::{Quartiles, Turns, median};
+use sdop::lab::measure::turns::{Quartiles, median};
 use serde::Serialize;
 
 use crate::boxes::Frame;
@@ -16,6 +16,7 @@ use crate::check::Truth;
 use crate::entry::{Engine, Entry, OURS, Setup};
 use crate::memory::{self, Memory};
 use crate::scenes::{Course, EXPECTED, Order, Schedule, Spread};
+use crate::turns::{Timed, take_turns};
 
 /// One scene on so many threads.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -93,19 +94,20 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compa
     let able = entries.iter().filter(|entry| entry.threads >= case.threads);
     let (checked, left_out) = check(case, &able.collect::<Vec<_>>(), limit_ms)?;
     let entries: Vec<_> = checked.iter().map(|(entry, _)| *entry).collect();
-    let racers = race(case, &entries)?;
-    let ours = racers.iter().find(|racer| racer.entry.name == OURS);
+    let (timed, pairs) = timed(case, &entries)?;
+    let ours = entries.iter().position(|entry| entry.name == OURS);
+    let ours = ours.map(|at| &timed[at]);
     let mut rows = Vec::new();
-    for (racer, (_, memory)) in racers.iter().zip(checked) {
-        let ratio = ours.map(|ours| median_ratio(&racer.ms, &ours.ms));
-        let ms = Quartiles::of(racer.ms.clone());
+    for ((own, pairs), (entry, memory)) in timed.iter().zip(pairs).zip(checked) {
+        let ratio = ours.map(|ours| median_ratio(&own.ms, &ours.ms));
+        let ms = Quartiles::of(own.ms.clone());
         let bodies = case.bodies as f64;
         rows.push(EngineTiming {
             case,
-            engine: racer.entry.name,
-            version: racer.entry.version,
-            work: racer.entry.work.name(),
-            pairs: racer.pairs,
+            engine: entry.name,
+            version: entry.version,
+            work: entry.work.name(),
+            pairs,
             ms_low: ms.low,
             ms: ms.median,
             ms_high: ms.high,
@@ -207,65 +209,23 @@ fn definition_holds(case: Case, first: &Truth<'_>) -> miette::Result<()> {
     }
 }
 
-/// An engine in the race.
-struct Racer<'a> {
-    entry: &'a Entry,
-    engine: Engine,
-    ms: Vec<f64>,
-    pairs: usize,
-}
-
-/// Times everyone in turns, and judges their last pairs.
-fn race<'a>(case: Case, entries: &[&'a Entry]) -> miette::Result<Vec<Racer<'a>>> {
-    let mut course = course(case)?;
-    let Schedule {
-        warm_up,
-        timed,
-        turn,
-        ..
-    } = case.schedule;
-    let mut frames = vec![Frame::default(); turn];
-    course.next_frame(&mut frames[0])?;
-    let setup = Setup {
-        scene: &course.scene,
-        first: &frames[0],
-        threads: case.threads,
-    };
-    let mut racers = Vec::new();
-    for &entry in entries {
-        racers.push(Racer {
-            entry,
-            engine: (entry.new)(&setup)?,
-            ms: Vec::with_capacity(timed),
-            pairs: 0,
-        });
-    }
-    let mut turns = Turns::default();
-    let all = warm_up + timed;
-    for done in (0..all).step_by(turn) {
-        frames.truncate(all - done);
-        for frame in &mut frames[usize::from(done == 0)..] {
-            course.next_frame(frame)?;
-        }
-        // What starts from nothing each frame joins for the last turn before the clock counts.
-        let joins = |racer: &&mut Racer<'_>| racer.entry.ages || done + turn >= warm_up;
-        let joining = racers.iter_mut().filter(joins);
-        let (mut engines, mut times): (Vec<_>, Vec<_>) = joining
-            .map(|racer| (&mut racer.engine, &mut racer.ms))
-            .unzip();
-        turns.round(&mut engines, &frames, |frame| {
-            if done + frame.frame >= warm_up {
-                times[frame.number].push(1e3 * frame.seconds);
-            }
-        });
-    }
-    if let Some(last) = frames.last() {
-        let truth = Truth::of(last, all - 1);
-        for racer in &mut racers {
-            racer.pairs = truth.judge(racer.entry, racer.engine.pairs())?;
-        }
-    }
-    Ok(racers)
+/// Times everyone in turns, and judges their last pairs: how many each has.
+fn timed(case: Case, entries: &[&Entry]) -> miette::Result<(Vec<Timed>, Vec<usize>)> {
+    let schedule = case.schedule;
+    let (timed, last) = take_turns(course(case)?, schedule, |course, first| {
+        let setup = Setup {
+            scene: &course.scene,
+            first,
+            threads: case.threads,
+        };
+        let timed = |entry: &&Entry| Ok(Timed::new((entry.new)(&setup)?, entry.ages));
+        entries.iter().map(timed).collect()
+    })?;
+    let truth = Truth::of(&last, schedule.warm_up + schedule.timed - 1);
+    let judged = entries.iter().zip(&timed);
+    let judged = judged.map(|(entry, timed)| truth.judge(entry, timed.engine.pairs()));
+    let pairs = judged.collect::<Result<Vec<_>, _>>()?;
+    Ok((timed, pairs))
 }
 
 /// The median over frames of one time over the other on the same frame.

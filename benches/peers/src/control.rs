@@ -14,15 +14,16 @@ use sdop::threads::Threads;
 use serde::Serialize;
 
 use sdop::lab::measure::contestant::Contestant;
-use sdop::lab::measure::turns::{Turns, median};
+use sdop::lab::measure::turns::median;
 
 use crate::boxes::Frame;
 use crate::compare::median_ratio;
-use crate::entry::{Engine, Setup};
+use crate::entry::Setup;
 use crate::facts::{self, Facts};
 use crate::ours;
 use crate::record::digits;
 use crate::scenes::{Course, Order, Schedule, Spread};
+use crate::turns::{Timed, take_turns};
 
 /// Measures what more threads gain us, beside loops that divide perfectly
 #[derive(clap::Args)]
@@ -94,82 +95,55 @@ pub fn run(args: &Args) -> miette::Result<()> {
     Ok(())
 }
 
-/// One work on so many threads.
-struct Racer {
-    name: &'static str,
-    engine: Engine,
-    ms: Vec<f64>,
-}
-
 fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
-    let mut course = Course::new(Spread::Uniform, bodies, Order::Random, 0)?;
-    let Schedule {
-        warm_up,
-        timed,
-        turn,
-        ..
-    } = Schedule::of(bodies);
-    let mut frames = vec![Frame::default(); turn];
-    course.next_frame(&mut frames[0])?;
-    let mut racers = Vec::new();
-    let mut enter = |name, engine| {
-        racers.push(Racer {
-            name,
-            engine,
-            ms: Vec::with_capacity(timed),
-        });
-    };
-    for threads in [1, threads] {
-        let setup = Setup {
-            scene: &course.scene,
-            first: &frames[0],
-            threads,
+    let course = Course::new(Spread::Uniform, bodies, Order::Random, 0)?;
+    let mut names = Vec::new();
+    let (timed, _) = take_turns(course, Schedule::of(bodies), |course, first| {
+        let mut timed = Vec::new();
+        let mut enter = |name, engine| {
+            names.push(name);
+            timed.push(Timed::new(engine, true));
         };
-        for entry in &ours::ENTRIES {
-            enter(entry.name, (entry.new)(&setup)?);
-        }
-        enter(ARITHMETIC, Box::new(Loop::new(threads, bodies, compute)?));
-        let floats = bodies * BYTES / size_of::<f32>();
-        enter(MEMORY, Box::new(Loop::new(threads, floats, touch)?));
-    }
-    let mut turns = Turns::default();
-    for start in (0..warm_up + timed).step_by(turn) {
-        for frame in &mut frames[usize::from(start == 0)..] {
-            course.next_frame(frame)?;
-        }
-        let (mut engines, mut times): (Vec<_>, Vec<_>) = racers
-            .iter_mut()
-            .map(|racer| (&mut racer.engine, &mut racer.ms))
-            .unzip();
-        turns.round(&mut engines, &frames, |frame| {
-            if start >= warm_up {
-                times[frame.number].push(1e3 * frame.seconds);
+        for threads in [1, threads] {
+            let setup = Setup {
+                scene: &course.scene,
+                first,
+                threads,
+            };
+            for entry in &ours::ENTRIES {
+                enter(entry.name, (entry.new)(&setup)?);
             }
-        });
-    }
-    rows(bodies, threads, &racers)
+            enter(ARITHMETIC, Box::new(Loop::new(threads, bodies, compute)?));
+            let floats = bodies * BYTES / size_of::<f32>();
+            enter(MEMORY, Box::new(Loop::new(threads, floats, touch)?));
+        }
+        Ok(timed)
+    })?;
+    rows(bodies, threads, &names, &timed)
 }
 
-/// The second half of `racers` does what the first does, on more threads.
-fn rows(bodies: usize, threads: usize, racers: &[Racer]) -> miette::Result<Vec<SpeedUp>> {
-    let (alone, together) = racers.split_at(racers.len() / 2);
-    let sorted = |racer: &Racer| {
-        let mut pairs = racer.engine.pairs();
+/// The second half of the engines does what the first does, on more threads.
+fn rows(
+    bodies: usize,
+    threads: usize,
+    names: &[&'static str],
+    timed: &[Timed],
+) -> miette::Result<Vec<SpeedUp>> {
+    let (alone, together) = timed.split_at(timed.len() / 2);
+    let sorted = |timed: &Timed| {
+        let mut pairs = timed.engine.pairs();
         pairs.iter_mut().for_each(|pair| pair.sort_unstable());
         pairs.sort_unstable();
         pairs
     };
     let mut rows = Vec::new();
-    for (one, several) in alone.iter().zip(together) {
+    for ((name, one), several) in names.iter().zip(alone).zip(together) {
         if sorted(one) != sorted(several) {
-            return Err(miette!(
-                "{} finds other pairs on {threads} threads",
-                one.name
-            ));
+            return Err(miette!("{name} finds other pairs on {threads} threads"));
         }
         rows.push(SpeedUp {
             bodies,
-            work: one.name,
+            work: name,
             threads,
             speed_up: median_ratio(&one.ms, &several.ms),
             ms_1: median(one.ms.clone()),

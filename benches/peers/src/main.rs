@@ -32,6 +32,7 @@ mod roster;
 mod rstar;
 mod scenes;
 mod threads;
+mod turns;
 mod verdicts;
 
 use std::path::PathBuf;

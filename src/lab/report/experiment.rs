@@ -362,18 +362,36 @@ pub const EXPERIMENTS: &[Experiment] = &[
     Experiment {
         name: "instructions",
         about: "instructions of a frame's culling, by callgrind",
-        steps: &[Step::Script("instructions.csv", &[".ci/instructions"])],
+        steps: &[
+            Step::Script("instructions.csv", &[".ci/instructions"]),
+            Step::Script("contract.csv", &[".ci/contract_price"]),
+        ],
         deterministic: &[],
         scenes: &[
             "data/scenes/paper-500.toml",
             "data/scenes/crowded-500.toml",
             "data/scenes/uniform-10k.toml",
+            "data/scenes/uniform-100k.toml",
         ],
     },
     Experiment {
         name: "bounds",
         about: "the long search for the worst rounding error of every bound",
         steps: &[Step::Bench("bounds.md", "worst_case")],
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
+        name: "borders",
+        about: "the long search for a pair lost on a border between a finder's cells",
+        steps: &[Step::Bench("borders.md", "finder_borders")],
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
+        name: "memory",
+        about: "the address sanitizer in our crates in every tier, memcheck where it knows the tier",
+        steps: &[Step::Script("memory.txt", &[".ci/full", "memory"])],
         deterministic: &[],
         scenes: &[],
     },
@@ -402,7 +420,7 @@ pub const EXPERIMENTS: &[Experiment] = &[
         name: "effects",
         about: "what an effect costs that isn't listed",
         steps: &[Step::Script(
-            "effects.txt",
+            "effects.csv",
             &[".ci/effect_price", "data/scenes/paper-500.toml", "41"],
         )],
         deterministic: &[],

@@ -171,6 +171,22 @@ impl<'a> Test<'a> {
         meet(a, b)
     }
 
+    /// The cubes in the slots from `start` on, a vector of them, as columns.
+    #[inline(always)]
+    fn cubes<L: Lanes>(&self, l: L, start: usize) -> [L::F; 4] {
+        let [x, y, z, half] = &self.slots.columns;
+        if x.is_empty() {
+            l.load_quads(&self.slots.balls[start..])
+        } else {
+            [
+                l.load(&x[start..]),
+                l.load(&y[start..]),
+                l.load(&z[start..]),
+                l.load(&half[start..]),
+            ]
+        }
+    }
+
     /// Lists the first `count` hits by body.
     #[inline(always)]
     fn list(&mut self, count: usize, slots: impl Fn(u32) -> (usize, usize)) {
@@ -192,7 +208,7 @@ impl FirstTest for Test<'_> {
         for first in run.clone().step_by(PIECE) {
             let (end, mut found) = (run.end.min(first + PIECE), 0);
             for start in (first..end).step_by(L::WIDTH) {
-                let cubes = [one, self.slots.load(l, start)];
+                let cubes = [one, self.cubes(l, start)];
                 let hit = self.meeting(l, cubes, end - start, |lane| (i, start + lane));
                 let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
                 l.compress(hit, slot, &mut self.hits[found..]);

@@ -1,0 +1,63 @@
+//! Engines on the same frames in turns: the one loop that times them.
+
+use sdop::lab::measure::turns::Turns;
+
+use crate::boxes::Frame;
+use crate::entry::Engine;
+use crate::scenes::{Course, Schedule};
+
+/// An engine with the times of its frames.
+pub struct Timed {
+    /// The engine.
+    pub engine: Engine,
+    /// Whether it keeps anything but buffers from frame to frame; if not, it joins for the last turn before the clock counts.
+    pub ages: bool,
+    /// Milliseconds of each frame that counts.
+    pub ms: Vec<f64>,
+}
+
+impl Timed {
+    /// An engine without times yet.
+    pub fn new(engine: Engine, ages: bool) -> Self {
+        Self {
+            engine,
+            ages,
+            ms: Vec::new(),
+        }
+    }
+}
+
+/// Builds engines on the first frame of a course, and times them in turns on those behind it. Returns them with the last frame.
+pub fn take_turns(
+    mut course: Course,
+    schedule: Schedule,
+    build: impl FnOnce(&Course, &Frame) -> miette::Result<Vec<Timed>>,
+) -> miette::Result<(Vec<Timed>, Frame)> {
+    let Schedule {
+        warm_up,
+        timed,
+        turn,
+        ..
+    } = schedule;
+    let mut frames = vec![Frame::default(); turn];
+    course.next_frame(&mut frames[0])?;
+    let mut all = build(&course, &frames[0])?;
+    let mut turns = Turns::default();
+    for done in (0..warm_up + timed).step_by(turn) {
+        frames.truncate(warm_up + timed - done);
+        for frame in &mut frames[usize::from(done == 0)..] {
+            course.next_frame(frame)?;
+        }
+        let joining = all
+            .iter_mut()
+            .filter(|one| one.ages || done + turn >= warm_up);
+        let (mut engines, mut times): (Vec<_>, Vec<_>) =
+            joining.map(|one| (&mut one.engine, &mut one.ms)).unzip();
+        turns.round(&mut engines, &frames, |frame| {
+            if done + frame.frame >= warm_up {
+                times[frame.number].push(1e3 * frame.seconds);
+            }
+        });
+    }
+    Ok((all, frames.pop().unwrap_or_default()))
+}
