@@ -2,29 +2,44 @@
 
 mod cli;
 
-use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::Parser as _;
 use sdop::lab::mpi;
 
-/// 0 when all is well, 1 when a check failed, 2 on bad input (clap exits with 2 by itself).
+/// 0 when all is well, 1 when a check failed, 2 on bad input.
 fn main() -> ExitCode {
     cli::report_errors_whole();
     let ending = mpi::Ending;
-    match cli::Cli::parse().run() {
+    let cli = match cli::Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(told) => {
+            // Nobody may be listening: that is no reason to panic.
+            ending.alike(|| drop(told.print()));
+            // Help is no error.
+            return ExitCode::from(if told.exit_code() == 0 { 0 } else { BAD_INPUT });
+        }
+    };
+    if let Err(report) = cli.refuse() {
+        ending.alike(|| cli::complain(&report));
+        return ExitCode::from(BAD_INPUT);
+    }
+    match cli.run() {
         Ok(outcome) => {
             ending.well();
-            match outcome {
-                cli::Outcome::Passed => ExitCode::SUCCESS,
-                cli::Outcome::Failed => ExitCode::from(1),
-            }
+            ExitCode::from(match outcome {
+                cli::Outcome::Passed => 0,
+                cli::Outcome::Failed => 1,
+                #[cfg(feature = "mpi")]
+                cli::Outcome::Told => BAD_INPUT,
+            })
         }
         Err(report) => {
-            // Nobody may be listening on standard error: that is no reason to panic.
-            let _ = writeln!(std::io::stderr(), "{report:?}");
-            ending.badly(2);
-            ExitCode::from(2)
+            cli::complain(&report);
+            ending.badly(BAD_INPUT.into());
+            ExitCode::from(BAD_INPUT)
         }
     }
 }
+
+const BAD_INPUT: u8 = 2;

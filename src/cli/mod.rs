@@ -28,6 +28,8 @@ mod tradeoff;
 mod verify;
 mod view;
 
+use std::io::Write as _;
+
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use miette::MietteHandlerOpts;
@@ -69,9 +71,8 @@ impl Command {
     fn takes_ranks(&self) -> bool {
         match self {
             Self::Verify(args) => args.is_sweep(),
-            Self::Reproduce(_) => true,
-            Self::Run(_)
-            | Self::Cost(_)
+            Self::Reproduce(_) | Self::Run(_) => true,
+            Self::Cost(_)
             | Self::Advise(_)
             | Self::Mesh(_)
             | Self::Tradeoff(_)
@@ -96,15 +97,25 @@ pub enum Outcome {
     Passed,
     /// A check failed: exit code 1.
     Failed,
+    /// The input was bad, all ranks know, and one of them has said it: exit code 2.
+    #[cfg(feature = "mpi")]
+    Told,
 }
 
 impl Cli {
+    /// Refuses to be one of many ranks where each would do all of the work.
+    ///
+    /// # Errors
+    /// Many ranks, and the program or the command doesn't take them.
+    pub fn refuse(&self) -> miette::Result<()> {
+        ranks::refuse(self.command.takes_ranks())
+    }
+
     /// Runs the command.
     ///
     /// # Errors
     /// Bad input: exit code 2.
     pub fn run(self) -> miette::Result<Outcome> {
-        ranks::refuse(self.command.takes_ranks())?;
         match self.command {
             Command::Reproduce(args) => reproduce::run(&args),
             Command::Run(args) => run::run(&args),
@@ -125,6 +136,11 @@ impl Cli {
             Command::Man(args) => man::run(&args),
         }
     }
+}
+
+/// Says an error. Nobody may be listening on standard error: that is no reason to panic.
+pub fn complain(report: &miette::Report) {
+    let _ = writeln!(std::io::stderr(), "{report:?}");
 }
 
 /// Has errors printed unwrapped: a path or a command in a hint must survive being copied.

@@ -16,6 +16,9 @@ use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+#[cfg(feature = "mpi")]
+mod ranks;
+
 use super::Outcome;
 use super::output::{Format, emit, progress, table};
 use super::scene_args::{MachineArgs, SceneArgs};
@@ -24,6 +27,7 @@ use super::scene_args::{MachineArgs, SceneArgs};
 ///
 /// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of each stage and hashes.
 /// Counters and hashes depend on scene, seed and flags alone, not on the CPU or threads; with --budget-us they depend on the clock.
+/// Under mpirun, ranks share the scene and report the same pairs; built with the feature `mpi`.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
@@ -99,6 +103,10 @@ struct EffectLine {
 /// # Errors
 /// A bad scene, settings that it can't have, a body that leaves the contract, a recording that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
+    #[cfg(feature = "mpi")]
+    if sdop::lab::mpi::launched() > 1 {
+        return Ok(ranks::run(args));
+    }
     let scene = args.scene.build()?;
     let tier = args.machine.tier();
     let mut recorder = match &args.record {
@@ -328,7 +336,9 @@ fn rank_rows(ranks: &[RankLine], frames: u32) -> comfy_table::Table {
         "migrated",
         "renewals",
         "cuts",
-        "ms / frame: culling",
+        "peak MB",
+        "ms / frame: effects",
+        "culling",
         "ghosts",
         "migration",
         "waiting",
@@ -344,6 +354,8 @@ fn rank_rows(ranks: &[RankLine], frames: u32) -> comfy_table::Table {
             line.migrated.to_string(),
             line.renewals.to_string(),
             line.cuts.to_string(),
+            (line.peak_bytes / 1_000_000).to_string(),
+            ms(line.effects_seconds),
             ms(line.culling_seconds),
             ms(line.seconds.ghosts),
             ms(line.seconds.migration),

@@ -37,6 +37,19 @@ impl Ending {
         started::finish();
     }
 
+    /// Ends when all ranks have come to the same end by themselves, as they do over arguments: the first says which.
+    pub fn alike(self, say: impl FnOnce()) {
+        #[cfg(feature = "mpi")]
+        if launched() > 1 {
+            // MPI is started for its end alone: no rank ends, and has its launcher end all, before the first has spoken.
+            if Ranks::start().rank == 0 {
+                say();
+            }
+            return started::finish();
+        }
+        say();
+    }
+
     /// Ends all ranks at once with this exit code: others may wait for what this one will not send. Returns when MPI was not
     /// started.
     pub fn badly(self, code: i32) {

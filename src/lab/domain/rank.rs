@@ -162,7 +162,9 @@ impl<'a, N: Network> Rank<'a, N> {
             self.renew();
         }
         let culled = self.cull();
+        let start = Instant::now();
         agree(self.network, culled, 0)?;
+        self.work.seconds.waiting += start.elapsed().as_secs_f64();
         self.next += 1;
         let start = Instant::now();
         self.select();

@@ -49,6 +49,10 @@ pub struct RankLine {
     pub renewals: u64,
     /// How often space was cut.
     pub cuts: u64,
+    /// The most memory that the process has had in use, in bytes; 0 where the system doesn't tell.
+    pub peak_bytes: u64,
+    /// Steps of the effects.
+    pub effects_seconds: f64,
     /// Update, pair finding and or-DOP tests.
     pub culling_seconds: f64,
     /// What borders cost.
@@ -97,6 +101,7 @@ pub fn run<N: Network>(
     let mut counters = own_counters(&rank, reported);
     sum_counters(network, &mut counters);
     let culling = *rank.culler.seconds();
+    let lines = lines(&rank);
     let mut effects = rank.effects.reports().to_vec();
     combine_effects(network, &mut effects);
     let seconds = Seconds {
@@ -134,7 +139,7 @@ pub fn run<N: Network>(
             migration,
             waiting,
         },
-        ranks: lines(&rank),
+        ranks: lines,
         whole: Summary {
             counters,
             seconds: Seconds {
@@ -233,6 +238,7 @@ fn lines<N: Network>(rank: &Rank<'_, N>) -> Vec<RankLine> {
         migration,
         waiting,
     } = work.seconds;
+    let effects: f64 = rank.effects.reports().iter().map(|effect| effect.seconds).sum();
     let mine = [
         rank.bodies()[0] as u64,
         work.ghosts,
@@ -243,14 +249,16 @@ fn lines<N: Network>(rank: &Rank<'_, N>) -> Vec<RankLine> {
         work.migrated,
         work.renewals,
         work.cuts,
+        peak_bytes(),
+        effects.to_bits(),
         rank.culler.seconds().total.to_bits(),
         ghosts.to_bits(),
         migration.to_bits(),
         waiting.to_bits(),
     ];
     let all = rank.network.gather(&mine);
-    let (all, _) = all.as_chunks::<13>();
-    let line = |(rank, line): (usize, &[u64; 13])| {
+    let (all, _) = all.as_chunks::<15>();
+    let line = |(rank, line): (usize, &[u64; 15])| {
         let seconds = |at: usize| f64::from_bits(line[at]);
         RankLine {
             rank,
@@ -263,13 +271,24 @@ fn lines<N: Network>(rank: &Rank<'_, N>) -> Vec<RankLine> {
             migrated: line[6],
             renewals: line[7],
             cuts: line[8],
-            culling_seconds: seconds(9),
+            peak_bytes: line[9],
+            effects_seconds: seconds(10),
+            culling_seconds: seconds(11),
             seconds: BorderSeconds {
-                ghosts: seconds(10),
-                migration: seconds(11),
-                waiting: seconds(12),
+                ghosts: seconds(12),
+                migration: seconds(13),
+                waiting: seconds(14),
             },
         }
     };
     all.iter().enumerate().map(line).collect()
+}
+
+/// The most memory that this process has had in use.
+fn peak_bytes() -> u64 {
+    // Linux alone tells, in a line such as "VmHWM:	   12345 kB".
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|line| line.split_whitespace().next()?.parse().ok());
+    kilobytes.map_or(0, |kilobytes: u64| kilobytes << 10)
 }
