@@ -238,7 +238,12 @@ fn lines<N: Network>(rank: &Rank<'_, N>) -> Vec<RankLine> {
         migration,
         waiting,
     } = work.seconds;
-    let effects: f64 = rank.effects.reports().iter().map(|effect| effect.seconds).sum();
+    let effects: f64 = rank
+        .effects
+        .reports()
+        .iter()
+        .map(|effect| effect.seconds)
+        .sum();
     let mine = [
         rank.bodies()[0] as u64,
         work.ghosts,
