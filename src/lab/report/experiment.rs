@@ -375,6 +375,13 @@ pub const EXPERIMENTS: &[Experiment] = &[
         ],
     },
     Experiment {
+        name: "ranks",
+        about: "one world on many ranks of this machine, and what a model makes of clusters",
+        steps: &[Step::Script("ranks.json", &[".ci/many_ranks"])],
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
         name: "bounds",
         about: "the long search for the worst rounding error of every bound",
         steps: &[Step::Bench("bounds.md", "worst_case")],
