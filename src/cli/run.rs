@@ -355,11 +355,11 @@ fn rank_rows(ranks: &[RankLine], frames: u32) -> comfy_table::Table {
             line.renewals.to_string(),
             line.cuts.to_string(),
             (line.peak_bytes / 1_000_000).to_string(),
-            ms(line.effects_seconds),
-            ms(line.culling_seconds),
-            ms(line.seconds.ghosts),
-            ms(line.seconds.migration),
-            ms(line.seconds.waiting),
+            ms(line.seconds.effects),
+            ms(line.seconds.culling),
+            ms(line.seconds.border.ghosts),
+            ms(line.seconds.border.migration),
+            ms(line.seconds.border.waiting),
         ]);
     }
     rows

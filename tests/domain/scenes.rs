@@ -148,6 +148,10 @@ fn ghosts_are_a_skin_of_the_domain_and_owners_are_kept_while_bodies_are_slow() {
         // A skin of a quarter of the radius lasts seven steps of a sixtieth at speed 1.
         assert!((2..=3).contains(&line.renewals), "{line:?}");
         assert_eq!(line.cuts, 1);
+        let told = serde_json::to_value(line).unwrap();
+        assert_eq!(told["ghosts"].as_u64(), Some(line.ghosts), "{told}");
+        let ghosts = line.seconds.border.ghosts;
+        assert_eq!(told["seconds"]["ghosts"].as_f64(), Some(ghosts), "{told}");
     }
     assert_eq!(ghosts(&on(1, &build(text)).unwrap().ranks), 0);
 }

@@ -35,4 +35,4 @@ pub use error::DomainError;
 pub use mpi::MpiNetwork;
 pub use network::Network;
 pub use rank::{Rank, RankFrame};
-pub use run::{BorderSeconds, DomainSummary, RankLine, run};
+pub use run::{BorderSeconds, DomainSummary, RankLine, RankSeconds, run};

@@ -51,13 +51,20 @@ pub struct RankLine {
     pub cuts: u64,
     /// The most memory that the process has had in use, in bytes; 0 where the system doesn't tell.
     pub peak_bytes: u64,
+    /// Its wall time.
+    pub seconds: RankSeconds,
+}
+
+/// The wall time of one rank. Sums over frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct RankSeconds {
     /// Steps of the effects.
-    pub effects_seconds: f64,
+    pub effects: f64,
     /// Update, pair finding and or-DOP tests.
-    pub culling_seconds: f64,
+    pub culling: f64,
     /// What borders cost.
     #[serde(flatten)]
-    pub seconds: BorderSeconds,
+    pub border: BorderSeconds,
 }
 
 /// What a finished run says of itself, the same on every rank but for the hash of all pairs, which rank 0 alone has.
@@ -277,12 +284,14 @@ fn lines<N: Network>(rank: &Rank<'_, N>) -> Vec<RankLine> {
             renewals: line[7],
             cuts: line[8],
             peak_bytes: line[9],
-            effects_seconds: seconds(10),
-            culling_seconds: seconds(11),
-            seconds: BorderSeconds {
-                ghosts: seconds(12),
-                migration: seconds(13),
-                waiting: seconds(14),
+            seconds: RankSeconds {
+                effects: seconds(10),
+                culling: seconds(11),
+                border: BorderSeconds {
+                    ghosts: seconds(12),
+                    migration: seconds(13),
+                    waiting: seconds(14),
+                },
             },
         }
     };
