@@ -84,6 +84,10 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
 #[inline(always)]
 pub(super) fn pack_lanes<T: Copy, const N: usize>(keep: u32, lanes: [T; N], out: &mut [T]) {
     let out = &mut out[..N];
+    // Four lanes seldom have one to keep, and packing them one by one takes longer than a test that fills them.
+    if keep == 0 {
+        return;
+    }
     let mut kept = 0;
     for (lane, value) in lanes.into_iter().enumerate() {
         // `kept` ≤ lane, so a value that isn't kept is overwritten or lies behind the kept ones.
