@@ -1,9 +1,9 @@
 """Rewrites Rust sources so that cargo-mutants' mutants sleep in them, each to be woken by its number.
 
-`a + b` becomes `match (a, b) { (a, b) => match awake() { 7 => a - b, 8 => a * b, _ => a + b } }`; a function's body starts
-with `if awake() == 9 { return 0; }`; a match arm gets the guard `if awake() != 10`, and one that has a guard another; a field is
-that of its struct's base. Constants can't ask at run time who is awake: their mutants, and those that don't compile beside the
-original, are left for a build of their own.
+`a + b` becomes `match (a, b) { (a, b) => match awake(7) { 7 => a - b, 8 => a * b, _ => a + b } }`; a function's body starts
+with `if awake(9) == 9 { return 0; }`; a match arm gets the guard `if awake(10) != 10`, and one that has a guard another; a field is
+that of its struct's base. Whoever asks says where, by the first mutant there: a process that is told to says when it ends which places
+it came by, and so which mutants it could notice at all. Constants can't ask at run time: their mutants are left for a build of their own.
 """
 
 import re
@@ -11,30 +11,62 @@ import re
 import tree_sitter
 import tree_sitter_rust
 
-AWAKE = "crate::mutant::awake()"
+# What a process that is told to writes to stderr when it ends, before the numbers.
+SIGN = "its places:"
 COMPARISONS = {"==", "!=", "<", ">", "<=", ">="}
 CONSTANT = {"const_item", "static_item", "enum_variant", "array_type", "type_arguments", "const_parameter", "match_pattern",
             "range_pattern"}
 # `const fn` that no constant calls: as plain functions their mutants can sleep.
-CALLED_AT_RUN_TIME = {"members_of", "place_of", "inflate_radius", "up", "down", "widen", "collide"}
+CALLED_AT_RUN_TIME = {"members_of", "place_of", "inflate_radius", "reach", "up", "down", "widen", "collide"}
 
 # Read before `main` and never written again, so that asking costs a load and the optimiser may ask once for many.
-WAKER = """
+WAKER = f"""
+use std::sync::atomic::{{AtomicBool, Ordering::Relaxed}};
+
 static mut AWAKE: u32 = 0;
+static mut TRACED: bool = false;
+static PLACES: [AtomicBool; 1 << 14] = [const {{ AtomicBool::new(false) }}; 1 << 14];
 
 #[used]
 #[unsafe(link_section = ".init_array")]
 static INIT: extern "C" fn() = init;
 
-extern "C" fn init() {
+#[used]
+#[unsafe(link_section = ".fini_array")]
+static FINI: extern "C" fn() = fini;
+
+unsafe extern "C" {{
+    fn write(file: i32, bytes: *const u8, length: usize) -> isize;
+}}
+
+extern "C" fn init() {{
     let number = std::env::var("MUTANT").map_or(0, |n| n.parse().expect("MUTANT is a number"));
-    unsafe { AWAKE = number };
-}
+    unsafe {{ (AWAKE, TRACED) = (number, std::env::var_os("TRACED").is_some()) }};
+}}
+
+extern "C" fn fini() {{
+    if unsafe {{ TRACED }} {{
+        let numbers = (0..PLACES.len()).filter(|&n| PLACES[n].load(Relaxed));
+        let text = numbers.fold("\\n{SIGN}".to_owned(), |text, n| text + " " + &n.to_string()) + "\\n";
+        unsafe {{ write(2, text.as_ptr(), text.len()) }};
+    }}
+}}
 
 #[inline(always)]
-pub fn awake() -> u32 {
-    unsafe { AWAKE }
-}
+pub fn awake(place: u32) -> u32 {{
+    unsafe {{
+        if TRACED {{
+            came_by(place);
+        }}
+        AWAKE
+    }}
+}}
+
+#[cold]
+#[inline(never)]
+fn came_by(place: u32) {{
+    PLACES[place as usize].store(true, Relaxed);
+}}
 """
 
 
@@ -51,11 +83,16 @@ def applied(source, mutant):
     return source[:start] + mutant["replacement"].encode() + source[end:]
 
 
+def awake(mutants):
+    """Asks who is awake, at the place of these mutants."""
+    return f"crate::mutant::awake({mutants[0]['n']})"
+
+
 class File:
-    """One file with its mutants asleep; `text` is the result and `asleep` the numbers that are in it."""
+    """One file with its mutants asleep; `text` is the result and `asleep` the numbers that are in it, each with that of its place."""
 
     def __init__(self, source, mutants):
-        self.source, self.asleep, self.at = source, set(), {}
+        self.source, self.asleep, self.at = source, {}, {}
         for mutant in mutants:
             place = offset(source, mutant["span"]["start"])
             self.at.setdefault((mutant["genre"], place), []).append(mutant)
@@ -70,7 +107,7 @@ class File:
         found = self.at.get((genre, place), [])
         if not found or is_constant(node):
             return []
-        self.asleep.update(mutant["n"] for mutant in found)
+        self.asleep.update((mutant["n"], found[0]["n"]) for mutant in found)
         return found
 
     def between(self, start, end):
@@ -100,10 +137,10 @@ class File:
         left, right = self.sides(node)
         if old in ("&&", "||"):  # the right side may not be evaluated
             arms = "".join(f"{m['n']} => a__ {m['replacement']} ({right}), " for m in mutants)
-            return f"({{ let a__ = {left}; match {AWAKE} {{ {arms} _ => a__ {old} ({right}) }} }})"
+            return f"({{ let a__ = {left}; match {awake(mutants)} {{ {arms} _ => a__ {old} ({right}) }} }})"
         arms = "".join(f"{m['n']} => a__ {m['replacement']} b__, " for m in mutants)
         borrow = "&" if old in COMPARISONS else ""
-        return f"(match ({borrow}({left}), {borrow}({right})) {{ (a__, b__) => match {AWAKE} {{ {arms} _ => a__ {old} b__ }} }})"
+        return f"(match ({borrow}({left}), {borrow}({right})) {{ (a__, b__) => match {awake(mutants)} {{ {arms} _ => a__ {old} b__ }} }})"
 
     def compound_assignment_expr(self, node):
         operator = node.child_by_field_name("operator")
@@ -112,14 +149,14 @@ class File:
             return None
         left, right = self.sides(node)
         arms = "".join(f"{m['n']} => {{ {left} {m['replacement']} b__; }} " for m in mutants)
-        return f"{{ let b__ = {right}; match {AWAKE} {{ {arms} _ => {{ {left} {operator.text.decode()} b__; }} }} }}"
+        return f"{{ let b__ = {right}; match {awake(mutants)} {{ {arms} _ => {{ {left} {operator.text.decode()} b__; }} }} }}"
 
     def unary_expression(self, node):
         mutants = self.take("UnaryOperator", node.start_byte, node)
         if not mutants:
             return None
         operator, value = node.children[0].text.decode(), self.emit(node.children[1])
-        return f"({{ let v__ = {value}; if {AWAKE} == {mutants[0]['n']} {{ v__ }} else {{ {operator}v__ }} }})"
+        return f"({{ let v__ = {value}; if {awake(mutants)} == {mutants[0]['n']} {{ v__ }} else {{ {operator}v__ }} }})"
 
     def match_arm(self, node):
         pattern = node.child_by_field_name("pattern")
@@ -130,7 +167,7 @@ class File:
         mutants = self.take("MatchArm", node.start_byte, node) if any(other.text == b"_" for other in others) else []
         if not mutants:
             return None
-        guard = f"{pattern.text.decode()} if {AWAKE} != {mutants[0]['n']}"
+        guard = f"{pattern.text.decode()} if {awake(mutants)} != {mutants[0]['n']}"
         return self.plain(node, lambda child: guard if child == pattern else None)
 
     def guarded_arm(self, node, pattern, condition):
@@ -138,7 +175,7 @@ class File:
         if not mutants:
             return None
         arms = "".join(f"{m['n']} => {m['replacement']}, " for m in mutants)
-        guard = f"match {AWAKE} {{ {arms} _ => {self.emit(condition)} }}"
+        guard = f"match {awake(mutants)} {{ {arms} _ => {self.emit(condition)} }}"
         whole = self.between(pattern.start_byte, condition.start_byte) + guard
         return self.plain(node, lambda child: whole if child == pattern else None)
 
@@ -154,7 +191,7 @@ class File:
             return None
         base = next(field for field in node.parent.children if field.type == "base_field_initializer").children[1]
         name, base, value = name.text.decode(), self.emit(base), self.emit(value)
-        return f"{name}: if {AWAKE} == {mutants[0]['n']} {{ ({base}).{name} }} else {{ {value} }}"
+        return f"{name}: if {awake(mutants)} == {mutants[0]['n']} {{ ({base}).{name} }} else {{ {value} }}"
 
     def function_item(self, node):
         body, result = node.child_by_field_name("body"), node.child_by_field_name("return_type")
@@ -165,7 +202,7 @@ class File:
         mutants = self.take("FnValue", start, body) if start is not None else []
         if not mutants:
             return None
-        head = "".join(f"if {AWAKE} == {m['n']} {{ return {m['replacement']}; }} " for m in mutants)
+        head = "".join(f"if {awake(mutants)} == {m['n']} {{ return {m['replacement']}; }} " for m in mutants)
         return self.plain(node, lambda child: "{ " + head + self.plain(body)[1:] if child == body else None)
 
 
@@ -185,9 +222,17 @@ def is_constant(node):
     return False
 
 
+# Where a planted text names a mutant.
+NUMBER = r"(\d+) => (?=\{ |a__|true|false)|awake\(\d+\) [!=]= (\d+)"
+
+
+def numbers(text):
+    """The mutants that a planted text names."""
+    return {int(next(filter(None, groups))) for groups in re.findall(NUMBER, text)}
+
+
 def culprits(text, start, end):
     """The mutants that an error between these bytes of a rewritten file points at."""
     before, own = text[:start].decode()[-400:], text[start:end].decode()
-    number = r"(\d+) => (?=\{? ?\S* ?)|== (\d+) \{ (?:return|v__|\()|awake\(\) != (\d+)"
-    found = re.findall(number, before) or re.findall(number, own)
+    found = re.findall(NUMBER, before) or re.findall(NUMBER, own)
     return {int(next(filter(None, groups))) for groups in found[-1:]}

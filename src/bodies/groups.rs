@@ -29,3 +29,26 @@ impl Default for Groups {
         Self::ALL
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bodies_collide_when_each_is_in_a_group_that_the_other_collides_with() {
+        for (member, mask) in [(0b01, 0b10), (0b10, 0b01), (0b01, 0b01)] {
+            let one = Groups { member, mask };
+            for other in (0..16).map(|bits| Groups {
+                member: bits & 3,
+                mask: bits >> 2,
+            }) {
+                let sees =
+                    |a: Groups, b: Groups| (0..2).any(|i| a.mask >> i & b.member >> i & 1 == 1);
+                let expected = sees(one, other) && sees(other, one);
+                assert_eq!(one.collide(other), expected, "{one:?} and {other:?}");
+                assert_eq!(other.collide(one), expected, "{other:?} and {one:?}");
+            }
+        }
+        assert!(Groups::ALL.collide(Groups::default()));
+    }
+}

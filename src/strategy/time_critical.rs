@@ -208,3 +208,15 @@ impl History {
         }));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_relative_to_the_sum_of_radii() {
+        let spheres = [[9.0; 4], [1.0, 2.0, 3.0, 1.0], [-3.0, 6.0, -4.0, 2.0]];
+        // Apart by (4, −4, 7), whose length is 9, of radii that are 3 together.
+        assert_eq!(relative_distance(&spheres, [1, 2]), 9.0);
+    }
+}

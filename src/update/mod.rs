@@ -195,3 +195,59 @@ pub fn update_spheres(
     });
     is_sound.into_inner()
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use glam::Vec3;
+
+    use super::*;
+    use crate::mesh::ProceduralShape;
+    use crate::volume::{Origin, ShapeSpec};
+
+    /// A box whose ball's centre is there.
+    fn boxed(centre: [f32; 3]) -> Shape {
+        let (x, y, z) = (1.0, 2.5, 0.75);
+        let mut mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
+        mesh.vertices
+            .iter_mut()
+            .for_each(|v| *v += Vec3::from(centre));
+        let spec = ShapeSpec {
+            origin: Origin::File,
+            ..ShapeSpec::default()
+        };
+        Shape::build(&mesh, &spec).unwrap()
+    }
+
+    /// A sum, rounded up: by [`up`] to the next f32 or the one above that.
+    fn is_just_above(size: f32, sum: f64) -> bool {
+        f64::from(size) >= sum && f64::from(size.next_down().next_down()) <= sum
+    }
+
+    #[test]
+    fn a_frame_has_the_sizes_of_its_shape_and_grows_by_the_margin_to_the_ulp() {
+        for centre in [[0.0; 3], [0.5, -3.0, 0.125]] {
+            let shape = boxed(centre);
+            let frame = ShapeFrame::new(&shape, &shape.ordop.basis);
+            let [radius, reach] = [shape.ball.radius, shape.reach];
+            assert_eq!((frame.radius(), frame.reach()), (radius, reach));
+            assert_eq!(frame.centre(), shape.ball.centre.to_array());
+            for margin in [1e-6, 0.3, 7000.0] {
+                let grown = frame.grown(margin);
+                let sum = |size: f32| f64::from(size) + f64::from(margin);
+                assert!(is_just_above(grown.radius(), sum(radius)), "{margin}");
+                assert!(is_just_above(grown.reach(), sum(reach)), "{margin}");
+                assert_eq!(grown.centre(), frame.centre());
+                let (q, t) = ([0.5, -0.25, 1.0, 0.125], [3.0, -7.0, 0.5]);
+                let [x, y, z, inflated] = grown.sphere(q, t);
+                let offset = rotate(&rotation(q), frame.centre());
+                let there: [f64; 3] = std::array::from_fn(|i| offset[i] + f64::from(t[i]));
+                assert_eq!([x, y, z], there.map(|x| x as f32));
+                let least = f64::from(inflate_radius(grown.radius()));
+                let most = least * (1.0 + 1e-6) + 1e-6;
+                assert!((least..most).contains(&f64::from(inflated)), "{inflated}");
+            }
+        }
+    }
+}

@@ -82,6 +82,45 @@ mod tests {
         assert_eq!(local.follow(far.into_iter()), local, "and stays with them");
     }
 
+    /// A translation along one axis.
+    fn along(axis: usize, x: f64) -> [f64; 3] {
+        std::array::from_fn(|i| if i == axis { x } else { 0.0 })
+    }
+
+    #[test]
+    fn the_origin_moves_only_where_that_halves_the_distances() {
+        // No f32: they step by 128 here.
+        let s = f64::from(1 << 30) + 2.0;
+        let around = [(0.0, s, false), (-s, 2.0 * s, false), (s, 3.0 * s, true)];
+        for (lo, hi, moves) in around {
+            for axis in 0..3 {
+                let bodies = [lo, hi].map(|x| along(axis, x));
+                let local = Local::default().follow(bodies.into_iter());
+                let middle = if moves { 0.5 * (lo + hi) } else { 0.0 };
+                assert_eq!(local.origin, along(axis, middle), "{lo} to {hi}");
+            }
+        }
+        let local = Local {
+            origin: along(1, s),
+        };
+        let bodies = [s - 3.3, s + 4.1].map(|y| along(1, y));
+        assert_eq!(local.follow(bodies.into_iter()), local, "it is near enough");
+    }
+
+    #[test]
+    fn the_contract_ends_at_its_limit_from_the_origin() {
+        let (limit, step) = (f64::from(LIMIT), f64::from(LIMIT) * f64::EPSILON);
+        for axis in 0..3 {
+            let local = Local {
+                origin: along(axis, 2.0 * limit),
+            };
+            for (x, within) in [(1.0, true), (3.0, true), (0.0, false), (4.0, false)] {
+                assert_eq!(local.reaches(along(axis, x * limit)), within, "{x}");
+            }
+            assert!(!local.reaches(along(axis, limit - step)));
+        }
+    }
+
     #[test]
     fn the_bound_covers_the_worst_rounding() {
         let local = Local {
@@ -108,6 +147,7 @@ mod tests {
             let lost = (a - (sum - of_b)) + (b - of_b);
             (f64::from(placed[i]) - sum) - lost
         };
+        assert!(bound > 0.0);
         let sum: f64 = (0..3).map(|i| (moved(i) / bound).powi(2)).sum();
         sum.sqrt()
     }

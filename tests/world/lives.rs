@@ -106,6 +106,37 @@ fn ids_are_never_given_again() {
 }
 
 #[test]
+fn ids_are_told_by_slot_and_generation() {
+    let mut world = World::with(
+        shapes(),
+        &Culler::builder().settings(&CullSettings::all_pairs()),
+    )
+    .unwrap();
+    let ids = [(); 3].map(|()| world.insert(Body::default()).unwrap());
+    assert_eq!(ids.map(|id| id.slot()), [0, 1, 2]);
+    world.remove(ids[2]).unwrap();
+    world.cull().unwrap();
+    let again = world.insert(Body::default()).unwrap();
+    let told = [ids[1], ids[2], again].map(|id| id.to_string());
+    assert_eq!(told, ["1.0", "2.0", "2.1"]);
+}
+
+#[test]
+fn a_body_at_a_pose_moves_and_collides_with_all() {
+    let (turn, place) = ([0.5, -0.5, 0.5, 0.5], [1.0, -2.0, 3.0]);
+    let body = Body {
+        shape: 2,
+        dynamic: true,
+        rotation: turn,
+        translation: place,
+        groups: Groups::ALL,
+        margin: 0.0,
+    };
+    assert_eq!(Body::at(2, turn, place), body);
+    assert_ne!(Body::at(2, turn, place).fixed(), body);
+}
+
+#[test]
 fn a_world_counts_its_bodies_and_what_its_culler_does() {
     let way = CullSettings::all_pairs();
     let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
@@ -298,5 +329,24 @@ fn a_shape_added_late_is_as_good_as_one_from_the_start() {
             let told = refused.unwrap_err().to_string();
             assert!(told.ends_with("of k = 26, shapes before it have k = 18"));
         }
+    }
+}
+
+#[test]
+fn the_first_shape_of_a_world_sets_the_directions() {
+    for way in super::ways() {
+        let mut world = World::with(Vec::new(), &Culler::builder().settings(&way)).unwrap();
+        let shapes = shapes()
+            .into_iter()
+            .map(|shape| shape.with_directions(DirectionSet::K6));
+        for (number, shape) in (0..).zip(shapes) {
+            assert_eq!(world.add_shape(shape), Ok(number), "{way:?}");
+        }
+        for _ in 0..2 {
+            world.insert(Body::default()).unwrap();
+        }
+        world.cull().unwrap();
+        let expected = usize::from(way.strategy != Strategy::None);
+        assert_eq!(world.pairs().len(), expected, "{way:?}");
     }
 }

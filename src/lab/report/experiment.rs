@@ -403,6 +403,16 @@ pub const EXPERIMENTS: &[Experiment] = &[
         scenes: &[],
     },
     Experiment {
+        name: "mutants",
+        about: "planted mutants: which the tests catch by room, and why others survive",
+        steps: &[
+            Step::Script("mutants.csv", &[".ci/mutants/run"]),
+            Step::Script("survivors.csv", &[".ci/mutants/run", "--print", "reasons"]),
+        ],
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
         name: "rapier/contacts",
         about: "the filter in a physics engine: contacts with it and without, step by step",
         steps: RAPIER_CONTACTS,

@@ -147,7 +147,7 @@ mod tests {
                     error.to_string(),
                     format!("unit {unit}, square of {unit}, failed")
                 );
-                assert!(format!("{error:?}").contains(why));
+                assert!(error.chain().any(|cause| cause.to_string().contains(why)));
             }
         }
     }
