@@ -212,7 +212,7 @@ def ask(tree, name, command, seconds, **environment):
 
 
 class Test:
-    """A test, or the library's own tests together, without the laboratory's; `cost` is its CPU time in seconds when nothing is awake,
+    """A test, or the library's own tests together, but for those of sweeps; `cost` is its CPU time in seconds when nothing is awake,
     `places` are those that it comes by."""
 
     def __init__(self, built, suite, test=None):
