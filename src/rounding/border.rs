@@ -105,6 +105,29 @@ mod tests {
     }
 
     #[test]
+    fn a_box_reaches_by_its_error_and_no_farther() {
+        for (inflated, farthest, shape) in [(2.5_f32, 3.0e6_f32, 7.0e5_f32), (2.5e-6, 3.0, 0.75)] {
+            let t = [0.25, -farthest, 1.5];
+            let size = f64::from(farthest) + f64::from(shape);
+            let exact = f64::from(reach(inflated)) + BOX_ERROR * size;
+            let found = f64::from(reach_of_box(inflated, t, shape));
+            assert!(
+                exact <= found && found < exact * (1.0 + exp2(-21)),
+                "{found}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_skin_is_its_share_and_no_more() {
+        for (reach, share) in [(8.0, 0.25), (0.3, 0.7), (7.0e5, 0.125)] {
+            let (skin, exact) = (f64::from(skin(reach, share)), f64::from(reach) * share);
+            assert!(exact * (1.0 - exp2(-21)) < skin && skin <= exact, "{skin}");
+        }
+        assert_eq!(skin(8.0, 0.0), 0.0);
+    }
+
+    #[test]
     fn a_box_reaches_farther_where_its_ends_are_rounded_farther() {
         let near = reach_of_box(1.0, [0.0; 3], 1.0);
         let far = reach_of_box(1.0, [0.0, -4.0e6, 0.0], 1.0);

@@ -105,6 +105,25 @@ mod tests {
         })
     }
 
+    #[test]
+    fn radii_grow_by_the_skin_and_what_rounding_needs() {
+        for share in [0.0, 0.0625, 0.25, 0.375] {
+            let grown = Reach::with_skin(share);
+            for radius in [exp2(-40) as f32, 0.3, 1.7, 2.5e9] {
+                // Three roundings of f32.
+                let exact = f64::from(radius) * (1.0 + f64::from(share)) * REACH_FACTOR;
+                let (least, most) = (exact * (1.0 - 3.1 * U), exact * (1.0 + 3.1 * U));
+                let found = f64::from(grown.of(radius)) - f64::from(REACH_FLOOR);
+                assert!(
+                    least <= found && found <= most,
+                    "{share}, {radius}: {found}"
+                );
+            }
+            assert_eq!(grown.of(0.0), REACH_FLOOR);
+        }
+        assert_eq!(Reach::NONE.of(0.3), 0.3);
+    }
+
     /// Drifts about as long as the skin, in any direction, with or without growth: whatever passes is within the budget, and
     /// some of it is beyond the skin.
     #[test]

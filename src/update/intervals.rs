@@ -193,3 +193,36 @@ fn widen(ends: &mut [[f32; 2]], coefficients: &[[i8; 3]], margin: f32) {
         (*lo, *hi) = (down(f64::from(*lo) - out), up(f64::from(*hi) + out));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rounding::exp2;
+
+    #[test]
+    fn a_cube_contains_its_box_and_is_as_small_as_the_box_is_wide() {
+        let mut state = 3_u64;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 * exp2(-24) as f32
+        };
+        for n in 0..1000 {
+            let far = exp2(n % 40 - 20) as f32;
+            let ends: [[f32; 2]; 3] = std::array::from_fn(|_| {
+                let lo = (next() - 0.5) * far;
+                [lo, lo + next()]
+            });
+            let [x, y, z, half] = cube_about(&ends);
+            let mut widest = 0.0_f64;
+            for (centre, [lo, hi]) in [x, y, z].into_iter().zip(ends) {
+                let [centre, half, lo, hi] = [centre, half, lo, hi].map(f64::from);
+                assert!(centre - half <= lo && hi <= centre + half, "{ends:?}");
+                let slack = exp2(-22) * lo.abs().max(hi.abs());
+                widest = widest.max(0.5 * (hi - lo) + slack);
+            }
+            assert!(f64::from(half) <= widest * (1.0 + exp2(-22)), "{ends:?}");
+        }
+    }
+}

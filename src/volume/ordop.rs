@@ -104,3 +104,46 @@ fn ceil_f32(x: f64) -> f32 {
 fn floor_f32(x: f64) -> f32 {
     -ceil_f32(-x)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Small integers times powers of two, whose products are exact in i128.
+    fn holds_exactly(a: [i64; 3], b: [i64; 3]) -> bool {
+        let exact: i128 = (0..3).map(|i| i128::from(a[i]) * i128::from(b[i])).sum();
+        let [a, b] = [a, b].map(|v| DVec3::from(v.map(|x| x as f64)));
+        let (lo, hi) = dot_bounds(a, b);
+        lo.ceil() as i128 <= exact && exact <= hi.floor() as i128
+    }
+
+    #[test]
+    fn the_exact_sum_of_products_lies_within_its_bounds() {
+        let big = 1 << 30;
+        // Two equal losses; what is lost is all that is left; nothing is lost; losses of other signs.
+        assert!(holds_exactly([big, 1, 1], [big, 1, 1]));
+        assert!(holds_exactly([big, 1, big], [big, 1, -big]));
+        assert!(holds_exactly([big, 0, 3], [big, 7, -5]));
+        assert!(holds_exactly([big, 1, -1], [big, 1, 1]));
+        let mut state = 5_u64;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            // Of 24 bits, and up to 2³¹ times that.
+            (i64::from(state as i32 >> 8)) << (state >> 32 & 31)
+        };
+        for _ in 0..20_000 {
+            let (a, b) = ([next(), next(), next()], [next(), next(), next()]);
+            assert!(holds_exactly(a, b), "{a:?}·{b:?}");
+        }
+    }
+
+    #[test]
+    fn an_end_at_zero_is_no_negative_zero() {
+        for x in [0.0, -0.0] {
+            let (lo, hi) = slab(DVec3::X, &[Vec3::new(x, x, x)]);
+            assert_eq!([lo, hi].map(f32::to_bits), [0, 0]);
+        }
+    }
+}

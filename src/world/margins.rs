@@ -96,5 +96,10 @@ mod tests {
         assert_eq!(model(0.0, 1.0e-7), 102, "below 2⁻¹² of the size");
         assert_eq!(model(0.0, 1.0e-2), 103);
         assert_eq!(made[0], (3, 0.5625));
+        // A larger shape's errors have a class in common as long as they are larger.
+        let mut model =
+            |moved: f64| margins.model(4, 64.0, 0.0, moved, |_, _| moved.to_bits() as u32);
+        assert_eq!(model(1.0e-2), model(1.0e-3));
+        assert_ne!(model(1.0e-2), model(3.0e-2));
     }
 }
