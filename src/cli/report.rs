@@ -11,7 +11,7 @@ use super::files::write;
 use super::output::{print, rows};
 
 /// Pages whose numbers come from records.
-const PAGES: [&str; 15] = [
+const PAGES: [&str; 16] = [
     "README.md",
     "ARCHITECTURE.md",
     "benches/README.md",
@@ -24,6 +24,7 @@ const PAGES: [&str; 15] = [
     "paper/guide.md",
     "paper/artifact.md",
     "paper/machines.md",
+    "paper/many-ranks.md",
     "paper/proofs/README.md",
     "paper/report.typ",
     "data/hard_cases/README.md",
