@@ -110,6 +110,7 @@ fn say(directory: &Path) -> miette::Result<()> {
 
 /// Measures into a directory beside, and puts it in its place when it is whole.
 fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
+    let more = further(args, experiment)?;
     let mut beside = directory.as_os_str().to_owned();
     beside.push(".part");
     let beside = PathBuf::from(beside);
@@ -123,8 +124,8 @@ fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Re
         .into_diagnostic()
         .wrap_err_with(cannot)?;
     let before = Load::now();
-    execute(experiment, &args.more, &beside)?;
-    let command = command_line(experiment, &args.more);
+    let command = command_line(experiment, args);
+    execute(experiment, &more, &command, &beside)?;
     let mut manifest =
         Manifest::describe(&beside, experiment.name, command, experiment.deterministic)?;
     manifest.machine = Some(Machine::here(args.machine.tier()));
@@ -144,8 +145,35 @@ fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Re
         .wrap_err_with(cannot)
 }
 
+/// What a step's command gets beyond its own arguments: the SIMD level too, which the record names, so that it is what ran.
+fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> {
+    if args
+        .more
+        .iter()
+        .any(|argument| argument.starts_with("--simd"))
+    {
+        return Err(miette!(
+            help = "put it before the --: the record names the level",
+            "--simd behind the --"
+        ));
+    }
+    let mut more = args.more.clone();
+    if let Some(tier) = args.machine.asked() {
+        let ours = |step: &Step| matches!(step, Step::Sdop(_) | Step::SdopPrints(..));
+        if !experiment.steps.iter().all(ours) {
+            return Err(miette!(
+                help = "only what sdop runs itself takes a level",
+                "{} chooses its SIMD levels",
+                experiment.name
+            ));
+        }
+        more.extend(["--simd".to_owned(), tier.name().to_owned()]);
+    }
+    Ok(more)
+}
+
 /// Runs the experiment's steps; further arguments go to each.
-fn execute(experiment: &Experiment, more: &[String], out: &Path) -> miette::Result<()> {
+fn execute(experiment: &Experiment, more: &[String], line: &str, out: &Path) -> miette::Result<()> {
     for (index, step) in experiment.steps.iter().enumerate() {
         if experiment.steps.len() > 1 {
             eprintln!(
@@ -158,7 +186,7 @@ fn execute(experiment: &Experiment, more: &[String], out: &Path) -> miette::Resu
         let (mut command, file) = prepared(step, out)?;
         let output = command
             .args(more)
-            .env(COMMAND, command_line(experiment, more))
+            .env(COMMAND, line)
             .stderr(Stdio::inherit())
             .output()
             .into_diagnostic()
@@ -299,11 +327,14 @@ fn estimates(benches: &[&str], file: &Path) -> miette::Result<Command> {
 }
 
 /// The command as a reader types it.
-fn command_line(experiment: &Experiment, more: &[String]) -> String {
+fn command_line(experiment: &Experiment, args: &Args) -> String {
     let mut command = format!("sdop record {}", experiment.name);
-    if !more.is_empty() {
+    if let Some(tier) = args.machine.asked() {
+        command.push_str(&format!(" --simd {tier}"));
+    }
+    if !args.more.is_empty() {
         command.push_str(" -- ");
-        command.push_str(&more.join(" "));
+        command.push_str(&args.more.join(" "));
     }
     command
 }
@@ -329,7 +360,7 @@ fn adopt(
     }
     if manifest.command.is_empty() {
         manifest.command =
-            known.map_or_else(String::new, |experiment| command_line(experiment, &[]));
+            known.map_or_else(String::new, |experiment| command_line(experiment, args));
     }
     manifest.caches.clear();
     let touched = Code::last_touching(Path::new("."), directory);

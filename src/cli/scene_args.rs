@@ -182,4 +182,9 @@ impl MachineArgs {
     pub fn tier(&self) -> Tier {
         self.simd.unwrap_or_else(Tier::detect)
     }
+
+    /// The SIMD level asked for.
+    pub fn asked(&self) -> Option<Tier> {
+        self.simd
+    }
 }

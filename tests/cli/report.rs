@@ -248,3 +248,43 @@ fn the_repository_s_own_records_and_pages_agree() {
     let (code, said) = check(Path::new(env!("CARGO_MANIFEST_DIR")));
     assert_eq!(code, Some(0), "{said}");
 }
+
+#[test]
+fn a_record_names_the_level_that_ran() {
+    let place = tempfile::tempdir().unwrap();
+    let out = ["record", "--name", "here", "--out", text(place.path())];
+    let record = |arguments: &[&str]| sdop(&[&out, arguments].concat());
+    let short = ["--seeds", "1", "--frames", "8"];
+    let run = record(&[&["reproduce", "--simd", "scalar", "--"][..], &short].concat());
+    assert_eq!(
+        run.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&run.stderr)
+    );
+    for file in ["results.json", "record.json"] {
+        let read = std::fs::read(place.path().join("here/reproduce").join(file)).unwrap();
+        let read: serde_json::Value = serde_json::from_slice(&read).unwrap();
+        assert_eq!(read["machine"]["simd"], "scalar", "{file}");
+        let expected = "sdop record reproduce --simd scalar -- --seeds 1 --frames 8";
+        assert_eq!(read["command"], expected, "{file}");
+    }
+
+    // What chooses its own levels takes none, and none is slipped past the record.
+    let wrong = [
+        (
+            &["kernels/tiers", "--simd", "scalar"][..],
+            "chooses its SIMD levels",
+        ),
+        (
+            &["reproduce", "--", "--simd", "scalar"],
+            "--simd behind the --",
+        ),
+    ];
+    for (arguments, told) in wrong {
+        let run = record(arguments);
+        assert_eq!(run.status.code(), Some(2));
+        let error = String::from_utf8_lossy(&run.stderr);
+        assert!(error.contains(told), "{error}");
+    }
+}
