@@ -167,7 +167,7 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
     }
 }
 
-/// Bodies teleport and change, and come and go in some frames; both worlds hear the same.
+/// Bodies teleport and change, and come and go in some frames; both worlds are told the same.
 fn change(
     random: &mut Random,
     bodies: &mut HashMap<BodyId, Body>,

@@ -5,7 +5,7 @@ use std::sync::mpsc;
 
 use super::{Event, Sweep, attempt};
 
-/// Does these units; `on` hears of each as it ends. Those that need all threads come last, one at a time. When one fails,
+/// Does these units; `on` is called for each when it ends. Those that need all threads come last, one at a time. When one fails,
 /// those under way are still finished and told.
 ///
 /// # Errors

@@ -106,7 +106,7 @@ pub fn serve(ranks: Ranks, work: &dyn Sweep) -> miette::Result<()> {
     }
 }
 
-/// Has these units done by the other ranks; `on` hears of each as it begins and ends. Of units that are timed, one at a time
+/// Has these units done by the other ranks; `on` is called for each when it begins and when it ends. Of units that are timed, one at a time
 /// is under way on a node, unless its ranks are to share their cores. When one fails, those under way are still
 /// finished and told. The ranks wait for more until [`dismiss`].
 ///

@@ -71,7 +71,7 @@ struct Run {
     tallies: Vec<Tally>,
 }
 
-/// Compares everything on one scene. `step` hears what is being done, often.
+/// Compares everything on one scene. `step` is called with what is being done, often.
 ///
 /// # Errors
 /// A scene that can't be built, run or judged; a cache that can't be written.
