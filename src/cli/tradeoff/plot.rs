@@ -58,7 +58,11 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
         }
         let steps = front.iter().map(|row| at(row));
         chart.draw_series(LineSeries::new(steps, BLUE.stroke_width(2)))?;
-        for (number, row) in front.iter().enumerate() {
+        let points: Vec<(i32, i32)> = front
+            .iter()
+            .map(|row| chart.backend_coord(&at(row)))
+            .collect();
+        for (row, offset) in front.iter().zip(label_offsets(&points)) {
             let (time, precision) = at(row);
             let seconds = row.seconds();
             if seconds.half_width.is_finite() {
@@ -67,10 +71,9 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
                     PathElement::new([(lo, precision), (hi, precision)], BLUE.stroke_width(2));
                 chart.draw_series([whisker])?;
             }
-            // Neighbours' names would hide one another on one side.
-            let offset = if number % 2 == 0 { (10, 2) } else { (10, -14) };
             let mark = EmptyElement::at((time, precision))
                 + Circle::new((0, 0), 5, BLUE.filled())
+                + PathElement::new([(6, 0), (offset.0 - 3, offset.1 + 6)], GREY)
                 + Text::new(row.name.clone(), offset, (FONT, 13));
             chart.draw_series([mark])?;
         }
@@ -83,6 +86,29 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
             .draw()?;
         Ok(())
     })
+}
+
+/// Where the names of points go, in pixels from each: to the right, the lowest point's first, each above the one below it where
+/// they would hide one another. Points are in pixels, down the page.
+fn label_offsets(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
+    const HEIGHT: i32 = 15;
+    const WIDTH: i32 = 200;
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by_key(|&at| -points[at].1);
+    let mut tops = vec![0; points.len()];
+    for (rank, &own) in order.iter().enumerate() {
+        let mut top = points[own].1 + 3; // below the line, which rises
+        // From the lowest name up: whoever is moved may meet the next.
+        for &other in &order[..rank] {
+            let near = (points[own].0 - points[other].0).abs() < WIDTH;
+            if near && (top - tops[other]).abs() < HEIGHT {
+                top = tops[other] - HEIGHT;
+            }
+        }
+        tops[own] = top;
+    }
+    let offset = |(point, top): (&(i32, i32), &i32)| (24, top - point.1);
+    points.iter().zip(&tops).map(offset).collect()
 }
 
 /// For each S-DOP, the Cp above which it is cheaper than spheres alone, against density.
@@ -209,4 +235,20 @@ fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
         (lo.min(v), hi.max(v))
     });
     if lo < hi { lo..hi } else { 0.3..3.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_near_points_lie_above_one_another_and_far_ones_stay() {
+        let points = [(100, 300), (110, 298), (105, 297), (600, 300)];
+        let tops: Vec<i32> = label_offsets(&points)
+            .iter()
+            .zip(points)
+            .map(|(offset, point)| offset.1 + point.1)
+            .collect();
+        assert_eq!(tops, [303, 288, 273, 303]);
+    }
 }
