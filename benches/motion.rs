@@ -20,7 +20,14 @@ const WORK: usize = 48_000_000;
 const FRAMES: usize = 8;
 /// By how many radii a coordinate changes per frame, at most.
 const MOTIONS: [f32; 4] = [0.01, 0.03, 0.1, 0.3];
-const FINDERS: [Finder; 3] = [Finder::Grid, Finder::Neighbours, Finder::Auto];
+
+/// The finders that `auto` chooses between where bodies are many, and itself.
+fn takes_part(finder: Finder) -> bool {
+    match finder {
+        Finder::AllPairs | Finder::Sweep => false,
+        Finder::Grid | Finder::Neighbours | Finder::Auto => true,
+    }
+}
 
 fn main() {
     println!(
@@ -38,6 +45,7 @@ fn main() {
 
 /// A culler with its frames' seconds.
 struct Entrant {
+    finder: Finder,
     culler: Culler,
     seconds: Vec<f64>,
 }
@@ -55,13 +63,21 @@ impl Contestant for Entrant {
 
 fn compare(bodies: usize, most: f32, strategy: Strategy) {
     let mut swarm = Swarm::moving(Kind::Uniform, bodies, most);
-    let mut entrants = FINDERS.map(|finder| Entrant {
-        culler: swarm.culler_by(strategy, finder, 1),
-        seconds: Vec::new(),
-    });
-    let tests = entrants
-        .each_ref()
-        .map(|entrant| entrant.culler.counters().sphere.tests);
+    let finders = Finder::ALL
+        .iter()
+        .copied()
+        .filter(|&finder| takes_part(finder));
+    let mut entrants: Vec<Entrant> = finders
+        .map(|finder| Entrant {
+            finder,
+            culler: swarm.culler_by(strategy, finder, 1),
+            seconds: Vec::new(),
+        })
+        .collect();
+    let tests: Vec<u64> = entrants
+        .iter()
+        .map(|entrant| entrant.culler.counters().sphere.tests)
+        .collect();
     let mut turns = Turns::default();
     for _ in 0..TURNS.min(WORK / bodies / FRAMES) {
         let frames: [Bodies; FRAMES] = std::array::from_fn(|_| {
@@ -74,7 +90,7 @@ fn compare(bodies: usize, most: f32, strategy: Strategy) {
             }
         });
     }
-    let each = |entrant: &mut Entrant| {
+    let statistics = |entrant: &mut Entrant| {
         entrant.seconds.sort_by(f64::total_cmp);
         let a_body = 1e9 / bodies as f64;
         let frames = entrant.seconds.len() as f64;
@@ -82,16 +98,19 @@ fn compare(bodies: usize, most: f32, strategy: Strategy) {
         let mean = entrant.seconds.iter().sum::<f64>() / frames * a_body;
         [mean, at(0.5), at(0.99), at(1.0)]
     };
-    let times = entrants.each_mut().map(each);
-    for (((finder, entrant), [mean, half, late, last]), before) in
-        FINDERS.iter().zip(&entrants).zip(times).zip(tests)
-    {
+    let times: Vec<[f64; 4]> = entrants.iter_mut().map(statistics).collect();
+    let grid = entrants
+        .iter()
+        .position(|entrant| entrant.finder == Finder::Grid);
+    let of_grids = grid.map_or(f64::NAN, |at| times[at][1]);
+    for ((entrant, [mean, half, late, last]), before) in entrants.iter().zip(times).zip(tests) {
+        let finder = entrant.finder;
         let tests = (entrant.culler.counters().sphere.tests - before) as f64;
         let frames = (entrant.seconds.len() / (FRAMES - 1) * FRAMES) as f64;
         println!(
             "| {bodies} | {most} | {strategy} | {finder} | {:.2} | {mean:.1} | {half:.1} | {late:.1} | {last:.1} | {:.2} |",
             tests / (bodies as f64 * frames),
-            half / times[0][1],
+            half / of_grids,
         );
     }
 }

@@ -233,7 +233,7 @@ fn counts(path: &Path) -> Vec<serde_json::Value> {
     parts
 }
 
-/// The scene's 50 bodies and 20 mm of a frame's motion, changed as `lab::tradeoff::vary` says.
+/// The variations of `lab::tradeoff::vary` are of a scene of 50 bodies.
 fn changes_are_what_they_say(path: &Path) {
     let result: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();

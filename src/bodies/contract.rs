@@ -118,10 +118,13 @@ pub(crate) fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), Co
 
 /// Whether all coordinates of a column are at most 2⁶⁰ in size.
 fn are_within_limit(column: &[[f32; 3]]) -> bool {
-    // One flag over the whole column, without an early exit: it vectorises, and a column that fails is the last one.
+    // Without an early exit, four lanes a vector that are asked once: a column that fails is the last one.
     column
         .iter()
-        .fold(true, |fine, v| fine & is_within_limit(v))
+        .fold(BVec4A::splat(true), |fine, v| {
+            fine & within_limit(with_zero(v))
+        })
+        .all()
 }
 
 /// Checks that so many bodies can be numbered.
@@ -199,7 +202,12 @@ pub(crate) fn has_sound_size(shape: &Shape) -> bool {
 
 #[inline]
 pub(crate) fn is_within_limit(v: &[f32; 3]) -> bool {
-    within_limit(Vec4::new(v[0], v[1], v[2], 0.0)).all()
+    within_limit(with_zero(v)).all()
+}
+
+#[inline]
+fn with_zero(&[x, y, z]: &[f32; 3]) -> Vec4 {
+    Vec4::new(x, y, z, 0.0)
 }
 
 /// Which of a ball's coordinates are at most 2⁶⁰ in size, and whether its radius, the fourth, is finite.

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::lab::measure::machine::Machine;
-use sdop::lab::report::{Code, EXPERIMENTS, Experiment, FILE, Load, Manifest, Step};
+use sdop::lab::report::{Code, Experiment, FILE, Load, Manifest, Step, experiments};
 
 use super::Outcome;
 use super::files::{COMMAND, write};
@@ -48,7 +48,8 @@ pub struct Args {
 /// An unknown experiment; a measurement that fails; files that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     if args.experiments.is_empty() {
-        let list = rows(&["experiment", "measures"], EXPERIMENTS, |experiment| {
+        let all: Vec<_> = experiments().collect();
+        let list = rows(&["experiment", "measures"], &all, |experiment| {
             vec![experiment.name.to_owned(), experiment.about.to_owned()]
         });
         print(&list.to_string())?;
@@ -84,12 +85,9 @@ fn named(name: &str) -> miette::Result<Vec<&'static Experiment>> {
         let rest = experiment.name.strip_prefix(name);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
     };
-    let found: Vec<_> = EXPERIMENTS.iter().filter(belongs).collect();
+    let found: Vec<_> = experiments().filter(belongs).collect();
     if found.is_empty() {
-        let names: Vec<&str> = EXPERIMENTS
-            .iter()
-            .map(|experiment| experiment.name)
-            .collect();
+        let names: Vec<&str> = experiments().map(|experiment| experiment.name).collect();
         return Err(miette!(
             help = format!("one of: {}", names.join(", ")),
             "unknown experiment `{name}`"

@@ -183,7 +183,7 @@ impl MachineArgs {
         self.simd.unwrap_or_else(Tier::detect)
     }
 
-    /// The SIMD level asked for.
+    /// The SIMD level of `--simd`, if it was given.
     pub fn asked(&self) -> Option<Tier> {
         self.simd
     }

@@ -72,6 +72,9 @@ impl Reach {
 
 #[cfg(test)]
 mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
     use super::*;
     use crate::simd::{Kernel, Tier, dispatch};
 
@@ -96,13 +99,8 @@ mod tests {
 
     /// Numbers in [0, 1), the same ones each time.
     fn numbers() -> impl Iterator<Item = f64> {
-        let mut state = 7u64;
-        std::iter::repeat_with(move || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 11) as f64 * exp2(-53)
-        })
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        std::iter::repeat_with(move || (random.next_u64() >> 11) as f64 * exp2(-53))
     }
 
     #[test]

@@ -63,7 +63,7 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     /// The upper 28 bits and the lower 4 bits.
     fn split_u32(self, a: Self::I) -> (Self::I, Self::I);
     /// Writes the lanes whose bit in `keep` is set to the front of `out`, in lane order; `out` has at least `WIDTH` elements and
-    /// those behind the kept ones are left in an unspecified state (that is what makes it free of branches).
+    /// those behind the kept ones are left in an unspecified state: vectors may be stored whole.
     fn compress(self, keep: u32, values: Self::I, out: &mut [u32]);
     /// As [`Self::compress`].
     fn pack(self, keep: u32, values: Self::F, out: &mut [f32]);

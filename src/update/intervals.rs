@@ -196,18 +196,16 @@ fn widen(ends: &mut [[f32; 2]], coefficients: &[[i8; 3]], margin: f32) {
 
 #[cfg(test)]
 mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
     use super::*;
     use crate::rounding::exp2;
 
     #[test]
     fn a_cube_contains_its_box_and_is_as_small_as_the_box_is_wide() {
-        let mut state = 3_u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 40) as f32 * exp2(-24) as f32
-        };
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let mut next = || (random.next_u32() >> 8) as f32 * exp2(-24) as f32;
         for n in 0..1000 {
             let far = exp2(n % 40 - 20) as f32;
             let ends: [[f32; 2]; 3] = std::array::from_fn(|_| {

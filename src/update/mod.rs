@@ -153,8 +153,8 @@ const AHEAD: usize = 32;
 const SPHERES: usize = 4096;
 
 /// Updates the spheres (x, y, z, R) of the bodies in a range of places. Returns whether all translations, and the centres that
-/// a rotation takes part in, are within the contract: checked here, where they are at hand, this costs 8 to 10 instructions a
-/// body (`benches/README.md`).
+/// a rotation takes part in, are within the contract: checked here, where they are at hand, this costs few instructions
+/// a body (`benches/README.md`).
 pub fn update_spheres(
     pool: &Threads,
     spheres: &mut [[f32; 4]],

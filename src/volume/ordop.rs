@@ -107,6 +107,9 @@ fn floor_f32(x: f64) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
     use super::*;
 
     /// Small integers times powers of two, whose products are exact in i128.
@@ -125,13 +128,10 @@ mod tests {
         assert!(holds_exactly([big, 1, big], [big, 1, -big]));
         assert!(holds_exactly([big, 0, 3], [big, 7, -5]));
         assert!(holds_exactly([big, 1, -1], [big, 1, 1]));
-        let mut state = 5_u64;
+        let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut next = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
             // Of 24 bits, and up to 2³¹ times that.
-            (i64::from(state as i32 >> 8)) << (state >> 32 & 31)
+            i64::from(random.next_u32() as i32 >> 8) << (random.next_u32() & 31)
         };
         for _ in 0..20_000 {
             let (a, b) = ([next(), next(), next()], [next(), next(), next()]);

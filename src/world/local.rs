@@ -62,6 +62,9 @@ impl Local {
 
 #[cfg(test)]
 mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
     use super::*;
 
     #[test]
@@ -154,14 +157,8 @@ mod tests {
 
     #[test]
     fn no_translation_is_moved_farther_than_the_bound_and_some_nearly_as_far() {
-        let mut seed = 1_u64;
-        let mut random = move || {
-            // Knuth's MMIX generator; the upper bits.
-            seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            seed >> 33
-        };
+        let mut words = ChaCha8Rng::seed_from_u64(1);
+        let mut random = move || words.next_u32();
         for least in [false, true] {
             let mut worst = 0.0_f64;
             for _ in 0..50_000 {
@@ -172,15 +169,15 @@ mod tests {
                     (random() % 80) as i32 - 40
                 };
                 let relative: [f64; 3] = std::array::from_fn(|_| {
-                    let odd =
-                        (2 * (random() % 4) + 1) as f64 + [0.0, 1e-9, -1e-9][random() as usize % 3];
+                    let odd = f64::from(2 * (random() % 4) + 1)
+                        + [0.0, 1e-9, -1e-9][random() as usize % 3];
                     if least {
                         odd * exp2(-150)
                     } else {
                         (1.0 + odd * exp2(-24)) * exp2(exponent)
                     }
                 });
-                let origin = std::array::from_fn(|_| (random() % 64) as f64 * exp2(exponent + 1));
+                let origin = std::array::from_fn(|_| f64::from(random() % 64) * exp2(exponent + 1));
                 let t = std::array::from_fn(|i| origin[i] + relative[i]);
                 worst = worst.max(share(&Local { origin }, t));
             }

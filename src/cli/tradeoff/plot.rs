@@ -98,7 +98,7 @@ fn label_offsets(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
     let mut tops = vec![0; points.len()];
     for (rank, &own) in order.iter().enumerate() {
         let mut top = points[own].1 + 3; // below the line, which rises
-        // From the lowest name up: whoever is moved may meet the next.
+        // Names further down first: one that is moved up may come to lie over the next.
         for &other in &order[..rank] {
             let near = (points[own].0 - points[other].0).abs() < WIDTH;
             if near && (top - tops[other]).abs() < HEIGHT {

@@ -14,13 +14,14 @@ mod engines;
 mod experiment;
 mod manifest;
 pub mod pages;
+mod peers;
 mod provenance;
 mod store;
 mod table;
 
 pub use compare::{Change, Comparison, compare};
 pub use digits::{Quantities, Quantity};
-pub use experiment::{EXPERIMENTS, Experiment, Step};
+pub use experiment::{Experiment, Step, experiments};
 pub use manifest::{FILE, Manifest, ManifestError};
 pub use provenance::{Code, Load, caches};
 pub use store::{Store, StoreError};

@@ -5,7 +5,7 @@
 use serde::Serialize;
 
 use super::TradeoffError;
-use super::decide::choose;
+use super::decide::choose_measured;
 use super::density::{lines, variants};
 use super::pays::{Line, Stretch, envelope};
 use crate::lab::measure::conditions::Conditions;
@@ -67,11 +67,7 @@ pub fn advise(file: &SceneFile, check: f64, tier: Tier) -> Result<Option<Advice>
     let mut scene = file.build()?;
     scene.frames = scene.frames.min(FRAMES);
     let lines = lines(&scene, &variants(&scene.cull), tier, SAMPLES)?;
-    let with_pairs: Vec<(Line, f64)> = lines
-        .iter()
-        .map(|line| (line.clone(), line.pairs))
-        .collect();
-    let Some(choice) = choose(&with_pairs, check) else {
+    let Some(choice) = choose_measured(&lines, check) else {
         return Ok(None);
     };
     let Some(best) = lines.iter().find(|line| line.name == choice.best) else {

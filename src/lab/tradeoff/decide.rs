@@ -116,9 +116,19 @@ pub struct Choice {
     pub tied: Vec<String>,
 }
 
+/// Chooses among variants by the pairs that each left where it was timed, when a check takes `check` seconds.
+#[must_use]
+pub fn choose_measured(lines: &[Line], check: f64) -> Option<Choice> {
+    let own: Vec<(Line, f64)> = lines
+        .iter()
+        .map(|line| (line.clone(), line.pairs))
+        .collect();
+    choose(&own, check)
+}
+
 /// Chooses among variants, each with the pairs that it leaves, when a check takes `check` seconds.
 #[must_use]
-pub fn choose(lines: &[(Line, f64)], check: f64) -> Option<Choice> {
+fn choose(lines: &[(Line, f64)], check: f64) -> Option<Choice> {
     let total = |(line, pairs): &(Line, f64)| line.time() + check * pairs;
     let best = lines.iter().min_by(|a, b| total(a).total_cmp(&total(b)))?;
     let tied = |(line, pairs): &&(Line, f64)| {

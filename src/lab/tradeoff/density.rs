@@ -14,7 +14,7 @@ use super::variant::{Variant, s_dops};
 use crate::lab::cost::pass::{Pass, Simulated, pass};
 use crate::lab::measure::turns::{Regime, Times, median};
 use crate::lab::number::Positive;
-use crate::lab::scene::{Scene, SceneFile};
+use crate::lab::scene::{Scene, SceneError, SceneFile};
 use crate::settings::{CullSettings, Overlap, Strategy};
 use crate::simd::Tier;
 
@@ -61,16 +61,26 @@ pub fn sweep(
 ) -> Result<Vec<Density>, TradeoffError> {
     let mut densities = Vec::new();
     for factor in FACTORS {
-        // Spheres larger than the box: there is no such density.
-        let Some(Ok(scene)) = crowded(file, factor).map(|file| file.build()) else {
-            done();
-            continue;
-        };
-        let lines = lines(&scene, &variants(&scene.cull), tier, count)?;
-        densities.push(density(factor, scene.bodies.len(), lines));
+        let scene = crowded(file, factor).map(|file| built_if_possible(&file));
+        if let Some(scene) = scene.transpose()?.flatten() {
+            let lines = lines(&scene, &variants(&scene.cull), tier, count)?;
+            densities.push(density(factor, scene.bodies.len(), lines));
+        }
         done();
     }
     Ok(densities)
+}
+
+/// The scene of a file whose values were changed; `None` where it can't have them, such as spheres larger than its box.
+///
+/// # Errors
+/// Whatever else is wrong with it: files that can't be read, bodies outside of the contract.
+pub(super) fn built_if_possible(file: &SceneFile) -> Result<Option<Scene>, SceneError> {
+    match file.build() {
+        Ok(scene) => Ok(Some(scene)),
+        Err(SceneError::Text(_)) => Ok(None),
+        Err(error) => Err(error),
+    }
 }
 
 /// Time, passes apart, and pairs per frame of some variants on a scene's sample frames.

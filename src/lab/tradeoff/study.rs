@@ -12,12 +12,11 @@ use super::result::{Tradeoff, VariantResult};
 use super::safety;
 use super::shapes;
 use super::timing::{PASSES, Windows};
-use super::truth::{Judge, NarrowPhase, Sample, Truth, samples};
+use super::truth::{Judge, Sample, Truth, samples};
 use super::variant::{self, Variant};
 use super::vary;
 use super::{Estimate, TradeoffError};
 use crate::choice::choices;
-use crate::culler::Culler;
 use crate::lab::cost::calibrate::{Calibration, Effort};
 use crate::lab::cost::pass::{Pass, pass};
 use crate::lab::cost::table::{self, PriceRow};
@@ -256,7 +255,8 @@ fn finish(
     let (scene, tier) = (&first.scene, plan.tier);
     let judge = Judge::new(&scene.shapes)?;
     step(Once::NarrowPhase.name());
-    let narrow_phase = narrow_phase(&judge, first, tier)?;
+    let narrow_phase =
+        judge.price_of_spheres(&first.scene, &first.samples[0].bodies, tier, 2000)?;
     step(Once::Budgets.name());
     let window = first_frames(scene, plan.window)?;
     let window = Window {
@@ -333,17 +333,6 @@ fn line(row: &VariantResult) -> Line {
             .as_ref()
             .map_or(0.0, |cost| cost.construct.measured.mean),
     }
-}
-
-/// Times the exact narrow phase on pairs whose spheres overlap.
-fn narrow_phase(judge: &Judge, run: &Run, tier: Tier) -> Result<NarrowPhase, TradeoffError> {
-    let settings = Variant::spheres(&run.scene.cull).settings;
-    let bodies = &run.samples[0].bodies;
-    let mut culler = Culler::builder()
-        .settings(&settings)
-        .tier(tier)
-        .build(&run.scene.shapes, bodies)?;
-    Ok(judge.price(bodies, culler.cull(bodies)?.iter(), 2000)?)
 }
 
 /// One shape a mesh name: sizes of one mesh let the same shares through.

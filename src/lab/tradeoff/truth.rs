@@ -15,11 +15,14 @@ use sdop_reference::{InvalidInput, Pose};
 use sha2::{Digest, Sha256};
 
 use super::TradeoffError;
+use super::variant::Variant;
 use crate::bodies::Bodies;
+use crate::culler::Culler;
 use crate::files;
 use crate::lab::hash::{PairsHash, hex};
 use crate::lab::scene::Scene;
 use crate::lab::simulate::{SimulationError, Trajectory};
+use crate::simd::Tier;
 use crate::volume::Shape;
 
 /// First word of a cache file; the number changes with its layout.
@@ -204,6 +207,25 @@ impl Judge {
         }
         let [miss, hit] = sums.map(|(seconds, count)| seconds / f64::from(count.max(1)));
         Ok(NarrowPhase { miss, hit })
+    }
+
+    /// [`price`](Self::price) of pairs whose spheres overlap.
+    ///
+    /// # Errors
+    /// A body that leaves the contract.
+    pub fn price_of_spheres(
+        &self,
+        scene: &Scene,
+        bodies: &Bodies,
+        tier: Tier,
+        most: usize,
+    ) -> Result<NarrowPhase, TradeoffError> {
+        let settings = Variant::spheres(&scene.cull).settings;
+        let mut culler = Culler::builder()
+            .settings(&settings)
+            .tier(tier)
+            .build(&scene.shapes, bodies)?;
+        Ok(self.price(bodies, culler.cull(bodies)?.iter(), most)?)
     }
 
     fn meet(&self, bodies: &Bodies, poses: &[Pose], i: usize, j: usize) -> bool {

@@ -4,17 +4,16 @@
 //! through the finder `auto`, whose choice they move, on frames that follow one another over a run; and by the mean of its
 //! warm frames, since a finder that keeps lists makes them anew in some frames and not in most.
 
-use serde::{Deserialize, Serialize};
 use std::num::NonZeroU32;
 
+use serde::{Deserialize, Serialize};
+
 use super::TradeoffError;
-use super::decide::{CHECKS, choose};
-use super::density::{self, variants};
+use super::decide::{CHECKS, choose_measured};
+use super::density::{self, built_if_possible, variants};
 use super::pays::Line;
 use super::truth::{Judge, NarrowPhase};
-use super::variant::Variant;
 use crate::choice::choices;
-use crate::culler::Culler;
 use crate::lab::number::{Interval, Positive};
 use crate::lab::scene::{Scene, SceneFile};
 use crate::lab::simulate::{SimulationError, Trajectory};
@@ -67,6 +66,17 @@ enum Change {
     Shapes(Mix),
 }
 
+impl Change {
+    fn aspect(self) -> Aspect {
+        match self {
+            Self::Bodies(_) => Aspect::Bodies,
+            Self::Triangles(_) => Aspect::Triangles,
+            Self::Motion(_) => Aspect::Motion,
+            Self::Shapes(_) => Aspect::Shapes,
+        }
+    }
+}
+
 impl Aspect {
     fn changes(self) -> Vec<Change> {
         match self {
@@ -101,6 +111,9 @@ pub struct Variation {
     pub best: Vec<Best>,
 }
 
+/// Pairs on which a variation's narrow phase is timed.
+const CHECKED: usize = 500;
+
 /// What to use for one price of a check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Best {
@@ -126,7 +139,7 @@ pub fn sweep(
     for &aspect in Aspect::ALL {
         for change in aspect.changes() {
             if let Some(scene) = changed(file, change)? {
-                variations.push(variation(aspect, change, &scene, tier, count)?);
+                variations.push(variation(change, &scene, tier, count)?);
             }
             done();
         }
@@ -142,28 +155,23 @@ pub fn steps() -> u64 {
 }
 
 fn variation(
-    aspect: Aspect,
     change: Change,
     scene: &Scene,
     tier: Tier,
     count: u32,
 ) -> Result<Variation, TradeoffError> {
     let variants = variants(&scene.cull);
-    let lines = match aspect {
-        Aspect::Bodies | Aspect::Motion => density::lines_of_a_run(scene, &variants, tier)?,
-        Aspect::Triangles | Aspect::Shapes => density::lines(scene, &variants, tier, count)?,
+    let lines = match change {
+        Change::Bodies(_) | Change::Motion(_) => density::lines_of_a_run(scene, &variants, tier)?,
+        Change::Triangles(_) | Change::Shapes(_) => density::lines(scene, &variants, tier, count)?,
     };
     let bodies = &scene.bodies;
     let triangles = bodies
         .shape
         .iter()
         .map(|&shape| scene.shapes[shape as usize].triangles.len());
-    let own: Vec<(Line, f64)> = lines
-        .iter()
-        .map(|line| (line.clone(), line.pairs))
-        .collect();
     let best = CHECKS.iter().filter_map(|&check| {
-        let choice = choose(&own, check)?;
+        let choice = choose_measured(&lines, check)?;
         Some(Best {
             check,
             name: choice.best,
@@ -171,7 +179,7 @@ fn variation(
         })
     });
     Ok(Variation {
-        aspect,
+        aspect: change.aspect(),
         mix: match change {
             Change::Shapes(mix) => Some(mix),
             _ => None,
@@ -182,7 +190,7 @@ fn variation(
         partners: lines
             .first()
             .map_or(0.0, |spheres| 2.0 * spheres.pairs / bodies.len() as f64),
-        narrow_phase: narrow_phase(scene, tier)?,
+        narrow_phase: Judge::new(&scene.shapes)?.price_of_spheres(scene, bodies, tier, CHECKED)?,
         best: best.collect(),
         lines,
     })
@@ -211,17 +219,6 @@ fn motion(scene: &Scene) -> Result<f64, TradeoffError> {
     Ok(ways.iter().sum::<f64>() / ways.len().max(1) as f64)
 }
 
-/// Times the exact narrow phase on pairs whose spheres overlap in the first frame.
-fn narrow_phase(scene: &Scene, tier: Tier) -> Result<NarrowPhase, TradeoffError> {
-    let spheres = Variant::spheres(&scene.cull).settings;
-    let mut culler = Culler::builder()
-        .settings(&spheres)
-        .tier(tier)
-        .build(&scene.shapes, &scene.bodies)?;
-    let pairs = culler.cull(&scene.bodies)?;
-    Ok(Judge::new(&scene.shapes)?.price(&scene.bodies, pairs.iter(), 500)?)
-}
-
 /// The scene with a change; `None` where it can't have it: bodies at given places, spheres larger than the box.
 fn changed(file: &SceneFile, change: Change) -> Result<Option<Scene>, TradeoffError> {
     let mut file = file.clone();
@@ -235,7 +232,10 @@ fn changed(file: &SceneFile, change: Change) -> Result<Option<Scene>, TradeoffEr
         Change::Shapes(Mix::Sizes) => spread_radii(&mut file),
         Change::Triangles(_) | Change::Shapes(_) => {}
     }
-    let Some(Ok(mut scene)) = possible.then(|| file.build()) else {
+    if !possible {
+        return Ok(None);
+    }
+    let Some(mut scene) = built_if_possible(&file)? else {
         return Ok(None);
     };
     match change {
