@@ -6,6 +6,7 @@
 //! header and blocks of little-endian numbers in base64 ([`page`]). Poses are the record's f32 to the bit.
 
 mod detail;
+mod header;
 mod page;
 mod pairs;
 mod show;

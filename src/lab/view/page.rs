@@ -7,29 +7,23 @@ use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
 use miette::Diagnostic;
 use rayon::prelude::*;
-use serde::Serialize;
 use thiserror::Error;
 
 use super::detail::Drawn;
+use super::header::{BlockHeader, Header, Level, RunHeader, ShapeHeader};
 use super::pairs::Pairs;
-use super::show::{file_name, in_words};
 use super::terms::{self, TermCourse};
 use super::{Culled, Show};
 use crate::culler::CullError;
-use crate::lab::judge::Claim;
-use crate::lab::record::{EffectLine, FrameLine, OrDopLine, RecordError, ShapeLine};
+use crate::lab::record::{FrameLine, RecordError, ShapeLine};
 use crate::lab::simulate::SimulationError;
-use crate::settings::{Interest, Strategy};
+use crate::settings::Strategy;
 use crate::simd::Tier;
 
 /// The page without data, as `web/build.mjs` makes it.
 const PAGE: &str = include_str!("web/dist/page.html");
 /// Where the data go.
 const MARK: &str = "<!--DATA-->";
-/// What the header calls itself.
-const FORMAT: &str = "sdop-view";
-/// The layout of header and blocks; `web/src/data.ts` has the same number.
-const VERSION: u32 = 1;
 /// The longest block that a browser reads, in bytes: its base64 must be one string.
 const LONGEST: usize = 380 << 20;
 
@@ -62,67 +56,6 @@ pub enum PageError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
-}
-
-#[derive(Debug, Default, Serialize)]
-struct Header {
-    format: &'static str,
-    version: u32,
-    scene: String,
-    source: String,
-    /// Text: JavaScript's numbers don't hold all of it.
-    seed: Option<String>,
-    dt: Option<f32>,
-    side: Option<f32>,
-    interest: Vec<u32>,
-    bodies: usize,
-    moving: usize,
-    frames: usize,
-    pairs: usize,
-    shapes: Vec<ShapeHeader>,
-    runs: Vec<RunHeader>,
-    truth: bool,
-    /// What is said to meet.
-    meet: &'static str,
-    /// Layers that are switched on at first.
-    layers: Vec<&'static str>,
-    effects: Option<Vec<EffectLine>>,
-    messages: Vec<String>,
-    blocks: Vec<BlockHeader>,
-}
-
-#[derive(Debug, Serialize)]
-struct ShapeHeader {
-    name: String,
-    triangles: usize,
-    ball: [f32; 4],
-    reach: f32,
-    ordop: OrDopLine,
-    lods: Vec<Level>,
-    hull: [usize; 2],
-}
-
-/// First and number of vertices, and of triangles, in the blocks of all shapes.
-#[derive(Debug, Serialize)]
-struct Level {
-    vertices: [usize; 2],
-    triangles: [usize; 2],
-}
-
-#[derive(Debug, Serialize)]
-struct RunHeader {
-    name: String,
-    detail: String,
-    control: bool,
-    volumes: Option<Vec<String>>,
-    construct: Option<f64>,
-}
-
-#[derive(Debug, Serialize)]
-struct BlockHeader {
-    name: String,
-    r#type: &'static str,
-    length: usize,
 }
 
 #[derive(Debug)]
@@ -163,16 +96,8 @@ impl Page {
     /// A page that says why a record can't be shown.
     #[must_use]
     pub fn broken(path: &Path, error: &RecordError) -> Self {
-        let name = file_name(path);
         Self {
-            header: Header {
-                format: FORMAT,
-                version: VERSION,
-                scene: name.clone(),
-                source: name,
-                messages: vec![in_words(error)],
-                ..Header::default()
-            },
+            header: Header::broken(path, error),
             blocks: Vec::new(),
         }
     }
@@ -371,58 +296,6 @@ impl Page {
             bytes,
         });
         Ok(())
-    }
-}
-
-impl Header {
-    /// What is known before the frames are looked at.
-    fn of(show: &Show) -> Self {
-        let header = &show.header;
-        let interest = match header
-            .cull
-            .as_ref()
-            .map(|cull| (cull.strategy, &cull.interest))
-        {
-            Some((Strategy::SDopObjectOfInterest, Some(Interest::Bodies(list)))) => list.clone(),
-            _ => Vec::new(),
-        };
-        Self {
-            format: FORMAT,
-            version: VERSION,
-            scene: header.scene.clone(),
-            source: show.source.clone(),
-            seed: Some(header.seed.to_string()),
-            dt: header.dt,
-            side: header.side,
-            interest,
-            bodies: header.bodies.len(),
-            meet: meet(show.claim),
-            layers: layers(show.claim),
-            effects: header.effects.clone(),
-            messages: show.messages.clone(),
-            ..Self::default()
-        }
-    }
-}
-
-/// What meets, in the page's words, when a claim holds of a pair.
-fn meet(claim: Claim) -> &'static str {
-    match claim {
-        Claim::Sphere => "bounding balls",
-        Claim::Aabb => "boxes",
-        Claim::OrDop => "or-DOPs",
-        Claim::Hull => "convex hulls",
-        Claim::Mesh => "meshes",
-    }
-}
-
-/// The volumes that a claim is about, by their names in the page's address.
-fn layers(claim: Claim) -> Vec<&'static str> {
-    match claim {
-        Claim::Sphere => vec!["spheres"],
-        Claim::Aabb => vec!["boxes"],
-        Claim::OrDop => vec!["ordops"],
-        Claim::Hull | Claim::Mesh => Vec::new(),
     }
 }
 
