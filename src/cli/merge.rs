@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use sdop::lab::sweep::{Units, merge};
 
 use super::output::Format;
-use super::{Outcome, reproduce, verify};
+use super::{Outcome, reproduce, tradeoff, verify};
 
 /// Put the shards of a sweep together
 ///
@@ -38,6 +38,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     match merged.header.command.as_str() {
         verify::NAME => verify::merged(&merged, &args.out, args.format),
         reproduce::NAME => reproduce::merged(&merged, &args.out, args.format),
+        tradeoff::NAME => tradeoff::merged(&merged, &args.out, args.format),
         other => miette::bail!("this program knows no units of `sdop {other}`"),
     }
 }

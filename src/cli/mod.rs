@@ -71,11 +71,11 @@ impl Command {
     fn takes_ranks(&self) -> bool {
         match self {
             Self::Verify(args) => args.is_sweep(),
+            Self::Tradeoff(args) => args.is_sweep(),
             Self::Reproduce(_) | Self::Run(_) => true,
             Self::Cost(_)
             | Self::Advise(_)
             | Self::Mesh(_)
-            | Self::Tradeoff(_)
             | Self::Merge(_)
             | Self::Cases(_)
             | Self::Check(_)

@@ -77,6 +77,18 @@ pub fn enter(args: &SweepArgs) -> miette::Result<()> {
 }
 
 impl SweepArgs {
+    /// Refuses what was said of sharing where there is nothing to share.
+    ///
+    /// # Errors
+    /// Some of it was said.
+    pub fn refuse(&self, why: &str) -> miette::Result<()> {
+        let [shard, resume, _] = SHARING;
+        for (said, flag) in [(self.shard.is_some(), shard), (self.resume, resume)] {
+            miette::ensure!(!said, help = format!("leave {flag} out"), "{flag}: {why}");
+        }
+        Ok(())
+    }
+
     /// Does the work. `take` gets the results in the order of units; `None` when another process has them: this one wrote a
     /// shard's file into `directory`, or is a rank that rank 0 has taken the results of.
     ///

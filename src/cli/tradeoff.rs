@@ -7,24 +7,31 @@ mod tables;
 use std::path::{Path, PathBuf};
 
 use etcetera::BaseStrategy as _;
-use miette::{IntoDiagnostic as _, WrapErr as _};
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop::lab::measure::conditions::Conditions;
 use sdop::lab::measure::machine::Machine;
-use sdop::lab::tradeoff::{self, Plan, Tradeoff};
+use sdop::lab::sweep::Merged;
+pub use sdop::lab::tradeoff::units::NAME;
+use sdop::lab::tradeoff::units::{Comparison, Settings};
+use sdop::lab::tradeoff::{Findings, Plan, Tradeoff};
 use serde::{Deserialize, Serialize};
 
 use super::Outcome;
 use super::files::{self, command, write};
-use super::output::{Format, csv_text, emit, progress};
+use super::output::{Format, csv_text, emit};
 use super::scene_args::{MachineArgs, SceneArgs};
+use super::sweep::{self, SweepArgs};
 
 /// What accuracy costs in time, for every volume and strategy
 ///
 /// Culls sample frames of the scene with every volume and strategy, compares with the exact truth about the meshes, then
-/// measures the time of frames that follow one another (warm) and of frames between which others ran (cold). Counts depend on scene and flags alone; seconds are this machine's. Given the JSON of an earlier run
-/// instead of a scene, prints and draws that.
+/// measures the time of frames that follow one another (warm) and of frames between which others ran (cold). Counts depend on
+/// scene and flags alone; seconds are this machine's. Given the JSON of an earlier run instead of a scene, prints and draws
+/// that.
 #[derive(clap::Args)]
 #[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
-    Example: sdop tradeoff data/scenes/paper-500.toml --out target/tradeoff")]
+    Examples: sdop tradeoff data/scenes/paper-500.toml --out target/tradeoff\n          \
+    mpirun -n 9 sdop tradeoff data/scenes/paper-500.toml --seeds 64 --out target/tradeoff")]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
@@ -51,6 +58,15 @@ pub struct Args {
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
+    #[command(flatten)]
+    sweep: SweepArgs,
+}
+
+impl Args {
+    /// Whether its work is cut into units, which many can share.
+    pub fn is_sweep(&self) -> bool {
+        recorded(self.scene.path()).is_none()
+    }
 }
 
 /// A result with where it comes from.
@@ -67,33 +83,83 @@ struct Recorded {
 /// # Errors
 /// A bad scene, settings that it can't have, files that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    let recorded = match recorded(args.scene.path()) {
-        Some(path) => read(path)?,
-        None => Recorded {
-            command: command(),
-            machine: Machine::here(args.machine.tier()),
-            result: compare(args)?,
-        },
-    };
-    if let Some(directory) = &args.out {
-        write_all(
-            directory,
-            args.paper.as_ref().unwrap_or(directory),
-            &recorded,
-        )?;
+    if let Some(path) = recorded(args.scene.path()) {
+        args.sweep.refuse("an earlier run is printed as it is")?;
+        return args.tell(&read(path)?);
     }
+    sweep::enter(&args.sweep)?;
+    let comparison = Comparison::new(&args.scene.read()?, &plan(args))?;
+    let before = Conditions::before();
+    let mut findings = Findings::default();
+    let mut take = |_, result: &str| findings.take(result);
+    let directory = args.out.as_deref().unwrap_or(Path::new("."));
+    let Some(finished) = args.sweep.run(&comparison, directory, &mut take)? else {
+        return Ok(Outcome::Passed);
+    };
+    let settings = comparison.settings();
+    let outcome = args.tell(&Recorded::new(command(), findings, &settings, before)?)?;
+    finished.clear()?;
+    Ok(outcome)
+}
+
+/// What merged shards give.
+///
+/// # Errors
+/// Results of another command, files that can't be written.
+pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
+    let settings: Settings = merged.header.settings().into_diagnostic()?;
+    let mut findings = Findings::default();
+    for result in merged.done.values() {
+        findings.take(result)?;
+    }
+    let (line, unknown) = (merged.header.line.clone(), Conditions::default());
+    let recorded = Recorded::new(line, findings, &settings, unknown)?;
+    write_all(out, out, &recorded)?;
+    print(&recorded, format, tables::brief)
+}
+
+impl Recorded {
+    fn new(
+        command: String,
+        findings: Findings,
+        settings: &Settings,
+        before: Conditions,
+    ) -> miette::Result<Self> {
+        let result = findings.finish(settings, before);
+        Ok(Self {
+            command,
+            machine: settings.machine.clone(),
+            result: result.ok_or_else(|| miette!("these are not the units of one comparison"))?,
+        })
+    }
+}
+
+impl Args {
+    /// Writes and prints what was asked for.
+    fn tell(&self, recorded: &Recorded) -> miette::Result<Outcome> {
+        if let Some(directory) = &self.out {
+            let paper = self.paper.as_ref().unwrap_or(directory);
+            write_all(directory, paper, recorded)?;
+        }
+        let text = if self.all {
+            tables::text
+        } else {
+            tables::brief
+        };
+        print(recorded, self.format, text)
+    }
+}
+
+fn print(
+    recorded: &Recorded,
+    format: Format,
+    text: fn(&Tradeoff) -> String,
+) -> miette::Result<Outcome> {
     let result = &recorded.result;
-    match args.format {
+    match format {
         // A line a variant; the rest is in the other formats.
         Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
-        format => emit(format, &recorded, |recorded| {
-            let write = if args.all {
-                tables::text
-            } else {
-                tables::brief
-            };
-            write(&recorded.result)
-        })?,
+        format => emit(format, recorded, |recorded| text(&recorded.result))?,
     }
     let failures: Vec<&str> = result.failures().collect();
     if failures.is_empty() {
@@ -101,18 +167,6 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     eprintln!("true pairs were missed by: {}", failures.join("; "));
     Ok(Outcome::Failed)
-}
-
-fn compare(args: &Args) -> miette::Result<Tradeoff> {
-    let file = args.scene.read()?;
-    let plan = plan(args);
-    let bar = progress(tradeoff::steps(&file, &plan)?, &file.spec.name);
-    let result = tradeoff::study(&file, &plan, &mut |what| {
-        bar.set_message(format!("{}: {what}", file.spec.name));
-        bar.inc(1);
-    })?;
-    bar.finish_and_clear();
-    Ok(result)
 }
 
 fn plan(args: &Args) -> Plan {

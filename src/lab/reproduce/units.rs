@@ -253,7 +253,7 @@ impl Sweep for Experiments {
         serde_json::to_string(&self.find(unit)?).into_diagnostic()
     }
 
-    fn timed(&self) -> bool {
+    fn timed(&self, _: usize) -> bool {
         true
     }
 }

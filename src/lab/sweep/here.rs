@@ -98,7 +98,7 @@ mod tests {
             miette::ensure!(unit != 5, "five");
             Ok((unit * unit).to_string())
         }
-        fn timed(&self) -> bool {
+        fn timed(&self, _: usize) -> bool {
             self.timed
         }
         fn starts(&self, unit: usize) -> bool {

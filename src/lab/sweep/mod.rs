@@ -11,6 +11,8 @@ mod header;
 mod here;
 mod merge;
 mod order;
+#[cfg(any(test, feature = "mpi"))]
+mod queue;
 #[cfg(feature = "mpi")]
 pub mod ranks;
 mod shard;
@@ -43,14 +45,14 @@ pub trait Sweep: Sync {
     /// What stands against it.
     fn run(&self, unit: usize) -> miette::Result<String>;
 
-    /// Whether units are timed, so that none may run beside another on a machine.
-    fn timed(&self) -> bool {
+    /// Whether a unit is timed, so that none may run beside it on a machine.
+    fn timed(&self, _unit: usize) -> bool {
         false
     }
 
     /// Whether a unit uses all threads of a process itself, or must have them: such units are done one after the other.
-    fn alone(&self, _unit: usize) -> bool {
-        self.timed()
+    fn alone(&self, unit: usize) -> bool {
+        self.timed(unit)
     }
 
     /// Whether a unit may still be started; otherwise it is left out.

@@ -5,7 +5,6 @@
 //!  rank 0   GO ──▶        ◀── HELLO header, node     UNIT n ──▶     ◀── DONE n, result        STOP ──▶
 //! ```
 
-use std::collections::{BTreeSet, VecDeque};
 use std::time::Duration;
 
 use miette::{IntoDiagnostic as _, miette};
@@ -14,6 +13,7 @@ use mpi::point_to_point::{Destination as _, MatchedReceiveVec as _, Source as _}
 use mpi::topology::Communicator as _;
 use rayon::ThreadPoolBuilder;
 
+use super::queue::{Move, Queue};
 use super::{Event, Header, Sweep, attempt};
 use crate::lab::mpi::Ranks;
 
@@ -84,7 +84,7 @@ pub fn serve(ranks: Ranks, work: &dyn Sweep) -> miette::Result<()> {
     let one = ThreadPoolBuilder::new().num_threads(1).build();
     let one = one.into_diagnostic()?;
     let run = |unit| {
-        if work.timed() {
+        if work.timed(unit) {
             attempt(work, unit)
         } else {
             one.install(|| attempt(work, unit))
@@ -106,8 +106,8 @@ pub fn serve(ranks: Ranks, work: &dyn Sweep) -> miette::Result<()> {
     }
 }
 
-/// Has these units done by the other ranks; `on` is called for each when it begins and when it ends. Of units that are timed, one at a time
-/// is under way on a node, unless its ranks are to share their cores. When one fails, those under way are still
+/// Has these units done by the other ranks; `on` is called for each when it begins and when it ends. A unit that is timed has its
+/// node to itself, unless ranks are to share their cores. When one fails, those under way are still
 /// finished and told. The ranks wait for more until [`dismiss`].
 ///
 /// # Errors
@@ -121,19 +121,15 @@ pub fn coordinate(
 ) -> miette::Result<()> {
     let mut office = Office {
         ranks,
-        work,
         header: work.header()?,
-        units: units.iter().copied().collect(),
-        nodes: BTreeSet::new(),
-        one_a_node: work.timed() && !share_cores,
-        busy: 0,
+        queue: Queue::new(work, units, share_cores),
         failed: None,
     };
     for rank in 1..ranks.size {
         ranks.post(rank, GO, "");
     }
     let mut expected = ranks.size - 1;
-    while expected > 0 || office.busy > 0 {
+    while expected > 0 || office.queue.under_way() {
         let letter = ranks.wait()?;
         if letter.tag == HELLO {
             expected -= 1;
@@ -156,14 +152,8 @@ pub fn dismiss(ranks: Ranks) {
 /// What rank 0 knows.
 struct Office<'a> {
     ranks: Ranks,
-    work: &'a dyn Sweep,
     header: Header,
-    units: VecDeque<usize>,
-    /// Those with a rank that works.
-    nodes: BTreeSet<String>,
-    one_a_node: bool,
-    /// How many ranks have a unit.
-    busy: usize,
+    queue: Queue<'a>,
     failed: Option<miette::Report>,
 }
 
@@ -183,13 +173,10 @@ impl Office<'_> {
                     "rank {from} on {node} has other work: {difference}"
                 ));
             }
-            let new = self.nodes.insert(node.to_owned());
-            if self.one_a_node && !new {
-                return Ok(());
-            }
-            return self.hand_out(from, on);
+            self.queue.arrives(from, node);
+            return self.hand_out(on);
         }
-        self.busy -= 1;
+        self.queue.ended(from);
         if tag == FAILED {
             let failed = miette!("rank {from}: {text}");
             self.failed.get_or_insert(failed);
@@ -198,22 +185,21 @@ impl Office<'_> {
         let (unit, result) = text.split_once(' ').unwrap_or_default();
         let (unit, result) = (unit.parse().into_diagnostic()?, result.to_owned());
         on(Event::Done { unit, result })?;
-        self.hand_out(from, on)
+        self.hand_out(on)
     }
 
-    fn hand_out(
-        &mut self,
-        rank: usize,
-        on: &mut dyn FnMut(Event) -> miette::Result<()>,
-    ) -> miette::Result<()> {
-        while let Some(unit) = self.units.pop_front().filter(|_| self.failed.is_none()) {
-            if self.work.starts(unit) {
-                on(Event::Started { unit, rank })?;
-                self.ranks.post(rank, UNIT, &unit.to_string());
-                self.busy += 1;
-                break;
+    /// Begins what can be begun, unless something has failed.
+    fn hand_out(&mut self, on: &mut dyn FnMut(Event) -> miette::Result<()>) -> miette::Result<()> {
+        while self.failed.is_none()
+            && let Some(next) = self.queue.next()
+        {
+            match next {
+                Move::Start { unit, rank } => {
+                    on(Event::Started { unit, rank })?;
+                    self.ranks.post(rank, UNIT, &unit.to_string());
+                }
+                Move::Leave { unit } => on(Event::Left { unit })?,
             }
-            on(Event::Left { unit })?;
         }
         Ok(())
     }

@@ -12,7 +12,8 @@ use crate::lab::scene::Scene;
 use crate::simd::Tier;
 
 /// What a variant counted on the sample frames of one seed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Tally {
     /// Sample frames.
     pub frames: u32,
@@ -74,6 +75,26 @@ impl Tally {
             hulls: culling.hull_counters(),
             pairs_sha256: hash.finish(),
         })
+    }
+
+    /// The same where nothing is known of the truth: none of the reported pairs counts as found.
+    ///
+    /// # Errors
+    /// Settings that can't be carried out.
+    pub fn unjudged(
+        scene: &Scene,
+        variant: &Variant,
+        tier: Tier,
+        samples: &[Sample],
+    ) -> Result<Self, CullError> {
+        let nothing = vec![Vec::new(); samples.len()];
+        Self::of(scene, variant, tier, samples, &nothing)
+    }
+
+    /// Pairs reported a frame.
+    #[must_use]
+    pub fn reported_a_frame(&self) -> f64 {
+        self.reported as f64 / f64::from(self.frames)
     }
 
     /// Precision and recall.

@@ -19,7 +19,7 @@ use crate::settings::{CullSettings, Overlap, Strategy};
 use crate::simd::Tier;
 
 /// Densities as multiples of the scene's.
-const FACTORS: [f32; 7] = [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
+pub(super) const FACTORS: [f32; 7] = [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
 /// Bodies times frames of a timed run, about.
 const RUN_BODIES: usize = 500_000;
 /// Frames of a timed run whose pairs are counted.
@@ -49,26 +49,22 @@ pub struct BreakEven {
     pub cp: f64,
 }
 
-/// Runs the scene at every density that its box has room for; none when it has no box.
+/// Runs the scene at a multiple of its density; `None` where its box has no room for that, or it has no box.
 ///
 /// # Errors
 /// What running a scene may meet.
-pub fn sweep(
+pub fn at(
     file: &SceneFile,
+    factor: f32,
     tier: Tier,
     count: u32,
-    mut done: impl FnMut(),
-) -> Result<Vec<Density>, TradeoffError> {
-    let mut densities = Vec::new();
-    for factor in FACTORS {
-        let scene = crowded(file, factor).map(|file| built_if_possible(&file));
-        if let Some(scene) = scene.transpose()?.flatten() {
-            let lines = lines(&scene, &variants(&scene.cull), tier, count)?;
-            densities.push(density(factor, scene.bodies.len(), lines));
-        }
-        done();
-    }
-    Ok(densities)
+) -> Result<Option<Density>, TradeoffError> {
+    let scene = crowded(file, factor).map(|file| built_if_possible(&file));
+    let Some(scene) = scene.transpose()?.flatten() else {
+        return Ok(None);
+    };
+    let lines = lines(&scene, &variants(&scene.cull), tier, count)?;
+    Ok(Some(density(factor, scene.bodies.len(), lines)))
 }
 
 /// The scene of a file whose values were changed; `None` where it can't have them, such as spheres larger than its box.
@@ -93,7 +89,7 @@ pub fn lines(
     tier: Tier,
     count: u32,
 ) -> Result<Vec<Line>, TradeoffError> {
-    let passes = measure(scene, variants, tier, count, || ())?;
+    let passes = measure(scene, variants, tier, count)?;
     let median = |times: &Times| times.quartiles(Regime::Warm).median;
     lines_of(
         (scene, variants, tier),
@@ -141,10 +137,9 @@ fn lines_of(
     passes: &[Pass],
     statistic: impl Fn(&Times) -> f64,
 ) -> Result<Vec<Line>, TradeoffError> {
-    let truth = vec![Vec::new(); samples.len()];
     let mut lines = Vec::new();
     for (at, variant) in variants.iter().enumerate() {
-        let tally = Tally::of(scene, variant, tier, samples, &truth)?;
+        let tally = Tally::unjudged(scene, variant, tier, samples)?;
         let of = |value: &dyn Fn(&Pass) -> f64| passes.iter().map(value).collect::<Vec<f64>>();
         lines.push(Line {
             name: variant.name.clone(),
@@ -152,16 +147,10 @@ fn lines_of(
             ordop: OrDopKind::of(variant),
             times: of(&|pass| statistic(&pass.culled[at].times)),
             construct: median(of(&|pass| pass.culled[at].construct)),
-            pairs: tally.reported as f64 / f64::from(tally.frames),
+            pairs: tally.reported_a_frame(),
         });
     }
     Ok(lines)
-}
-
-/// How many steps [`sweep`] reports.
-#[must_use]
-pub fn steps() -> u64 {
-    FACTORS.len() as u64
 }
 
 fn density(factor: f32, bodies: usize, lines: Vec<Line>) -> Density {

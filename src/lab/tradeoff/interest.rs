@@ -34,55 +34,82 @@ pub struct InterestRow {
     pub lazy_seconds: Estimate,
 }
 
-/// Grows the interest set over evenly spread bodies.
+/// What an interest set of some size counts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Counted {
+    /// Bodies of interest.
+    bodies: usize,
+    /// On the sample frames.
+    tally: Tally,
+}
+
+/// Sizes of the interest set, growing.
+fn sizes(scene: &Scene) -> Vec<usize> {
+    let n = scene.bodies.len();
+    let size = |share: f64| ((share * n as f64).round() as usize).clamp(1, n);
+    let mut sizes = SHARES.map(size).to_vec();
+    sizes.dedup();
+    sizes
+}
+
+/// A set of so many bodies, evenly spread.
+fn variant(scene: &Scene, size: usize, updates: Updates) -> Variant {
+    let settings = CullSettings {
+        strategy: Strategy::SDopObjectOfInterest,
+        updates,
+        interest: Some(Interest::Bodies(spread(scene.bodies.len(), size))),
+        ..scene.cull.clone()
+    };
+    Variant::of(format!("{size} of interest"), settings)
+}
+
+/// Counts with every size.
 ///
 /// # Errors
 /// Settings that can't be carried out.
-pub fn sweep(
+pub fn counts(
     scene: &Scene,
     tier: Tier,
     samples: &[Sample],
     truth: &Truth,
-) -> Result<Vec<InterestRow>, TradeoffError> {
-    let n = scene.bodies.len();
-    let mut sizes = SHARES
-        .map(|share| ((share * n as f64).round() as usize).clamp(1, n))
-        .to_vec();
-    sizes.dedup();
-    let variant = |&size: &usize, updates| Variant {
-        name: format!("{size} of interest"),
-        settings: CullSettings {
-            strategy: Strategy::SDopObjectOfInterest,
-            updates,
-            interest: Some(Interest::Bodies(spread(n, size))),
-            ..scene.cull.clone()
-        },
-        hulls: false,
+) -> Result<Vec<Counted>, TradeoffError> {
+    let counted = |bodies: usize| {
+        let variant = variant(scene, bodies, Updates::Eager);
+        let tally = Tally::of(scene, &variant, tier, samples, truth)?;
+        Ok(Counted { bodies, tally })
     };
-    let eager: Vec<_> = sizes
-        .iter()
-        .map(|size| variant(size, Updates::Eager))
-        .collect();
-    let lazy: Vec<_> = sizes
-        .iter()
-        .map(|size| variant(size, Updates::Lazy))
-        .collect();
-    let both = [&eager[..], &lazy].concat();
-    let passes = measure(scene, &both, tier, samples.len() as u32, || ())?;
+    sizes(scene).into_iter().map(counted).collect()
+}
+
+/// Median seconds of a warm frame with every size: all or-DOP poses updated, and those that a pair needs.
+///
+/// # Errors
+/// Settings that can't be carried out.
+pub fn times(scene: &Scene, tier: Tier, count: u32) -> Result<Vec<[Estimate; 2]>, TradeoffError> {
+    let sizes = sizes(scene);
+    let all = |updates| sizes.iter().map(move |&size| variant(scene, size, updates));
+    let both: Vec<Variant> = all(Updates::Eager).chain(all(Updates::Lazy)).collect();
+    let passes = measure(scene, &both, tier, count)?;
     let seconds = |at: usize| medians(&passes, at, Regime::Warm);
-    let mut rows = Vec::new();
-    for (at, variant) in eager.iter().enumerate() {
-        let tally = Tally::of(scene, variant, tier, samples, truth)?;
-        rows.push(InterestRow {
-            bodies: sizes[at],
+    let of = |at: usize| [seconds(at), seconds(sizes.len() + at)];
+    Ok((0..sizes.len()).map(of).collect())
+}
+
+/// Counts and times together.
+pub(super) fn rows(counts: &[Counted], times: &[[Estimate; 2]]) -> Vec<InterestRow> {
+    let row = |(counted, times): (&Counted, &[Estimate; 2])| {
+        let Counted { bodies, tally } = counted;
+        InterestRow {
+            bodies: *bodies,
             tests: tally.counters.ordop.tests as f64 / f64::from(tally.frames),
-            reported: tally.reported as f64 / f64::from(tally.frames),
+            reported: tally.reported_a_frame(),
             quality: tally.quality(),
-            seconds: seconds(at),
-            lazy_seconds: seconds(sizes.len() + at),
-        });
-    }
-    Ok(rows)
+            seconds: times[0],
+            lazy_seconds: times[1],
+        }
+    };
+    counts.iter().zip(times).map(row).collect()
 }
 
 /// `size` of `n` bodies, evenly spread over their numbers, so that every group of bodies has its part.

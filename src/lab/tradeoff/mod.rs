@@ -2,8 +2,8 @@
 //!
 //! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`], [`decide`] (when does it pay?)
 //!
-//! Counts come first and reproduce to the bit; time is measured afterwards and never decides a count. Every variant must
-//! report every true pair: a recall below 1 is a failed check.
+//! Done in [`units`]. Counts come first and reproduce to the bit; time is measured afterwards and never decides a count.
+//! Every variant must report every true pair: a recall below 1 is a failed check.
 
 pub mod advise;
 pub mod budget;
@@ -19,12 +19,13 @@ pub mod shapes;
 mod study;
 pub mod timing;
 pub mod truth;
+pub mod units;
 pub mod variant;
 pub mod vary;
 
 pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate};
 pub use result::{Tradeoff, VariantResult};
-pub use study::{Plan, steps, study};
+pub use study::{Findings, Plan};
 
 use std::path::PathBuf;
 

@@ -47,7 +47,7 @@ impl Frames for Windows {
     }
 }
 
-/// Times variants on a scene's windows in passes apart in time, without a calibration. `done` is called after each pass.
+/// Times variants on a scene's windows in passes apart in time, without a calibration.
 ///
 /// # Errors
 /// Settings that can't be carried out, a body that leaves the contract.
@@ -56,14 +56,12 @@ pub fn measure(
     variants: &[Variant],
     tier: Tier,
     count: u32,
-    mut done: impl FnMut(),
 ) -> Result<Vec<Pass>, SimulationError> {
     let windows = Windows::new(scene, count)?;
     let mut passes = Vec::new();
     for _ in 0..PASSES {
         let frames = &mut windows.clone();
         passes.push(pass(scene, variants, tier, frames, None, &mut ())?);
-        done();
     }
     Ok(passes)
 }

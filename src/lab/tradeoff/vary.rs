@@ -4,6 +4,7 @@
 //! through the finder `auto`, whose choice they move, on frames that follow one another over a run; and by the mean of its
 //! warm frames, since a finder that keeps lists makes them anew in some frames and not in most.
 
+use std::fmt;
 use std::num::NonZeroU32;
 
 use serde::{Deserialize, Serialize};
@@ -55,7 +56,7 @@ choices! {
 
 /// One change of a scene.
 #[derive(Clone, Copy, Debug)]
-enum Change {
+pub(super) enum Change {
     /// So many times the bodies, in so many times the room.
     Bodies(f32),
     /// At most so many triangles a mesh.
@@ -73,6 +74,18 @@ impl Change {
             Self::Triangles(_) => Aspect::Triangles,
             Self::Motion(_) => Aspect::Motion,
             Self::Shapes(_) => Aspect::Shapes,
+        }
+    }
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bodies(factor) => write!(f, "{factor} times the bodies"),
+            Self::Triangles(usize::MAX) => f.write_str("all triangles"),
+            Self::Triangles(most) => write!(f, "at most {most} triangles"),
+            Self::Motion(factor) => write!(f, "{factor} times the motion"),
+            Self::Shapes(mix) => write!(f, "shapes: {mix}"),
         }
     }
 }
@@ -125,33 +138,27 @@ pub struct Best {
     pub tied: Vec<String>,
 }
 
-/// Runs the scene with every change that it can have. `done` is called after each.
+/// Every change.
+pub(super) fn changes() -> Vec<Change> {
+    Aspect::ALL
+        .iter()
+        .flat_map(|aspect| aspect.changes())
+        .collect()
+}
+
+/// Runs the scene with a change; `None` where it can't have it.
 ///
 /// # Errors
 /// What running a scene may meet.
-pub fn sweep(
+pub(super) fn varied(
     file: &SceneFile,
+    change: Change,
     tier: Tier,
     count: u32,
-    mut done: impl FnMut(),
-) -> Result<Vec<Variation>, TradeoffError> {
-    let mut variations = Vec::new();
-    for &aspect in Aspect::ALL {
-        for change in aspect.changes() {
-            if let Some(scene) = changed(file, change)? {
-                variations.push(variation(change, &scene, tier, count)?);
-            }
-            done();
-        }
-    }
-    Ok(variations)
-}
-
-/// How many steps [`sweep`] reports.
-#[must_use]
-pub fn steps() -> u64 {
-    let changes = Aspect::ALL.iter().map(|aspect| aspect.changes().len());
-    changes.sum::<usize>() as u64
+) -> Result<Option<Variation>, TradeoffError> {
+    let scene = changed(file, change)?;
+    let of = |scene| variation(change, &scene, tier, count);
+    scene.map(of).transpose()
 }
 
 fn variation(
