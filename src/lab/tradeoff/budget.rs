@@ -190,7 +190,7 @@ impl Starvation {
 }
 
 /// Clock budgets: shares of the median seconds that culling without a budget takes after its updates. All budgets take
-/// turns on the scene's first `frames` frames.
+/// turns on the scene's first `frames` frames. No rows where a run is too short for a warm frame.
 ///
 /// # Errors
 /// Settings that can't be carried out.
@@ -217,15 +217,16 @@ pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>,
     let microseconds = SHARES.map(|share| (share * whole).round() as u64);
     let row = |(microseconds, culled): (u64, Culled)| {
         let times = spent(&culled);
-        let at = |quantile: f64| times[((times.len() - 1) as f64 * quantile).round() as usize];
+        let last = times.len().checked_sub(1)? as f64;
+        let at = |quantile: f64| times[(last * quantile).round() as usize];
         let counters = culled.counts.culler;
-        ClockRow {
+        Some(ClockRow {
             microseconds,
             refined: counters.ordop.tests as f64 / counters.sphere.hits.max(1) as f64,
             p50: at(0.5) - microseconds as f64,
             p99: at(0.99) - microseconds as f64,
-        }
+        })
     };
     let culled = culled(&microseconds.map(Budget::Microseconds))?;
-    Ok(microseconds.into_iter().zip(culled).map(row).collect())
+    Ok(microseconds.into_iter().zip(culled).filter_map(row).collect())
 }
