@@ -67,13 +67,15 @@ enum Command {
 }
 
 impl Command {
-    /// Whether its work can be shared by the ranks of `mpirun`. Another command would be run by each of them, all of it.
-    fn takes_ranks(&self) -> bool {
+    /// Whether its work is cut into units, which many can share.
+    fn is_sweep(&self) -> bool {
         match self {
             Self::Verify(args) => args.is_sweep(),
             Self::Tradeoff(args) => args.is_sweep(),
-            Self::Reproduce(_) | Self::Run(_) => true,
-            Self::Cost(_)
+            Self::Record(args) => args.is_sweep(),
+            Self::Reproduce(_) => true,
+            Self::Run(_)
+            | Self::Cost(_)
             | Self::Advise(_)
             | Self::Mesh(_)
             | Self::Merge(_)
@@ -81,12 +83,16 @@ impl Command {
             | Self::Check(_)
             | Self::Bench(_)
             | Self::View(_)
-            | Self::Record(_)
             | Self::Cmp(_)
             | Self::Report(_)
             | Self::Completions(_)
             | Self::Man(_) => false,
         }
+    }
+
+    /// Whether its work can be shared by the ranks of `mpirun`. Another command would be run by each of them, all of it.
+    fn takes_ranks(&self) -> bool {
+        self.is_sweep() || matches!(self, Self::Run(_))
     }
 }
 
@@ -103,11 +109,14 @@ pub enum Outcome {
 }
 
 impl Cli {
-    /// Refuses to be one of many ranks where each would do all of the work.
+    /// Refuses to share work that can't be, above all to be one of many ranks where each would do all of it.
     ///
     /// # Errors
     /// Many ranks, and the program or the command doesn't take them.
     pub fn refuse(&self) -> miette::Result<()> {
+        if let Command::Record(args) = &self.command {
+            args.refuse()?;
+        }
         ranks::refuse(self.command.takes_ranks())
     }
 

@@ -1,24 +1,30 @@
 //! `sdop record`: runs an experiment and keeps what it measured, with where it comes from.
 
+mod shared;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::lab::measure::machine::Machine;
+use sdop::lab::mpi;
 use sdop::lab::report::{Code, Experiment, FILE, Load, Manifest, Step, experiments};
 
 use super::Outcome;
 use super::files::{COMMAND, write};
 use super::output::{print, rows};
 use super::scene_args::MachineArgs;
+use super::sweep::{SHARING, SweepArgs};
 
 /// Run an experiment and keep its measurements under data/record
 ///
 /// Writes the experiment's tables and record.json: command, commit, date, machine, compiler, load before and after, and the digest of
-/// every file and input. Without an experiment, lists them.
+/// every file and input. Without an experiment, lists them. Experiments that are sweeps (reproduce, tradeoff, verify) can be
+/// shared by ranks of mpirun or made in shards; others are measured in one process.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples: sdop record\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick"
+    after_help = "Examples: sdop record\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick\n          \
+    mpirun -n 65 sdop record verify --name my-cluster\n          sdop record verify --name my-cluster --shard 3/64, and for all: --merge"
 )]
 pub struct Args {
     /// The experiments; kernels and peers stand for all of theirs
@@ -35,6 +41,11 @@ pub struct Args {
     /// A note for readers of the record
     #[arg(long, value_name = "TEXT")]
     note: Option<String>,
+    /// Make the record of the shards that --shard left beside it
+    #[arg(long, conflicts_with_all = ["adopt", "shard", "resume", "share_cores"])]
+    merge: bool,
+    #[command(flatten)]
+    sweep: SweepArgs,
     #[command(flatten)]
     machine: MachineArgs,
     /// Further arguments of the experiment, behind --
@@ -62,17 +73,36 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         }
         return Ok(Outcome::Passed);
     }
-    // All names are looked at before anything is measured.
+    // All names and arguments are looked at before anything is measured.
+    let chosen = chosen(args)?;
+    for experiment in chosen {
+        let directory = place(args, experiment.name);
+        if mpi::rank() > 0 {
+            shared::serve(args, experiment, &directory)?;
+        } else if args.sweep.shard().is_some() {
+            shared::shard(args, experiment, &directory)?;
+        } else {
+            if args.merge {
+                shared::merge(args, experiment, &directory)?;
+            } else {
+                measure(args, experiment, &directory)?;
+            }
+            say(&directory)?;
+        }
+    }
+    Ok(Outcome::Passed)
+}
+
+/// The experiments that are named, with arguments that they take.
+fn chosen(args: &Args) -> miette::Result<Vec<&'static Experiment>> {
     let mut chosen: Vec<&Experiment> = Vec::new();
     for name in &args.experiments {
         chosen.extend(named(name)?);
     }
-    for experiment in chosen {
-        let directory = place(args, experiment.name);
-        measure(args, experiment, &directory)?;
-        say(&directory)?;
+    for experiment in &chosen {
+        further(args, experiment)?;
     }
-    Ok(Outcome::Passed)
+    Ok(chosen)
 }
 
 fn place(args: &Args, experiment: &str) -> PathBuf {
@@ -108,51 +138,78 @@ fn say(directory: &Path) -> miette::Result<()> {
 
 /// Measures into a directory beside, and puts it in its place when it is whole.
 fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
-    let more = further(args, experiment)?;
-    let mut beside = directory.as_os_str().to_owned();
-    beside.push(".part");
-    let beside = PathBuf::from(beside);
-    let cannot = || format!("cannot write {}", beside.display());
-    if beside.exists() {
-        std::fs::remove_dir_all(&beside)
-            .into_diagnostic()
-            .wrap_err_with(cannot)?;
-    }
-    std::fs::create_dir_all(&beside)
-        .into_diagnostic()
-        .wrap_err_with(cannot)?;
+    let part = prepare(directory)?;
     let before = Load::now();
+    execute(args, experiment, &part)?;
     let command = command_line(experiment, args);
-    execute(experiment, &more, &command, &beside)?;
     let mut manifest =
-        Manifest::describe(&beside, experiment.name, command, experiment.deterministic)?;
+        Manifest::describe(&part, experiment.name, command, experiment.deterministic)?;
     manifest.machine = Some(Machine::here(args.machine.tier()));
     manifest.load = before
         .zip(Load::now())
         .map(|(before, after)| [before, after]);
+    finish(args, experiment, manifest, directory)
+}
+
+/// A directory whose name goes on beyond another's.
+fn beside(directory: &Path, ending: &str) -> PathBuf {
+    let mut beside = directory.as_os_str().to_owned();
+    beside.push(ending);
+    beside.into()
+}
+
+/// The directory for a record that isn't whole, without what an earlier run left there. A journal stays: whoever finds it says
+/// how to go on from it.
+fn prepare(directory: &Path) -> miette::Result<PathBuf> {
+    let part = beside(directory, ".part");
+    let journal = |entry: std::io::Result<std::fs::DirEntry>| {
+        entry.is_ok_and(|entry| entry.path().extension().is_some_and(|e| e == "journal"))
+    };
+    let prepare = || {
+        if part.exists() && !std::fs::read_dir(&part)?.any(journal) {
+            std::fs::remove_dir_all(&part)?;
+        }
+        std::fs::create_dir_all(&part)
+    };
+    prepare()
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot write {}", part.display()))?;
+    Ok(part)
+}
+
+/// Writes the manifest of a record that is whole, and puts it in its place.
+fn finish(
+    args: &Args,
+    experiment: &Experiment,
+    mut manifest: Manifest,
+    directory: &Path,
+) -> miette::Result<()> {
     manifest.note.clone_from(&args.note);
     manifest.add_inputs(Path::new("."), experiment.scenes)?;
-    write(&beside.join(FILE), manifest.text())?;
-    if directory.exists() {
-        std::fs::remove_dir_all(directory)
-            .into_diagnostic()
-            .wrap_err_with(cannot)?;
-    }
-    std::fs::rename(&beside, directory)
+    let part = beside(directory, ".part");
+    write(&part.join(FILE), manifest.text())?;
+    let replace = || {
+        if directory.exists() {
+            std::fs::remove_dir_all(directory)?;
+        }
+        std::fs::rename(&part, directory)
+    };
+    replace()
         .into_diagnostic()
-        .wrap_err_with(cannot)
+        .wrap_err_with(|| format!("cannot write {}", directory.display()))
 }
 
 /// What a step's command gets beyond its own arguments: the SIMD level too, which the record names, so that it is what ran.
 fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> {
-    if args
-        .more
-        .iter()
-        .any(|argument| argument.starts_with("--simd"))
-    {
+    let behind = |flag: &&&str| {
+        args.more
+            .iter()
+            .any(|argument| argument.starts_with(**flag))
+    };
+    if let Some(flag) = SHARING.iter().chain(&["--simd"]).find(behind) {
         return Err(miette!(
-            help = "put it before the --: the record names the level",
-            "--simd behind the --"
+            help = "put it before the --: the record is of what it asks for",
+            "{flag} behind the --"
         ));
     }
     let mut more = args.more.clone();
@@ -170,8 +227,8 @@ fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> 
     Ok(more)
 }
 
-/// Runs the experiment's steps; further arguments go to each.
-fn execute(experiment: &Experiment, more: &[String], line: &str, out: &Path) -> miette::Result<()> {
+/// Runs the experiment's steps.
+fn execute(args: &Args, experiment: &Experiment, out: &Path) -> miette::Result<()> {
     for (index, step) in experiment.steps.iter().enumerate() {
         if experiment.steps.len() > 1 {
             eprintln!(
@@ -181,24 +238,49 @@ fn execute(experiment: &Experiment, more: &[String], line: &str, out: &Path) -> 
                 experiment.steps.len()
             );
         }
-        let (mut command, file) = prepared(step, out)?;
-        let output = command
-            .args(more)
-            .env(COMMAND, line)
-            .stderr(Stdio::inherit())
-            .output()
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot run {}", experiment.name))?;
-        // A planted bug must be seen.
-        let expected = if planted(step) { Some(1) } else { Some(0) };
-        if output.status.code() != expected {
-            return Err(miette!("{} failed: {}", experiment.name, output.status));
-        }
+        let (mut command, file) = complete(args, experiment, step, out)?;
+        let said = ran(experiment, step, &mut command)?;
         if let Some(file) = file {
-            write(&out.join(file), &output.stdout)?;
+            write(&out.join(file), said)?;
         }
     }
     Ok(())
+}
+
+/// A step's command with what is asked of it here, and the file that its output becomes.
+fn complete(
+    args: &Args,
+    experiment: &Experiment,
+    step: &Step,
+    out: &Path,
+) -> miette::Result<(Command, Option<&'static str>)> {
+    let (mut command, file) = prepared(step, out)?;
+    if shared::sweep(experiment) {
+        command.args(args.sweep.arguments());
+        if file.is_some() {
+            // Its journal, or its shard.
+            command.arg("--out").arg(out);
+        }
+    }
+    command
+        .args(further(args, experiment)?)
+        .env(COMMAND, command_line(experiment, args));
+    Ok((command, file))
+}
+
+/// What a step's command says, when it ends well.
+fn ran(experiment: &Experiment, step: &Step, command: &mut Command) -> miette::Result<Vec<u8>> {
+    let output = command
+        .stderr(Stdio::inherit())
+        .output()
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot run {}", experiment.name))?;
+    // A planted bug must be seen.
+    let expected = if planted(step) { Some(1) } else { Some(0) };
+    if output.status.code() != expected {
+        return Err(miette!("{} failed: {}", experiment.name, output.status));
+    }
+    Ok(output.stdout)
 }
 
 fn planted(step: &Step) -> bool {

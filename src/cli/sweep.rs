@@ -77,16 +77,21 @@ pub fn enter(args: &SweepArgs) -> miette::Result<()> {
 }
 
 impl SweepArgs {
-    /// Refuses what was said of sharing where there is nothing to share.
-    ///
-    /// # Errors
-    /// Some of it was said.
-    pub fn refuse(&self, why: &str) -> miette::Result<()> {
-        let [shard, resume, _] = SHARING;
-        for (said, flag) in [(self.shard.is_some(), shard), (self.resume, resume)] {
-            miette::ensure!(!said, help = format!("leave {flag} out"), "{flag}: {why}");
+    /// The part of the work that was asked for.
+    pub fn shard(&self) -> Option<Shard> {
+        self.shard
+    }
+
+    /// What was said, as arguments of another command.
+    pub fn arguments(&self) -> Vec<String> {
+        let [shard, resume, share_cores] = SHARING.map(str::to_owned);
+        let mut arguments = Vec::new();
+        if let Some(part) = self.shard {
+            arguments.extend([shard, part.to_string()]);
         }
-        Ok(())
+        arguments.extend(self.resume.then_some(resume));
+        arguments.extend(self.share_cores.then_some(share_cores));
+        arguments
     }
 
     /// Does the work. `take` gets the results in the order of units; `None` when another process has them: this one wrote a

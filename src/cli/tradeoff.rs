@@ -84,7 +84,12 @@ struct Recorded {
 /// A bad scene, settings that it can't have, files that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(path) = recorded(args.scene.path()) {
-        args.sweep.refuse("an earlier run is printed as it is")?;
+        if let Some(flag) = args.sweep.arguments().first() {
+            miette::bail!(
+                help = format!("leave {flag} out"),
+                "{flag}: an earlier run has no work to share"
+            );
+        }
         return args.tell(&read(path)?);
     }
     sweep::enter(&args.sweep)?;

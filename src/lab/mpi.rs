@@ -12,10 +12,22 @@ const SIZES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
 /// Set by any launcher that speaks `PMIx`, which leaves the number to be asked for; Slurm says it besides.
 const PMIX: [&str; 2] = ["PMIX_RANK", "SLURM_STEP_NUM_TASKS"];
 
+/// What launchers call a rank's number.
+const NUMBERS: [&str; 3] = ["OMPI_COMM_WORLD_RANK", "PMI_RANK", PMIX[0]];
+
 /// How many ranks of this program were started, as its launcher's environment says; 1 for a program that is run alone.
 #[must_use]
 pub fn launched() -> usize {
     ranks(|name| env::var(name).ok())
+}
+
+/// This rank's number, as its launcher's environment says; 0 for a program that is run alone. Known before MPI has started, for
+/// programs that start others as ranks.
+#[must_use]
+pub fn rank() -> usize {
+    let number = |name: &&str| env::var(name).ok()?.trim().parse().ok();
+    let said = || NUMBERS.iter().find_map(number).unwrap_or(0);
+    if launched() > 1 { said() } else { 0 }
 }
 
 fn ranks(var: impl Fn(&str) -> Option<String>) -> usize {

@@ -10,6 +10,7 @@ mod report;
 mod reproduce;
 mod run;
 mod sweep;
+mod sweeps;
 mod terminal;
 mod view;
 

@@ -228,5 +228,9 @@ pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>,
         })
     };
     let culled = culled(&microseconds.map(Budget::Microseconds))?;
-    Ok(microseconds.into_iter().zip(culled).filter_map(row).collect())
+    Ok(microseconds
+        .into_iter()
+        .zip(culled)
+        .filter_map(row)
+        .collect())
 }
