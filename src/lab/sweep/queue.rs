@@ -84,6 +84,8 @@ impl<'a> Queue<'a> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+    use std::collections::BTreeSet;
+
     use super::super::Header;
     use super::*;
 
@@ -111,11 +113,11 @@ mod tests {
     const UNITS: [usize; 9] = [0, 1, 2, 3, 4, 5, 6, 7, 8];
     const NODES: [(usize, &str); 4] = [(1, "a"), (2, "a"), (3, "b"), (4, "b")];
 
-    /// All units done by ranks on two nodes, in rounds: the rank that was first begins anew, so that some hold units for long. Who did
-    /// what, in order, and the units beside which each began on its node.
-    fn played(share_cores: bool) -> Vec<(usize, usize, Vec<usize>)> {
+    /// All units done by ranks on two nodes; of those under way the one ends first that began first, or last. Who began what, in
+    /// order, and beside which units on its node.
+    fn played(share_cores: bool, first: bool) -> Vec<(usize, usize, Vec<usize>)> {
         let mut queue = Queue::new(&Mixed, &UNITS, share_cores);
-        let (mut said, mut left) = (Vec::new(), Vec::new());
+        let (mut said, mut left, mut began) = (Vec::new(), Vec::new(), VecDeque::new());
         for (rank, node) in NODES {
             queue.arrives(rank, node);
         }
@@ -130,12 +132,16 @@ mod tests {
                             .iter()
                             .filter(|&(other, _)| *other != rank && queue.nodes[other] == *node);
                         said.push((rank, unit, others.map(|(_, &unit)| unit).collect()));
+                        began.push_back(rank);
                     }
                 }
             }
-            let Some((&rank, _)) = queue.busy.last_key_value() else {
-                break;
+            let ends = if first {
+                began.pop_front()
+            } else {
+                began.pop_back()
             };
+            let Some(rank) = ends else { break };
             queue.ended(rank);
         }
         assert_eq!(left, [6]);
@@ -145,24 +151,24 @@ mod tests {
 
     #[test]
     fn every_unit_goes_to_one_rank_and_timed_ones_have_their_node_to_themselves() {
-        let said = played(false);
-        let mut units: Vec<usize> = said.iter().map(|(_, unit, _)| *unit).collect();
-        assert_eq!(units[..4], [0, 2, 4, 8]);
-        units.sort_unstable();
-        assert_eq!(units, [0, 1, 2, 3, 4, 5, 7, 8]);
-        for (_, unit, beside) in &said {
-            assert!(unit % 2 == 0 || beside.is_empty(), "{said:?}");
+        for first in [true, false] {
+            let said = played(false, first);
+            let mut units: Vec<usize> = said.iter().map(|(_, unit, _)| *unit).collect();
+            assert_eq!(units[..4], [0, 2, 4, 8]);
+            units.sort_unstable();
+            assert_eq!(units, [0, 1, 2, 3, 4, 5, 7, 8]);
+            for (_, unit, beside) in &said {
+                assert!(unit % 2 == 0 || beside.is_empty(), "{said:?}");
+            }
+            let nodes = said.iter().filter(|(_, unit, _)| unit % 2 == 1);
+            let nodes: BTreeSet<usize> = nodes.map(|(rank, ..)| rank.div_ceil(2)).collect();
+            assert_eq!(nodes.len(), if first { 2 } else { 1 }, "{said:?}");
         }
-        let timed = |node: usize| {
-            said.iter()
-                .filter(move |(rank, unit, _)| unit % 2 == 1 && rank.div_ceil(2) == node)
-        };
-        assert!(timed(1).count() > 0 && timed(2).count() > 0, "{said:?}");
     }
 
     #[test]
     fn ranks_that_share_their_cores_time_side_by_side() {
-        let said = played(true);
+        let said = played(true, true);
         assert_eq!(said.len(), 8);
         let beside = said
             .iter()
