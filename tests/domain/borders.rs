@@ -213,7 +213,7 @@ fn near_touching_pairs_on_either_side() {
 #[test]
 fn pairs_that_come_together_by_a_skin_each() {
     let ball = shape("icosphere", 1.0);
-    let (reach, step) = (ball.ball.radius, 0.2499 * ball.ball.radius);
+    let (reach, step) = (ball.ball.radius, 0.4999 * ball.ball.radius);
     let frame = |apart: f32| {
         // The right one has the higher number, then the lower; a crowd on either side keeps the first plane on the right ones.
         let pair = |i: usize| {

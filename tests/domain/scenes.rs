@@ -137,15 +137,15 @@ fn a_cone_that_a_body_looks_along_sees_the_same_from_every_rank() {
 
 #[test]
 fn ghosts_are_a_skin_of_the_domain_and_owners_are_kept_while_bodies_are_slow() {
-    let text = "name = \"many\"\nframes = 12\n[box]\nside = 40.0\n[[bodies]]\nshape = \"box\"\nradius = 0.5\ncount = 8000
+    let text = "name = \"many\"\nframes = 24\n[box]\nside = 40.0\n[[bodies]]\nshape = \"box\"\nradius = 0.5\ncount = 8000
         speed = [0.5, 1.0]\n[effects]\nmotion = true\nwalls = \"specular\"\n[cull]\npairs = \"grid\"\n";
     let summary = on(8, &build(text)).unwrap();
     for line in &summary.ranks {
         assert!((900..1100).contains(&line.bodies), "{line:?}");
-        // A cell of side 20 with a border of 1 + ½ skin on three sides: (22.3/20)³ − 1 at the corner of eight is 0.2.
-        let a_frame = line.ghosts / 12;
+        // A cell of side 20 with a border of two reaches and two skins on three sides: (21.5/20)³ − 1 is 0.24.
+        let a_frame = line.ghosts / 24;
         assert!((100..350).contains(&a_frame), "{line:?}");
-        // A skin of a quarter of the radius lasts seven steps of a sixtieth at speed 1.
+        // A skin of half the radius lasts fifteen steps of a sixtieth at speed 1.
         assert!((2..=3).contains(&line.renewals), "{line:?}");
         assert_eq!(line.cuts, 1);
         let told = serde_json::to_value(line).unwrap();

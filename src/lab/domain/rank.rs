@@ -219,9 +219,11 @@ impl<'a, N: Network> Rank<'a, N> {
         let held = &self.held;
         let found = self.culler.pairs();
         self.pairs.clear();
+        // Most pairs are of two bodies owned here: nothing is to be looked up for those.
+        let both = |pair: [u32; 2]| pair.iter().all(|&place| held.owned[place as usize]);
         let own = found
             .iter()
-            .filter(|&pair| held.owned[decider(&self.then, pair)]);
+            .filter(|&pair| both(pair) || held.owned[decider(&self.then, pair)]);
         let named = own.map(|pair| pair.map(|place| held.numbers[place as usize]));
         self.pairs.extend(named);
         let ghosts = held.owned.iter().filter(|owned| !**owned).count();

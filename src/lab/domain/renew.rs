@@ -11,9 +11,9 @@ use crate::lab::effects::runs;
 use crate::rounding::border;
 use crate::settings::{Interest, ViewCone};
 
-/// A skin of this share of the mean reach: wide enough for some frames of bodies that move a few hundredths of their radius a
-/// frame, narrow enough that it adds few ghosts.
-const SKIN: f64 = 0.25;
+/// A skin of this share of the mean reach: a renewal costs a rank what some frames of all its bodies do, and a wider skin adds
+/// ghosts at its borders alone. Wider still pays in worlds of millions a rank, and not in small or crowded ones.
+const SKIN: f64 = 0.5;
 
 /// Space is cut anew when a rank owns this much more than its equal share, and more than a few bodies.
 const UNEQUAL: f64 = 1.1;
