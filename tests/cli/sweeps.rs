@@ -222,6 +222,28 @@ fn shards_of_every_sweep_are_the_work_of_one_process() {
 }
 
 #[test]
+fn shards_of_another_scene_are_no_part_of_a_work() {
+    let (directory, scene) = scene_file(SCENE);
+    let of_scenes = |sweep: &&Sweep| sweep.arguments.contains(&"SCENE");
+    for sweep in SWEEPS.iter().filter(of_scenes) {
+        let out = directory.path().join(sweep.name);
+        let mut shards = Vec::new();
+        for (index, radius) in [(1, "1.0]"), (2, "1.1]")] {
+            fs::write(&scene, SCENE.replace("1.0]", radius)).unwrap();
+            sweep.run(&scene, &out, &["--shard", &format!("{index}/30")]);
+            let name = format!("{}-{index}-of-30.units", sweep.name);
+            shards.push(out.join(name));
+        }
+        let shards = shards.iter().map(|path| text(path));
+        let message = refusal(&["merge"].into_iter().chain(shards).collect::<Vec<_>>());
+        assert!(
+            message.contains("are not of one work: the input scene"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
 fn a_record_is_of_its_own_shards_alone() {
     let sweep = SWEEPS.iter().find(|sweep| sweep.name == "record").unwrap();
     let (directory, scene) = scene_file(SCENE);
