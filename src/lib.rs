@@ -73,6 +73,7 @@
 //! | `internals` | the inner rooms as modules, for tests and benches: no promise is made about them |
 
 pub mod bodies;
+pub mod boxes;
 mod choice;
 pub mod counters;
 pub mod culler;
@@ -120,7 +121,8 @@ pub mod update;
 mod update;
 
 pub use bodies::contract::ContractError;
-pub use bodies::{Bodies, Groups};
+pub use bodies::{Aabb, Bodies, Groups};
+pub use boxes::{BoxCuller, BoxWorld};
 pub use culler::{CullError, Culler, CullerBuilder};
 #[cfg(feature = "lab")]
 pub use lab::judge::{self, judge};

@@ -93,6 +93,13 @@ impl PairList {
         }
     }
 
+    /// Appends another list if all pairs then are at most `limit`.
+    pub(crate) fn append_up_to(&mut self, other: &Self, limit: usize) {
+        if self.len + other.len <= limit {
+            self.append(other);
+        }
+    }
+
     /// Gives back the memory behind the last pair.
     pub fn shrink_to_fit(&mut self) {
         let size = if self.len == 0 {

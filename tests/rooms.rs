@@ -25,6 +25,7 @@ const ROOMS: &[&str] = &[
     "strategy",
     "culler",
     "world",
+    "boxes",
     // The laboratory.
     "lab/number",
     "lab/random",

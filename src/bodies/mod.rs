@@ -1,5 +1,6 @@
 //! The state of all rigid bodies, one column a quantity; index i is body i in every column.
 
+mod aabb;
 pub mod contract;
 mod groups;
 #[cfg_attr(
@@ -8,6 +9,7 @@ mod groups;
 )]
 mod places;
 
+pub use aabb::Aabb;
 pub use groups::Groups;
 #[cfg(feature = "internals")]
 pub use places::Places;

@@ -58,7 +58,8 @@ impl Places {
     }
 
     /// Replaces the set of bodies by those that are `present`. Those that were there keep their order; the others follow.
-    pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
+    /// Shapes are left to [`Self::reread_shapes`].
+    pub(crate) fn replace(&mut self, dynamic: &[bool], present: &[bool]) {
         let mut is_new = present.to_vec();
         let mut order = Vec::with_capacity(present.len());
         let stays = |body: &&u32| present.get(**body as usize) == Some(&true);
@@ -67,17 +68,15 @@ impl Places {
             order.push(body);
         }
         order.extend((0..present.len() as u32).filter(|&body| is_new[body as usize]));
-        let (moving, fixed): (Vec<u32>, Vec<u32>) = order
-            .into_iter()
-            .partition(|&body| bodies.dynamic[body as usize]);
+        let (moving, fixed): (Vec<u32>, Vec<u32>) =
+            order.into_iter().partition(|&body| dynamic[body as usize]);
         self.moving = moving.len();
         self.body = [moving, fixed].concat();
-        self.shape.resize(self.body.len(), 0);
-        self.reread_shapes(bodies);
     }
 
     /// Copies each body's shape from the user's columns.
     pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
+        self.shape.resize(self.body.len(), 0);
         for (shape, &body) in self.shape.iter_mut().zip(&self.body) {
             *shape = bodies.shape[body as usize];
         }

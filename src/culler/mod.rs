@@ -153,7 +153,8 @@ impl Culler {
     /// Replaces the set of bodies by those that are `present`. Volumes, static ones too, are placed anew; bodies that were
     /// there keep their neighbours.
     pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
-        self.places.replace(bodies, present);
+        self.places.replace(&bodies.dynamic, present);
+        self.places.reread_shapes(bodies);
         self.fixed = check::fixed(bodies);
         let n = self.places.len();
         self.numbers = (0..n as u32).collect();

@@ -52,11 +52,7 @@ impl Culler {
     pub fn cull_up_to(&mut self, bodies: &Bodies, limit: usize) -> Result<&PairList, CullError> {
         let mut kept = std::mem::take(&mut self.pairs);
         kept.clear();
-        let outcome = self.cull_in_portions(bodies, |portion| {
-            if kept.len() + portion.len() <= limit {
-                kept.append(portion);
-            }
-        });
+        let outcome = self.cull_in_portions(bodies, |portion| kept.append_up_to(portion, limit));
         let pairs = outcome?;
         let is_whole = kept.len() as u64 == pairs;
         self.pairs = kept;

@@ -3,6 +3,7 @@
 //! Every test rejects by a strict `>` on conservatively inflated volumes, so touching is reported and NaN never culls.
 //! A test counts when a candidate pair is handed to it; padding lanes never count.
 
+pub mod boxes;
 pub mod intervals;
 pub mod ordop;
 pub mod sphere;

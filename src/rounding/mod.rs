@@ -14,6 +14,7 @@
 //! (`benches/worst_case.rs`; a shorter search is in the tests).
 
 pub mod border;
+pub mod cube;
 pub mod pose;
 pub mod skin;
 pub mod slab;

@@ -9,10 +9,12 @@ use crate::bodies::Groups;
 use crate::broad_phase::{Block, FirstTest, MOST_CANDIDATES, PairFinder};
 use crate::counters::VolumeCounters;
 use crate::overlap::SlotTest;
+use crate::overlap::boxes::{Cubes, EndSlots};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
 use crate::settings::TestedVolume;
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
+use crate::threads::{Executor, Threads};
 
 /// Slots of a run that are tested before their hits are listed.
 const PIECE: usize = MOST_CANDIDATES;
@@ -26,6 +28,17 @@ enum First<'a> {
     Intervals(&'a IntervalSlots),
     /// None: every candidate passes.
     PassAll,
+    /// Given boxes.
+    Boxes(BoxTest<'a>),
+}
+
+/// How given boxes are tested.
+#[derive(Clone, Copy)]
+pub(crate) enum BoxTest<'a> {
+    /// By cubes about them and within.
+    Cubes(Cubes<'a>),
+    /// By their ends.
+    Ends(&'a EndSlots),
 }
 
 /// What is listed of a pair of slots.
@@ -103,13 +116,52 @@ pub(super) fn list(
     tasks: &mut Vec<Task>,
     output: Output<'_>,
 ) -> Totals {
-    let listing = Listing::new(inputs, listed);
+    list_parts(
+        Listing::new(inputs, listed),
+        inputs.executor.pool,
+        tasks,
+        output,
+    )
+}
+
+/// Given boxes that are arranged in slots, and how they are tested.
+#[derive(Clone, Copy)]
+pub(crate) struct BoxInputs<'a> {
+    pub executor: Executor<'a>,
+    pub finder: &'a PairFinder,
+    pub test: BoxTest<'a>,
+    /// Each box's groups where not all collide with all.
+    pub groups: Option<&'a [Groups]>,
+}
+
+/// Lists the boxes that meet, by their names, on all threads.
+pub(crate) fn list_boxes(
+    inputs: BoxInputs<'_>,
+    scratch: &mut Scratch,
+    output: Output<'_>,
+) -> VolumeCounters {
+    let listing = Listing {
+        tier: inputs.executor.tier,
+        finder: inputs.finder,
+        first: First::Boxes(inputs.test),
+        listed: Listed::Bodies,
+        names: SlotNames::Bodies,
+        groups: inputs.groups,
+    };
+    list_parts(listing, inputs.executor.pool, &mut scratch.tasks, output).first
+}
+
+fn list_parts(
+    listing: Listing<'_>,
+    pool: &Threads,
+    tasks: &mut Vec<Task>,
+    output: Output<'_>,
+) -> Totals {
     let work = |parts: Range<usize>, task: &mut Task, outlet: &Outlet<'_, '_>| {
         let flush = &mut |out: &mut PairList| outlet.offer(out);
         task.first = listing.run(parts, &mut task.out, outlet.worth(), flush);
     };
-    let units = inputs.finder.parts();
-    split_work(inputs.executor.pool, tasks, units, output, work)
+    split_work(pool, tasks, listing.finder.parts(), output, work)
 }
 
 /// What is done with a list that has grown long enough.
@@ -134,6 +186,8 @@ impl Kernel for List<'_> {
             First::Spheres => self.with(l, finder.slots()),
             First::Intervals(intervals) => self.with(l, intervals),
             First::PassAll => self.with(l, &PassAll),
+            First::Boxes(BoxTest::Cubes(cubes)) => self.with(l, &cubes),
+            First::Boxes(BoxTest::Ends(ends)) => self.with(l, ends),
         }
     }
 }

@@ -24,6 +24,7 @@ mod tasks;
 mod time_critical;
 
 pub(crate) use interest::mark;
+pub(crate) use listing::{BoxInputs, BoxTest, list_boxes};
 pub(crate) use output::Output;
 
 /// Pairs that flow through the or-DOP test at once where no list is kept: few enough for the first-level cache, enough to

@@ -1,30 +1,6 @@
-//! What a world knows its bodies by, and what they are made of.
-
-use std::fmt;
+//! What a world's bodies are made of.
 
 use crate::bodies::Groups;
-
-/// A body of a world. Stays the same until the body is removed, and is never given to another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct BodyId {
-    pub(super) slot: u32,
-    pub(super) generation: u32,
-}
-
-impl BodyId {
-    /// Where a column a body may keep this one's entry: below [`World::slots`](super::World::slots), and given to another
-    /// body once this one is removed.
-    #[must_use]
-    pub fn slot(self) -> usize {
-        self.slot as usize
-    }
-}
-
-impl fmt::Display for BodyId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}.{}", self.slot, self.generation)
-    }
-}
 
 /// A body to be inserted.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,7 +15,7 @@ pub struct Events {
 
 /// The pairs at the last look, and what has changed since the one before.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Watch {
+pub(crate) struct Watch {
     seen: Vec<[BodyId; 2]>,
     now: Vec<[BodyId; 2]>,
     events: Events,

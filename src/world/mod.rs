@@ -26,19 +26,22 @@
 mod body;
 mod error;
 mod events;
+mod ids;
 mod local;
 mod lookup;
 mod margins;
 mod pair_test;
 
 pub use crate::bodies::Groups;
-pub use body::{Body, BodyId};
+pub use body::Body;
 pub use error::WorldError;
 pub use events::Events;
+pub use ids::BodyId;
 pub use lookup::PairLookup;
 pub use pair_test::PairTest;
 
-use self::events::Watch;
+pub(crate) use self::events::Watch;
+pub(crate) use self::ids::Ids;
 use self::local::Local;
 use self::margins::{Margins, check_margin};
 use crate::bodies::Bodies;
@@ -56,15 +59,11 @@ pub struct World {
     models: Vec<u32>,
     /// One entry a slot; empty slots keep their last body's.
     bodies: Bodies,
-    present: Vec<bool>,
-    generation: Vec<u32>,
+    ids: Ids,
     shape: Vec<u32>,
     translation: Vec<[f64; 3]>,
     margin: Vec<f32>,
     groups: Vec<Groups>,
-    /// Empty slots, and those emptied since the last cull, which its pairs still name.
-    free: Vec<u32>,
-    emptied: Vec<u32>,
     local: Local,
     margins: Margins,
     interest: Vec<BodyId>,
@@ -104,14 +103,11 @@ impl World {
             models: (0..shapes.len() as u32).collect(),
             shapes,
             bodies: Bodies::default(),
-            present: Vec::new(),
-            generation: Vec::new(),
+            ids: Ids::default(),
             shape: Vec::new(),
             translation: Vec::new(),
             margin: Vec::new(),
             groups: Vec::new(),
-            free: Vec::new(),
-            emptied: Vec::new(),
             local: Local::default(),
             margins: Margins::default(),
             interest: Vec::new(),
@@ -138,14 +134,10 @@ impl World {
     /// # Errors
     /// A pose, shape or margin outside of the contract.
     pub fn insert(&mut self, body: Body) -> Result<BodyId, WorldError> {
-        let slot = self.free.last().map_or(self.present.len(), |&s| s as usize);
+        let slot = self.ids.next();
         self.check(slot, &body)?;
-        if self.free.pop().is_some() {
-            self.generation[slot] += 1;
-        } else {
+        if self.ids.take() {
             self.bodies.push(0, true, [0.0f32; 4], [0.0f32; 3]);
-            self.present.push(false);
-            self.generation.push(0);
             self.shape.push(0);
             self.translation.push([0.0; 3]);
             self.margin.push(0.0);
@@ -154,14 +146,13 @@ impl World {
         }
         self.bodies.dynamic[slot] = body.dynamic;
         self.bodies.rotation[slot] = body.rotation;
-        self.present[slot] = true;
         self.shape[slot] = body.shape;
         self.translation[slot] = body.translation;
         self.margin[slot] = body.margin;
         self.regrouped |= self.groups[slot] != body.groups;
         self.groups[slot] = body.groups;
         self.replaced = true;
-        Ok(self.id(slot as u32))
+        Ok(self.ids.id(slot as u32))
     }
 
     /// Removes a body. Pairs of the last cull still name it; the next cull's don't.
@@ -169,9 +160,7 @@ impl World {
     /// # Errors
     /// A body that has been removed before.
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
-        let slot = self.slot(id)?;
-        self.present[slot] = false;
-        self.emptied.push(id.slot);
+        self.ids.remove(id)?;
         self.replaced = true;
         Ok(())
     }
@@ -181,7 +170,7 @@ impl World {
     /// # Errors
     /// A body that has been removed.
     pub fn body(&self, id: BodyId) -> Result<Body, WorldError> {
-        let slot = self.slot(id)?;
+        let slot = self.ids.slot(id)?;
         Ok(Body {
             shape: self.shape[slot],
             dynamic: self.bodies.dynamic[slot],
@@ -198,7 +187,7 @@ impl World {
     /// # Errors
     /// A body that has been removed; a pose, shape or margin outside of the contract.
     pub fn set(&mut self, id: BodyId, body: Body) -> Result<(), WorldError> {
-        let slot = self.slot(id)?;
+        let slot = self.ids.slot(id)?;
         self.check(slot, &body)?;
         self.replaced |= !body.dynamic || !self.bodies.dynamic[slot];
         self.regrouped |= self.groups[slot] != body.groups;
@@ -222,7 +211,7 @@ impl World {
         translation: impl Into<[f64; 3]>,
     ) -> Result<(), WorldError> {
         let (rotation, translation) = (rotation.into(), translation.into());
-        let slot = self.slot(id)?;
+        let slot = self.ids.slot(id)?;
         check_pose(slot, &rotation, &translation)?;
         self.replaced |= !self.bodies.dynamic[slot];
         self.bodies.rotation[slot] = rotation;
@@ -236,7 +225,7 @@ impl World {
     /// A body that has been removed.
     pub fn set_interest(&mut self, ids: &[BodyId]) -> Result<(), WorldError> {
         for &id in ids {
-            self.slot(id)?;
+            self.ids.slot(id)?;
         }
         self.interest = ids.to_vec();
         self.look();
@@ -250,7 +239,7 @@ impl World {
     pub fn cull(&mut self) -> Result<(), WorldError> {
         self.place()?;
         if self.replaced {
-            self.culler.replace(&self.bodies, &self.present);
+            self.culler.replace(&self.bodies, self.ids.present());
             self.replaced = false;
             if !self.interest.is_empty() {
                 self.look(); // another body may have taken the slot of one that was of interest
@@ -262,7 +251,7 @@ impl World {
                 .set_groups((!all).then(|| self.groups.clone()))?;
             self.regrouped = false;
         }
-        self.free.append(&mut self.emptied);
+        self.ids.settle();
         self.culler.cull(&self.bodies)?;
         Ok(())
     }
@@ -270,24 +259,20 @@ impl World {
     /// The pairs of the last cull, the lower slot first.
     pub fn pairs(&self) -> impl ExactSizeIterator<Item = [BodyId; 2]> + '_ {
         let pairs = self.culler.pairs().iter();
-        pairs.map(|pair| pair.map(|slot| self.id(slot)))
+        pairs.map(|pair| pair.map(|slot| self.ids.id(slot)))
     }
 
     /// What the last cull reports that it didn't at the last call of this, and the other way round.
     pub fn events(&mut self) -> &Events {
-        let (culler, generation) = (&self.culler, &self.generation);
-        let id = |slot: u32| BodyId {
-            slot,
-            generation: generation[slot as usize],
-        };
+        let (pairs, ids) = (self.culler.pairs().iter(), &self.ids);
         self.watch
-            .look(culler.pairs().iter().map(|pair| pair.map(id)))
+            .look(pairs.map(|pair| pair.map(|slot| ids.id(slot))))
     }
 
     /// Number of bodies.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.present.len() - self.free.len() - self.emptied.len()
+        self.ids.len()
     }
 
     /// Whether there is none.
@@ -299,7 +284,7 @@ impl World {
     /// Above every [`BodyId::slot`].
     #[must_use]
     pub fn slots(&self) -> usize {
-        self.present.len()
+        self.ids.slots()
     }
 
     /// Counters summed over all culls.
@@ -316,7 +301,8 @@ impl World {
 
     /// Brings all bodies near the local origin, in the model that their margin and rounding call for.
     fn place(&mut self) -> Result<(), WorldError> {
-        let present = (0..self.present.len()).filter(|&slot| self.present[slot]);
+        let (ids, slots) = (&self.ids, 0..self.ids.slots());
+        let present = slots.filter(|&slot| ids.present()[slot]);
         let translations = present.clone().map(|slot| self.translation[slot]);
         let local = self.local.follow(translations);
         self.replaced |= local != self.local; // static bodies have moved, as seen from there
@@ -324,7 +310,7 @@ impl World {
             .clone()
             .find(|&slot| !local.reaches(self.translation[slot]))
         {
-            return Err(WorldError::Apart(self.id(slot as u32)));
+            return Err(WorldError::Apart(ids.id(slot as u32)));
         }
         self.local = local;
         let mut changed = false;
@@ -348,23 +334,10 @@ impl World {
 
     /// Tells the culler of the bodies of interest that are still there.
     fn look(&mut self) {
-        let living = |id: &BodyId| self.slot(*id).is_ok();
+        let living = |id: &BodyId| self.ids.slot(*id).is_ok();
         let slots = self.interest.iter().filter(|id| living(id));
         let slots = slots.map(|id| id.slot).collect();
         self.culler.set_interest(Interest::Bodies(slots));
-    }
-
-    fn id(&self, slot: u32) -> BodyId {
-        BodyId {
-            slot,
-            generation: self.generation[slot as usize],
-        }
-    }
-
-    fn slot(&self, id: BodyId) -> Result<usize, WorldError> {
-        let slot = id.slot as usize;
-        let lives = self.present.get(slot) == Some(&true) && self.generation[slot] == id.generation;
-        lives.then_some(slot).ok_or(WorldError::Gone(id))
     }
 
     /// Checks a body that is to take a slot.

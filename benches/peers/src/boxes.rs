@@ -2,6 +2,7 @@
 //!
 //! Intervals are closed: boxes that touch are a pair. The ends are fl(t − r) and fl(t + r), the same bits for everyone.
 
+use sdop::Aabb;
 use sdop::bodies::Bodies;
 use sdop::volume::Shape;
 
@@ -13,6 +14,8 @@ pub type Slabs = [[f32; 2]; 3];
 pub struct Frame {
     /// The box of every body.
     pub boxes: Vec<Slabs>,
+    /// The same as corners, for engines that take those; each is handed the boxes in the order that it wants.
+    pub corners: Vec<Aabb>,
     /// The radius of every body.
     pub radii: Vec<f32>,
     /// The poses, for what culls by more than boxes.
@@ -22,16 +25,50 @@ pub struct Frame {
 impl Frame {
     /// Takes over the poses. Every shape's ball is about its body's origin.
     pub fn fill(&mut self, bodies: &Bodies, shapes: &[Shape]) {
+        self.take(bodies, shapes);
+        let boxes = bodies.translation.iter().zip(&self.radii);
+        let boxes = boxes.map(|(t, &r)| t.map(|x| [x - r, x + r])).collect();
+        self.set_boxes(boxes);
+    }
+
+    /// Takes over the poses; boxes are [`LONG`] in place of balls, the sides in an order that the body's shape tells.
+    pub fn fill_long(&mut self, bodies: &Bodies, shapes: &[Shape]) {
+        self.take(bodies, shapes);
+        let boxes = bodies.translation.iter().zip(&bodies.shape);
+        let boxes = boxes.map(|(t, &shape)| {
+            let order = ORDERS[shape as usize % ORDERS.len()];
+            [0, 1, 2].map(|axis| [t[axis] - LONG[order[axis]], t[axis] + LONG[order[axis]]])
+        });
+        self.set_boxes(boxes.collect());
+    }
+
+    fn take(&mut self, bodies: &Bodies, shapes: &[Shape]) {
         self.bodies.clone_from(bodies);
         let radius = |&shape: &u32| shapes[shape as usize].ball.radius;
         self.radii.clear();
         self.radii.extend(bodies.shape.iter().map(radius));
-        let slabs = |(t, &r): (&[f32; 3], &f32)| t.map(|x| [x - r, x + r]);
-        self.boxes.clear();
-        self.boxes
-            .extend(bodies.translation.iter().zip(&self.radii).map(slabs));
+    }
+
+    /// Takes over boxes.
+    pub fn set_boxes(&mut self, boxes: Vec<Slabs>) {
+        self.boxes = boxes;
+        let corners = |slabs| Aabb::new(lower(slabs), upper(slabs));
+        self.corners = self.boxes.iter().map(corners).collect();
     }
 }
+
+/// Half sides of a long box, 1 : 8 : 64, with the volume of a cube of half side 1.
+pub const LONG: [f32; 3] = [0.125, 1.0, 8.0];
+
+/// All orders of three sides.
+pub const ORDERS: [[usize; 3]; 6] = [
+    [0, 1, 2],
+    [1, 2, 0],
+    [2, 0, 1],
+    [2, 1, 0],
+    [1, 0, 2],
+    [0, 2, 1],
+];
 
 /// The lower corner.
 pub fn lower(slabs: &Slabs) -> [f32; 3] {

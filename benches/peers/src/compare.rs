@@ -91,7 +91,8 @@ pub struct EngineTiming {
 /// # Errors
 /// An engine whose pairs are not the scene's, an engine that can't be built.
 pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compared> {
-    let able = entries.iter().filter(|entry| entry.threads >= case.threads);
+    let able = |entry: &&Entry| entry.threads >= case.threads && case.spread.has(entry.work);
+    let able = entries.iter().filter(able);
     let (checked, left_out) = check(case, &able.collect::<Vec<_>>(), limit_ms)?;
     let entries: Vec<_> = checked.iter().map(|(entry, _)| *entry).collect();
     let (timed, pairs) = timed(case, &entries)?;

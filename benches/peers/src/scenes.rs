@@ -11,7 +11,8 @@ use sdop::lab::effects::Effects;
 use sdop::lab::scene::{Scene, SceneFile};
 use serde::Serialize;
 
-use crate::boxes::Frame;
+use crate::boxes::{Frame, ORDERS};
+use crate::entry::Work;
 
 /// How bodies are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
@@ -23,6 +24,15 @@ pub enum Spread {
     Mixed,
     /// In dense balls of some 370 bodies with void between them.
     Clustered,
+    /// Evenly, boxes with sides 1 : 8 : 64 in any order; bodies are balls to nobody.
+    Long,
+}
+
+impl Spread {
+    /// Whether its bodies are more than boxes, or boxes are all that is asked for.
+    pub fn has(self, work: Work) -> bool {
+        self != Self::Long || work == Work::Boxes
+    }
 }
 
 /// In which order bodies are numbered.
@@ -66,7 +76,7 @@ impl Schedule {
 }
 
 /// Pairs of boxes in the first frame, by spread and number of bodies: a definition that drifts is no comparison.
-pub const EXPECTED: [(Spread, usize, usize); 15] = [
+pub const EXPECTED: [(Spread, usize, usize); 19] = [
     (Spread::Uniform, 500, 2229),
     (Spread::Uniform, 1000, 1604),
     (Spread::Uniform, 10_000, 14_975),
@@ -82,6 +92,10 @@ pub const EXPECTED: [(Spread, usize, usize); 15] = [
     (Spread::Clustered, 10_000, 24_251),
     (Spread::Clustered, 100_000, 250_227),
     (Spread::Clustered, 1_000_000, 2_509_501),
+    (Spread::Long, 500, 0),
+    (Spread::Long, 1000, 0),
+    (Spread::Long, 10_000, 0),
+    (Spread::Long, 100_000, 0),
 ];
 
 /// A scene and where it stands.
@@ -91,6 +105,7 @@ pub struct Course {
     effects: Effects,
     bodies: Bodies,
     started: bool,
+    is_long: bool,
 }
 
 impl Course {
@@ -105,21 +120,22 @@ impl Course {
         let name = format!("{spread:?} of {bodies}");
         let mut scene = SceneFile::parse(&text, &name, Path::new(""))?.build()?;
         if order == Order::Sorted {
-            let mut ahead = Self::start(scene.clone())?;
+            let mut ahead = Self::start(scene.clone(), spread)?;
             let mut frame = Frame::default();
             for _ in 0..=timed_from {
                 ahead.next_frame(&mut frame)?;
             }
             permute(&mut scene, &along_curve(&frame.bodies.translation));
         }
-        Self::start(scene)
+        Self::start(scene, spread)
     }
 
-    fn start(scene: Scene) -> miette::Result<Self> {
+    fn start(scene: Scene, spread: Spread) -> miette::Result<Self> {
         Ok(Self {
             effects: scene.start_effects()?,
             bodies: scene.bodies.clone(),
             started: false,
+            is_long: spread == Spread::Long,
             scene,
         })
     }
@@ -130,7 +146,11 @@ impl Course {
             self.effects.step(&mut self.bodies)?;
         }
         self.started = true;
-        frame.fill(&self.bodies, &self.scene.shapes);
+        if self.is_long {
+            frame.fill_long(&self.bodies, &self.scene.shapes);
+        } else {
+            frame.fill(&self.bodies, &self.scene.shapes);
+        }
         Ok(())
     }
 }
@@ -147,10 +167,24 @@ fn definition(spread: Spread, bodies: usize) -> String {
             "1.0",
             format!("placement = {{ clusters = {{ number = {clusters}, radius = 10.0 }} }}"),
         ),
+        // Three partners a box in the mean, as boxes of balls have that meet 1.5 spheres.
+        Spread::Long => (format!("side = {:?}", 0.72 * side), "1.0", String::new()),
+    };
+    // A shape for each order of the sides.
+    let groups = if spread == Spread::Long {
+        ORDERS.len()
+    } else {
+        1
+    };
+    let group = |k: usize| {
+        let count = bodies * (k + 1) / groups - bodies * k / groups;
+        format!(
+            "[[bodies]]\nshape = 'box'\ncount = {count}\nradius = {radius}\nspeed = 1.0\n{placement}\n"
+        )
     };
     format!(
-        "name = 'peers'\nseed = 1\nframes = 1\ndt = 0.1\n[box]\n{bounds}\n[[bodies]]\nshape = 'box'\ncount = {bodies}\n\
-         radius = {radius}\nspeed = 1.0\n{placement}\n[effects]\nmotion = true\nwalls = 'specular'\n"
+        "name = 'peers'\nseed = 1\nframes = 1\ndt = 0.1\n[box]\n{bounds}\n{}[effects]\nmotion = true\nwalls = 'specular'\n",
+        (0..groups).map(group).collect::<String>()
     )
 }
 

@@ -130,7 +130,7 @@ fn frame(given: &sdop::judge::Frame, scene: &Scene) -> Frame {
     let slabs = |ends: &[f32; 6]| -> Slabs { [0, 1, 2].map(|axis| [ends[axis], ends[axis + 3]]) };
     let mut frame = Frame::default();
     frame.fill(&given.bodies, &scene.shapes);
-    frame.boxes = given.boxes.iter().map(slabs).collect();
+    frame.set_boxes(given.boxes.iter().map(slabs).collect());
     frame
 }
 

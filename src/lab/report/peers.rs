@@ -57,6 +57,18 @@ pub(super) const PEERS: &[Experiment] = &[
         ])],
     ),
     peers(
+        "peers/long",
+        "every engine for boxes on boxes with sides 1 : 8 : 64",
+        &[Step::Peers(&[
+            "--sizes",
+            "500,1000,10000",
+            "--scenes",
+            "long",
+            "--threads",
+            "1",
+        ])],
+    ),
+    peers(
         "peers/uniform-100k",
         "a hundred thousand boxes, engines within 300 ms",
         &[Step::Peers(&[

@@ -1,0 +1,212 @@
+//! All boxes anew in each frame.
+
+use super::frame::Frames;
+use crate::bodies::contract::{check_column, check_number};
+use crate::bodies::{Aabb, Groups};
+use crate::counters::VolumeCounters;
+use crate::culler::CullError;
+use crate::pairs::PairList;
+use crate::settings::Finder;
+use crate::simd::Tier;
+use crate::strategy::Output;
+use crate::threads::Threads;
+
+/// Finds the boxes that meet, frame after frame.
+///
+/// ```
+/// use sdop::{Aabb, BoxCuller};
+///
+/// let mut culler = BoxCuller::new();
+/// let wall = Aabb::new([-50.0, -0.5, 0.0], [50.0, 0.5, 9.0]);
+/// let boxes = [wall, Aabb::new([3.0, 0.5, 1.0], [4.0, 1.5, 2.0]), Aabb::new([3.0, 0.6, 3.0], [4.0, 1.5, 4.0])];
+/// assert_eq!(culler.cull(&boxes)?.sorted(), [[0, 1]]); // touching is meeting
+/// # Ok::<(), sdop::CullError>(())
+/// ```
+#[derive(Debug)]
+pub struct BoxCuller {
+    frames: Frames,
+    groups: Option<Vec<Groups>>,
+    pairs: PairList,
+    counters: VolumeCounters,
+}
+
+/// What of a [`BoxCuller`] or a [`BoxWorld`](super::BoxWorld) can be chosen; what isn't, has its default.
+#[derive(Clone, Debug, PartialEq)]
+#[must_use = "a builder does nothing before `build`"]
+pub struct BoxCullerBuilder {
+    finder: Finder,
+    threads: usize,
+    tier: Option<Tier>,
+}
+
+impl Default for BoxCullerBuilder {
+    fn default() -> Self {
+        Self {
+            finder: Finder::Auto,
+            threads: 1,
+            tier: None,
+        }
+    }
+}
+
+impl BoxCullerBuilder {
+    /// Who finds the candidates; the reported set doesn't depend on it.
+    pub fn finder(self, finder: Finder) -> Self {
+        Self { finder, ..self }
+    }
+
+    /// Number of threads, the caller's included; 0 is taken as 1. Frames of little work stay on the caller's. Lists and
+    /// counters don't depend on it.
+    pub fn threads(self, threads: usize) -> Self {
+        Self { threads, ..self }
+    }
+
+    /// A tier of SIMD in place of the fastest of this CPU. Lists and counters don't depend on it.
+    pub fn tier(self, tier: Tier) -> Self {
+        let tier = Some(tier);
+        Self { tier, ..self }
+    }
+
+    /// The culler.
+    ///
+    /// # Errors
+    /// Threads that the system refuses.
+    pub fn build(&self) -> Result<BoxCuller, CullError> {
+        Ok(BoxCuller::with(self.frames()?))
+    }
+
+    pub(super) fn frames(&self) -> Result<Frames, CullError> {
+        Ok(self.frames_on(Threads::new(self.threads)?))
+    }
+
+    pub(super) fn frames_on(&self, threads: Threads) -> Frames {
+        let tier = self.tier.unwrap_or_else(Tier::detect);
+        Frames::new(self.finder, tier, threads)
+    }
+}
+
+impl Default for BoxCuller {
+    fn default() -> Self {
+        Self::with(Self::builder().frames_on(Threads::default()))
+    }
+}
+
+impl BoxCuller {
+    /// A culler with every default: the finder that `auto` picks, the fastest tier of this CPU, the caller's thread.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The choices that [`Self::new`] makes, to be made otherwise.
+    pub fn builder() -> BoxCullerBuilder {
+        BoxCullerBuilder::default()
+    }
+
+    fn with(frames: Frames) -> Self {
+        Self {
+            frames,
+            groups: None,
+            pairs: PairList::default(),
+            counters: VolumeCounters::default(),
+        }
+    }
+
+    /// From now on, only pairs of boxes that may collide are listed; `None`: all may. One entry a box.
+    pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) {
+        self.groups = groups;
+    }
+
+    /// The pairs i < j of boxes that meet and whose groups collide, each once, in an order that depends on the finder and on
+    /// the frames so far alone. The number of boxes may change from frame to frame; such a frame takes longer.
+    ///
+    /// # Errors
+    /// An end that is infinite or no number, a lower one above the upper one, more boxes than can be numbered, a column of
+    /// groups of another length. [`Self::pairs`] is empty then, and the next frame is culled as ever.
+    pub fn cull(&mut self, boxes: &[Aabb]) -> Result<&PairList, CullError> {
+        let mut pairs = std::mem::take(&mut self.pairs);
+        pairs.clear();
+        let outcome = self.cull_into(boxes, Output::List(&mut pairs));
+        self.pairs = pairs;
+        outcome.map(|()| &self.pairs)
+    }
+
+    /// Culls one frame as [`Self::cull`] does and hands its pairs to `take`, some 65,000 at a time, in the order of that
+    /// list. Returns their number; [`Self::pairs`] is empty. Memory doesn't grow with their number. With several threads,
+    /// `take` is called from any of them, one call at a time.
+    ///
+    /// # Errors
+    /// As [`Self::cull`].
+    pub fn cull_in_portions(
+        &mut self,
+        boxes: &[Aabb],
+        mut take: impl FnMut(&PairList) + Send,
+    ) -> Result<u64, CullError> {
+        let mut reported = 0;
+        let mut sink = |portion: &mut PairList| {
+            reported += portion.len() as u64;
+            take(portion);
+        };
+        self.pairs.clear();
+        self.cull_into(boxes, Output::Portions(&mut sink))?;
+        Ok(reported)
+    }
+
+    /// Culls one frame as [`Self::cull`] does, if it has at most `limit` pairs. Memory for more is never taken.
+    ///
+    /// # Errors
+    /// More pairs than that, with their number: [`Self::pairs`] is empty then, and the frame counts as culled. Otherwise as
+    /// [`Self::cull`].
+    pub fn cull_up_to(&mut self, boxes: &[Aabb], limit: usize) -> Result<&PairList, CullError> {
+        let mut kept = std::mem::take(&mut self.pairs);
+        kept.clear();
+        let outcome = self.cull_in_portions(boxes, |portion| kept.append_up_to(portion, limit));
+        self.pairs = kept;
+        match outcome {
+            Ok(pairs) if pairs == self.pairs.len() as u64 => Ok(&self.pairs),
+            Ok(pairs) => {
+                self.pairs.clear();
+                Err(CullError::TooManyPairs { pairs, limit })
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn cull_into(&mut self, boxes: &[Aabb], output: Output<'_>) -> Result<(), CullError> {
+        check_number(boxes.len())?;
+        if let Some(groups) = &self.groups {
+            check_column("groups", groups.len(), boxes.len())?;
+        }
+        if boxes.len() != self.frames.len() {
+            let all = vec![true; boxes.len()];
+            self.frames.replace(&all, &all);
+        }
+        self.counters += self.frames.cull(boxes, self.groups.as_deref(), output)?;
+        Ok(())
+    }
+
+    /// The pairs of the last frame.
+    #[must_use]
+    pub fn pairs(&self) -> &PairList {
+        &self.pairs
+    }
+
+    /// Counters summed over all frames: boxes updated, candidates tested, pairs reported.
+    #[must_use]
+    pub fn counters(&self) -> &VolumeCounters {
+        &self.counters
+    }
+
+    /// Bytes that lists of pairs hold: the reported ones, and those on the way to them.
+    #[must_use]
+    pub fn pair_bytes(&self) -> usize {
+        self.pairs.bytes() + self.frames.pair_bytes()
+    }
+
+    /// Gives back the memory of lists of pairs beyond what the last frame's reported ones take: after a crowd, which would
+    /// hold it for ever.
+    pub fn shrink_to_fit(&mut self) {
+        self.pairs.shrink_to_fit();
+        self.frames.shrink_to_fit();
+    }
+}

@@ -1,0 +1,222 @@
+//! A frame of given boxes: cubes about them, a finder's candidates, the test, the list.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+
+use crate::bodies::contract::ContractError;
+use crate::bodies::{Aabb, Groups, Places};
+use crate::broad_phase::{PairFinder, Population, Reorder, Volume};
+use crate::counters::VolumeCounters;
+use crate::overlap::boxes::{Cubes, EndSlots};
+use crate::rounding::cube::{Cube, less_than_sure};
+use crate::settings::Finder;
+use crate::simd::Tier;
+use crate::strategy::{BoxInputs, BoxTest, Output, Scratch, list_boxes};
+use crate::threads::Threads;
+
+/// Boxes whose cubes one thread makes at once.
+const CUBES: usize = 4096;
+
+/// Boxes that are copied before any is looked at: each is a cache miss, and so more of them are on their way at once.
+const TOGETHER: usize = 64;
+
+/// Boxes of a frame that are asked which test suits it.
+const ASKED: usize = 256;
+
+/// By how much H must exceed the frame's greatest H − h where cubes decide; of those asked, one in [`FEW`] may fall short.
+const CUBIC: f32 = 32.0;
+const FEW: usize = 16;
+
+/// Candidates of the frame before for which waking another thread pays; a box counts as some of them. By counts alone, so
+/// that nothing depends on the machine.
+const WORTH_WAKING: u64 = 1 << 14;
+const BOX: u64 = 4;
+
+/// The boxes of a set, as a finder has them.
+#[derive(Debug)]
+pub(super) struct Frames {
+    tier: Tier,
+    pool: Threads,
+    /// The caller's thread, for frames of little work.
+    alone: Threads,
+    choice: Finder,
+    finder: PairFinder,
+    /// Boxes by place; they have no shapes.
+    places: Places,
+    order: Vec<u32>,
+    /// Cubes about the boxes by place: centre and half side, an eighth in size.
+    cubes: Vec<[f32; 4]>,
+    /// The greatest H − h of the boxes that don't move.
+    fixed_gap: f32,
+    /// Whether the set is another than in the frame before.
+    is_new: bool,
+    ends: EndSlots,
+    scratch: Scratch,
+    /// Of the frame before.
+    candidates: u64,
+}
+
+impl Frames {
+    /// No boxes yet.
+    pub fn new(choice: Finder, tier: Tier, pool: Threads) -> Self {
+        Self {
+            tier,
+            pool,
+            alone: Threads::default(),
+            choice,
+            finder: finder(choice, 0),
+            places: Places::default(),
+            order: Vec::new(),
+            cubes: Vec::new(),
+            fixed_gap: 0.0,
+            is_new: true,
+            ends: EndSlots::default(),
+            scratch: Scratch::default(),
+            candidates: 0,
+        }
+    }
+
+    /// Number of boxes.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// From now on those boxes are there that are `present`, and those may move that are `dynamic`. Boxes that were there
+    /// keep their neighbours.
+    pub fn replace(&mut self, dynamic: &[bool], present: &[bool]) {
+        self.places.replace(dynamic, present);
+        self.start_anew();
+    }
+
+    fn start_anew(&mut self) {
+        self.finder = finder(self.choice, self.len());
+        self.cubes.clear();
+        self.cubes.resize(self.len(), [0.0; 4]);
+        (self.is_new, self.candidates) = (true, 0);
+    }
+
+    /// Hands the boxes that meet, not both at rest, whose groups collide, to `output`. `boxes` and `groups` are by name.
+    pub fn cull(
+        &mut self,
+        boxes: &[Aabb],
+        groups: Option<&[Groups]>,
+        output: Output<'_>,
+    ) -> Result<VolumeCounters, ContractError> {
+        let work = BOX * self.len() as u64 + self.candidates;
+        let wakes = work >= WORTH_WAKING;
+        let Some(gap) = self.update(boxes, wakes) else {
+            self.start_anew(); // nothing of this frame is left for the next to sort by
+            let mut names = self.places.body.iter().map(|&name| name as usize);
+            names.try_for_each(|name| boxes[name].check(name))?;
+            return Ok(VolumeCounters::default());
+        };
+        let pool = if wakes { &self.pool } else { &self.alone };
+        let executor = pool.executor(self.tier);
+        let names = &self.places.body;
+        self.finder
+            .arrange(executor, &self.places, &self.cubes, names);
+        let slots = self.finder.slots();
+        let test = if self.cubes_decide(gap) {
+            let less = less_than_sure(gap);
+            BoxTest::Cubes(Cubes { slots, boxes, less })
+        } else {
+            self.ends.fill(pool, &slots.names[..names.len()], boxes);
+            BoxTest::Ends(&self.ends)
+        };
+        let inputs = BoxInputs {
+            executor,
+            finder: &self.finder,
+            test,
+            groups,
+        };
+        let mut counted = list_boxes(inputs, &mut self.scratch, output);
+        counted.updates = self.places.moving as u64;
+        self.candidates = counted.tests;
+        self.finder.observe(counted.tests);
+        Ok(counted)
+    }
+
+    /// Puts boxes in better places and makes the cubes of those that may have moved; the greatest H − h of all, or `None` if
+    /// some box is none.
+    fn update(&mut self, boxes: &[Aabb], wakes: bool) -> Option<f32> {
+        let (moving, all) = (self.places.moving, self.places.len());
+        if std::mem::take(&mut self.is_new) {
+            self.fixed_gap = self.make_cubes(boxes, moving..all, wakes)?;
+            self.make_cubes(boxes, 0..moving, wakes)?;
+        }
+        let names = &self.places.body;
+        let (places, order) = (&self.places, &mut self.order);
+        let changed = self.finder.reorder(places, &self.cubes, names, order);
+        if changed != Reorder::None {
+            std::mem::swap(&mut self.places.body, order);
+        }
+        if changed == Reorder::All && moving < all {
+            self.make_cubes(boxes, moving..all, wakes)?;
+        }
+        let gap = self.make_cubes(boxes, 0..moving, wakes)?;
+        Some(gap.max(self.fixed_gap))
+    }
+
+    /// Makes the cubes of a range of places; the greatest H − h, or `None` if some box is none.
+    fn make_cubes(&mut self, boxes: &[Aabb], range: Range<usize>, wakes: bool) -> Option<f32> {
+        let pool = if wakes { &self.pool } else { &self.alone };
+        let names = &self.places.body[range.clone()];
+        // Bits of numbers that aren't negative are in their order.
+        let (greatest, are_sound) = (AtomicU32::new(0), AtomicBool::new(true));
+        pool.pieces(&mut self.cubes[range], CUBES, |start, cubes| {
+            let (mut gap, mut is_sound) = (0.0, true);
+            let mut near = [Aabb::default(); TOGETHER];
+            for (cubes, names) in cubes
+                .chunks_mut(TOGETHER)
+                .zip(names[start..].chunks(TOGETHER))
+            {
+                for (near, &name) in near.iter_mut().zip(names) {
+                    *near = boxes[name as usize];
+                }
+                for (to, aabb) in cubes.iter_mut().zip(&near) {
+                    let cube = Cube::about(&aabb.min, &aabb.max);
+                    *to = cube.outer;
+                    gap = if cube.gap > gap { cube.gap } else { gap };
+                    is_sound &= cube.is_sound;
+                }
+            }
+            greatest.fetch_max(gap.to_bits(), Relaxed);
+            are_sound.fetch_and(is_sound, Relaxed);
+        });
+        let gap = f32::from_bits(greatest.into_inner());
+        are_sound.into_inner().then_some(gap)
+    }
+
+    /// Whether cubes tell most pairs apart: whether most boxes are much larger than the greatest H − h. Some are asked, the
+    /// same ones on every machine.
+    fn cubes_decide(&self, gap: f32) -> bool {
+        let step = self.cubes.len().div_ceil(ASKED).max(1);
+        let asked = self.cubes.iter().step_by(step);
+        let (all, small) = (
+            asked.len(),
+            asked.filter(|cube| cube[3] < CUBIC * gap).count(),
+        );
+        FEW * small <= all
+    }
+
+    /// Gives back the memory of lists of pairs.
+    pub fn shrink_to_fit(&mut self) {
+        self.scratch.shrink_to_fit();
+    }
+
+    /// Bytes that lists of pairs hold.
+    pub fn pair_bytes(&self) -> usize {
+        self.scratch.pair_bytes()
+    }
+}
+
+/// The finder of that name, or the one that suits so many boxes.
+fn finder(choice: Finder, boxes: usize) -> PairFinder {
+    let population = Population {
+        bodies: boxes,
+        radii: [1.0; 2],
+        cheap_test: true,
+        volume: Volume::Cube,
+    };
+    PairFinder::new(choice, &population)
+}

@@ -1,0 +1,233 @@
+//! Boxes that come and go.
+
+use super::BoxCullerBuilder;
+use super::frame::Frames;
+use crate::bodies::contract::check_number;
+use crate::bodies::{Aabb, Groups};
+use crate::counters::VolumeCounters;
+use crate::pairs::PairList;
+use crate::strategy::Output;
+use crate::threads::Threads;
+use crate::world::{BodyId, Events, Ids, Watch, WorldError};
+
+/// A box to be inserted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoxBody {
+    /// Where it is.
+    pub bounds: Aabb,
+    /// Whether it may move; pairs of two boxes that may not are never tested.
+    pub dynamic: bool,
+    /// Which boxes it may collide with.
+    pub groups: Groups,
+}
+
+impl From<Aabb> for BoxBody {
+    /// A box that may move and collides with all.
+    fn from(bounds: Aabb) -> Self {
+        Self {
+            bounds,
+            dynamic: true,
+            groups: Groups::ALL,
+        }
+    }
+}
+
+/// A long-lived set of boxes: ids that stay, boxes at rest, groups, and pairs as a list or as events, as
+/// [`World`](crate::world::World) has them for meshes.
+///
+/// A change of the set, or of a box at rest, costs about one more frame at the next cull, however many boxes it touches;
+/// boxes that may move and groups change at the price of a copy.
+///
+/// ```
+/// use sdop::{Aabb, BoxWorld};
+/// use sdop::boxes::BoxBody;
+///
+/// let mut world = BoxWorld::new();
+/// let floor = Aabb::new([-9.0, -9.0, -1.0], [9.0, 9.0, 0.0]);
+/// let floor = world.insert(BoxBody { dynamic: false, ..floor.into() })?;
+/// let crate_ = world.insert(Aabb::new([0.0, 0.0, 0.0], [1.0, 1.0, 1.0]))?;
+/// world.cull()?;
+/// assert_eq!(world.events().begun, [[floor, crate_]]);
+/// world.set_bounds(crate_, Aabb::new([0.0, 0.0, 0.1], [1.0, 1.0, 1.1]))?;
+/// world.cull()?;
+/// assert_eq!(world.events().ended, [[floor, crate_]]);
+/// # Ok::<(), sdop::WorldError>(())
+/// ```
+#[derive(Debug)]
+pub struct BoxWorld {
+    /// One entry a slot; empty slots keep their last box's.
+    bounds: Vec<Aabb>,
+    dynamic: Vec<bool>,
+    groups: Vec<Groups>,
+    ids: Ids,
+    frames: Frames,
+    pairs: PairList,
+    counters: VolumeCounters,
+    watch: Watch,
+    /// Whether the next cull finds another set of boxes, or another box at rest.
+    replaced: bool,
+}
+
+impl Default for BoxWorld {
+    fn default() -> Self {
+        Self::of(BoxCullerBuilder::default().frames_on(Threads::default()))
+    }
+}
+
+impl BoxWorld {
+    /// A world without boxes, culled with every default ([`BoxCuller::new`](super::BoxCuller::new)).
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A world without boxes, culled as the builder says.
+    ///
+    /// # Errors
+    /// Threads that the system refuses.
+    pub fn with(culler: &BoxCullerBuilder) -> Result<Self, WorldError> {
+        Ok(Self::of(culler.frames()?))
+    }
+
+    fn of(frames: Frames) -> Self {
+        Self {
+            bounds: Vec::new(),
+            dynamic: Vec::new(),
+            groups: Vec::new(),
+            ids: Ids::default(),
+            frames,
+            pairs: PairList::default(),
+            counters: VolumeCounters::default(),
+            watch: Watch::default(),
+            replaced: false,
+        }
+    }
+
+    /// Adds a box.
+    ///
+    /// # Errors
+    /// A box whose ends are infinite, no numbers or the wrong way round; more boxes than can be numbered.
+    pub fn insert(&mut self, body: impl Into<BoxBody>) -> Result<BodyId, WorldError> {
+        let body = body.into();
+        let slot = self.ids.next();
+        check_number(slot + 1)?;
+        body.bounds.check(slot)?;
+        if self.ids.take() {
+            self.bounds.push(body.bounds);
+            self.dynamic.push(body.dynamic);
+            self.groups.push(body.groups);
+        } else {
+            self.put(slot, body);
+        }
+        self.replaced = true;
+        Ok(self.ids.id(slot as u32))
+    }
+
+    /// Removes a box. Pairs of the last cull still name it; the next cull's don't.
+    ///
+    /// # Errors
+    /// A box that has been removed before.
+    pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
+        self.ids.remove(id)?;
+        self.replaced = true;
+        Ok(())
+    }
+
+    /// The box as it is now.
+    ///
+    /// # Errors
+    /// A box that has been removed.
+    pub fn body(&self, id: BodyId) -> Result<BoxBody, WorldError> {
+        let slot = self.ids.slot(id)?;
+        Ok(BoxBody {
+            bounds: self.bounds[slot],
+            dynamic: self.dynamic[slot],
+            groups: self.groups[slot],
+        })
+    }
+
+    /// Changes a box in any of its properties.
+    ///
+    /// # Errors
+    /// A box that has been removed, or as [`Self::insert`].
+    pub fn set(&mut self, id: BodyId, body: impl Into<BoxBody>) -> Result<(), WorldError> {
+        let (slot, body) = (self.ids.slot(id)?, body.into());
+        body.bounds.check(slot)?;
+        self.replaced |= !body.dynamic || !self.dynamic[slot];
+        self.put(slot, body);
+        Ok(())
+    }
+
+    /// Moves a box, or gives it another size.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    pub fn set_bounds(&mut self, id: BodyId, bounds: Aabb) -> Result<(), WorldError> {
+        let slot = self.ids.slot(id)?;
+        bounds.check(slot)?;
+        self.replaced |= !self.dynamic[slot];
+        self.bounds[slot] = bounds;
+        Ok(())
+    }
+
+    fn put(&mut self, slot: usize, body: BoxBody) {
+        self.bounds[slot] = body.bounds;
+        self.dynamic[slot] = body.dynamic;
+        self.groups[slot] = body.groups;
+    }
+
+    /// Finds the boxes that meet, not both at rest, whose groups collide.
+    ///
+    /// # Errors
+    /// None: what could be wrong was refused when it came.
+    pub fn cull(&mut self) -> Result<(), WorldError> {
+        if std::mem::take(&mut self.replaced) {
+            self.frames.replace(&self.dynamic, self.ids.present());
+        }
+        self.ids.settle();
+        self.pairs.clear();
+        let all = self.groups.iter().all(|&groups| groups == Groups::ALL);
+        let groups = (!all).then_some(&*self.groups);
+        let output = Output::List(&mut self.pairs);
+        self.counters += self.frames.cull(&self.bounds, groups, output)?;
+        Ok(())
+    }
+
+    /// The pairs of the last cull, the lower slot first.
+    pub fn pairs(&self) -> impl ExactSizeIterator<Item = [BodyId; 2]> + '_ {
+        self.pairs
+            .iter()
+            .map(|pair| pair.map(|slot| self.ids.id(slot)))
+    }
+
+    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    pub fn events(&mut self) -> &Events {
+        let (pairs, ids) = (self.pairs.iter(), &self.ids);
+        self.watch
+            .look(pairs.map(|pair| pair.map(|slot| ids.id(slot))))
+    }
+
+    /// Number of boxes.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Above every [`BodyId::slot`].
+    #[must_use]
+    pub fn slots(&self) -> usize {
+        self.ids.slots()
+    }
+
+    /// Counters summed over all culls: boxes updated, candidates tested, pairs reported.
+    #[must_use]
+    pub fn counters(&self) -> &VolumeCounters {
+        &self.counters
+    }
+}

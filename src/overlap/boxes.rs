@@ -1,0 +1,196 @@
+//! Given boxes: apart iff on some axis one begins behind the other's end. Ends are compared as they are, so the answer is
+//! exact, in either of two ways.
+//!
+//! Nearly cubic boxes leave little between the cube about them and the one within ([`cube`](crate::rounding::cube)): one quad
+//! a box answers nearly all pairs, and the few others are looked up. Of long boxes the cubes know nothing; their ends stand in
+//! slots as two quads, and are compared straight away.
+
+use std::ops::Range;
+
+use super::SlotTest;
+use crate::bodies::Aabb;
+use crate::broad_phase::{Block, Slots};
+use crate::rounding::cube::sure;
+use crate::simd::{LANES, Lanes, MAX_WIDTH, quads_in_columns};
+use crate::threads::Threads;
+
+/// Boxes that one thread brings into slot order at a time.
+const PIECE: usize = 4096;
+
+/// Boxes by their cubes, which the finder has in its slots.
+#[derive(Clone, Copy, Debug)]
+pub struct Cubes<'a> {
+    /// The cubes; slots are named by box.
+    pub slots: &'a Slots,
+    /// All boxes by name.
+    pub boxes: &'a [Aabb],
+    /// See [`less_than_sure`](crate::rounding::cube::less_than_sure).
+    pub less: f32,
+}
+
+impl Cubes<'_> {
+    /// Bits of the lanes below `count` whose boxes meet; `slots` says whose they are.
+    #[inline(always)]
+    fn meeting<L: Lanes>(
+        &self,
+        l: L,
+        [one, other]: [[L::F; 4]; 2],
+        count: usize,
+        slots: impl Fn(usize) -> (usize, usize),
+    ) -> u32 {
+        let x = l.abs(other[0] - one[0]);
+        let y = l.abs(other[1] - one[1]);
+        let z = l.abs(other[2] - one[2]);
+        let (far, reach) = (l.max(l.max(x, y), z), one[3] + other[3]);
+        let mut hit = !l.bits(l.gt(far, reach)) & l.bits(l.first(count));
+        let mut open = hit & l.bits(l.gt(far, sure(l, reach, self.less)));
+        while open != 0 {
+            let lane = open.trailing_zeros();
+            open &= open - 1;
+            if !self.boxes_meet(slots(lane as usize)) {
+                hit &= !(1 << lane);
+            }
+        }
+        hit
+    }
+
+    /// The definition, out of the way of what is asked for every vector.
+    #[cold]
+    fn boxes_meet(&self, (i, j): (usize, usize)) -> bool {
+        let [a, b] = [i, j].map(|slot| &self.boxes[self.slots.names[slot] as usize]);
+        a.meets(b)
+    }
+
+    /// The cubes in the slots from `start` on, a vector of them, as columns.
+    #[inline(always)]
+    fn vector<L: Lanes>(&self, l: L, start: usize) -> [L::F; 4] {
+        let [x, y, z, half] = &self.slots.columns;
+        if x.is_empty() {
+            l.load_quads(&self.slots.balls[start..])
+        } else {
+            [x, y, z, half].map(|column| l.load(&column[start..]))
+        }
+    }
+}
+
+impl SlotTest for Cubes<'_> {
+    #[inline(always)]
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        let one = self.slots.ball(i).map(|number| l.splat(number));
+        let (mut start, mut found) = (run.start, 0);
+        while start < run.end {
+            let cubes = [one, self.vector(l, start)];
+            let hit = self.meeting(l, cubes, run.end - start, |lane| (i, start + lane));
+            found += list(l, hit, start, &mut hits[found..]);
+            start += L::WIDTH;
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
+        let ours = quads_in_columns(l, &self.slots.balls[block.first()..]);
+        let (first, codes) = (block.first(), block.codes());
+        let (mut start, mut found) = (0, 0);
+        while start < codes.len() {
+            let (code, cubes) = block.balls(l, start, &ours, &self.slots.balls);
+            let hit = self.meeting(l, cubes, codes.len() - start, |lane| {
+                let code = codes[start + lane];
+                (first + (code & 15) as usize, (code >> 4) as usize)
+            });
+            l.compress(hit, code, &mut hits[found..]);
+            found += hit.count_ones() as usize;
+            start += L::WIDTH;
+        }
+        found
+    }
+}
+
+/// Ends of boxes in the finder's slot order, each padded by [`MAX_WIDTH`] finite entries. The fourth numbers are zero.
+#[derive(Clone, Debug, Default)]
+pub struct EndSlots {
+    lower: Vec<[f32; 4]>,
+    upper: Vec<[f32; 4]>,
+}
+
+impl EndSlots {
+    /// Takes the boxes in the order of slots.
+    pub fn fill(&mut self, pool: &Threads, order: &[u32], boxes: &[Aabb]) {
+        let corners: [fn(&Aabb) -> [f32; 3]; 2] = [|aabb| aabb.min, |aabb| aabb.max];
+        for (quads, corner) in [&mut self.lower, &mut self.upper].into_iter().zip(corners) {
+            quads.resize(order.len() + MAX_WIDTH, [0.0; 4]);
+            pool.pieces(&mut quads[..order.len()], PIECE, |start, quads| {
+                for (quad, &name) in quads.iter_mut().zip(&order[start..]) {
+                    let [x, y, z] = corner(&boxes[name as usize]);
+                    *quad = [x, y, z, 0.0];
+                }
+            });
+        }
+    }
+
+    /// Bytes that the columns have taken.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        (self.lower.capacity() + self.upper.capacity()) * size_of::<[f32; 4]>()
+    }
+}
+
+/// Bits of the lanes below `count` whose boxes, each as its lower and upper ends, meet.
+#[inline(always)]
+fn meeting<L: Lanes>(
+    l: L,
+    [lo, hi]: [[L::F; 4]; 2],
+    [to, from]: [[L::F; 4]; 2],
+    count: usize,
+) -> u32 {
+    let mut apart = l.gt(lo[0], from[0]) | l.gt(to[0], hi[0]);
+    for axis in 1..3 {
+        apart = apart | l.gt(lo[axis], from[axis]) | l.gt(to[axis], hi[axis]);
+    }
+    !l.bits(apart) & l.bits(l.first(count))
+}
+
+impl SlotTest for EndSlots {
+    #[inline(always)]
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        let one = [&self.lower, &self.upper].map(|quads| quads[i].map(|end| l.splat(end)));
+        let (mut start, mut found) = (run.start, 0);
+        while start < run.end {
+            let other = [
+                l.load_quads(&self.lower[start..]),
+                l.load_quads(&self.upper[start..]),
+            ];
+            let hit = meeting(l, one, other, run.end - start);
+            found += list(l, hit, start, &mut hits[found..]);
+            start += L::WIDTH;
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
+        let ours = [
+            quads_in_columns(l, &self.lower[block.first()..]),
+            quads_in_columns(l, &self.upper[block.first()..]),
+        ];
+        let count = block.codes().len();
+        let (mut start, mut found) = (0, 0);
+        while start < count {
+            let (code, [lo, to]) = block.balls(l, start, &ours[0], &self.lower);
+            let (_, [hi, from]) = block.balls(l, start, &ours[1], &self.upper);
+            let hit = meeting(l, [lo, hi], [to, from], count - start);
+            l.compress(hit, code, &mut hits[found..]);
+            found += hit.count_ones() as usize;
+            start += L::WIDTH;
+        }
+        found
+    }
+}
+
+/// Writes the slots from `start` on whose bits are set; how many.
+#[inline(always)]
+fn list<L: Lanes>(l: L, hit: u32, start: usize, hits: &mut [u32]) -> usize {
+    let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
+    l.compress(hit, slot, hits);
+    hit.count_ones() as usize
+}

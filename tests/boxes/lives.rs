@@ -1,0 +1,138 @@
+//! Boxes that come and go: whatever has happened, pairs and events are those of the definition.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use sdop::boxes::BoxBody;
+use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Tier};
+
+use crate::scenes::{Kind, Random, boxes, expected, moved};
+
+fn drawn(random: &mut Random, kind: Kind) -> BoxBody {
+    let bounds = boxes(kind, 8, random)[random.below(8)];
+    let dynamic = random.below(4) != 0;
+    let groups = match random.below(4) {
+        0 => Groups {
+            member: 1 << random.below(2),
+            mask: 1 << random.below(2),
+        },
+        _ => Groups::ALL,
+    };
+    BoxBody {
+        bounds,
+        dynamic,
+        groups,
+    }
+}
+
+/// The pairs of the boxes that are there, the lower slot first.
+fn pairs(bodies: &BTreeMap<BodyId, BoxBody>) -> BTreeSet<[BodyId; 2]> {
+    let (ids, bodies): (Vec<BodyId>, Vec<BoxBody>) =
+        bodies.iter().map(|(&id, &body)| (id, body)).unzip();
+    let bounds: Vec<Aabb> = bodies.iter().map(|body| body.bounds).collect();
+    let found = expected(&bounds, |i| bodies[i].dynamic, |i| bodies[i].groups);
+    found
+        .into_iter()
+        .map(|pair| pair.map(|i| ids[i as usize]))
+        .collect()
+}
+
+/// Inserts, removes, changes and moves boxes, and holds what the world says against the definition.
+fn live(world: &mut BoxWorld, kind: Kind, seed: u64) {
+    let random = &mut Random(seed);
+    let mut bodies: BTreeMap<BodyId, BoxBody> = BTreeMap::new();
+    let mut gone: Vec<BodyId> = Vec::new();
+    let mut before = BTreeSet::new();
+    for frame in 0..40 {
+        let calls = [0, 1, 30][random.below(3)];
+        for _ in 0..calls {
+            let body = drawn(random, kind);
+            let ids: Vec<BodyId> = bodies.keys().copied().collect();
+            let one = (!ids.is_empty()).then(|| ids[random.below(ids.len())]);
+            match (random.below(6), one) {
+                (0, Some(id)) => {
+                    world.remove(id).unwrap();
+                    assert!(world.remove(id).is_err() && world.body(id).is_err());
+                    bodies.remove(&id);
+                    gone.push(id);
+                }
+                (1, Some(id)) => {
+                    world.set(id, body).unwrap();
+                    bodies.insert(id, body);
+                }
+                (2, Some(id)) => {
+                    world.set_bounds(id, body.bounds).unwrap();
+                    bodies.get_mut(&id).unwrap().bounds = body.bounds;
+                }
+                _ => {
+                    let id = world.insert(body).unwrap();
+                    assert!(!gone.contains(&id) && bodies.insert(id, body).is_none());
+                }
+            }
+        }
+        for (&id, body) in bodies.iter_mut().filter(|(_, body)| body.dynamic) {
+            moved(std::slice::from_mut(&mut body.bounds), 0.02, random);
+            world.set_bounds(id, body.bounds).unwrap();
+        }
+        world.cull().unwrap();
+        let wanted = pairs(&bodies);
+        assert_eq!(world.len(), bodies.len());
+        assert!(
+            bodies
+                .iter()
+                .all(|(&id, &body)| world.body(id).unwrap() == body)
+        );
+        let listed: Vec<[BodyId; 2]> = world.pairs().collect();
+        let found: BTreeSet<[BodyId; 2]> = listed.iter().copied().collect();
+        assert!(
+            found == wanted && listed.len() == found.len(),
+            "{kind:?}, frame {frame}"
+        );
+        let events = world.events();
+        assert!(
+            events.begun.iter().eq(wanted.difference(&before)),
+            "{kind:?}, frame {frame}"
+        );
+        assert!(
+            events.persisting.iter().eq(wanted.intersection(&before)),
+            "{kind:?}, frame {frame}"
+        );
+        assert!(
+            events.ended.iter().eq(before.difference(&wanted)),
+            "{kind:?}, frame {frame}"
+        );
+        before = wanted;
+    }
+}
+
+#[test]
+fn whatever_comes_and_goes_pairs_and_events_are_those_of_the_definition() {
+    for (kind, seed) in Kind::ALL.into_iter().zip(10..) {
+        live(&mut BoxWorld::new(), kind, seed);
+        for &finder in Finder::ALL {
+            let way = BoxCuller::builder()
+                .finder(finder)
+                .tier(Tier::SCALAR)
+                .threads(2);
+            live(&mut BoxWorld::with(&way).unwrap(), kind, seed + 100);
+        }
+    }
+}
+
+#[test]
+fn a_box_at_rest_that_is_moved_is_found_where_it_is() {
+    let mut world = BoxWorld::new();
+    let cube = |x: f32| Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
+    let still = world
+        .insert(BoxBody {
+            dynamic: false,
+            ..cube(0.0).into()
+        })
+        .unwrap();
+    let moving = world.insert(cube(5.0)).unwrap();
+    for x in [4.0, 4.5, 6.0, 6.0_f32.next_up(), 3.0] {
+        world.set_bounds(still, cube(x)).unwrap();
+        world.cull().unwrap();
+        let meets = (4.0..=6.0).contains(&x);
+        assert!(world.pairs().eq(meets.then_some([still, moving])), "{x}");
+    }
+}

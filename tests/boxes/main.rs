@@ -1,0 +1,158 @@
+//! Given boxes: exactly those that have a point in common, by every finder, in every tier, on any number of threads.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod lives;
+mod misuse;
+mod scenes;
+
+use sdop::boxes::BoxCullerBuilder;
+use sdop::{BoxCuller, Finder, Groups, Tier};
+
+use scenes::{Kind, Random, boxes, expected, moved};
+
+/// Every way to find the same pairs: finders, tiers, threads.
+fn ways() -> Vec<(String, BoxCuller)> {
+    let mut ways = Vec::new();
+    for &finder in Finder::ALL {
+        let of = BoxCuller::builder().finder(finder);
+        for tier in Tier::available() {
+            let culler = of.clone().tier(tier).build().unwrap();
+            ways.push((format!("{finder}, {tier}"), culler));
+        }
+        ways.push((
+            format!("{finder}, three threads"),
+            of.threads(3).build().unwrap(),
+        ));
+    }
+    ways
+}
+
+#[test]
+fn exactly_the_pairs_of_the_definition_are_listed() {
+    let random = &mut Random(1);
+    for kind in Kind::ALL {
+        for (count, frames) in [(0, 2), (1, 2), (2, 3), (7, 4), (64, 6), (65, 24), (300, 24)] {
+            let step = if frames % 4 == 0 { 0.05 } else { 0.4 };
+            let mut ways = ways();
+            let mut now = boxes(kind, count, random);
+            for frame in 0..frames {
+                let wanted = expected(&now, |_| true, |_| Groups::ALL);
+                for (way, culler) in &mut ways {
+                    let found = culler.cull(&now).unwrap().sorted();
+                    assert!(
+                        found == wanted,
+                        "{kind:?}, {count} boxes, frame {frame}, {way}"
+                    );
+                }
+                moved(&mut now, step, random);
+            }
+        }
+    }
+}
+
+#[test]
+fn lists_are_the_same_in_every_tier_and_on_any_number_of_threads() {
+    let random = &mut Random(2);
+    for kind in [Kind::Cubes, Kind::Needles, Kind::Nested, Kind::Crowd] {
+        let build = |of: BoxCullerBuilder| of.build().unwrap();
+        let mut ways: Vec<BoxCuller> = Tier::available()
+            .into_iter()
+            .map(|tier| build(BoxCuller::builder().tier(tier)))
+            .collect();
+        ways.extend([2, 3].map(|threads| build(BoxCuller::builder().threads(threads))));
+        let mut now = boxes(kind, 3000, random);
+        for frame in 0..12 {
+            let (first, others) = ways.split_first_mut().unwrap();
+            let list: Vec<[u32; 2]> = first.cull(&now).unwrap().iter().collect();
+            for culler in others {
+                assert!(
+                    culler.cull(&now).unwrap().iter().eq(list.iter().copied()),
+                    "{kind:?}, frame {frame}"
+                );
+                assert_eq!(culler.counters(), first.counters());
+            }
+            moved(&mut now, 0.05, random);
+        }
+        let counted = *ways[0].counters();
+        assert!(
+            counted.updates == 12 * 3000 && counted.tests >= counted.hits && counted.hits > 1000
+        );
+    }
+}
+
+#[test]
+fn boxes_may_come_and_go_between_frames_and_groups_filter_them() {
+    let random = &mut Random(3);
+    let mut culler = BoxCuller::new();
+    for kind in Kind::ALL {
+        for count in [90, 300, 40, 0, 200] {
+            let now = boxes(kind, count, random);
+            let groups: Vec<Groups> = (0..count)
+                .map(|_| Groups {
+                    member: 1 << random.below(3),
+                    mask: random.below(8) as u32,
+                })
+                .collect();
+            culler.set_groups(Some(groups.clone()));
+            assert_eq!(
+                culler.cull(&now).unwrap().sorted(),
+                expected(&now, |_| true, |i| groups[i])
+            );
+            culler.set_groups(None);
+            assert_eq!(
+                culler.cull(&now).unwrap().sorted(),
+                expected(&now, |_| true, |_| Groups::ALL)
+            );
+        }
+    }
+}
+
+#[test]
+fn a_crowd_comes_in_portions_in_the_order_of_the_list_and_takes_no_memory() {
+    let now = vec![boxes(Kind::Crowd, 1, &mut Random(4))[0]; 3000];
+    let pairs = 3000 * 2999 / 2;
+    for threads in [1, 3] {
+        let way = BoxCuller::builder().threads(threads);
+        let (mut whole, mut culler) = (way.build().unwrap(), way.build().unwrap());
+        for _ in 0..3 {
+            let mut list = whole.cull(&now).unwrap().iter();
+            let told = culler.cull_in_portions(&now, |portion| {
+                assert!(portion.iter().all(|pair| list.next() == Some(pair)));
+            });
+            assert_eq!((told.unwrap(), list.next()), (pairs, None));
+            assert!(culler.pairs().is_empty());
+            let most = 16 * (1 << 16) * 8 * threads;
+            assert!(
+                culler.pair_bytes() < most,
+                "{} of {most}",
+                culler.pair_bytes()
+            );
+        }
+        let told = culler.cull_up_to(&now, 1000).unwrap_err().to_string();
+        assert_eq!(told, format!("{pairs} pairs, and at most 1000 are allowed"));
+        assert!(culler.pairs().is_empty());
+        assert_eq!(
+            culler.cull_up_to(&now, pairs as usize).unwrap().len(),
+            pairs as usize
+        );
+        culler.shrink_to_fit();
+        assert!(culler.pair_bytes() < 9 * pairs as usize);
+    }
+}
+
+#[test]
+fn cubes_are_answered_without_a_look_at_many_candidates() {
+    let random = &mut Random(5);
+    for (kind, most) in [(Kind::Cubes, 8), (Kind::Needles, 400)] {
+        let mut culler = BoxCuller::builder().finder(Finder::Grid).build().unwrap();
+        let now = boxes(kind, 4000, random);
+        culler.cull(&now).unwrap();
+        let counted = culler.counters();
+        assert!(
+            counted.tests < most * 4000,
+            "{kind:?}: {} of {}",
+            counted.tests,
+            most * 4000
+        );
+    }
+}

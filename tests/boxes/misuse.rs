@@ -1,0 +1,110 @@
+//! What happens when boxes are given otherwise than meant. No entry may panic, hang or silently drop a pair.
+//!
+//! | misuse | what happens |
+//! |---|---|
+//! | an end that is infinite or no number, `min` above `max`, in a frame of a `BoxCuller` | `CullError::Contract`, naming box and ends; the next frame is culled as ever |
+//! | the same in a `BoxWorld` | `WorldError::Contract` where it is inserted or set; the world stays as it was |
+//! | a column of groups of another length than there are boxes | `CullError::Contract` at the cull |
+//! | an id of a box that was removed | `WorldError::Gone` |
+
+use sdop::{Aabb, BoxCuller, BoxWorld, CullError, Finder, Groups, WorldError};
+
+use crate::scenes::{Kind, Random, boxes, expected};
+
+/// Boxes that are none.
+fn wrong() -> Vec<Aabb> {
+    let (inf, nan) = (f32::INFINITY, f32::NAN);
+    let slabs = [
+        [nan, 1.0],
+        [0.0, nan],
+        [nan, nan],
+        [1.0, 0.0],
+        [1e-45, 0.0],
+        [inf, inf],
+        [-inf, inf],
+        [-inf, -inf],
+        [0.0, inf],
+    ];
+    let of = |slab: [f32; 2]| {
+        (0..3).map(move |axis| {
+            let mut aabb = Aabb::new([0.0; 3], [1.0; 3]);
+            (aabb.min[axis], aabb.max[axis]) = (slab[0], slab[1]);
+            aabb
+        })
+    };
+    slabs.into_iter().flat_map(of).collect()
+}
+
+#[test]
+fn a_box_that_is_none_is_named_and_leaves_nothing_behind() {
+    for &finder in Finder::ALL {
+        for count in [1, 40, 300] {
+            let sound = boxes(Kind::Cubes, count, &mut Random(count as u64));
+            let wanted = expected(&sound, |_| true, |_| Groups::ALL);
+            let mut culler = BoxCuller::builder().finder(finder).build().unwrap();
+            for (number, bad) in wrong().into_iter().enumerate() {
+                let (mut now, at) = (sound.clone(), number * 7 % count);
+                now[at] = bad;
+                let told = culler.cull(&now).unwrap_err();
+                assert!(matches!(told, CullError::Contract(_)));
+                let Aabb { min, max } = bad;
+                assert_eq!(
+                    told.to_string(),
+                    format!("body {at}: box from {min:?} to {max:?}")
+                );
+                assert!(culler.pairs().is_empty());
+                assert_eq!(
+                    culler.cull(&sound).unwrap().sorted(),
+                    wanted,
+                    "{finder}, {bad:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_world_refuses_what_is_no_box_and_stays_as_it_was() {
+    let mut world = BoxWorld::new();
+    let cube = Aabb::new([0.0; 3], [1.0; 3]);
+    let [a, b] = [(); 2].map(|()| world.insert(cube).unwrap());
+    for bad in wrong() {
+        let told = [
+            world.insert(bad).map(|_| ()),
+            world.set(a, bad),
+            world.set_bounds(a, bad),
+        ];
+        assert!(
+            told.iter()
+                .all(|told| matches!(told, Err(WorldError::Contract(_)))),
+            "{bad:?}"
+        );
+        world.cull().unwrap();
+        assert!(world.len() == 2 && world.pairs().eq([[a, b]]));
+    }
+    world.remove(b).unwrap();
+    let told = [
+        world.remove(b),
+        world.set(b, cube),
+        world.set_bounds(b, cube),
+        world.body(b).map(|_| ()),
+    ];
+    assert!(told.iter().all(|told| *told == Err(WorldError::Gone(b))));
+}
+
+#[test]
+fn groups_of_another_length_are_told() {
+    let mut culler = BoxCuller::new();
+    let now = boxes(Kind::Crowd, 5, &mut Random(1));
+    culler.cull(&now).unwrap();
+    for length in [0, 4, 6] {
+        culler.set_groups(Some(vec![Groups::ALL; length]));
+        let told = culler.cull(&now).unwrap_err().to_string();
+        assert!(
+            told.contains("groups") && culler.pairs().is_empty(),
+            "{told}"
+        );
+    }
+    culler.set_groups(None);
+    assert!(!culler.cull(&now).unwrap().is_empty());
+}
