@@ -35,7 +35,8 @@
 //! ```
 //!
 //! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of bodies; in a [`World`] they
-//! come and go, with stable ids, groups, contact margins, f64 translations and events.
+//! come and go, with stable ids, groups, contact margins, f64 translations and events. Whoever has boxes already takes
+//! [`BoxCuller`] or [`BoxWorld`]: exactly the pairs of boxes that meet.
 //!
 //! # Conventions
 //!

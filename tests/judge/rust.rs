@@ -6,7 +6,7 @@ use sdop::judge::answer::Trouble;
 use sdop::judge::{Claim, Outcome, Scene, Verdict, judge, run::judge_pair_test};
 use sdop::settings::Strategy;
 
-use crate::cullers::{All, Balls, Flaw, NarrowBalls, Ours};
+use crate::cullers::{All, Balls, Boxes, BoxesOfAWorld, Flaw, NarrowBalls, Ours};
 
 fn all(flaw: Flaw) -> impl Fn(&Scene<'_>) -> All + Sync {
     move |_| All {
@@ -51,6 +51,23 @@ fn our_strategies_pass_the_claims_that_they_make() {
         );
         assert!(verdict.pairs().required > 5_000, "{verdict}");
     }
+}
+
+#[test]
+fn given_boxes_pass_every_case_and_nothing_else_is_reported_of_them() {
+    let culler = judge(|_: &Scene<'_>| Boxes::default()).claims(Claim::Aabb);
+    let world = judge(|_: &Scene<'_>| BoxesOfAWorld::default()).claims(Claim::Aabb);
+    let [culler, world] = [culler.seed(5).run(), world.seed(5).run()].map(Result::unwrap);
+    for verdict in [&culler, &world] {
+        let mut cases = verdict.cases.iter();
+        assert!(
+            verdict.passed() && cases.all(|case| case.outcome == Outcome::Pass),
+            "{verdict}"
+        );
+        assert!(verdict.pairs().required > 5_000, "{verdict}");
+    }
+    assert_eq!(world.pairs().extra, 0, "{world}");
+    assert_eq!(culler.pairs().extra, culler.pairs().both_static, "{culler}");
 }
 
 #[test]
