@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
+use glam::BVec4A;
+
 use crate::bodies::contract::ContractError;
 use crate::bodies::{Aabb, Groups, Places};
 use crate::broad_phase::{PairFinder, Population, Reorder, Volume};
@@ -164,7 +166,7 @@ impl Frames {
         // Bits of numbers that aren't negative are in their order.
         let (greatest, are_sound) = (AtomicU32::new(0), AtomicBool::new(true));
         pool.pieces(&mut self.cubes[range], CUBES, |start, cubes| {
-            let (mut gap, mut is_sound) = (0.0, true);
+            let (mut gap, mut is_sound) = (0.0, BVec4A::splat(true));
             let mut near = [Aabb::default(); TOGETHER];
             for (cubes, names) in cubes
                 .chunks_mut(TOGETHER)
@@ -181,7 +183,7 @@ impl Frames {
                 }
             }
             greatest.fetch_max(gap.to_bits(), Relaxed);
-            are_sound.fetch_and(is_sound, Relaxed);
+            are_sound.fetch_and(is_sound.all(), Relaxed);
         });
         let gap = f32::from_bits(greatest.into_inner());
         are_sound.into_inner().then_some(gap)

@@ -68,7 +68,12 @@ impl Cubes<'_> {
         if x.is_empty() {
             l.load_quads(&self.slots.balls[start..])
         } else {
-            [x, y, z, half].map(|column| l.load(&column[start..]))
+            [
+                l.load(&x[start..]),
+                l.load(&y[start..]),
+                l.load(&z[start..]),
+                l.load(&half[start..]),
+            ]
         }
     }
 }
@@ -106,11 +111,14 @@ impl SlotTest for Cubes<'_> {
     }
 }
 
-/// Ends of boxes in the finder's slot order, each padded by [`MAX_WIDTH`] finite entries. The fourth numbers are zero.
+/// Ends of boxes in the finder's slot order, each padded by [`MAX_WIDTH`] finite entries: as quads for scattered candidates,
+/// whose fourth number is zero, and as columns for runs.
 #[derive(Clone, Debug, Default)]
 pub struct EndSlots {
     lower: Vec<[f32; 4]>,
     upper: Vec<[f32; 4]>,
+    /// Lower ends on each axis, then upper ones.
+    columns: [Vec<f32>; 6],
 }
 
 impl EndSlots {
@@ -126,26 +134,54 @@ impl EndSlots {
                 }
             });
         }
+        let sides = [&self.lower, &self.upper];
+        pool.each(&mut self.columns, |index, column| {
+            column.clear();
+            let ends = sides[index / 3].iter().map(|quad| quad[index % 3]);
+            column.extend(ends);
+        });
     }
 
-    /// Bytes that the columns have taken.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
-        (self.lower.capacity() + self.upper.capacity()) * size_of::<[f32; 4]>()
+    /// The ends in the slots from `start` on, a vector of them.
+    #[inline(always)]
+    fn vector<L: Lanes>(&self, l: L, start: usize) -> [[L::F; 3]; 2] {
+        // Written out: closures would be compiled apart, without the tier's features.
+        let [x, y, z, to_x, to_y, to_z] = &self.columns;
+        let lower = [
+            l.load(&x[start..]),
+            l.load(&y[start..]),
+            l.load(&z[start..]),
+        ];
+        let upper = [
+            l.load(&to_x[start..]),
+            l.load(&to_y[start..]),
+            l.load(&to_z[start..]),
+        ];
+        [lower, upper]
+    }
+
+    /// The ends in a slot, in all lanes.
+    #[inline(always)]
+    fn splat<L: Lanes>(&self, l: L, slot: usize) -> [[L::F; 3]; 2] {
+        let ([x, y, z, _], [to_x, to_y, to_z, _]) = (self.lower[slot], self.upper[slot]);
+        [
+            [l.splat(x), l.splat(y), l.splat(z)],
+            [l.splat(to_x), l.splat(to_y), l.splat(to_z)],
+        ]
     }
 }
 
 /// Bits of the lanes below `count` whose boxes, each as its lower and upper ends, meet.
 #[inline(always)]
-fn meeting<L: Lanes>(
+fn with_common_points<L: Lanes>(
     l: L,
-    [lo, hi]: [[L::F; 4]; 2],
-    [to, from]: [[L::F; 4]; 2],
+    [lo, hi]: [[L::F; 3]; 2],
+    [other_lo, other_hi]: [[L::F; 3]; 2],
     count: usize,
 ) -> u32 {
-    let mut apart = l.gt(lo[0], from[0]) | l.gt(to[0], hi[0]);
+    let mut apart = l.gt(lo[0], other_hi[0]) | l.gt(other_lo[0], hi[0]);
     for axis in 1..3 {
-        apart = apart | l.gt(lo[axis], from[axis]) | l.gt(to[axis], hi[axis]);
+        apart = apart | l.gt(lo[axis], other_hi[axis]) | l.gt(other_lo[axis], hi[axis]);
     }
     !l.bits(apart) & l.bits(l.first(count))
 }
@@ -153,14 +189,10 @@ fn meeting<L: Lanes>(
 impl SlotTest for EndSlots {
     #[inline(always)]
     fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
-        let one = [&self.lower, &self.upper].map(|quads| quads[i].map(|end| l.splat(end)));
+        let one = self.splat(l, i);
         let (mut start, mut found) = (run.start, 0);
         while start < run.end {
-            let other = [
-                l.load_quads(&self.lower[start..]),
-                l.load_quads(&self.upper[start..]),
-            ];
-            let hit = meeting(l, one, other, run.end - start);
+            let hit = with_common_points(l, one, self.vector(l, start), run.end - start);
             found += list(l, hit, start, &mut hits[found..]);
             start += L::WIDTH;
         }
@@ -176,9 +208,14 @@ impl SlotTest for EndSlots {
         let count = block.codes().len();
         let (mut start, mut found) = (0, 0);
         while start < count {
-            let (code, [lo, to]) = block.balls(l, start, &ours[0], &self.lower);
-            let (_, [hi, from]) = block.balls(l, start, &ours[1], &self.upper);
-            let hit = meeting(l, [lo, hi], [to, from], count - start);
+            let (code, [[x, y, z, _], lower]) = block.balls(l, start, &ours[0], &self.lower);
+            let (_, [[to_x, to_y, to_z, _], upper]) = block.balls(l, start, &ours[1], &self.upper);
+            let one = [[x, y, z], [to_x, to_y, to_z]];
+            let other = [
+                [lower[0], lower[1], lower[2]],
+                [upper[0], upper[1], upper[2]],
+            ];
+            let hit = with_common_points(l, one, other, count - start);
             l.compress(hit, code, &mut hits[found..]);
             found += hit.count_ones() as usize;
             start += L::WIDTH;

@@ -9,6 +9,8 @@
 //! without; the factors leave 2⁻²⁰ for them, the floor 10⁻³⁰. The differences are taken after the factors, so that nothing
 //! that cancels makes the roundings a larger share.
 
+use glam::{BVec4A, Vec4, Vec4Swizzles as _};
+
 use crate::simd::Lanes;
 
 /// What a cube is wider than its box.
@@ -30,8 +32,8 @@ pub struct Cube {
     pub outer: [f32; 4],
     /// H − h.
     pub gap: f32,
-    /// Whether all ends are finite, and no lower one above the upper one.
-    pub is_sound: bool,
+    /// Axis by axis, the last one twice, whether both ends are finite, and the lower one not above the upper one.
+    pub is_sound: BVec4A,
 }
 
 impl Cube {
@@ -39,28 +41,21 @@ impl Cube {
     #[inline(always)]
     #[must_use]
     pub fn about(min: &[f32; 3], max: &[f32; 3]) -> Self {
-        // Unlike `f32::max`, one instruction.
-        let larger = |a: f32, b: f32| if a > b { a } else { b };
-        let smaller = |a: f32, b: f32| if a < b { a } else { b };
-        let (mut cube, mut outer, mut inner) = ([0.0; 4], 0.0, f32::MAX);
-        let (mut in_order, mut widths) = (true, 0.0);
-        for axis in 0..3 {
-            let (lo, hi) = (min[axis], max[axis]);
-            in_order &= lo <= hi;
-            let [lo, hi] = [lo, hi].map(|end| SIXTEENTH * end);
-            let centre = lo + hi;
-            let (below, above) = (centre - (lo + lo), (hi + hi) - centre);
-            outer = larger(outer, larger(below, above));
-            inner = smaller(inner, smaller(below, above));
-            widths += hi - lo;
-            cube[axis] = centre;
-        }
-        cube[3] = outer * WIDER + FLOOR;
+        // Four numbers that follow one another in a box are one load.
+        let lo = Vec4::new(min[0], min[1], min[2], max[0]).xyzz();
+        let hi = Vec4::new(min[2], max[0], max[1], max[2]).yzww();
+        let in_order = lo.cmple(hi);
+        let [lo, hi] = [lo, hi].map(|ends| ends * SIXTEENTH);
+        let centre = lo + hi;
+        let (below, above) = (centre - (lo + lo), (hi + hi) - centre);
+        let outer = below.max(above).max_element() * WIDER + FLOOR;
+        let inner = below.min(above).min_element();
+        // The difference of infinite ends is infinite or no number.
+        let is_finite = (hi - lo).cmplt(Vec4::INFINITY);
         Self {
-            outer: cube,
-            gap: cube[3] - inner,
-            // The difference of infinite ends is infinite or no number.
-            is_sound: in_order & (widths < f32::INFINITY),
+            outer: [centre.x, centre.y, centre.z, outer],
+            gap: outer - inner,
+            is_sound: in_order & is_finite,
         }
     }
 }
@@ -136,7 +131,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
         #[test]
         fn cubes_answer_as_their_boxes_do(a in slabs(), b in slabs()) {
-            prop_assert!(cube(&a).is_sound && cube(&b).is_sound);
+            prop_assert!((cube(&a).is_sound & cube(&b).is_sound).all());
             for tier in [Tier::detect(), Tier::SCALAR] {
                 if let Some(answer) = dispatch(tier, Say(&a, &b)) {
                     prop_assert_eq!(answer, meet(&a, &b));
@@ -174,7 +169,7 @@ mod tests {
         let is_sound = |axis: usize, slab: [f32; 2]| {
             let mut slabs = [[0.0, 1.0]; 3];
             slabs[axis] = slab;
-            cube(&slabs).is_sound
+            cube(&slabs).is_sound.all()
         };
         let (nan, inf) = (f32::NAN, f32::INFINITY);
         let one = f32::from_bits(1);

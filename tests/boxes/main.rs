@@ -156,3 +156,18 @@ fn cubes_are_answered_without_a_look_at_many_candidates() {
         );
     }
 }
+
+#[test]
+fn frames_of_little_work_stay_on_the_caller_s_thread() {
+    let here = std::thread::current().id();
+    let now = boxes(Kind::Nested, 90, &mut Random(6));
+    let mut culler = BoxCuller::builder()
+        .finder(Finder::Grid)
+        .threads(3)
+        .build()
+        .unwrap();
+    for _ in 0..50 {
+        let take = |_: &sdop::PairList| assert_eq!(std::thread::current().id(), here);
+        assert!(culler.cull_in_portions(&now, take).unwrap() > 0);
+    }
+}

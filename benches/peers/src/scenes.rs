@@ -9,6 +9,7 @@ use clap::ValueEnum;
 use sdop::bodies::Bodies;
 use sdop::lab::effects::Effects;
 use sdop::lab::scene::{Scene, SceneFile};
+use sdop::mesh::ProceduralShape;
 use serde::Serialize;
 
 use crate::boxes::{Frame, ORDERS};
@@ -92,10 +93,10 @@ pub const EXPECTED: [(Spread, usize, usize); 19] = [
     (Spread::Clustered, 10_000, 24_251),
     (Spread::Clustered, 100_000, 250_227),
     (Spread::Clustered, 1_000_000, 2_509_501),
-    (Spread::Long, 500, 0),
-    (Spread::Long, 1000, 0),
-    (Spread::Long, 10_000, 0),
-    (Spread::Long, 100_000, 0),
+    (Spread::Long, 500, 683),
+    (Spread::Long, 1000, 1418),
+    (Spread::Long, 10_000, 14_515),
+    (Spread::Long, 100_000, 148_841),
 ];
 
 /// A scene and where it stands.
@@ -170,21 +171,21 @@ fn definition(spread: Spread, bodies: usize) -> String {
         // Three partners a box in the mean, as boxes of balls have that meet 1.5 spheres.
         Spread::Long => (format!("side = {:?}", 0.72 * side), "1.0", String::new()),
     };
-    // A shape for each order of the sides.
-    let groups = if spread == Spread::Long {
-        ORDERS.len()
-    } else {
-        1
+    // A shape for each order of the sides; what they look like matters to nobody.
+    let forms = match spread {
+        Spread::Long => &ProceduralShape::NAMES[..ORDERS.len()],
+        _ => &["box"],
     };
     let group = |k: usize| {
-        let count = bodies * (k + 1) / groups - bodies * k / groups;
+        let count = bodies * (k + 1) / forms.len() - bodies * k / forms.len();
         format!(
-            "[[bodies]]\nshape = 'box'\ncount = {count}\nradius = {radius}\nspeed = 1.0\n{placement}\n"
+            "[[bodies]]\nshape = '{}'\ncount = {count}\nradius = {radius}\nspeed = 1.0\n{placement}\n",
+            forms[k]
         )
     };
     format!(
         "name = 'peers'\nseed = 1\nframes = 1\ndt = 0.1\n[box]\n{bounds}\n{}[effects]\nmotion = true\nwalls = 'specular'\n",
-        (0..groups).map(group).collect::<String>()
+        (0..forms.len()).map(group).collect::<String>()
     )
 }
 
