@@ -172,7 +172,7 @@ fn definition(spread: Spread, bodies: usize) -> String {
         Spread::Long => (format!("side = {:?}", 0.72 * side), "1.0", String::new()),
     };
     // A shape for each order of the sides; what they look like matters to nobody.
-    let forms = match spread {
+    let forms: &[&str] = match spread {
         Spread::Long => &ProceduralShape::NAMES[..ORDERS.len()],
         _ => &["box"],
     };
