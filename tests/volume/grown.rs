@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::lab::verify::ways::variants;
 use sdop::mesh::ProceduralShape;
-use sdop::volume::{OrDop, Shape, ShapeSpec};
+use sdop::volume::{Axes, DirectionSet, OrDop, Shape, ShapeSpec};
 
 use super::exact::{dot, integer, point};
 
@@ -66,4 +66,53 @@ fn slabs_grow_by_the_margin_to_the_ulp() {
         }
     }
     assert!(close > ends / 2, "{close} of {ends}");
+}
+
+/// Where the margin nearly cancels an end, the end's own ulps are finer than the roundings of f64 that the margin takes.
+#[test]
+fn an_end_that_the_margin_nearly_cancels_moves_far_enough() {
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
+    let spec = ShapeSpec {
+        directions: DirectionSet::K26,
+        axes: Axes::Model,
+        ..ShapeSpec::default()
+    };
+    let mut ordop = Shape::build(&mesh, &spec).unwrap().ordop;
+    let exact = lengths_squared(&ordop);
+    let lengths: Vec<f64> = ordop
+        .directions
+        .coefficients()
+        .iter()
+        .map(|&c| ordop.basis.direction(c).as_dvec3().length())
+        .collect();
+    let mut close = 0;
+    for _ in 0..100_000 {
+        let margin = rng.random_range(0.5_f32..1.0);
+        for (i, length) in lengths.iter().enumerate() {
+            let out = f64::from(margin) * length;
+            let end = out as f32;
+            let left = (f64::from(end) - out).abs();
+            if left == 0.0 || left > out * 2_f64.powi(-38) {
+                continue;
+            }
+            ordop.lo[i] = end;
+            let grown = ordop.grown(margin);
+            let what = || format!("slab {i}, {margin:e}, {end:e}");
+            assert!(
+                is_far_enough(-end, -grown.lo[i], margin, &exact[i]),
+                "{}",
+                what()
+            );
+            ordop.hi[i] = -end;
+            let grown = ordop.grown(margin);
+            assert!(
+                is_far_enough(-end, grown.hi[i], margin, &exact[i]),
+                "{}",
+                what()
+            );
+            close += 1;
+        }
+    }
+    assert!(close > 20, "{close}");
 }

@@ -146,3 +146,24 @@ fn a_large_set_is_exact() {
     let hull = assert_hull(&points);
     assert!(hull.vertices.len() < 500 && hull.vertices.len() > 100);
 }
+
+/// Steep seen from its first vertex, along any axis: no sum of differences with a sign is a size.
+#[test]
+fn a_needle_along_any_axis_is_not_flat() {
+    let needle = [
+        [0.0, 0.0, 0.0],
+        [0.1, 0.0, 9.0],
+        [0.0, 0.1, 9.05],
+        [-0.1, -0.1, 9.1],
+    ];
+    for shift in 0..3 {
+        for sign in [1.0, -1.0] {
+            let turned = needle.map(|v| Vec3::from([0, 1, 2].map(|k| sign * v[(k + shift) % 3])));
+            for first in 0..4 {
+                let mut points = turned;
+                points.swap(0, first);
+                assert_eq!(assert_hull(&points).facets.len(), 4, "{points:?}");
+            }
+        }
+    }
+}
