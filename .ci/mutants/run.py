@@ -3,7 +3,7 @@
 
 A build a mutant would take a day. So all that can are compiled together, asleep (plant.py), in a copy of the tree, and a
 process wakes one by its number. What can't sleep is built by itself, `--alone` of them. A mutant is caught when a test fails, or
-takes three times its time and ten seconds more. Two tiers run in the copy, scalar and AVX-512: a lane of every other tier is tested
+takes five times its time and four seconds more. Two tiers run in the copy, scalar and AVX-512: a lane of every other tier is tested
 by itself, as a crate of the room `simd`.
 
     .ci/mutants/run.py [--only REGEX] [--alone N] [--slowest SECONDS] [--tests REGEX] [--again] [--as-built] [--threads N]
@@ -118,7 +118,7 @@ class Together:
         self.command = [tests[0].built.binaries[tests[0].suite], tests[0].arguments[0], *names]
 
     def ask(self, number):
-        return ask(self.tree, self.name, self.command, int(3 * self.cost) + 10, MUTANT=str(number))[:2]
+        return ask(self.tree, self.name, self.command, int(5 * self.cost) + 4, MUTANT=str(number))[:2]
 
 
 def together(tests, seen):

@@ -118,6 +118,9 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
     use super::*;
 
     fn seen(cone: &ViewCone, bodies: &Bodies, centre: [f32; 3]) -> bool {
@@ -243,5 +246,62 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Of two centres that are neighbours in f32, one in the cone and one not, integers say which: cosines of ½, 0 and −½.
+    #[test]
+    fn neighbours_on_either_side_of_the_rim_are_told_apart() {
+        let mut random = ChaCha8Rng::seed_from_u64(11);
+        let mut below = |most: i64| i64::from(random.next_u32()) % (2 * most + 1) - most;
+        let whole = |v: [i64; 3]| v.map(|x| x as f32);
+        let dot = |a: [i64; 3], b: [i64; 3]| (0..3).map(|i| i128::from(a[i] * b[i])).sum::<i128>();
+        let (mut parted, bits) = (0, 1 << 24);
+        for trial in 0..6000 {
+            let direction = [below(999), below(999), below(999)];
+            let apex = [(); 3].map(|()| below(bits));
+            let (axis, degrees) = (trial % 3, [60_u8, 90, 120][trial / 3 % 3]);
+            // Inside from 0 on: 4·(way·direction)², with its sign, against 4·cos²·|way|²·|direction|².
+            let inside = |centre: [i64; 3]| {
+                let way = std::array::from_fn(|i| centre[i] - apex[i]);
+                let along = dot(way, direction);
+                let rim = dot(way, way) * dot(direction, direction);
+                match degrees {
+                    60 => (4 * along * along.abs() - rim, rim),
+                    90 => (along, rim),
+                    _ => (4 * along * along.abs() + rim, rim),
+                }
+            };
+            let cone = ViewCone {
+                body: None,
+                apex: Some(whole(apex)),
+                direction: whole(direction),
+                half_angle: f32::from(degrees),
+                range: None,
+            };
+            let is_seen = |centre| seen(&cone, &Bodies::default(), whole(centre));
+            let start = [(); 3].map(|()| below(bits));
+            let at = |x: i64| std::array::from_fn(|i| if i == axis { x } else { start[i] });
+            let (mut here, mut there) = (start[axis], below(bits));
+            if direction == [0; 3] || (inside(at(here)).0 >= 0) == (inside(at(there)).0 >= 0) {
+                continue;
+            }
+            while (here - there).abs() > 1 {
+                let middle = (here + there).div_euclid(2);
+                if (inside(at(middle)).0 >= 0) == (inside(at(here)).0 >= 0) {
+                    here = middle;
+                } else {
+                    there = middle;
+                }
+            }
+            for centre in [here, there].map(at) {
+                let (beyond, rim) = inside(centre);
+                // What lies outside by less than the rim's own width may be seen.
+                if beyond >= 0 || -beyond as f64 > 1e-12 * rim as f64 || degrees == 90 {
+                    assert_eq!(is_seen(centre), beyond >= 0, "{centre:?} of {cone:?}");
+                    parted += 1;
+                }
+            }
+        }
+        assert!(parted > 3000, "{parted}");
     }
 }

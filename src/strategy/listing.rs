@@ -243,7 +243,7 @@ struct Lister<'a, 'f, T> {
 }
 
 impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimised), inline(always))]
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
         self.counters.tests += run.len() as u64;
         let mut start = run.start;
@@ -255,7 +255,7 @@ impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimised), inline(always))]
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>) {
         self.counters.tests += block.codes().len() as u64;
         let found = self.test.block(l, block, &mut self.hits);

@@ -350,3 +350,50 @@ fn the_first_shape_of_a_world_sets_the_directions() {
         assert_eq!(world.pairs().len(), expected, "{way:?}");
     }
 }
+
+/// Pairs come, stay and go; the look-up knows them in either order, and no other.
+#[test]
+fn pairs_are_looked_up_and_told_apart_from_those_of_the_frame_before() {
+    let culler = Culler::builder().settings(&CullSettings::all_pairs());
+    let mut world = World::with(shapes(), &culler).unwrap();
+    let at = |x: f64| [x, 0.0, 0.0];
+    let ids: Vec<BodyId> = (0..9)
+        .map(|_| world.insert(Body::default()).unwrap())
+        .collect();
+    let mut before = Vec::new();
+    let mut lookup = PairLookup::default();
+    // Which of the places 20 apart each body stands at.
+    for places in [
+        [0, 1, 2, 0, 1, 2, 0, 1, 2],
+        [0, 1, 1, 1, 1, 3, 4, 4, 2],
+        [5, 1, 1, 0, 6, 3, 2, 2, 2],
+    ] {
+        for (&id, place) in ids.iter().zip(places) {
+            let turn = Body::default().rotation;
+            world
+                .set_pose(id, turn, at(f64::from(place) * 20.0))
+                .unwrap();
+        }
+        world.cull().unwrap();
+        let pairs = (0..9).flat_map(|i| (i + 1..9).map(move |j| [i, j]));
+        let (met, apart): (Vec<_>, Vec<_>) = pairs.partition(|&[i, j]| places[i] == places[j]);
+        lookup.refill(&world);
+        let holds = |i: usize, j: usize| lookup.contains(ids[i], ids[j]);
+        assert!(met.iter().all(|&[i, j]| holds(i, j) && holds(j, i)));
+        assert!(!apart.iter().any(|&[i, j]| holds(i, j) || holds(j, i)));
+        let named = |wanted: &dyn Fn(&[usize; 2]) -> bool, of: &[[usize; 2]]| -> Vec<[BodyId; 2]> {
+            of.iter()
+                .filter(|pair| wanted(pair))
+                .map(|pair| pair.map(|i| ids[i]))
+                .collect()
+        };
+        let events = world.events();
+        assert_eq!(events.begun, named(&|pair| !before.contains(pair), &met));
+        assert_eq!(
+            events.persisting,
+            named(&|pair| before.contains(pair), &met)
+        );
+        assert_eq!(events.ended, named(&|pair| !met.contains(pair), &before));
+        before = met;
+    }
+}

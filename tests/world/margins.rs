@@ -35,7 +35,7 @@ fn is_reported(world: &mut World) -> bool {
 
 /// The largest δ of whole 2⁻²², so that 2 + δ is an f32, with n·δ² ≤ reach²: cubes that are δ apart in n coordinates are no
 /// farther apart than `reach`, decided in integers.
-fn farthest(n: u64, reach: f64) -> f32 {
+fn farthest(n: u64, reach: f64) -> f64 {
     let step = f64::from(1 << 22);
     let unit = 2_f64.powi(26);
     // Margins here are whole multiples of 2⁻²⁶, so their sum's square is an integer of 2⁻⁵².
@@ -45,7 +45,7 @@ fn farthest(n: u64, reach: f64) -> f32 {
     while u128::from(n) * (steps << 4) * (steps << 4) > reach * reach {
         steps -= 1;
     }
-    (steps as f64 / step) as f32
+    steps as f64 / step
 }
 
 /// Below each stands a class of margins, to which the culler rounds up: here by one ulp.
@@ -71,7 +71,7 @@ fn bodies_that_touch_to_the_ulp_once_grown_are_reported() {
                 let margins = [margin, other].map(|class| CLASSES[class].next_down());
                 let reach = margins.iter().map(|&m| f64::from(m)).sum();
                 for n in 1..=3 {
-                    let gap = farthest(n as u64, reach);
+                    let gap = farthest(n as u64, reach) as f32;
                     let mut reported = |gap: f32| {
                         let t = |i: usize| if i < n { f64::from(2.0 + gap) } else { 0.25 };
                         for (id, translation, margin) in [
@@ -100,6 +100,52 @@ fn bodies_that_touch_to_the_ulp_once_grown_are_reported() {
         }
     }
     assert!(too_far > 100);
+}
+
+/// Cubes that touch along a face, an edge or a corner, where f32 about the origin moves each of them away from the other by
+/// all but its last half step in every coordinate: 2³⁰ away, 64 each.
+#[test]
+fn touching_bodies_are_reported_though_rounding_moves_them_apart() {
+    let first = 2_f64.powi(30) + 64.0;
+    assert_eq!(
+        [first, first + 2.0].map(|x| x as f32 - first as f32),
+        [0.0, 128.0]
+    );
+    for (k, axes) in variants() {
+        let shape = cube(k, axes);
+        for way in ways(k, axes) {
+            if way.strategy == Strategy::None {
+                continue;
+            }
+            let (mut world, [a, b]) = two(&way, &shape, [Body::default(); 2]);
+            // Keeps the origin where it is.
+            world.insert(Body::default()).unwrap();
+            for margins in [[0.0; 2], [0.0, 0.25], [17.0, 46.0_f32.next_down()]] {
+                let reach: f64 = margins.iter().map(|&m| f64::from(m)).sum();
+                for n in 1..=3 {
+                    for sign in [1.0, -1.0] {
+                        let apart = 2.0 + farthest(n as u64, reach);
+                        let place = |i: usize, by: f64| match i {
+                            _ if i >= n => 0.0,
+                            1 => -(first + by),
+                            _ => sign * (first + by),
+                        };
+                        for (id, by, margin) in [(a, 0.0, margins[0]), (b, apart, margins[1])] {
+                            let body = Body {
+                                margin,
+                                translation: std::array::from_fn(|i| place(i, by)),
+                                ..Body::default()
+                            };
+                            world.set(id, body).unwrap();
+                        }
+                        world.cull().unwrap();
+                        let reported = world.pairs().any(|pair| pair == [a, b]);
+                        assert!(reported, "{way:?}, {margins:?}, {n} coordinates");
+                    }
+                }
+            }
+        }
+    }
 }
 
 #[test]

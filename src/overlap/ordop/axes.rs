@@ -28,7 +28,7 @@ pub struct Frames<L: Lanes> {
 impl<L: Lanes> Frames<L> {
     /// Relates two rows. Δ is the difference of the input translations plus that of the offsets: a difference of rounded
     /// world centres would lose it far from the origin.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimised), inline(always))]
     pub fn new(l: L, a: [L::F; ROW], b: [L::F; ROW]) -> Self {
         let zero = l.splat(0.0);
         let mut delta = [zero; 3];
@@ -94,7 +94,7 @@ impl<L: Lanes> Frames<L> {
 
     /// Axes edge × edge. An axis shorter than ½ (nearly parallel edges) is skipped: the error bounds are relative to its
     /// length, and the normals serve such pairs.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimised), inline(always))]
     pub fn by_edges<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
         let all = l.bits(l.first(L::WIDTH));
         let (zero, quarter) = (l.splat(0.0), l.splat(0.25));
@@ -128,7 +128,7 @@ impl<L: Lanes> Frames<L> {
 
 /// Lanes separated along one body's own slab normals. `turn[i]` is its axis i in the other's coordinates, `gap` the way
 /// to the other's centre along its own axes.
-#[inline(always)]
+#[cfg_attr(not(unoptimised), inline(always))]
 fn by_normals<L: Lanes, const K: usize>(
     l: L,
     turn: [Vector<L>; 3],
@@ -215,4 +215,123 @@ fn cross<L: Lanes>(l: L, n: [f32; 3], v: Vector<L>) -> Vector<L> {
         z * v[0] - x * v[2],
         x * v[1] - y * v[0],
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    use super::super::table::COEFFICIENTS;
+    use super::*;
+    use crate::rounding::pose::{Rotation, rotation};
+    use crate::simd::{Kernel, MAX_WIDTH, Tier, dispatch};
+
+    fn only<L: Lanes>(l: L, x: L::F) -> f32 {
+        let mut lanes = [0.0; MAX_WIDTH];
+        l.store(x, &mut lanes);
+        lanes[0]
+    }
+
+    #[test]
+    fn combinations_and_products_are_those_of_whole_numbers() {
+        struct Of([f32; 3], [f32; 3]);
+        impl Kernel for Of {
+            type Output = ([f32; 13], [f32; 3], f32);
+            #[inline(always)]
+            fn run<L: Lanes>(self, l: L) -> Self::Output {
+                let v @ [x, y, z] = self.1.map(|x| l.splat(x));
+                (
+                    combinations::<L>(x, y, z).map(|x| only(l, x)),
+                    cross(l, self.0, v).map(|x| only(l, x)),
+                    only(l, combine(l, self.0, v)),
+                )
+            }
+        }
+        let (n, v) = ([2.0, -3.0, 5.0], [1.0, 10.0, 100.0]);
+        for tier in Tier::available() {
+            let (combined, crossed, product) = dispatch(tier, Of(n, v));
+            let expected = COEFFICIENTS.map(|c| (0..3).map(|i| f32::from(c[i]) * v[i]).sum());
+            assert_eq!(combined, expected, "{tier}");
+            assert_eq!(crossed, [-350.0, -195.0, 23.0], "{tier}");
+            assert_eq!(product, 472.0, "{tier}");
+        }
+    }
+
+    /// Boxes of these half edges, the second turned and moved: whether an edge × edge axis separates them, for k = 6.
+    struct Boxes([[f32; 3]; 2], Rotation, [f32; 3]);
+
+    impl Kernel for Boxes {
+        type Output = bool;
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> bool {
+            let slabs = self.0.map(|half| {
+                let mut ends = [[l.splat(0.0); 2]; 13];
+                for (end, x) in ends.iter_mut().zip(half) {
+                    *end = [l.splat(x); 2];
+                }
+                Slabs { ends }
+            });
+            let row = |turn: [[f64; 3]; 3], t: [f32; 3]| {
+                let mut row = [l.splat(0.0); ROW];
+                for j in 0..3 {
+                    row[T + j] = l.splat(t[j]);
+                    for i in 0..3 {
+                        row[Q + 3 * j + i] = l.splat(turn[i][j] as f32);
+                    }
+                }
+                row
+            };
+            let still = rotation([0.0, 0.0, 0.0, 1.0]);
+            let frames = Frames::new(l, row(still, [0.0; 3]), row(self.1, self.2));
+            let separated = l.bits(frames.by_edges::<6>(l, &slabs[0], &slabs[1]));
+            separated & 1 != 0
+        }
+    }
+
+    impl Boxes {
+        /// How far, in plain f64, the best axis long enough to be asked separates the two.
+        fn gap(&self) -> f64 {
+            let Self(halves, turn, way) = self;
+            let [a, b] = halves.map(|half| half.map(f64::from));
+            let way = way.map(f64::from);
+            let mut best = f64::NEG_INFINITY;
+            for i in 0..3 {
+                for j in 0..3 {
+                    let [e, f] = [(i + 1) % 3, (i + 2) % 3];
+                    let mut axis = [0.0; 3];
+                    (axis[e], axis[f]) = (-turn[f][j], turn[e][j]);
+                    if axis.iter().map(|x| x * x).sum::<f64>() <= 0.25 {
+                        continue;
+                    }
+                    let own: f64 = (0..3).map(|n| a[n] * axis[n].abs()).sum();
+                    let along = |n: usize| (0..3).map(|m| turn[m][n] * axis[m]).sum::<f64>();
+                    let other: f64 = (0..3).map(|n| b[n] * along(n).abs()).sum();
+                    let between: f64 = (0..3).map(|n| way[n] * axis[n]).sum();
+                    best = best.max(between.abs() - own - other);
+                }
+            }
+            best
+        }
+    }
+
+    #[test]
+    fn edges_separate_boxes_as_plain_arithmetic_says() {
+        let mut random = ChaCha8Rng::seed_from_u64(17);
+        let mut next = || (random.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0;
+        for tier in Tier::available() {
+            let mut apart = 0;
+            for _ in 0..2000 {
+                let halves = [(); 2].map(|()| [(); 3].map(|()| 1.25 + next()));
+                let turn = rotation([next(), next(), next(), 1.5 + next()]);
+                let boxes = Boxes(halves, turn, [(); 3].map(|()| 3.0 * next()));
+                let gap = boxes.gap();
+                if gap.abs() > 1e-3 {
+                    assert_eq!(dispatch(tier, boxes), gap > 0.0, "{tier}: {gap}");
+                    apart += usize::from(gap > 0.0);
+                }
+            }
+            assert!((200..1800).contains(&apart), "{apart}");
+        }
+    }
 }

@@ -77,7 +77,7 @@ impl OrDopColumns<'_> {
         dispatch(Tier::SCALAR, Test(self, [first, second]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimised), inline(always))]
     fn test_one<L: Lanes, const K: usize>(&self, l: L, pair: [u32; 2]) -> bool {
         let [a, b] = pair.map(|row| l.load_transposed(self.rows, &[row; MAX_WIDTH]));
         let frames = Frames::new(l, a, b);
@@ -115,7 +115,7 @@ impl OrDopColumns<'_> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimised), inline(always))]
     fn test_blocks<L: Lanes, const K: usize, const FEW: bool>(
         &self,
         l: L,
@@ -141,7 +141,7 @@ impl OrDopColumns<'_> {
 
     /// Pairs through the normals of the first bodies. `later` are the pairs that follow [`PREFETCH_AHEAD`] behind
     /// these.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimised), inline(always))]
     fn by_first<L: Lanes, const K: usize, const FEW: bool>(
         &self,
         l: L,
@@ -172,7 +172,7 @@ impl OrDopColumns<'_> {
     }
 
     /// Pairs that are still alive through all other axes; survivors are appended to `out`.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimised), inline(always))]
     fn by_rest<L: Lanes, const K: usize, const FEW: bool>(
         &self,
         l: L,

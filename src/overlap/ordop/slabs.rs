@@ -41,7 +41,7 @@ impl<L: Lanes> Slabs<L> {
     }
 
     /// Every end by one permutation of a column that holds it for all shapes.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimised), inline(always))]
     fn look_up<const K: usize>(l: L, columns: &[[f32; ROW]], shape: L::I) -> Self {
         let mut ends = [[l.splat(0.0); 2]; 13];
         let columns = &columns[..K];
@@ -54,7 +54,7 @@ impl<L: Lanes> Slabs<L> {
         Self { ends }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimised), inline(always))]
     fn load_rows<const K: usize>(l: L, rows: &[[f32; ROW]], shape: L::I) -> Self {
         let zero = l.splat(0.0);
         let mut shapes = [0; MAX_WIDTH];

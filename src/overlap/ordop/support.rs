@@ -9,7 +9,7 @@ use super::slabs::{Signs, Slabs};
 use crate::simd::Lanes;
 
 /// Upper bound of the support in direction e, in the coordinates of the DOP's own basis.
-#[inline(always)]
+#[cfg_attr(not(unoptimised), inline(always))]
 pub fn support<L: Lanes, const K: usize>(l: L, slabs: &Slabs<L>, e: [L::F; 3]) -> L::F {
     let signs = Signs::of(l, e);
     let size = [l.abs(e[0]), l.abs(e[1]), l.abs(e[2])];
@@ -79,4 +79,96 @@ fn leads<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, [a, b, c]: [L::F; 3]
     let lead_c = l.max(c - l.max(a, b), zero);
     let [x, y, z] = slabs.axes(l, signs);
     (lead_a * x + lead_b * y) + lead_c * z
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::table::{COEFFICIENTS, members_of};
+    use super::*;
+    use crate::simd::{Kernel, MAX_WIDTH, Tier, dispatch};
+
+    type Ends = [[f32; 2]; 13];
+
+    struct Support<const K: usize>(Ends, [f32; 3]);
+
+    impl<const K: usize> Kernel for Support<K> {
+        type Output = f32;
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> f32 {
+            let ends = self.0.map(|ends| ends.map(|end| l.splat(end)));
+            let e = self.1.map(|x| l.splat(x));
+            let mut bound = [0.0; MAX_WIDTH];
+            l.store(support::<L, K>(l, &Slabs { ends }, e), &mut bound);
+            bound[0]
+        }
+    }
+
+    fn bound(tier: Tier, k: usize, ends: Ends, e: [f32; 3]) -> f32 {
+        match k {
+            6 => dispatch(tier, Support::<6>(ends, e)),
+            14 => dispatch(tier, Support::<14>(ends, e)),
+            18 => dispatch(tier, Support::<18>(ends, e)),
+            _ => dispatch(tier, Support::<26>(ends, e)),
+        }
+    }
+
+    /// All directions with small whole coordinates, of any signs and in any order of size.
+    fn directions() -> impl Iterator<Item = [f32; 3]> {
+        let whole = |n: u32, place: u32| (n / 7u32.pow(place) % 7) as f32 - 3.0;
+        (0..343).map(move |n| [0, 1, 2].map(|place| whole(n, place)))
+    }
+
+    /// A bound is linear in the ends: one end of 1 among zeros tells its multiplier, and all of them put e together again.
+    #[test]
+    fn multipliers_are_no_less_than_zero_and_make_up_the_direction() {
+        for tier in Tier::available() {
+            for k in [6, 14, 18, 26] {
+                for e in directions() {
+                    let mut sum = [0.0; 3];
+                    let ends_of = |&member| [(member, 0), (member, 1)];
+                    for (member, side) in members_of(k).iter().flat_map(ends_of) {
+                        let mut ends = Ends::default();
+                        ends[member][side] = 1.0;
+                        let multiplier = bound(tier, k, ends, e);
+                        assert!(multiplier >= 0.0, "{tier}, k = {k}, {e:?}: {member}");
+                        let sign = [1.0, -1.0][side];
+                        for (sum, &c) in sum.iter_mut().zip(&COEFFICIENTS[member]) {
+                            *sum += sign * multiplier * f32::from(c);
+                        }
+                    }
+                    assert_eq!(sum, e, "{tier}, k = {k}");
+                }
+            }
+        }
+    }
+
+    /// About a ball of radius 1, whose slabs end at the lengths of their normals, the multipliers are the best there are.
+    #[test]
+    fn a_ball_s_bound_is_the_polytope_s_own_support() {
+        let length = |c: [i8; 3]| f32::from(c.iter().map(|x| x * x).sum::<i8>()).sqrt();
+        let ball = COEFFICIENTS.map(|c| [length(c); 2]);
+        let [of_two, of_three] = [2.0_f32, 3.0].map(f32::sqrt);
+        for e in directions() {
+            let mut sorted = e.map(f32::abs);
+            sorted.sort_by(f32::total_cmp);
+            let [low, median, high] = sorted;
+            let lead = high - median;
+            let diagonals = match high - low - median {
+                excess if excess > 0.0 => (low + median) * of_two + excess,
+                _ => 0.5 * (low + median + high) * of_two,
+            };
+            for (k, expected) in [
+                (6, low + median + high),
+                (14, median * of_three + lead),
+                (18, diagonals),
+                (26, low * of_three + (median - low) * of_two + lead),
+            ] {
+                let found = bound(Tier::SCALAR, k, ball, e);
+                assert!(
+                    (found - expected).abs() < 1e-5,
+                    "k = {k}, {e:?}: {found} of {expected}"
+                );
+            }
+        }
+    }
 }
