@@ -2,7 +2,7 @@
 
 use sdop::culler::Culler;
 use sdop::settings::{CullSettings, DirectionSet, Strategy};
-use sdop::world::{Body, Groups, World, WorldError};
+use sdop::world::{Body, BodyId, Groups, PairLookup, World, WorldError};
 
 use super::shapes;
 

@@ -251,7 +251,8 @@ mod tests {
         let (n, v) = ([2.0, -3.0, 5.0], [1.0, 10.0, 100.0]);
         for tier in Tier::available() {
             let (combined, crossed, product) = dispatch(tier, Of(n, v));
-            let expected = COEFFICIENTS.map(|c| (0..3).map(|i| f32::from(c[i]) * v[i]).sum());
+            let expected =
+                COEFFICIENTS.map(|c| (0..3).map(|i| f32::from(c[i]) * v[i]).sum::<f32>());
             assert_eq!(combined, expected, "{tier}");
             assert_eq!(crossed, [-350.0, -195.0, 23.0], "{tier}");
             assert_eq!(product, 472.0, "{tier}");
@@ -274,10 +275,10 @@ mod tests {
             });
             let row = |turn: [[f64; 3]; 3], t: [f32; 3]| {
                 let mut row = [l.splat(0.0); ROW];
-                for j in 0..3 {
-                    row[T + j] = l.splat(t[j]);
-                    for i in 0..3 {
-                        row[Q + 3 * j + i] = l.splat(turn[i][j] as f32);
+                for (j, &x) in t.iter().enumerate() {
+                    row[T + j] = l.splat(x);
+                    for (i, across) in turn.iter().enumerate() {
+                        row[Q + 3 * j + i] = l.splat(across[j] as f32);
                     }
                 }
                 row

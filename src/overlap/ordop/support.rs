@@ -125,8 +125,8 @@ mod tests {
             for k in [6, 14, 18, 26] {
                 for e in directions() {
                     let mut sum = [0.0; 3];
-                    let ends_of = |&member| [(member, 0), (member, 1)];
-                    for (member, side) in members_of(k).iter().flat_map(ends_of) {
+                    let members = members_of(k).iter();
+                    for (member, side) in members.flat_map(|&member| [(member, 0), (member, 1)]) {
                         let mut ends = Ends::default();
                         ends[member][side] = 1.0;
                         let multiplier = bound(tier, k, ends, e);
