@@ -101,11 +101,26 @@ impl Threads {
 }
 
 /// Calls `work` for each item, on the calling thread and on those of the pool.
+///
+/// A worker of another pool that waits takes up that pool's next job on top of this one, and the next on top of that, until its
+/// stack ends. So a thread made for it waits in its place.
 fn distribute<T>(
     pool: &ThreadPool,
     items: impl Iterator<Item = T> + Send,
     work: impl Fn(T) + Sync,
 ) {
+    if rayon::current_thread_index().is_none() {
+        return share(pool, items, work);
+    }
+    let work = &work;
+    let waits = move || share(pool, items, work);
+    let done = std::thread::scope(|scope| scope.spawn(waits).join());
+    if let Err(panic) = done {
+        std::panic::resume_unwind(panic);
+    }
+}
+
+fn share<T>(pool: &ThreadPool, items: impl Iterator<Item = T> + Send, work: impl Fn(T) + Sync) {
     let queue = Mutex::new(items);
     // Poisoned by a panic, which the scope passes on.
     let next = || queue.lock().ok().and_then(|mut items| items.next());
@@ -120,4 +135,35 @@ fn distribute<T>(
         }
         work_off();
     });
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use std::cell::Cell;
+    use std::sync::Barrier;
+    use std::thread;
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn a_worker_of_another_pool_that_waits_takes_up_no_other_job() {
+        thread_local!(static BUSY: Cell<bool> = const { Cell::new(false) });
+        let job = || {
+            assert!(!BUSY.replace(true), "a job on top of another");
+            let (both, threads) = (Barrier::new(2), Threads::new(2).unwrap());
+            let pool = threads.0.as_ref().unwrap();
+            threads.each(&mut [(); 2], |_, ()| {
+                both.wait();
+                if pool.current_thread_index().is_some() {
+                    thread::sleep(Duration::from_millis(20)); // the caller ends first, and waits
+                }
+            });
+            BUSY.set(false);
+        };
+        let one = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        one.scope(|scope| (0..4).for_each(|_| scope.spawn(|_| job())));
+    }
 }

@@ -302,6 +302,6 @@ mod tests {
                 }
             }
         }
-        assert!(parted > 3000, "{parted}");
+        assert!(parted > 1500, "{parted}");
     }
 }

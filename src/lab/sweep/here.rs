@@ -1,7 +1,8 @@
-//! Units done by this process alone, on the threads of the usual pool.
+//! Units done by this process alone, as many at a time as the usual pool has threads.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
+use std::thread;
 
 use super::{Event, Sweep, attempt};
 
@@ -24,18 +25,22 @@ pub fn here(
     Ok(())
 }
 
+/// On threads of its own: a worker of the pool that waits within a unit would take up another unit on top of it.
 fn side_by_side(
     work: &dyn Sweep,
     units: &[usize],
     on: &mut dyn FnMut(Event) -> miette::Result<()>,
 ) -> miette::Result<()> {
-    let stopped = AtomicBool::new(false);
-    rayon::in_place_scope(|scope| {
+    let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+    thread::scope(|scope| {
         let (send, receive) = mpsc::channel();
-        for &unit in units {
-            let (send, stopped) = (send.clone(), &stopped);
-            scope.spawn(move |_| {
-                if !stopped.load(Ordering::Relaxed) {
+        for _ in 0..rayon::current_num_threads().min(units.len()) {
+            let (send, next, stopped) = (send.clone(), &next, &stopped);
+            scope.spawn(move || {
+                while let Some(&unit) = units.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    if stopped.load(Ordering::Relaxed) {
+                        return;
+                    }
                     // Nobody listens once `on` has failed.
                     let _ = send.send(one(work, unit));
                 }
@@ -68,7 +73,6 @@ mod tests {
     use super::super::Header;
     use super::*;
     use std::collections::BTreeMap;
-    use std::sync::atomic::AtomicUsize;
 
     /// Unit 5 fails, unit 7 panics when asked to, unit 3 is too late.
     struct Squares {
