@@ -271,6 +271,30 @@ fn changes_are_what_they_say(path: &Path) {
     assert!(narrow("needles") < 0.2 && narrow("balls") > 0.9);
 }
 
+/// The parts that units come to: of two seeds and three passes, three shapes and nine of known form, seven densities, changes of
+/// four kinds.
+fn nothing_is_left_out(path: &Path) {
+    let result: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    for (part, number) in [
+        ("seeds", 2),
+        ("rows", 41),
+        ("densities", 7),
+        ("variations", 4 + 3 + 4 + 5),
+        ("budgets", 4 * 7),
+        ("clock", 7),
+        ("interest", 7),
+        ("shapes", 3 + 9),
+    ] {
+        assert_eq!(result[part].as_array().unwrap().len(), number, "{part}");
+    }
+    let row = &result["rows"][0];
+    assert_eq!(row["times"].as_array().unwrap().len(), 3);
+    assert_eq!(row["pairs_sha256"].as_array().unwrap().len(), 2);
+    assert!(!result["safety"].as_array().unwrap().is_empty());
+    assert!(result["narrow_phase"]["miss"].as_f64().unwrap() > 0.0);
+}
+
 #[test]
 fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
     let place = tempfile::tempdir().unwrap();
@@ -294,6 +318,7 @@ fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
     );
 
     changes_are_what_they_say(&here.join("one/tradeoff.json"));
+    nothing_is_left_out(&here.join("one/tradeoff.json"));
 
     let again = sdop(
         &[
