@@ -151,8 +151,8 @@ def wake(mutants, built, tests, outcomes, options):
 
     def one(mutant):
         known = outcomes.of(mutant) or {}
-        asked = [] if options.again else list(known.get("asked", []))
-        able = [test for test in tests if built.asleep[mutant["n"]] in test.places and test.name not in asked]
+        asked = known.get("asked", [])
+        able = [test for test in tests if built.asleep[mutant["n"]] in test.places and (options.again or test.name not in asked)]
         if not able and known.get("slowest", -1) >= options.slowest:
             return None
         for some in together(able, caught[mutant["file"]]):
@@ -160,7 +160,7 @@ def wake(mutants, built, tests, outcomes, options):
             if how != "survived":
                 caught[mutant["file"]][some.name] += 1
                 return outcomes.add(mutant, how, by)
-            asked += [test.name for test in some.tests]
+            asked = sorted({*asked, *(test.name for test in some.tests)})
         slowest = known.get("slowest", 0) if options.tests else max(options.slowest, known.get("slowest", 0))
         return outcomes.add(mutant, "survived", asked=asked, slowest=slowest)
 
