@@ -37,7 +37,7 @@ from trees import ENVIRONMENT, WORK, Built, build, cargo, lanes_tree, main_tree,
 
 FEATURES = ["-p", "sdop", "--no-default-features", "--features", "proptest"]
 SUITES = ["golden_pairs", "finders", "near_misses", "against_reference", "worst_case", "world", "naive_margins", "finder_costs",
-          "volume", "misuse", "crowds", "cost", "accounts", "settings", "domain"]
+          "volume", "misuse", "crowds", "cost", "accounts", "settings", "domain", "boxes"]
 # Seconds: tests below go together.
 QUICK = 0.1
 
