@@ -12,7 +12,7 @@ use super::{down, exp2, up};
 /// Rows of a rotation matrix.
 pub type Rotation = [[f64; 3]; 3];
 
-/// 24·2⁻⁵³: error of one coordinate of [`transform`], as a multiple of max(|x|∞, |t|∞). Found: 8.99·2⁻⁵³.
+/// 24·2⁻⁵³: error of one coordinate of [`transform`], as a multiple of max(|x|∞, |t|∞). Found: 9.01·2⁻⁵³.
 /// Proofs: `pose_entry.g`, `pose_point.g`.
 pub const COORDINATE_ERROR: f64 = 24.0 * exp2(-53);
 

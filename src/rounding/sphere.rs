@@ -17,7 +17,7 @@ pub const RADIUS_FACTOR: f32 = (1.0 + 8.0 * super::U) as f32;
 pub const RADIUS_FLOOR: f32 = exp2(-70) as f32;
 
 /// 2⁻⁴⁷ ≥ √3·[`COORDINATE_ERROR`](super::pose::COORDINATE_ERROR): how far the f64 centre may lie from the exact one, as a
-/// multiple of max(|c|∞, |t|∞). Found: 12.07·2⁻⁵³ of 64·2⁻⁵³.
+/// multiple of max(|c|∞, |t|∞). Found: 12.45·2⁻⁵³ of 64·2⁻⁵³.
 pub const CENTRE_ERROR: f64 = exp2(-47);
 
 /// 2⁻¹²⁵ > √3·2⁻¹²⁶: a subnormal translation read as zero.
