@@ -138,7 +138,8 @@ fn say(directory: &Path) -> miette::Result<()> {
 
 /// Measures into a directory beside, and puts it in its place when it is whole.
 fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
-    let part = prepare(directory)?;
+    let resumes = mpi::launched() > 1 || args.sweep.resumes();
+    let part = prepare(directory, resumes)?;
     let before = Load::now();
     execute(args, experiment, &part)?;
     let command = command_line(experiment, args);
@@ -158,15 +159,15 @@ fn beside(directory: &Path, ending: &str) -> PathBuf {
     beside.into()
 }
 
-/// The directory for a record that isn't whole, without what an earlier run left there. A journal stays: whoever finds it says
-/// how to go on from it.
-fn prepare(directory: &Path) -> miette::Result<PathBuf> {
+/// The directory for a record that isn't whole, without what an earlier run left there. With `resumes` a journal stays: the
+/// command that finds it goes on from it, or says how.
+fn prepare(directory: &Path, resumes: bool) -> miette::Result<PathBuf> {
     let part = beside(directory, ".part");
     let journal = |entry: std::io::Result<std::fs::DirEntry>| {
         entry.is_ok_and(|entry| entry.path().extension().is_some_and(|e| e == "journal"))
     };
     let prepare = || {
-        if part.exists() && !std::fs::read_dir(&part)?.any(journal) {
+        if part.exists() && !(resumes && std::fs::read_dir(&part)?.any(journal)) {
             std::fs::remove_dir_all(&part)?;
         }
         std::fs::create_dir_all(&part)

@@ -82,6 +82,11 @@ impl SweepArgs {
         self.shard
     }
 
+    /// Whether an interrupted run is to be gone on from.
+    pub fn resumes(&self) -> bool {
+        self.resume
+    }
+
     /// What was said, as arguments of another command.
     pub fn arguments(&self) -> Vec<String> {
         let [shard, resume, share_cores] = SHARING.map(str::to_owned);

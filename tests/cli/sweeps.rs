@@ -283,6 +283,21 @@ fn a_record_is_of_its_own_shards_alone() {
 }
 
 #[test]
+fn a_record_made_anew_has_nothing_of_an_interrupted_one() {
+    let sweep = SWEEPS.iter().find(|sweep| sweep.name == "record").unwrap();
+    let (directory, scene) = scene_file(SCENE);
+    let out = directory.path().join("out");
+    let part = out.join("box/reproduce.part");
+    fs::create_dir_all(&part).unwrap();
+    fs::write(part.join("reproduce.journal"), "{\"form\":").unwrap();
+    sweep.run(&scene, &out, &[]);
+    let files = fs::read_dir(out.join(sweep.result)).unwrap();
+    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+    let left: Vec<String> = names.filter(|name| name.ends_with(".journal")).collect();
+    assert_eq!(left, [""; 0]);
+}
+
+#[test]
 fn what_has_no_units_is_not_shared() {
     for (arguments, told) in [
         (
