@@ -1,9 +1,10 @@
 //! `sdop record`: runs an experiment and keeps what it measured, with where it comes from.
 
 mod shared;
+mod steps;
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::lab::measure::machine::Machine;
@@ -240,7 +241,7 @@ fn execute(args: &Args, experiment: &Experiment, out: &Path) -> miette::Result<(
             );
         }
         let (mut command, file) = complete(args, experiment, step, out)?;
-        let said = ran(experiment, step, &mut command)?;
+        let said = steps::output(experiment, step, &mut command)?;
         if let Some(file) = file {
             write(&out.join(file), said)?;
         }
@@ -255,7 +256,7 @@ fn complete(
     step: &Step,
     out: &Path,
 ) -> miette::Result<(Command, Option<&'static str>)> {
-    let (mut command, file) = prepared(step, out)?;
+    let (mut command, file) = steps::command(step, out)?;
     if shared::sweep(experiment) {
         command.args(args.sweep.arguments());
         if file.is_some() {
@@ -267,144 +268,6 @@ fn complete(
         .args(further(args, experiment)?)
         .env(COMMAND, command_line(experiment, args));
     Ok((command, file))
-}
-
-/// What a step's command says, when it ends well.
-fn ran(experiment: &Experiment, step: &Step, command: &mut Command) -> miette::Result<Vec<u8>> {
-    let output = command
-        .stderr(Stdio::inherit())
-        .output()
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot run {}", experiment.name))?;
-    // A planted bug must be seen.
-    let expected = if planted(step) { Some(1) } else { Some(0) };
-    if output.status.code() != expected {
-        return Err(miette!("{} failed: {}", experiment.name, output.status));
-    }
-    Ok(output.stdout)
-}
-
-fn planted(step: &Step) -> bool {
-    matches!(step, Step::Rapier(_, arguments) | Step::Bullet(_, arguments) if arguments.contains("--without-margin"))
-}
-
-/// A step's command, and the file that its output becomes.
-fn prepared(step: &Step, out: &Path) -> miette::Result<(Command, Option<&'static str>)> {
-    let cargo = |arguments: &[&str]| {
-        let mut cargo = Command::new("cargo");
-        cargo.args(arguments);
-        cargo
-    };
-    let this = || Ok::<_, miette::Report>(Command::new(std::env::current_exe().into_diagnostic()?));
-    let (mut command, file) = match *step {
-        Step::Sdop(arguments) => {
-            let mut command = this()?;
-            command.args(arguments).arg("--out").arg(out);
-            (command, None)
-        }
-        Step::SdopPrints(file, arguments) => {
-            let mut command = this()?;
-            command.args(arguments);
-            (command, Some(file))
-        }
-        Step::Peers(arguments) => {
-            let mut command = cargo(&PEERS);
-            // Engines in C++ are built as their packages are.
-            command
-                .env("CXX", "g++")
-                .args(arguments)
-                .arg("--out")
-                .arg(out);
-            (command, None)
-        }
-        Step::Rapier(file, arguments) => {
-            let mut command = cargo(&RAPIER);
-            command.args(arguments.split(' '));
-            let dropped = out.with_extension("dropped");
-            if arguments.starts_with("check") {
-                command.arg("--cases").arg(dropped);
-            }
-            command.arg("--out").arg(out.join(file));
-            (command, None)
-        }
-        Step::Bullet(file, arguments) => {
-            let mut command = cargo(&BULLET);
-            command.args(arguments.split(' '));
-            command.arg("--out").arg(out.join(file));
-            (command, None)
-        }
-        Step::Bench(file, bench) => (cargo(&["bench", "--quiet", "--bench", bench]), Some(file)),
-        Step::Estimates(file, benches) => (estimates(benches, &out.join(file))?, None),
-        Step::Script(file, arguments) => {
-            let mut command = Command::new(arguments[0]);
-            command.args(&arguments[1..]);
-            (command, Some(file))
-        }
-    };
-    command.stdout(if file.is_some() {
-        Stdio::piped()
-    } else {
-        Stdio::null()
-    });
-    Ok((command, file))
-}
-
-const PEERS: [&str; 8] = [
-    "run",
-    "--release",
-    "--quiet",
-    "-p",
-    "sdop-peers",
-    "--features",
-    "physx,debian",
-    "--",
-];
-
-const RAPIER: [&str; 6] = ["run", "--release", "--quiet", "-p", "sdop-rapier", "--"];
-
-const BULLET: [&str; 8] = [
-    "run",
-    "--release",
-    "--quiet",
-    "-p",
-    "sdop-bullet",
-    "--features",
-    "debian",
-    "--",
-];
-
-/// Runs benches into a directory of their own; the command that gathers criterion's estimates from it.
-fn estimates(benches: &[&str], file: &Path) -> miette::Result<Command> {
-    let home = std::env::current_dir()
-        .into_diagnostic()?
-        .join("target/criterion-record");
-    if home.exists() {
-        std::fs::remove_dir_all(&home).into_diagnostic()?;
-    }
-    for bench in benches {
-        let status = Command::new("cargo")
-            .args(["bench", "--quiet", "--bench", bench, "--"])
-            .args("--noplot --sample-size 20 --warm-up-time 0.1 --measurement-time 0.4".split(' '))
-            .env("CRITERION_HOME", &home)
-            .stdout(Stdio::null())
-            .status()
-            .into_diagnostic()?;
-        if !status.success() {
-            return Err(miette!("the bench {bench} failed: {status}"));
-        }
-    }
-    let mut command = Command::new("cargo");
-    command.args([
-        "run",
-        "--release",
-        "--quiet",
-        "-p",
-        "sdop-peers",
-        "--",
-        "kernels",
-    ]);
-    command.arg("--from").arg(home).arg("--out").arg(file);
-    Ok(command)
 }
 
 /// The command as a reader types it.

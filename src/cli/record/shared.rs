@@ -14,7 +14,7 @@ use sdop::lab::report::{Experiment, Manifest, Step};
 use sdop::lab::sweep::{Units, code};
 
 use super::super::Cli;
-use super::{Args, beside, chosen, command_line, complete, finish, prepare, ran};
+use super::{Args, beside, chosen, command_line, complete, finish, prepare, steps};
 
 /// The shards of a record, in a directory beside it.
 const SHARDS: &str = ".shards";
@@ -73,7 +73,7 @@ pub(super) fn sweep(experiment: &Experiment) -> bool {
 pub(super) fn serve(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
     for step in experiment.steps {
         let (mut command, _) = complete(args, experiment, step, &beside(directory, ".part"))?;
-        ran(experiment, step, &mut command)?;
+        steps::output(experiment, step, &mut command)?;
     }
     Ok(())
 }
@@ -82,7 +82,7 @@ pub(super) fn serve(args: &Args, experiment: &Experiment, directory: &Path) -> m
 pub(super) fn shard(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
     for step in experiment.steps {
         let (mut command, _) = complete(args, experiment, step, &beside(directory, SHARDS))?;
-        ran(experiment, step, command.stdout(Stdio::inherit()))?;
+        steps::output(experiment, step, command.stdout(Stdio::inherit()))?;
     }
     Ok(())
 }
@@ -121,7 +121,7 @@ pub(super) fn merge(args: &Args, experiment: &Experiment, directory: &Path) -> m
         .arg(&part)
         .args(["--format", "json"]);
     for step in experiment.steps {
-        let said = ran(experiment, step, &mut command)?;
+        let said = steps::output(experiment, step, &mut command)?;
         if let Step::SdopPrints(file, _) = step {
             super::write(&part.join(file), said)?;
         }
