@@ -3,27 +3,23 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
-use glam::BVec4A;
-
+use super::cubes::Make;
 use crate::bodies::contract::ContractError;
 use crate::bodies::{Aabb, Groups, Places};
 use crate::broad_phase::{PairFinder, Population, Reorder, Volume};
 use crate::counters::VolumeCounters;
 use crate::overlap::boxes::{Cubes, EndSlots};
-use crate::rounding::cube::{Cube, less_than_sure};
+use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
-use crate::simd::Tier;
+use crate::simd::{Tier, dispatch};
 use crate::strategy::{BoxInputs, BoxTest, Output, Scratch, list_boxes};
 use crate::threads::Threads;
 
 /// Boxes whose cubes one thread makes at once.
 const CUBES: usize = 4096;
 
-/// Boxes that are copied before any is looked at: each is a cache miss, and so more of them are on their way at once.
-const TOGETHER: usize = 64;
-
 /// Boxes of a frame that are asked which test suits it.
-const ASKED: usize = 256;
+const ASKED: usize = 64;
 
 /// By how much H must exceed the frame's greatest H − h where cubes decide; of those asked, one in [`FEW`] may fall short.
 const CUBIC: f32 = 32.0;
@@ -166,24 +162,15 @@ impl Frames {
         // Bits of numbers that aren't negative are in their order.
         let (greatest, are_sound) = (AtomicU32::new(0), AtomicBool::new(true));
         pool.pieces(&mut self.cubes[range], CUBES, |start, cubes| {
-            let (mut gap, mut is_sound) = (0.0, BVec4A::splat(true));
-            let mut near = [Aabb::default(); TOGETHER];
-            for (cubes, names) in cubes
-                .chunks_mut(TOGETHER)
-                .zip(names[start..].chunks(TOGETHER))
-            {
-                for (near, &name) in near.iter_mut().zip(names) {
-                    *near = boxes[name as usize];
-                }
-                for (to, aabb) in cubes.iter_mut().zip(&near) {
-                    let cube = Cube::about(&aabb.min, &aabb.max);
-                    *to = cube.outer;
-                    gap = if cube.gap > gap { cube.gap } else { gap };
-                    is_sound &= cube.is_sound;
-                }
-            }
+            let names = &names[start..start + cubes.len()];
+            let make = Make {
+                boxes,
+                names,
+                cubes,
+            };
+            let (gap, is_sound) = dispatch(self.tier, make);
             greatest.fetch_max(gap.to_bits(), Relaxed);
-            are_sound.fetch_and(is_sound.all(), Relaxed);
+            are_sound.fetch_and(is_sound, Relaxed);
         });
         let gap = f32::from_bits(greatest.into_inner());
         are_sound.into_inner().then_some(gap)

@@ -7,6 +7,7 @@
 //! exact real arithmetic. No box is widened, none is missed, and none is reported that is an ulp away. Ends are any finite
 //! numbers. Lists depend on the calls alone, never on the CPU or on threads.
 
+mod cubes;
 mod culler;
 mod frame;
 mod world;

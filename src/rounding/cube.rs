@@ -9,8 +9,6 @@
 //! without; the factors leave 2⁻²⁰ for them, the floor 10⁻³⁰. The differences are taken after the factors, so that nothing
 //! that cancels makes the roundings a larger share.
 
-use glam::{BVec4A, Vec4, Vec4Swizzles as _};
-
 use crate::simd::Lanes;
 
 /// What a cube is wider than its box.
@@ -25,37 +23,42 @@ pub const FLOOR: f32 = 1e-30;
 /// An eighth of this of each end makes the centre.
 const SIXTEENTH: f32 = 0.0625;
 
-/// What stands for a box.
-#[derive(Clone, Copy, Debug)]
-pub struct Cube {
+/// What stands for boxes, one a lane.
+#[derive(Clone, Copy)]
+pub struct Cube<L: Lanes> {
     /// The cube about it: centre and half side H.
-    pub outer: [f32; 4],
+    pub outer: [L::F; 4],
     /// H − h.
-    pub gap: f32,
-    /// Axis by axis, the last one twice, whether both ends are finite, and the lower one not above the upper one.
-    pub is_sound: BVec4A,
+    pub gap: L::F,
+    /// Bits of the lanes in which all ends are finite, and no lower one is above the upper one.
+    pub sound: u32,
 }
 
-impl Cube {
-    /// Of the box between two corners.
+impl<L: Lanes> Cube<L> {
+    /// Of the boxes between such ends, axis by axis.
     #[inline(always)]
     #[must_use]
-    pub fn about(min: &[f32; 3], max: &[f32; 3]) -> Self {
-        // Four numbers that follow one another in a box are one load.
-        let lo = Vec4::new(min[0], min[1], min[2], max[0]).xyzz();
-        let hi = Vec4::new(min[2], max[0], max[1], max[2]).yzww();
-        let in_order = lo.cmple(hi);
-        let [lo, hi] = [lo, hi].map(|ends| ends * SIXTEENTH);
-        let centre = lo + hi;
-        let (below, above) = (centre - (lo + lo), (hi + hi) - centre);
-        let outer = below.max(above).max_element() * WIDER + FLOOR;
-        let inner = below.min(above).min_element();
-        // The difference of infinite ends is infinite or no number.
-        let is_finite = (hi - lo).cmplt(Vec4::INFINITY);
+    pub fn about(l: L, lower: [L::F; 3], upper: [L::F; 3]) -> Self {
+        let (sixteenth, infinity) = (l.splat(SIXTEENTH), l.splat(f32::INFINITY));
+        let (mut widest, mut narrowest) = (l.splat(0.0), infinity);
+        let mut outer = [l.splat(0.0); 4];
+        let mut sound = l.bits(l.first(L::WIDTH));
+        for axis in 0..3 {
+            let swapped = l.gt(lower[axis], upper[axis]);
+            let (lo, hi) = (lower[axis] * sixteenth, upper[axis] * sixteenth);
+            let centre = lo + hi;
+            let (below, above) = (centre - (lo + lo), (hi + hi) - centre);
+            widest = l.max(widest, l.max(below, above));
+            narrowest = l.min(narrowest, l.min(below, above));
+            outer[axis] = centre;
+            // The difference of infinite ends is infinite or no number.
+            sound &= l.bits(l.gt(infinity, hi - lo)) & !l.bits(swapped);
+        }
+        outer[3] = widest * l.splat(WIDER) + l.splat(FLOOR);
         Self {
-            outer: [centre.x, centre.y, centre.z, outer],
-            gap: outer - inner,
-            is_sound: in_order & is_finite,
+            outer,
+            gap: outer[3] - narrowest,
+            sound,
         }
     }
 }
@@ -75,7 +78,7 @@ pub fn sure<L: Lanes>(l: L, reach: L::F, less: f32) -> L::F {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simd::{Kernel, Tier, dispatch};
+    use crate::simd::{Kernel, MAX_WIDTH, Tier, dispatch};
     use proptest::prelude::*;
 
     type Slabs = [[f32; 2]; 3];
@@ -98,8 +101,29 @@ mod tests {
         })
     }
 
-    fn cube(slabs: &Slabs) -> Cube {
-        Cube::about(&slabs.map(|[lo, _]| lo), &slabs.map(|[_, hi]| hi))
+    /// A box's cube (centre and half side), its gap, and whether the box is sound.
+    struct About<'a>(&'a Slabs);
+
+    impl Kernel for About<'_> {
+        type Output = ([f32; 4], f32, bool);
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> Self::Output {
+            let [lower, upper] = [0, 1].map(|end| self.0.map(|slab| l.splat(slab[end])));
+            let cube = Cube::about(l, lower, upper);
+            let number = |lanes| {
+                let mut numbers = [0.0; MAX_WIDTH];
+                l.store(lanes, &mut numbers);
+                numbers[0]
+            };
+            let sound = cube.sound == l.bits(l.first(L::WIDTH));
+            (cube.outer.map(number), number(cube.gap), sound)
+        }
+    }
+
+    fn is_sound(slabs: &Slabs) -> bool {
+        Tier::available()
+            .into_iter()
+            .all(|tier| dispatch(tier, About(slabs)).2)
     }
 
     fn meet(a: &Slabs, b: &Slabs) -> bool {
@@ -113,11 +137,12 @@ mod tests {
         type Output = Option<bool>;
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> Option<bool> {
-            let (one, other) = (cube(self.0), cube(self.1));
-            let less = less_than_sure(one.gap.max(other.gap));
-            let far = (0..3).map(|axis| (one.outer[axis] - other.outer[axis]).abs());
+            let [(one, gap, _), (other, other_gap, _)] =
+                [About(self.0).run(l), About(self.1).run(l)];
+            let less = less_than_sure(gap.max(other_gap));
+            let far = (0..3).map(|axis| (one[axis] - other[axis]).abs());
             let far = l.splat(far.fold(0.0, f32::max));
-            let reach = l.splat(one.outer[3]) + l.splat(other.outer[3]);
+            let reach = l.splat(one[3]) + l.splat(other[3]);
             let beyond = |distance| l.bits(l.gt(far, distance)) & 1 == 1;
             match (beyond(reach), beyond(sure(l, reach, less))) {
                 (true, _) => Some(false),
@@ -131,7 +156,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
         #[test]
         fn cubes_answer_as_their_boxes_do(a in slabs(), b in slabs()) {
-            prop_assert!((cube(&a).is_sound & cube(&b).is_sound).all());
+            prop_assert!(is_sound(&a) && is_sound(&b));
             for tier in [Tier::detect(), Tier::SCALAR] {
                 if let Some(answer) = dispatch(tier, Say(&a, &b)) {
                     prop_assert_eq!(answer, meet(&a, &b));
@@ -166,10 +191,10 @@ mod tests {
 
     #[test]
     fn boxes_that_are_none_are_told() {
-        let is_sound = |axis: usize, slab: [f32; 2]| {
+        let with = |axis: usize, slab: [f32; 2]| {
             let mut slabs = [[0.0, 1.0]; 3];
             slabs[axis] = slab;
-            cube(&slabs).is_sound.all()
+            slabs
         };
         let (nan, inf) = (f32::NAN, f32::INFINITY);
         let one = f32::from_bits(1);
@@ -188,7 +213,8 @@ mod tests {
                 [-inf, 0.0],
                 [inf, -inf],
             ] {
-                assert!(!is_sound(axis, bad), "{bad:?}");
+                let told = |tier| !dispatch(tier, About(&with(axis, bad))).2;
+                assert!(Tier::available().into_iter().all(told), "{bad:?}");
             }
             for good in [
                 [0.0, 0.0],
@@ -198,7 +224,7 @@ mod tests {
                 [f32::MAX; 2],
                 [f32::MIN; 2],
             ] {
-                assert!(is_sound(axis, good), "{good:?}");
+                assert!(is_sound(&with(axis, good)), "{good:?}");
             }
         }
     }
