@@ -57,21 +57,35 @@ impl Places {
         self.body.is_empty()
     }
 
-    /// Replaces the set of bodies by those that are `present`. Those that were there keep their order; the others follow.
-    /// Shapes are left to [`Self::reread_shapes`].
-    pub(crate) fn replace(&mut self, dynamic: &[bool], present: &[bool]) {
+    /// Replaces the set of bodies by those that are `present`. Of those that move, as of those that don't, the ones that did so
+    /// before keep their order; the others follow. Shapes are left to [`Self::reread_shapes`]. Returns of each former place
+    /// whether its body is among those that keep their order.
+    pub(crate) fn replace(&mut self, dynamic: &[bool], present: &[bool]) -> Vec<bool> {
         let mut is_new = present.to_vec();
+        let former = self.body.iter().enumerate();
+        let stays: Vec<bool> = former
+            .map(|(place, &body)| {
+                let body = body as usize;
+                let moved = place < self.moving;
+                let stays = present.get(body) == Some(&true) && dynamic[body] == moved;
+                if stays {
+                    is_new[body] = false;
+                }
+                stays
+            })
+            .collect();
         let mut order = Vec::with_capacity(present.len());
-        let stays = |body: &&u32| present.get(**body as usize) == Some(&true);
-        for &body in self.body.iter().filter(stays) {
-            is_new[body as usize] = false;
-            order.push(body);
+        for (moves, range) in [(true, 0..self.moving), (false, self.moving..stays.len())] {
+            let kept = self.body[range.clone()].iter().zip(&stays[range]);
+            order.extend(kept.filter(|(_, stays)| **stays).map(|(&body, _)| body));
+            let others = (0..present.len()).filter(|&body| is_new[body] && dynamic[body] == moves);
+            order.extend(others.map(|body| body as u32));
+            if moves {
+                self.moving = order.len();
+            }
         }
-        order.extend((0..present.len() as u32).filter(|&body| is_new[body as usize]));
-        let (moving, fixed): (Vec<u32>, Vec<u32>) =
-            order.into_iter().partition(|&body| dynamic[body as usize]);
-        self.moving = moving.len();
-        self.body = [moving, fixed].concat();
+        self.body = order;
+        stays
     }
 
     /// Copies each body's shape from the user's columns.

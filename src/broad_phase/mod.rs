@@ -56,6 +56,9 @@ impl Slots {
     fn resize(&mut self, slots: usize) {
         self.balls.resize(slots + MAX_WIDTH, [0.0; 4]);
         self.names.resize(slots + MAX_WIDTH, 0);
+        // What was a slot may be padding now.
+        self.balls[slots..].fill([0.0; 4]);
+        self.names[slots..].fill(0);
     }
 
     fn bytes(&self) -> usize {
@@ -123,6 +126,32 @@ impl PairFinder {
             Finder::Neighbours => Self::Neighbours(Neighbours::new(population.volume)),
             Finder::Auto => Self::new(population.finder(), population),
         }
+    }
+
+    /// Takes up another set of bodies, in the order that [`Places::replace`] leaves: `stays` is of each former place. False if it
+    /// knows nothing of the bodies that stay, and begins anew.
+    pub fn replace(
+        &mut self,
+        finder: Finder,
+        population: &Population,
+        stays: &[bool],
+        moving: usize,
+    ) -> bool {
+        let wanted = match finder {
+            Finder::Auto => population.finder(),
+            finder => finder,
+        };
+        let bodies = population.bodies;
+        let is_kept = wanted == self.name()
+            && match self {
+                Self::AllPairs(_) | Self::Sweep(_) => false,
+                Self::Grid(finder) => finder.replace(stays, moving, bodies),
+                Self::Neighbours(finder) => finder.replace(stays, moving, bodies),
+            };
+        if !is_kept {
+            *self = Self::new(wanted, population);
+        }
+        is_kept
     }
 
     /// Its name; never [`Finder::Auto`].

@@ -120,9 +120,7 @@ impl Culler {
             counters: Counters::default(),
             seconds: Seconds::default(),
         };
-        culler.update_volumes(bodies, 0..n);
-        culler.reorder(bodies);
-        culler.arrange();
+        culler.begin(bodies);
         culler.seconds.construct = start.elapsed().as_secs_f64();
         Ok(culler)
     }
@@ -150,10 +148,31 @@ impl Culler {
         self.places.reread_shapes(bodies);
     }
 
-    /// Replaces the set of bodies by those that are `present`. Volumes, static ones too, are placed anew; bodies that were
-    /// there keep their neighbours.
+    /// Takes up another set of bodies, those that are `present`, as far as it is new: what is known of the others' neighbours
+    /// is kept. Volumes of static bodies are placed anew.
+    pub(crate) fn exchange(&mut self, bodies: &Bodies, present: &[bool]) {
+        let stays = self.take_places(bodies, present);
+        let population = needs::population(self.scheme, &self.models, &self.places);
+        let (moving, all) = (self.places.moving, self.places.len());
+        let finder = self.settings.pairs;
+        if self.finder.replace(finder, &population, &stays, moving) {
+            self.update_volumes(bodies, moving..all); // the others in the frame to come
+        } else {
+            self.begin(bodies);
+        }
+    }
+
+    /// Replaces the set of bodies by those that are `present`, of which nothing is known.
     pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
-        self.places.replace(&bodies.dynamic, present);
+        self.take_places(bodies, present);
+        let population = needs::population(self.scheme, &self.models, &self.places);
+        self.finder = PairFinder::new(self.settings.pairs, &population);
+        self.begin(bodies);
+    }
+
+    /// Gives places to the bodies that are `present`; whether each former place's body keeps its order.
+    fn take_places(&mut self, bodies: &Bodies, present: &[bool]) -> Vec<bool> {
+        let stays = self.places.replace(&bodies.dynamic, present);
         self.places.reread_shapes(bodies);
         self.fixed = check::fixed(bodies);
         let n = self.places.len();
@@ -164,9 +183,12 @@ impl Culler {
             intervals.resize(n);
         }
         self.interest.resize(bodies.len(), false);
-        let population = needs::population(self.scheme, &self.models, &self.places);
-        self.finder = PairFinder::new(self.settings.pairs, &population);
-        self.update_volumes(bodies, 0..n);
+        stays
+    }
+
+    /// Places all volumes, and lets a new finder order and arrange them.
+    fn begin(&mut self, bodies: &Bodies) {
+        self.update_volumes(bodies, 0..self.places.len());
         self.reorder(bodies);
         self.arrange();
     }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod exchange;
 mod lives;
 mod margins;
 mod pair_test;

@@ -26,6 +26,8 @@ pub struct Level {
     pub widest: f64,
     /// How balls grow before they are looked for.
     pub reach: Reach,
+    /// Whether its bodies came after the levels had been planned.
+    pub is_late: bool,
     layout: Layout,
 }
 
@@ -38,8 +40,22 @@ impl Level {
             widest: 0.0,
             reach: Reach::NONE,
             range,
+            is_late: false,
             layout,
         }
+    }
+
+    /// A level for bodies that came after the others had been planned.
+    pub fn late(range: Range<usize>) -> Self {
+        Self {
+            is_late: true,
+            ..Self::new(range, Layout::Box)
+        }
+    }
+
+    /// The level with other places.
+    pub fn holding(self, range: Range<usize>) -> Self {
+        Self { range, ..self }
     }
 
     /// Sorts the level's bodies into their slots; within a cell they keep the order of places. `place_cells` and

@@ -7,6 +7,7 @@
 
 mod across;
 mod cells;
+mod late;
 mod level;
 mod near;
 mod plan;

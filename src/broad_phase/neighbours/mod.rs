@@ -94,6 +94,15 @@ impl Neighbours {
         self.grid.reorder(moving, balls, names, order)
     }
 
+    /// Takes up another set of bodies as the grid does; the list is of the former ones.
+    pub(super) fn replace(&mut self, stays: &[bool], moving: usize, bodies: usize) -> bool {
+        if self.state != State::Searching {
+            self.policy.interrupted();
+            self.state = State::Searching;
+        }
+        self.grid.replace(stays, moving, bodies)
+    }
+
     /// Follows the list if it may be, or lets the grid arrange the bodies and makes a new one if it pays.
     pub(super) fn arrange(
         &mut self,

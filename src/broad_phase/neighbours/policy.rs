@@ -102,6 +102,14 @@ impl Policy {
         }
     }
 
+    /// The list was of other bodies.
+    pub fn interrupted(&mut self) {
+        // Where bodies come and go in every frame, no list is worth its making.
+        if self.served < 2 {
+            self.give_up();
+        }
+    }
+
     /// The list would have had too many pairs.
     pub fn overflowed(&mut self) {
         self.skin = 0;
