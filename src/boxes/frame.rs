@@ -46,12 +46,20 @@ pub(super) struct Frames {
     cubes: Vec<[f32; 4]>,
     /// The greatest H − h of the boxes that don't move.
     fixed_gap: f32,
-    /// Whether the set is another than in the frame before.
-    is_new: bool,
+    news: News,
     ends: EndSlots,
     scratch: Scratch,
     /// Of the frame before.
     candidates: u64,
+}
+
+/// What of the set is new since the frame before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum News {
+    None,
+    /// Some boxes; the finder knows of the others.
+    Some,
+    All,
 }
 
 impl Frames {
@@ -67,7 +75,7 @@ impl Frames {
             order: Vec::new(),
             cubes: Vec::new(),
             fixed_gap: 0.0,
-            is_new: true,
+            news: News::All,
             ends: EndSlots::default(),
             scratch: Scratch::default(),
             candidates: 0,
@@ -79,18 +87,25 @@ impl Frames {
         self.places.len()
     }
 
-    /// From now on those boxes are there that are `present`, and those may move that are `dynamic`. Boxes that were there
-    /// keep their neighbours.
+    /// From now on those boxes are there that are `present`, and those may move that are `dynamic`. What is known of the
+    /// neighbours of boxes that were there is kept.
     pub fn replace(&mut self, dynamic: &[bool], present: &[bool]) {
-        self.places.replace(dynamic, present);
-        self.start_anew();
+        let stays = self.places.replace(dynamic, present);
+        let (population, moving) = (population(self.len()), self.places.moving);
+        let finder = &mut self.finder;
+        if finder.replace(self.choice, &population, &stays, moving) && self.news != News::All {
+            self.news = News::Some;
+            self.cubes.resize(self.len(), [0.0; 4]);
+        } else {
+            self.start_anew();
+        }
     }
 
     fn start_anew(&mut self) {
         self.finder = finder(self.choice, self.len());
         self.cubes.clear();
         self.cubes.resize(self.len(), [0.0; 4]);
-        (self.is_new, self.candidates) = (true, 0);
+        (self.news, self.candidates) = (News::All, 0);
     }
 
     /// Hands the boxes that meet, not both at rest, whose groups collide, to `output`. `boxes` and `groups` are by name.
@@ -138,9 +153,12 @@ impl Frames {
     /// some box is none.
     fn update(&mut self, boxes: &[Aabb], wakes: bool) -> Option<f32> {
         let (moving, all) = (self.places.moving, self.places.len());
-        if std::mem::take(&mut self.is_new) {
+        let news = std::mem::replace(&mut self.news, News::None);
+        if news != News::None {
             self.fixed_gap = self.make_cubes(boxes, moving..all, wakes)?;
-            self.make_cubes(boxes, 0..moving, wakes)?;
+        }
+        if news == News::All {
+            self.make_cubes(boxes, 0..moving, wakes)?; // a new finder orders places by them
         }
         let names = &self.places.body;
         let (places, order) = (&self.places, &mut self.order);
@@ -201,11 +219,14 @@ impl Frames {
 
 /// The finder of that name, or the one that suits so many boxes.
 fn finder(choice: Finder, boxes: usize) -> PairFinder {
-    let population = Population {
+    PairFinder::new(choice, &population(boxes))
+}
+
+fn population(boxes: usize) -> Population {
+    Population {
         bodies: boxes,
         radii: [1.0; 2],
         cheap_test: true,
         volume: Volume::Cube,
-    };
-    PairFinder::new(choice, &population)
+    }
 }

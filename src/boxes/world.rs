@@ -35,8 +35,8 @@ impl From<Aabb> for BoxBody {
 /// A long-lived set of boxes: ids that stay, boxes at rest, groups, and pairs as a list or as events, as
 /// [`World`](crate::world::World) has them for meshes.
 ///
-/// A change of the set, or of a box at rest, costs about one more frame at the next cull, however many boxes it touches;
-/// boxes that may move and groups change at the price of a copy.
+/// Boxes that come or go leave what is known of the others: until a sixteenth of all are new, the next cull takes a sort more, as it
+/// does when a box at rest is moved. Boxes that may move and groups change at the price of a copy.
 ///
 /// ```
 /// use sdop::{Aabb, BoxWorld};

@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn those_that_stay_keep_their_levels_and_the_late_ones_share_one() {
-        let radius = |i: usize| if i % 50 == 0 { 64.0 } else { 1.0 };
+        let radius = |i: usize| if i.is_multiple_of(50) { 64.0 } else { 1.0 };
         let balls: Vec<_> = (0..2000)
             .map(|i| [2.0 * i as f32, 0.0, 0.0, radius(i)])
             .collect();
