@@ -179,6 +179,8 @@ fn a_budget_of_tests_is_spent_in_the_order_asked_for() {
                     (own.ordop.tests, own.untested),
                     (spent as u64, rest.len() as u64)
                 );
+                let hits = found.len() - rest.len();
+                assert_eq!(own.ordop.hits, hits as u64, "{way}");
                 assert_eq!(own.sphere.hits, list.len() as u64, "{way}");
                 refined.extend(paid.iter().map(|&pair| (pair, frame)));
             }

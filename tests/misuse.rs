@@ -291,6 +291,19 @@ fn groups_have_one_entry_a_body() {
 }
 
 #[test]
+fn groups_are_forgotten_with_another_number_of_bodies_only() {
+    let (some, more) = (row(40), row(41));
+    let nobody = Groups { member: 0, mask: 0 };
+    for mut culler in cullers(&some) {
+        culler.set_groups(Some(vec![nobody; 40])).unwrap();
+        culler.refresh(&some).unwrap();
+        assert_eq!(culler.cull(&some).unwrap().len(), 0);
+        culler.refresh(&more).unwrap();
+        assert!(!culler.cull(&more).unwrap().is_empty());
+    }
+}
+
+#[test]
 fn shapes_of_unlike_directions_are_refused_where_slabs_are_compared() {
     let mut unlike = shapes();
     unlike[1] = unlike[1].clone().with_directions(sdop::DirectionSet::K26);

@@ -19,6 +19,7 @@ Goes on where FILE (target/mutants/outcomes.jsonl) ends: what survived there is 
 import argparse
 import collections
 import concurrent.futures
+import contextlib
 import csv
 import functools
 import json
@@ -48,20 +49,46 @@ def limited(seconds):
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
+def threads(process):
+    """State and CPU time of each of its threads."""
+    found = []
+    for file in pathlib.Path(f"/proc/{process.pid}/task").glob("*/stat"):
+        with contextlib.suppress(FileNotFoundError):  # it has just ended
+            state, *fields = file.read_text().rsplit(")", 1)[1].split()
+            found.append((state, int(fields[10]) + int(fields[11])))
+    return found
+
+
+def heard(process, patience=60):
+    """What it wrote; none, and its end, if all of its threads sleep from one look to the next. To be kept from running by others is
+    no sleep."""
+    before = None
+    while True:
+        try:
+            return process.communicate(timeout=patience)
+        except subprocess.TimeoutExpired:
+            now = threads(process)
+            if now == before and all(state == "S" for state, _ in now):
+                process.kill()
+                process.communicate()
+                return None
+            before = now
+
+
 def ask(tree, name, command, seconds, **environment):
     """Runs tests: how it ended, and by which test or signal; and what they wrote to stderr."""
     environment = ENVIRONMENT | {"CARGO_MANIFEST_DIR": str(tree)} | environment
-    try:
-        done = subprocess.run([*command, "-q"], cwd=tree, env=environment, stdin=subprocess.DEVNULL, timeout=120,
-                              capture_output=True, text=True, errors="replace",
-                              preexec_fn=functools.partial(limited, seconds))
-    except subprocess.TimeoutExpired:
+    done = subprocess.Popen([*command, "-q"], cwd=tree, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True, errors="replace", preexec_fn=functools.partial(limited, seconds))
+    told = heard(done)
+    if told is None:
         return "endless", name, ""
+    stdout, stderr = told
     if done.returncode == 0:
-        return "survived", None, done.stderr
+        return "survived", None, stderr
     if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
         return "endless", name, ""
-    failed = sorted(set(re.findall(r"^    (\S+)$", done.stdout.split("\nfailures:")[-1], re.M)))
+    failed = sorted(set(re.findall(r"^    (\S+)$", stdout.split("\nfailures:")[-1], re.M)))
     return "caught", ", ".join(failed[:3]) or f"{name}, by signal {-done.returncode}", ""
 
 

@@ -238,4 +238,20 @@ mod tests {
             Err(format!("body {most}: number {more} of {most} at most"))
         );
     }
+
+    #[cfg(feature = "lab")]
+    #[test]
+    fn a_body_of_a_share_is_told_by_its_number_in_the_whole() {
+        let own = ContractError {
+            body: 3,
+            quantity: "shape",
+            value: "7".to_owned(),
+            hint: INVERTIBLE,
+        };
+        let whole = ContractError {
+            body: 43,
+            ..own.clone()
+        };
+        assert_eq!(own.numbered(40), whole);
+    }
 }

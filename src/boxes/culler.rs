@@ -210,3 +210,51 @@ impl BoxCuller {
         self.frames.shrink_to_fit();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+    use crate::BoxWorld;
+
+    #[test]
+    fn a_builder_keeps_each_choice_and_no_other() {
+        let built = BoxCuller::builder();
+        assert_eq!(built, BoxCullerBuilder::default());
+        let built = built.threads(3).tier(Tier::SCALAR).finder(Finder::Sweep);
+        let wanted = BoxCullerBuilder {
+            finder: Finder::Sweep,
+            threads: 3,
+            tier: Some(Tier::SCALAR),
+        };
+        assert_eq!(built, wanted);
+        let other = BoxCullerBuilder {
+            threads: 5,
+            ..wanted
+        };
+        assert_eq!(built.threads(5), other);
+    }
+
+    /// All-pairs tests every pair, as `auto` would not.
+    #[test]
+    fn cullers_and_worlds_find_as_their_builder_says() {
+        let row: Vec<Aabb> = (0..2000)
+            .map(|i| [i as f32, i as f32 + 0.5])
+            .map(|[lo, hi]| Aabb::new([lo, 0.0, 0.0], [hi, 1.0, 1.0]))
+            .collect();
+        let of = BoxCuller::builder().finder(Finder::AllPairs);
+        let (mut culler, mut world) = (of.build().unwrap(), BoxWorld::with(&of).unwrap());
+        culler.cull(&row).unwrap();
+        for &aabb in &row {
+            world.insert(aabb).unwrap();
+        }
+        world.cull().unwrap();
+        let every = VolumeCounters {
+            updates: 2000,
+            tests: 2000 * 1999 / 2,
+            hits: 0,
+        };
+        assert_eq!([culler.counters(), world.counters()], [&every; 2]);
+    }
+}

@@ -230,3 +230,21 @@ fn population(boxes: usize) -> Population {
         volume: Volume::Cube,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cubes_decide_while_one_in_sixteen_is_small_beside_the_gap() {
+        let mut frames = Frames::new(Finder::Auto, Tier::SCALAR, Threads::default());
+        assert!(frames.cubes_decide(1.0), "without boxes");
+        for (small, decide) in [(0, true), (16, true), (17, false), (256, false)] {
+            frames.cubes = vec![[0.0, 0.0, 0.0, CUBIC * 3.0]; 256];
+            for cube in &mut frames.cubes[..small] {
+                cube[3] = CUBIC * 2.9;
+            }
+            assert_eq!(frames.cubes_decide(3.0), decide, "{small}");
+        }
+    }
+}

@@ -231,4 +231,17 @@ mod tests {
             assert_eq!(order, expected);
         }
     }
+
+    #[test]
+    fn bytes_are_those_of_all_columns_used_or_not() {
+        let mut sweep = Sweep::default();
+        assert_eq!(sweep.bytes(), 0);
+        sweep.slots.names = Vec::with_capacity(1);
+        sweep.lo = Vec::with_capacity(10);
+        sweep.hi = Vec::with_capacity(100);
+        assert_eq!(sweep.bytes(), 444);
+        sweep.sorter.pairs[0] = Vec::with_capacity(1_000);
+        sweep.sorter.pairs[1] = Vec::with_capacity(10_000);
+        assert_eq!(sweep.bytes(), 88_444);
+    }
 }

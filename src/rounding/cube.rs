@@ -228,4 +228,22 @@ mod tests {
             }
         }
     }
+
+    /// What is too wide loses nothing, and has the boxes themselves looked at for no reason.
+    #[test]
+    fn cubes_are_no_wider_than_their_boxes_and_know_as_much_as_they_can() {
+        let within = |found: f32, exact: f64| {
+            let found = f64::from(found);
+            assert!(
+                exact <= found && found <= exact * (1.0 + 4e-6),
+                "{found} of {exact}"
+            );
+        };
+        let Cube { outer, gap, .. } = cube(&[[1.0, 3.0], [-8.0, 0.0], [40.0, 44.0]]);
+        assert_eq!(outer[..3], [0.25, -0.5, 5.25]);
+        within(outer[3], 0.5);
+        within(gap, 0.375);
+        within(less_than_sure(4.0), 8.0);
+        within(less_than_sure(0.0), 2e-30_f32.into());
+    }
 }

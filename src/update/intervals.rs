@@ -223,4 +223,53 @@ mod tests {
             assert!(f64::from(half) <= widest * (1.0 + exp2(-22)), "{ends:?}");
         }
     }
+
+    /// Mirrored slabs meet as the true ones do, so that no list of pairs tells them apart.
+    #[test]
+    fn slabs_are_those_of_the_vertices_in_the_world() {
+        let vertices = [[1.0, 2.0, 3.0], [-2.0, 0.5, 1.0], [0.25, -4.0, -0.5]];
+        let mut hull = [Eight::splat(0.0); 3];
+        for (axis, eight) in hull.iter_mut().enumerate() {
+            eight.0 = std::array::from_fn(|lane| vertices[lane % 3][axis]);
+        }
+        // A quarter turn about z, then (10, −20, 30): (x, y, z) goes to (10 − y, x − 20, z + 30).
+        let turn = rotation([0.0, 0.0, 1.0, 1.0]);
+        let placed = vertices.map(|[x, y, z]: [f64; 3]| [10.0 - y, x - 20.0, z + 30.0]);
+        let coefficients = [
+            [1, 0, 0],
+            [0, 1, 0],
+            [0, 0, 1],
+            [1, 1, 1],
+            [1, -1, 0],
+            [-1, 1, 1],
+        ];
+        let mut ends = [[0.0; 2]; 6];
+        fit(
+            &mut ends,
+            &coefficients,
+            &[hull],
+            &turn,
+            [10.0, -20.0, 30.0],
+            5.0,
+        );
+        let wide = {
+            let mut wide = ends;
+            widen(&mut wide, &coefficients, 0.125);
+            wide
+        };
+        for (slab, c) in coefficients.iter().enumerate() {
+            let along =
+                placed.map(|p| (0..3).map(|axis| f64::from(c[axis]) * p[axis]).sum::<f64>());
+            let truth = along
+                .into_iter()
+                .fold([f64::MAX, f64::MIN], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+            let out = 0.125 * f64::from(c.map(|x: i8| x * x).iter().sum::<i8>()).sqrt();
+            for (ends, out) in [(ends[slab], 0.0), (wide[slab], out)] {
+                let [lo, hi] = ends.map(f64::from);
+                let [beyond, above] = [truth[0] - out - lo, hi - truth[1] - out];
+                assert!((0.0..2e-5).contains(&beyond), "{c:?}: {beyond}");
+                assert!((0.0..2e-5).contains(&above), "{c:?}: {above}");
+            }
+        }
+    }
 }

@@ -146,4 +146,15 @@ mod tests {
             assert_eq!([lo, hi].map(f32::to_bits), [0, 0]);
         }
     }
+
+    /// Their bits are hashed.
+    #[test]
+    fn no_end_is_minus_zero() {
+        for vertices in [[-0.0, -1.0, -1.0], [0.0, 1.0, 1.0], [-0.0, 1.0, -1.0]] {
+            for direction in [DVec3::X, DVec3::NEG_X] {
+                let (lo, hi) = slab(direction, &[Vec3::from(vertices)]);
+                assert_eq!([lo, hi].map(f32::to_bits), [0, 0], "{vertices:?}");
+            }
+        }
+    }
 }

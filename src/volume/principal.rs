@@ -95,3 +95,57 @@ fn sign_of_largest(v: DVec3) -> f64 {
     let largest = v.to_array().into_iter().find(|c| c.abs() >= limit);
     largest.map_or(1.0, f64::signum)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a box with these half sides, about its centre: (bc·a² + (ab + ca)·a²/3)/(ab + bc + ca) along a, in units of its
+    /// longest edge or diagonal from a corner.
+    #[test]
+    fn the_covariance_of_a_box_is_that_of_its_surface_in_its_own_size() {
+        let [a, b, c] = [1.0, 2.0, 4.0];
+        let area = a * b + b * c + c * a;
+        let along = |x: f64| x * x * (area / 3.0 + 2.0 / 3.0 * (a * b * c / x)) / area;
+        for size in [1.0, 2f64.powi(-140), 2f64.powi(60)] {
+            let corner = |i: u32| {
+                let sign = |axis: u32| if i >> axis & 1 == 1 { size } else { -size };
+                DVec3::new(a * sign(0), b * sign(1), c * sign(2)).as_vec3()
+            };
+            let vertices: Vec<Vec3> = (0..8).map(corner).collect();
+            let found = surface_covariance(&Hull::of(&vertices), &vertices).unwrap_or_default();
+            let squared = 4.0 * (a * a + b * b + c * c);
+            let wanted = DMat3::from_diagonal(DVec3::new(along(a), along(b), along(c)) / squared);
+            assert!(found.abs_diff_eq(wanted, 1e-15), "{found} of {wanted}");
+        }
+    }
+
+    #[test]
+    fn axes_are_told_where_no_two_of_them_tie() {
+        let axes = |x, y, z| principal_rotation(DMat3::from_diagonal(DVec3::new(x, y, z)));
+        let wanted = DMat3::from_cols(DVec3::Y, DVec3::X, DVec3::NEG_Z);
+        for size in [1.0, 1e6, 1e-6] {
+            assert_eq!(axes(2.0 * size, 3.0 * size, size), Some(wanted));
+            let near = 1.0 - 0.9 * TIE;
+            assert_eq!(axes(size, near * size, 0.1 * size), None);
+            assert_eq!(axes(size, 0.1 * size, (0.1 - 0.9 * TIE) * size), None);
+            let apart = 1.0 - 1.1 * TIE;
+            assert!(axes(size, apart * size, 0.1 * size).is_some());
+        }
+        assert_eq!(axes(0.0, 0.0, 0.0), None);
+    }
+
+    #[test]
+    fn the_largest_component_is_positive_the_first_one_of_equals() {
+        for (v, sign) in [
+            ([-3.0, 1.0, 2.0], -1.0),
+            ([1.0, -2.0, 1.9], -1.0),
+            ([1.0, 1.0, 2.0], 1.0),
+            ([1.0, -1.0, 0.5], 1.0),
+            ([-1.0, 1.0 + 1e-7, 0.5], -1.0),
+            ([-1.0, 1.0 + 1e-5, 0.5], 1.0),
+        ] {
+            assert_eq!(sign_of_largest(DVec3::from(v)), sign, "{v:?}");
+        }
+    }
+}

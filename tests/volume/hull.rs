@@ -167,3 +167,20 @@ fn a_needle_along_any_axis_is_not_flat() {
         }
     }
 }
+
+/// Their volume is a difference of others that are larger by far, unless it is taken near by.
+#[test]
+fn a_far_cube_is_as_large_as_a_near_one() {
+    for far in [0.0, 1048576.0, -8388608.0] {
+        let points: Vec<Vec3> = box_corners(Vec3::splat(2.0))
+            .iter()
+            .map(|v| v + Vec3::splat(far))
+            .collect();
+        let hull = assert_hull(&points);
+        let (volume, area) = (hull.volume(&points), hull.area(&points));
+        assert!(
+            (volume - 8.0).abs() < 1e-12 && (area - 24.0).abs() < 1e-12,
+            "{far}: {volume}, {area}"
+        );
+    }
+}

@@ -115,6 +115,10 @@ fn impossible_shapes_are_refused_by_name() {
             "radius -1 of shape `test`",
         ),
         (
+            message(segment.clone(), Origin::Ball, Some(0.0)),
+            "radius 0 of shape `test`",
+        ),
+        (
             message(segment.clone(), Origin::Ball, Some(f32::NAN)),
             "radius NaN of shape `test`",
         ),

@@ -373,4 +373,39 @@ mod tests {
             }
         }
     }
+
+    /// A box's table has room for every body's cell; its cells are as small as that and the widest body allow, within a
+    /// sixteenth.
+    #[test]
+    fn cells_of_a_box_are_as_small_as_its_bodies_allow() {
+        let mut larger = 0;
+        for bodies in [0, 1, 10, 300, 5000, 100_000] {
+            for sides in [
+                [1.0, 1.0, 1.0],
+                [1e3, 1.0, 0.0],
+                [70.0, 300.0, 20.0],
+                [1e4, 1e4, 9e3],
+            ] {
+                for widest in [0.01, 0.5, 3.0, 1000.0] {
+                    let lo = [-7.0, 3.0, 100.0];
+                    let hi = [0, 1, 2].map(|i| lo[i] + sides[i]);
+                    let cells = Cells::fit(&Bounds { lo, hi, widest }, bodies, Layout::Box);
+                    let most = CELLS_PER_BODY * bodies as f64 + FEW_CELLS;
+                    let needed = 2.0 * f64::from(widen(widest)) * (1.0 + 1.0 / 65536.0);
+                    let in_box = |size: f64| -> f64 {
+                        let ends = (0..3).map(|i| f64::from(hi[i]) - f64::from(lo[i]));
+                        ends.map(|side| (side / size).round_ties_even() + 2.0)
+                            .product()
+                    };
+                    let size = cells.size();
+                    assert!(size >= needed && in_box(size * 1.0001) <= most, "{size}");
+                    if size > needed {
+                        assert!(in_box(size / 1.07) > most, "{size} of {needed}");
+                        larger += 1;
+                    }
+                }
+            }
+        }
+        assert!(larger > 20, "{larger}");
+    }
 }

@@ -287,3 +287,37 @@ impl Kernel for Assign<'_> {
         self.cells.assign(l, self.balls, self.to);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Checks a level of two bodies whose slots have these names.
+    fn check(slotted: [u32; 2], names: [u32; 2]) {
+        let (mut level, balls) = (Level::new(0..2, Layout::Box), [[0.25; 4]; 2]);
+        level.cells = Cells::fit(&Bounds::of(Tier::SCALAR, &balls), 2, Layout::Box);
+        (level.starts, level.widest) = (vec![0, 2], widen(0.25).into());
+        let slots = Slots {
+            names: slotted.to_vec(),
+            ..Slots::default()
+        };
+        level.check(&slots, &balls, &names);
+    }
+
+    #[test]
+    fn names_in_any_order_are_sound() {
+        check([4, 1], [1, 4]);
+    }
+
+    #[test]
+    #[cfg_attr(debug_assertions, should_panic(expected = "each body has one slot"))]
+    fn others_of_the_same_sum_are_told() {
+        check([2, 3], [1, 4]);
+    }
+
+    #[test]
+    #[cfg_attr(debug_assertions, should_panic(expected = "each body has one slot"))]
+    fn others_of_the_same_sum_of_squares_are_told() {
+        check([0, 5], [3, 4]);
+    }
+}

@@ -278,3 +278,111 @@ fn push_parts(parts: &mut Vec<Part>, whole: Part, size: usize) {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    impl Grid {
+        /// Frames since the last plan, and candidates of the last frame.
+        pub(in crate::broad_phase) fn age_and_candidates(&self) -> (u32, u64) {
+            (self.age, self.candidates)
+        }
+    }
+
+    /// Of one level of that many moving bodies, and one of as many static ones, planned some frames ago.
+    fn planned(each: usize) -> Grid {
+        let level = |range| Level::new(range, Layout::Box);
+        Grid {
+            levels: vec![level(0..each), level(each..2 * each)],
+            moving_levels: 1,
+            age: PLAN_PAUSE,
+            ..Grid::default()
+        }
+    }
+
+    #[test]
+    fn levels_are_planned_anew_when_candidates_have_more_than_doubled_after_a_pause() {
+        assert!(Grid::default().needs_plan(1) && !Grid::default().needs_plan(0));
+        let mut grid = planned(5);
+        assert!(!grid.needs_plan(10), "the first frame after a plan");
+        grid.observe(100);
+        assert!(!grid.needs_plan(10));
+        for (candidates, grown) in [(0, false), (209, false), (210, false), (211, true)] {
+            grid.observe(candidates);
+            grid.age = PLAN_PAUSE;
+            assert_eq!(grid.needs_plan(10), grown, "{candidates}");
+            grid.age = PLAN_PAUSE - 1;
+            assert!(!grid.needs_plan(10), "{candidates}: too soon");
+        }
+        grid.age = PLAN_PAUSE + 1;
+        assert!(grid.needs_plan(10));
+    }
+
+    #[test]
+    fn places_that_follow_the_slots_move_static_bodies_only_where_they_have_another_order() {
+        let mut grid = planned(2);
+        (grid.fixed_sorted, grid.slots.names) = (true, vec![1, 0, 3, 2, 0, 0]);
+        let mut order = vec![9];
+        let followed = grid.follow_slots(2, &[0, 1, 3, 2], &mut order);
+        assert_eq!((followed, &order), (Reorder::Moving, &vec![1, 0, 3, 2]));
+        assert_eq!((grid.age, grid.fixed_sorted), (PLAN_PAUSE + 1, true));
+        let followed = grid.follow_slots(2, &[0, 1, 2, 3], &mut order);
+        assert_eq!((followed, &order), (Reorder::All, &vec![1, 0, 3, 2]));
+        assert_eq!((grid.age, grid.fixed_sorted), (PLAN_PAUSE + 2, false));
+        grid.rest();
+        assert_eq!(grid.age, PLAN_PAUSE + 3);
+    }
+
+    #[test]
+    fn moving_levels_alone_grow_and_their_parts_are_told() {
+        let mut grid = planned(3);
+        grid.set_reach(Reach::with_skin(0.5));
+        let reaches: Vec<_> = grid.levels.iter().map(|level| level.reach).collect();
+        assert_eq!(reaches, [Reach::with_skin(0.5), Reach::NONE]);
+        grid.slot_cells.resize(6, 0);
+        assert_eq!(grid.bodies(), 6);
+        grid.parts = [(0, 0), (0, 1), (1, 0)]
+            .map(|(seeker, level)| Part {
+                slots: 0..1,
+                seeker,
+                level,
+                kind: Kind::Near,
+            })
+            .to_vec();
+        let moves = [0, 1, 2].map(|part| grid.moves(part));
+        assert_eq!(moves, [[true, true], [true, false], [false, true]]);
+    }
+
+    #[test]
+    fn a_part_is_cut_without_gaps_or_overlap() {
+        let whole = Part {
+            slots: 3..40,
+            seeker: 1,
+            level: 2,
+            kind: Kind::Across(Search::All),
+        };
+        let mut parts = Vec::new();
+        push_parts(&mut parts, whole, 16);
+        let slots: Vec<_> = parts.iter().map(|part| part.slots.clone()).collect();
+        assert_eq!(slots, [3..19, 19..35, 35..40]);
+        assert!(parts.iter().all(|part| part.seeker == 1 && part.level == 2));
+    }
+
+    #[test]
+    fn bytes_are_those_of_all_columns_used_or_not() {
+        let mut grid = planned(2);
+        assert_eq!(grid.bytes(), 0);
+        grid.slots.balls = Vec::with_capacity(1);
+        grid.slots.names = Vec::with_capacity(10);
+        grid.slots.columns[2] = Vec::with_capacity(100);
+        assert_eq!((grid.slots.bytes(), grid.bytes()), (456, 456));
+        grid.slot_cells = Vec::with_capacity(1_000);
+        grid.place_cells = Vec::with_capacity(10_000);
+        grid.levels[0].starts = Vec::with_capacity(100_000);
+        grid.levels[1].starts = Vec::with_capacity(1_000_000);
+        assert_eq!(grid.bytes(), 4_444_456);
+        grid.parts = Vec::with_capacity(3);
+        assert_eq!(grid.bytes(), 4_444_456 + 3 * size_of::<Part>());
+    }
+}

@@ -81,3 +81,75 @@ fn crowd(cells: &Cells, balls: &[[f32; 4]]) -> u64 {
     }
     counts.iter().map(|n| n * n).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The places of each level that some balls get, and its layout.
+    fn planned(balls: &[[f32; 4]]) -> Vec<(Vec<u32>, Layout)> {
+        let mut order: Vec<u32> = (0..balls.len() as u32).collect();
+        let levels = levels(balls, 10..10 + balls.len(), &mut order);
+        let places = levels.iter().map(|level| {
+            let own = level.range.start - 10..level.range.end - 10;
+            (order[own].to_vec(), level.cells.layout())
+        });
+        places.collect()
+    }
+
+    /// Small balls in one cell of a giant, and giants, the last of the column.
+    fn giants(small: u32, wide: u32) -> Vec<[f32; 4]> {
+        let near = |i: u32| [0.1 * i as f32, 0.0, 0.0, 0.01];
+        let far = |i: u32| [1000.0 * (i + 1) as f32, 0.0, 0.0, 100.0];
+        (0..small).map(near).chain((0..wide).map(far)).collect()
+    }
+
+    #[test]
+    fn giants_leave_crowds_of_small_bodies_and_no_others() {
+        let alone = |range: Range<u32>| (range.collect::<Vec<_>>(), Layout::Box);
+        // In the mean (n² + 1)/(n + 1) bodies are in a body's cell: 4 at most, and they stay.
+        for small in 1..5 {
+            assert_eq!(planned(&giants(small, 1)), [alone(0..small + 1)]);
+        }
+        for (small, wide) in [(6, 1), (9, 2), (30, 3)] {
+            let expected = [alone(small..small + wide), alone(0..small)];
+            assert_eq!(planned(&giants(small, wide)), expected, "{small}, {wide}");
+        }
+        // Bodies of one size stay together in any crowd.
+        assert_eq!(planned(&giants(100, 0)), [alone(0..100)]);
+        assert_eq!(planned(&[]), []);
+    }
+
+    #[test]
+    fn a_wide_body_is_wider_than_half_of_the_widest() {
+        let mut balls = giants(50, 1);
+        balls.extend([[5000.0, 0.0, 0.0, 50.0], [6000.0, 0.0, 0.0, 50.1]]);
+        let levels = planned(&balls);
+        assert_eq!(levels[0].0, [50, 52]);
+        assert_eq!(levels[1].0, [51]);
+        assert_eq!(levels[2].0, (0..50).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_table_is_wrapped_where_that_halves_the_crowd() {
+        let diagonal = |n: usize, step: f32| {
+            let at = |i: usize| i as f32 * step;
+            let balls: Vec<_> = (0..n).map(|i| [at(i), at(i), at(i), 0.5]).collect();
+            planned(&balls)
+                .into_iter()
+                .map(|level| level.1)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(diagonal(1000, 1.5), [Layout::Wrapped]);
+        assert_eq!(diagonal(8, 1.5), [Layout::Box]);
+    }
+
+    #[test]
+    fn a_crowd_is_the_sum_over_bodies_of_those_in_their_cells() {
+        let at = |x: f32| [x, 0.0, 0.0, 0.5];
+        let balls = [0.0, 50.0, 0.1, 50.1, 50.2, 100.0].map(at);
+        let cells = Cells::fit(&Bounds::of(simd::Tier::SCALAR, &balls), 6, Layout::Box);
+        assert_eq!(crowd(&cells, &balls), 4 + 9 + 1);
+        assert_eq!(fit(&balls).1, 14);
+    }
+}

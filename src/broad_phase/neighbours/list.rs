@@ -205,3 +205,78 @@ impl Kernel for Make<'_> {
         self.chunk.close();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers with room for more of them.
+    fn hundred(room: usize) -> Vec<u32> {
+        let mut column = Vec::with_capacity(room);
+        column.extend([0; 100]);
+        column
+    }
+
+    #[test]
+    fn a_column_that_is_full_gets_room_of_one_and_a_half_times_what_is_needed() {
+        for (spare, more, room) in [(1.0, 1, 151), (2.0, 1, 303), (1.0, 20, 180), (0.5, 1, 101)] {
+            let mut column = hundred(100);
+            reserve(&mut column, more, spare);
+            assert_eq!(column.capacity(), room, "{spare}, {more}");
+        }
+        let mut column = hundred(120);
+        reserve(&mut column, 20, 2.0);
+        assert_eq!(column.capacity(), 120, "what fits moves nothing");
+    }
+
+    #[test]
+    fn a_list_leaves_room_for_the_next_one_where_it_has_none_to_spare() {
+        for (capacity, spare, room) in [
+            (100, 1.0, 100),
+            (199, 2.0, 300),
+            (200, 2.0, 200),
+            (300, 2.0, 300),
+        ] {
+            let mut column = hundred(capacity);
+            leave_room(&mut column, spare);
+            assert_eq!(column.capacity(), room, "{capacity}, {spare}");
+        }
+    }
+
+    #[test]
+    fn entries_without_neighbours_are_overwritten() {
+        let mut chunk = Chunk {
+            spare: 1.0,
+            ..Chunk::default()
+        };
+        assert_eq!(chunk.first(), None);
+        for (first, codes) in [
+            (0, &[][..]),
+            (16, &[7, 8]),
+            (32, &[]),
+            (48, &[]),
+            (64, &[9]),
+        ] {
+            chunk.open(first);
+            assert_eq!(chunk.first(), Some(first));
+            chunk.append(codes);
+        }
+        chunk.open(80);
+        chunk.close();
+        assert_eq!(chunk.entries, [(16, 2), (64, 3), (80, 3)]);
+        assert_eq!((chunk.len(), &chunk.codes[..3]), (3, &[7, 8, 9][..]));
+        assert_eq!(chunk.codes.len(), 3 + MAX_WIDTH);
+    }
+
+    #[test]
+    fn bytes_are_those_of_all_chunks_used_or_not() {
+        let mut list = List::default();
+        assert_eq!(list.bytes(), 0);
+        list.chunks = Vec::with_capacity(5);
+        list.chunks.resize(2, Chunk::default());
+        list.chunks[0].codes = Vec::with_capacity(10);
+        list.chunks[1].codes = Vec::with_capacity(100);
+        list.chunks[1].entries = Vec::with_capacity(1_000);
+        assert_eq!(list.bytes(), 5 * size_of::<Chunk>() + 8_440);
+    }
+}

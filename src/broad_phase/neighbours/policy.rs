@@ -182,4 +182,37 @@ mod tests {
         });
         assert!((12..24).contains(&made.count()));
     }
+
+    /// Of a million bodies whose list with this skin served so many frames: the skin of the next one, up to so many pairs and
+    /// with a pair more, each with so many candidates. No skin is the grid's frames.
+    #[test]
+    fn the_next_skin_is_the_cheapest_to_the_pair() {
+        for (skin, served, candidates, pairs, next) in [
+            (3, 2, 6, 2_049_862, [Some(5), Some(2)]),
+            (3, 3, 4, 5_873_068, [Some(4), Some(1)]),
+            (0, 2, 5, 551_140, [Some(5), Some(3)]),
+            (3, 10, 6, 727_566, [Some(4), Some(3)]),
+            (3, 30, 6, 13_828_056, [Some(1), Some(0)]),
+            (5, 100, 10, 756_009, [Some(2), Some(1)]),
+            (2, 5, 0, 2_493_326, [Some(1), None]),
+            (3, 2, 3, 1_997_515, [Some(5), None]),
+            (4, 2, 1, 707_861, [Some(3), None]),
+            (0, 1, 3, 4_640_293, [Some(1), None]),
+        ] {
+            for (more, next) in (0..).zip(next) {
+                let mut policy = Policy {
+                    skin,
+                    served,
+                    wait: 0,
+                    pause: PAUSE,
+                };
+                let pairs = pairs + more;
+                policy.ended(pairs, candidates * pairs as u64, 1_000_000);
+                let found = policy
+                    .next()
+                    .map(|found| SKINS.iter().position(|&skin| skin == found));
+                assert_eq!(found, next.map(Some), "{skin}, {served}: {pairs}");
+            }
+        }
+    }
 }
