@@ -216,7 +216,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
-    use crate::BoxWorld;
+    use crate::boxes::BoxWorld;
 
     #[test]
     fn a_builder_keeps_each_choice_and_no_other() {

@@ -137,4 +137,10 @@ mod tests {
             "the f32 next to four million is half a unit away"
         );
     }
+
+    #[test]
+    fn what_is_just_within_reach_may_meet() {
+        // 2 + min(2, 1) + 2·½.
+        assert!(may_meet(4.0, 2.0, 1.0, 0.5) && !may_meet(4.0_f64.next_up(), 2.0, 1.0, 0.5));
+    }
 }

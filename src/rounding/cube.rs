@@ -246,4 +246,10 @@ mod tests {
         within(less_than_sure(4.0), 8.0);
         within(less_than_sure(0.0), 2e-30_f32.into());
     }
+
+    #[test]
+    fn a_box_without_an_extent_has_a_cube_with_one() {
+        let Cube { outer, gap, .. } = cube(&[[1.0; 2], [-8.0; 2], [40.0; 2]]);
+        assert_eq!((outer, gap), ([0.125, -1.0, 5.0, FLOOR], FLOOR));
+    }
 }

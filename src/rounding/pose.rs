@@ -191,4 +191,10 @@ mod tests {
         // 2⁶⁰ away the f64 coordinates themselves are 2⁷ apart.
         assert!(width(-(2.0f32.powi(60))) > 2.0 * exp2(60) * REFIT_MARGIN);
     }
+
+    #[test]
+    fn an_extent_of_nothing_at_the_origin_grows_by_the_floor() {
+        let (lo, hi) = refit(0.0, 0.0, 0.0, [0.0; 3]);
+        assert!(f64::from(lo) <= -REFIT_FLOOR && REFIT_FLOOR <= f64::from(hi));
+    }
 }

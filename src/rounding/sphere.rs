@@ -97,4 +97,13 @@ mod tests {
             "{radius:e}"
         );
     }
+
+    #[test]
+    fn a_far_small_ball_takes_up_what_f64_loses_of_its_centre() {
+        let turn = crate::rounding::pose::rotation([0.0, 0.0, 0.0, 1.0]);
+        let far = exp2(30) as f32;
+        let (centre, radius) = world_ball(&turn, [far, 0.0, 0.0], [0.0, 1.0, 0.0], 0.0);
+        assert_eq!(centre, [far, 1.0, 0.0]);
+        assert!(f64::from(radius) >= CENTRE_ERROR * exp2(30), "{radius}");
+    }
 }

@@ -100,8 +100,8 @@ fn sign_of_largest(v: DVec3) -> f64 {
 mod tests {
     use super::*;
 
-    /// Of a box with these half sides, about its centre: (bc·a² + (ab + ca)·a²/3)/(ab + bc + ca) along a, in units of its
-    /// longest edge or diagonal from a corner.
+    /// Of a box with these half sides, wherever it is: (bc·a² + (ab + ca)·a²/3)/(ab + bc + ca) along a, in units of its
+    /// diagonal.
     #[test]
     fn the_covariance_of_a_box_is_that_of_its_surface_in_its_own_size() {
         let [a, b, c] = [1.0, 2.0, 4.0];
@@ -110,7 +110,9 @@ mod tests {
         for size in [1.0, 2f64.powi(-140), 2f64.powi(60)] {
             let corner = |i: u32| {
                 let sign = |axis: u32| if i >> axis & 1 == 1 { size } else { -size };
-                DVec3::new(a * sign(0), b * sign(1), c * sign(2)).as_vec3()
+                (DVec3::new(a * sign(0), b * sign(1), c * sign(2))
+                    + size * DVec3::new(3.0, 5.0, -2.0))
+                .as_vec3()
             };
             let vertices: Vec<Vec3> = (0..8).map(corner).collect();
             let found = surface_covariance(&Hull::of(&vertices), &vertices).unwrap_or_default();

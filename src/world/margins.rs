@@ -102,4 +102,15 @@ mod tests {
         assert_eq!(model(1.0e-2), model(1.0e-3));
         assert_ne!(model(1.0e-2), model(3.0e-2));
     }
+
+    #[test]
+    fn a_margin_is_within_the_limit_with_its_shape() {
+        // 2⁶⁰ − 1.25·2⁴⁰ is an f32.
+        let margin = 2f32.powi(40);
+        let reach = (f64::from(LIMIT) - 1.25 * f64::from(margin)) as f32;
+        assert!(check_margin(0, reach, margin).is_ok());
+        assert!(check_margin(0, reach, margin.next_up()).is_err());
+        assert!(check_margin(0, reach.next_up(), margin).is_err());
+        assert!(check_margin(0, 1.0, 0.0).is_ok() && check_margin(0, 1.0, -1.0).is_err());
+    }
 }

@@ -147,7 +147,8 @@ fn a_large_set_is_exact() {
     assert!(hull.vertices.len() < 500 && hull.vertices.len() > 100);
 }
 
-/// Steep seen from its first vertex, along any axis: no sum of differences with a sign is a size.
+/// Steep seen from its first vertex, along any axis, near the origin or beyond it: neither a sum of differences with a sign nor
+/// one of sums is a size.
 #[test]
 fn a_needle_along_any_axis_is_not_flat() {
     let needle = [
@@ -157,7 +158,8 @@ fn a_needle_along_any_axis_is_not_flat() {
         [-0.1, -0.1, 9.1],
     ];
     for shift in 0..3 {
-        for sign in [1.0, -1.0] {
+        for (sign, far) in [(1.0, 0.0), (-1.0, 0.0), (1.0, -20.0)] {
+            let needle = needle.map(|[x, y, z]| [x, y, z + far]);
             let turned = needle.map(|v| Vec3::from([0, 1, 2].map(|k| sign * v[(k + shift) % 3])));
             for first in 0..4 {
                 let mut points = turned;
