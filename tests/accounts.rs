@@ -10,7 +10,7 @@ use sdop::bodies::Bodies;
 use sdop::counters::Seconds;
 use sdop::culler::Culler;
 use sdop::mesh::shapes::ProceduralShape;
-use sdop::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
+use sdop::settings::{Budget, CullSettings, Finder, Interest, Order, Strategy, Updates};
 use sdop::volume::{Shape, ShapeSpec};
 
 /// Clocks are read in nanoseconds, and sums of f64 round.
@@ -185,5 +185,32 @@ fn a_budget_of_tests_is_spent_in_the_order_asked_for() {
                 refined.extend(paid.iter().map(|&pair| (pair, frame)));
             }
         }
+    }
+}
+
+/// A body that no other is near to is no candidate, whatever stands for it.
+#[test]
+fn oriented_volumes_are_binned_by_their_balls() {
+    let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
+    let shapes = [Shape::build(&mesh, &ShapeSpec::default()).unwrap()];
+    let mut bodies = Bodies::default();
+    for body in 0..300u16 {
+        bodies.push(
+            0,
+            true,
+            [0.0, 0.0, 0.0, 1.0],
+            [f32::from(body) * 10.0, 0.0, 0.0],
+        );
+    }
+    let oriented = Strategy::ALL
+        .iter()
+        .filter(|strategy| strategy.scheme().is_oriented_alone());
+    for &strategy in oriented {
+        let culler = Culler::builder().strategy(strategy).finder(Finder::Grid);
+        let mut culler = culler.build(&shapes, &bodies).unwrap();
+        culler.cull(&bodies).unwrap();
+        let counted = culler.counters();
+        let tests = [counted.ordop, counted.obb].map(|volume| volume.tests);
+        assert!(tests.iter().sum::<u64>() < 300, "{strategy}: {tests:?}");
     }
 }

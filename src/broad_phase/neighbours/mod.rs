@@ -368,10 +368,17 @@ mod tests {
         assert_eq!(bodies.finder.grid.age_and_candidates().1, 12);
     }
 
-    /// Clusters of bodies in one place each: (n² − n)/2 pairs of n; the others are alone.
-    fn clusters(sizes: &[usize]) -> Followed {
-        let mut places: Vec<usize> = (0..sizes.len()).flat_map(|k| vec![k; sizes[k]]).collect();
-        places.extend(sizes.len()..1000 + sizes.len() - places.len());
+    /// Clusters of bodies in one place each, (n² − n)/2 pairs of n, in the first places and in the last ones; the others are alone.
+    fn clusters(bodies: usize, first: &[usize], last: &[usize]) -> Followed {
+        let many = |places: usize, sizes: &[usize]| -> Vec<usize> {
+            (places..)
+                .zip(sizes)
+                .flat_map(|(place, &size)| vec![place; size])
+                .collect()
+        };
+        let mut places = many(0, first);
+        places.extend(many(bodies, last));
+        places.extend(first.len()..first.len() + bodies - places.len());
         let ball = |place: usize| {
             [
                 10.0 * (place % 10) as f32,
@@ -380,19 +387,24 @@ mod tests {
                 1.0,
             ]
         };
-        Followed::new(1000, places.into_iter().map(ball).collect())
+        Followed::new(bodies, places.into_iter().map(ball).collect())
     }
 
     #[test]
     fn a_list_of_four_pairs_a_body_with_the_widest_skin_is_made_and_no_longer_one() {
-        // 4·1000/(1.375/1.25)³ + 256 = 3261.3.
-        for (sizes, pairs) in [(&[80, 14, 5][..], 3261), (&[80, 14, 5, 2], 3262)] {
-            let mut bodies = clusters(sizes);
+        // 4·1000/(1.375/1.25)³ + 256 = 3261.3, and twice as many bodies are in two parts of the grid's work.
+        for (bodies, first, last, pairs, is_made) in [
+            (1000, &[80, 14, 5][..], &[][..], 3261, true),
+            (1000, &[80, 14, 5], &[2], 3262, false),
+            (2000, &[112, 10, 3, 2], &[2], 6266, true),
+            (2000, &[112, 10, 3, 2, 2], &[2], 6267, false),
+        ] {
+            let mut bodies = clusters(bodies, first, last);
             for _ in 0..2 {
                 bodies.step();
             }
             assert_eq!(bodies.finder.list.len(), pairs);
-            assert_eq!(bodies.finder.list().is_some(), pairs <= 3261);
+            assert_eq!(bodies.finder.list().is_some(), is_made);
         }
     }
 
@@ -403,11 +415,12 @@ mod tests {
             bodies.step();
         }
         let finder = &mut bodies.finder;
-        (finder.grid, finder.list) = Default::default();
+        let list = finder.list.bytes();
+        finder.grid = Grid::default();
         finder.then = Vec::with_capacity(1000);
-        assert_eq!(finder.bytes(), 16_000);
-        finder.grid = scattered(false).finder.grid;
+        assert!(list > 0 && finder.bytes() == 16_000 + list);
         finder.list = List::default();
+        finder.grid = scattered(false).finder.grid;
         assert_eq!(finder.bytes(), 16_000);
     }
 }
