@@ -244,4 +244,66 @@ mod tests {
         sweep.sorter.pairs[1] = Vec::with_capacity(10_000);
         assert_eq!(sweep.bytes(), 88_444);
     }
+
+    #[test]
+    fn places_follow_the_slots_of_moving_bodies_now_and_then() {
+        let mut sweep = Sweep::default();
+        let mut order = vec![9];
+        for age in 1..=3 * REORDER {
+            // Without bodies at first.
+            (sweep.len, sweep.moving) = if age > REORDER { (4, 2) } else { (0, 0) };
+            sweep.slots.names = vec![7, 6, 5, 4];
+            let names = [1, 2, 3, 4];
+            let reorder = sweep.reorder(sweep.moving, &names[..sweep.len], &mut order);
+            if age % REORDER == 0 && age > REORDER {
+                assert_eq!((reorder, &order), (Reorder::Moving, &vec![7, 6, 3, 4]));
+            } else {
+                assert_eq!(reorder, Reorder::None, "{age}");
+            }
+        }
+    }
+
+    #[test]
+    fn moving_and_static_bodies_have_parts_of_their_own() {
+        let parts = |moving, len| {
+            let sweep = Sweep {
+                moving,
+                len,
+                ..Sweep::default()
+            };
+            sweep.parts()
+        };
+        let found = [parts(0, 0), parts(64, 64), parts(65, 130), parts(0, 130)];
+        assert_eq!(found, [0, 1, 4, 3]);
+    }
+
+    /// Spreads are 1.5 times as large at exactly √1.5 times the extent; the mean counts, and the place does not.
+    #[test]
+    fn the_axis_turns_to_where_centres_spread_half_as_much_more() {
+        let turned = |from: usize, columns: [[i8; 6]; 3]| {
+            let ball = |i: usize| {
+                let [x, y, z] = columns.map(|column| f32::from(column[i]));
+                [40.0 + x, y - 7.0, z, 1.0]
+            };
+            let balls: Vec<_> = (0..6).map(ball).collect();
+            let mut sweep = Sweep {
+                axis: from,
+                fixed_sorted: true,
+                ..Sweep::default()
+            };
+            sweep.turn(&balls);
+            (sweep.axis, sweep.fixed_sorted)
+        };
+        let four = [1, -1, 1, -1, 0, 0];
+        let six = [1, -1, 1, -1, 1, -1];
+        let ten = [1, -1, 2, -2, 0, 0];
+        let none = [0; 6];
+        assert_eq!(turned(0, [four, six, none]), (0, true), "by 1.5 exactly");
+        assert_eq!(turned(0, [four, ten, six]), (1, false));
+        assert_eq!(turned(0, [four, six, ten]), (2, false));
+        assert_eq!(turned(2, [six, four, four]), (2, true));
+        assert_eq!(turned(2, [ten, four, four]), (0, false));
+        assert_eq!(turned(1, [none, four, none]), (1, true));
+        assert_eq!(turned(1, [none; 3]), (1, true));
+    }
 }

@@ -103,9 +103,9 @@ impl Grid {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cells::Layout;
+    use super::super::cells::{Cells, Layout};
     use super::*;
-    use crate::broad_phase::Block;
+    use crate::broad_phase::{Block, Bounds};
     use crate::simd::{Kernel, Tier, dispatch};
 
     const TARGETS: usize = 24;
@@ -175,6 +175,67 @@ mod tests {
                     assert!(times <= 1 && times >= u32::from(meet), "{radius}: {times}");
                 }
             }
+        }
+    }
+
+    /// So many bodies, the widest of that radius, in cells of at least its size and so many of them each way.
+    fn level(bodies: usize, widest: f32, cells: [u8; 3], layout: Layout) -> Level {
+        let mut level = Level::new(0..bodies, layout);
+        let hi = cells.map(|count| 2.0 * widest * (f32::from(count) - 1.0));
+        let bounds = Bounds {
+            lo: [0.0; 3],
+            hi,
+            widest,
+        };
+        level.cells = Cells::fit(&bounds, bodies, layout);
+        assert_eq!(level.cells.count(), cells.map(u32::from));
+        level.widest = widen(widest).into();
+        level
+    }
+
+    /// A look at a row costs fifteen tests: of n bodies in a box of c cells, s of which a seeker may reach, cells are looked
+    /// through when 15·s_y·s_z < n·(1 − s_x·s_y·s_z/c).
+    #[test]
+    fn cells_are_looked_through_where_their_rows_cost_less_than_all_bodies() {
+        for (radius, cells, most) in [
+            (0.5, [10, 4, 2], 116),
+            (1.5, [20, 8, 6], 431),
+            (0.25, [9, 9, 9], 95),
+        ] {
+            for seekers in [1, 7] {
+                let seekers = level(seekers, radius, [1; 3], Layout::Box);
+                let target = |bodies| level(bodies, 0.5, cells, Layout::Box);
+                for (bodies, search) in [(most, Search::All), (most + 1, Search::Cells)] {
+                    let target = target(bodies);
+                    assert_eq!(
+                        plan(&seekers, &target),
+                        (true, search),
+                        "{radius}, {bodies}"
+                    );
+                    assert_eq!(
+                        plan(&target, &seekers),
+                        (false, search),
+                        "{radius}, {bodies}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_fewer_bodies_seek_among_all_and_the_second_of_as_many() {
+        let level = |bodies| level(bodies, 0.5, [1; 3], Layout::Box);
+        for (a, b) in [(2, 3), (3, 3), (3, 2)] {
+            assert_eq!(plan(&level(a), &level(b)), (a < b, Search::All));
+        }
+    }
+
+    #[test]
+    fn a_wrapped_table_is_looked_through_by_seekers_of_its_own_size_alone() {
+        let target = level(10_000, 0.5, [200; 3], Layout::Wrapped);
+        for (radius, search) in [(0.5, Search::Cells), (0.6, Search::All)] {
+            let seeker = level(1, radius, [1; 3], Layout::Box);
+            assert_eq!(plan(&seeker, &target), (true, search), "{radius}");
         }
     }
 }
