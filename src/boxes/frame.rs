@@ -239,10 +239,11 @@ mod tests {
     fn cubes_decide_while_one_in_sixteen_is_small_beside_the_gap() {
         let mut frames = Frames::new(Finder::Auto, Tier::SCALAR, Threads::default());
         assert!(frames.cubes_decide(1.0), "without boxes");
-        for (small, decide) in [(0, true), (16, true), (17, false), (256, false)] {
-            frames.cubes = vec![[0.0, 0.0, 0.0, CUBIC * 3.0]; 256];
-            for cube in &mut frames.cubes[..small] {
-                cube[3] = CUBIC * 2.9;
+        for (small, decide) in [(0, true), (4, true), (5, false), (64, false)] {
+            // One in ten is asked.
+            frames.cubes = vec![[0.0; 4]; 10 * ASKED];
+            for (asked, cube) in frames.cubes.iter_mut().step_by(10).enumerate() {
+                cube[3] = CUBIC * if asked < small { 2.9 } else { 3.0 };
             }
             assert_eq!(frames.cubes_decide(3.0), decide, "{small}");
         }

@@ -239,7 +239,8 @@ mod tests {
                 "{found} of {exact}"
             );
         };
-        let Cube { outer, gap, .. } = cube(&[[1.0, 3.0], [-8.0, 0.0], [40.0, 44.0]]);
+        let about = About(&[[1.0, 3.0], [-8.0, 0.0], [40.0, 44.0]]);
+        let (outer, gap, _) = dispatch(Tier::SCALAR, about);
         assert_eq!(outer[..3], [0.25, -0.5, 5.25]);
         within(outer[3], 0.5);
         within(gap, 0.375);
@@ -249,7 +250,8 @@ mod tests {
 
     #[test]
     fn a_box_without_an_extent_has_a_cube_with_one() {
-        let Cube { outer, gap, .. } = cube(&[[1.0; 2], [-8.0; 2], [40.0; 2]]);
-        assert_eq!((outer, gap), ([0.125, -1.0, 5.0, FLOOR], FLOOR));
+        let about = About(&[[1.0; 2], [-8.0; 2], [40.0; 2]]);
+        let found = dispatch(Tier::SCALAR, about);
+        assert_eq!(found, ([0.125, -1.0, 5.0, FLOOR], FLOOR, true));
     }
 }
