@@ -186,3 +186,10 @@ fn a_far_cube_is_as_large_as_a_near_one() {
         );
     }
 }
+
+/// Every other vertex differs from the first in one coordinate alone: no product of differences is a size.
+#[test]
+fn the_corner_of_a_box_is_not_flat() {
+    let corner = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    assert_eq!(assert_hull(&corner).facets.len(), 4);
+}
