@@ -19,6 +19,60 @@ const FEWEST_PIECES: usize = 8;
 #[derive(Debug, Default)]
 pub struct Threads(Option<ThreadPool>);
 
+/// A frame's work on one thread, in nanoseconds or so (measured with AVX-512 on an Intel and rounded): by counts, so that nothing
+/// depends on the machine.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Work {
+    /// Volumes placed.
+    pub updates: u64,
+    /// Candidates of the first test.
+    pub candidates: u64,
+    /// Pairs refined.
+    pub refined: u64,
+}
+
+impl Work {
+    fn nanoseconds(self) -> u64 {
+        16 * self.updates + 2 * self.candidates + 20 * self.refined
+    }
+}
+
+/// The least work of a frame, in nanoseconds, for which other threads are woken: below it two took longer than one.
+pub const WORTH_WAKING: u64 = 1 << 19;
+
+/// The threads of one frame after the other: all, or the caller's alone where a frame is little work.
+#[derive(Debug)]
+pub struct FrameThreads {
+    all: Threads,
+    alone: Threads,
+    worth_waking: u64,
+    wakes: bool,
+}
+
+impl FrameThreads {
+    /// These threads, woken for frames of so many nanoseconds ([`WORTH_WAKING`]); for all if that is 0.
+    #[must_use]
+    pub fn new(all: Threads, worth_waking: u64) -> Self {
+        Self {
+            all,
+            alone: Threads::default(),
+            worth_waking,
+            wakes: worth_waking == 0,
+        }
+    }
+
+    /// Says how much work the coming frame is, as far as the last one shows.
+    pub fn expect(&mut self, work: Work) {
+        self.wakes = work.nanoseconds() >= self.worth_waking;
+    }
+
+    /// The threads of the frame.
+    #[must_use]
+    pub fn get(&self) -> &Threads {
+        if self.wakes { &self.all } else { &self.alone }
+    }
+}
+
 /// What work runs on: the CPU tier that kernels are compiled for, and the threads.
 #[derive(Clone, Copy, Debug)]
 pub struct Executor<'a> {

@@ -30,7 +30,10 @@ fn culler(strategy: Strategy, updates: Updates, threads: usize) -> (Culler, Bodi
         updates,
         ..CullSettings::default()
     };
-    let culler = Culler::builder().settings(&settings).threads(threads);
+    let culler = Culler::builder()
+        .settings(&settings)
+        .threads(threads)
+        .worth_waking(0);
     (culler.build(&shapes, &bodies).unwrap(), bodies)
 }
 

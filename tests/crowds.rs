@@ -65,7 +65,10 @@ fn ways() -> impl Iterator<Item = CullSettings> {
 }
 
 fn culler(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings, threads: usize) -> Culler {
-    let culler = Culler::builder().settings(settings).threads(threads);
+    let culler = Culler::builder()
+        .settings(settings)
+        .threads(threads)
+        .worth_waking(0);
     culler.build(shapes, bodies).unwrap()
 }
 

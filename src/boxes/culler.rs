@@ -9,7 +9,7 @@ use crate::pairs::PairList;
 use crate::settings::Finder;
 use crate::simd::Tier;
 use crate::strategy::Output;
-use crate::threads::Threads;
+use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 
 /// Finds the boxes that meet, frame after frame.
 ///
@@ -36,6 +36,7 @@ pub struct BoxCuller {
 pub struct BoxCullerBuilder {
     finder: Finder,
     threads: usize,
+    worth_waking: u64,
     tier: Option<Tier>,
 }
 
@@ -44,6 +45,7 @@ impl Default for BoxCullerBuilder {
         Self {
             finder: Finder::Auto,
             threads: 1,
+            worth_waking: WORTH_WAKING,
             tier: None,
         }
     }
@@ -59,6 +61,16 @@ impl BoxCullerBuilder {
     /// counters don't depend on it.
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
+    }
+
+    /// The least work of a frame, in nanoseconds of one thread as counters tell them, for which threads besides the caller's are woken:
+    /// half a millisecond by default, 0 for always. Lists and counters don't depend on it.
+    pub fn worth_waking(self, nanoseconds: u64) -> Self {
+        let worth_waking = nanoseconds;
+        Self {
+            worth_waking,
+            ..self
+        }
     }
 
     /// A tier of SIMD in place of the fastest of this CPU. Lists and counters don't depend on it.
@@ -81,6 +93,7 @@ impl BoxCullerBuilder {
 
     pub(super) fn frames_on(&self, threads: Threads) -> Frames {
         let tier = self.tier.unwrap_or_else(Tier::detect);
+        let threads = FrameThreads::new(threads, self.worth_waking);
         Frames::new(self.finder, tier, threads)
     }
 }

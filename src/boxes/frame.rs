@@ -13,7 +13,7 @@ use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
 use crate::simd::{Tier, dispatch};
 use crate::strategy::{BoxInputs, BoxTest, Output, Scratch, list_boxes};
-use crate::threads::Threads;
+use crate::threads::{FrameThreads, Work};
 
 /// Boxes whose cubes one thread makes at once.
 const CUBES: usize = 4096;
@@ -25,18 +25,11 @@ const ASKED: usize = 64;
 const CUBIC: f32 = 32.0;
 const FEW: usize = 16;
 
-/// Candidates of the frame before for which waking another thread pays; a box counts as some of them. By counts alone, so
-/// that nothing depends on the machine.
-const WORTH_WAKING: u64 = 1 << 14;
-const BOX: u64 = 4;
-
 /// The boxes of a set, as a finder has them.
 #[derive(Debug)]
 pub(super) struct Frames {
     tier: Tier,
-    pool: Threads,
-    /// The caller's thread, for frames of little work.
-    alone: Threads,
+    threads: FrameThreads,
     choice: Finder,
     finder: PairFinder,
     /// Boxes by place; they have no shapes.
@@ -64,11 +57,10 @@ enum News {
 
 impl Frames {
     /// No boxes yet.
-    pub fn new(choice: Finder, tier: Tier, pool: Threads) -> Self {
+    pub fn new(choice: Finder, tier: Tier, threads: FrameThreads) -> Self {
         Self {
             tier,
-            pool,
-            alone: Threads::default(),
+            threads,
             choice,
             finder: finder(choice, 0),
             places: Places::default(),
@@ -115,15 +107,18 @@ impl Frames {
         groups: Option<&[Groups]>,
         output: Output<'_>,
     ) -> Result<VolumeCounters, ContractError> {
-        let work = BOX * self.len() as u64 + self.candidates;
-        let wakes = work >= WORTH_WAKING;
-        let Some(gap) = self.update(boxes, wakes) else {
+        self.threads.expect(Work {
+            updates: self.len() as u64,
+            candidates: self.candidates,
+            refined: 0,
+        });
+        let Some(gap) = self.update(boxes) else {
             self.start_anew(); // nothing of this frame is left for the next to sort by
             let mut names = self.places.body.iter().map(|&name| name as usize);
             names.try_for_each(|name| boxes[name].check(name))?;
             return Ok(VolumeCounters::default());
         };
-        let pool = if wakes { &self.pool } else { &self.alone };
+        let pool = self.threads.get();
         let executor = pool.executor(self.tier);
         let names = &self.places.body;
         self.finder
@@ -151,14 +146,14 @@ impl Frames {
 
     /// Puts boxes in better places and makes the cubes of those that may have moved; the greatest H − h of all, or `None` if
     /// some box is none.
-    fn update(&mut self, boxes: &[Aabb], wakes: bool) -> Option<f32> {
+    fn update(&mut self, boxes: &[Aabb]) -> Option<f32> {
         let (moving, all) = (self.places.moving, self.places.len());
         let news = std::mem::replace(&mut self.news, News::None);
         if news != News::None {
-            self.fixed_gap = self.make_cubes(boxes, moving..all, wakes)?;
+            self.fixed_gap = self.make_cubes(boxes, moving..all)?;
         }
         if news == News::All {
-            self.make_cubes(boxes, 0..moving, wakes)?; // a new finder orders places by them
+            self.make_cubes(boxes, 0..moving)?; // a new finder orders places by them
         }
         let names = &self.places.body;
         let (places, order) = (&self.places, &mut self.order);
@@ -167,15 +162,15 @@ impl Frames {
             std::mem::swap(&mut self.places.body, order);
         }
         if changed == Reorder::All && moving < all {
-            self.make_cubes(boxes, moving..all, wakes)?;
+            self.make_cubes(boxes, moving..all)?;
         }
-        let gap = self.make_cubes(boxes, 0..moving, wakes)?;
+        let gap = self.make_cubes(boxes, 0..moving)?;
         Some(gap.max(self.fixed_gap))
     }
 
     /// Makes the cubes of a range of places; the greatest H − h, or `None` if some box is none.
-    fn make_cubes(&mut self, boxes: &[Aabb], range: Range<usize>, wakes: bool) -> Option<f32> {
-        let pool = if wakes { &self.pool } else { &self.alone };
+    fn make_cubes(&mut self, boxes: &[Aabb], range: Range<usize>) -> Option<f32> {
+        let pool = self.threads.get();
         let names = &self.places.body[range.clone()];
         // Bits of numbers that aren't negative are in their order.
         let (greatest, are_sound) = (AtomicU32::new(0), AtomicBool::new(true));

@@ -6,7 +6,7 @@ use crate::settings::{
     Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, Strategy, Updates,
 };
 use crate::simd::Tier;
-use crate::threads::Threads;
+use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 use crate::volume::Shape;
 
 /// Everything about a [`Culler`] that isn't its shapes and bodies. What isn't set has the default of [`CullSettings`], the
@@ -27,6 +27,7 @@ use crate::volume::Shape;
 pub struct CullerBuilder {
     pub(crate) settings: CullSettings,
     threads: usize,
+    worth_waking: Option<u64>,
     tier: Option<Tier>,
 }
 
@@ -86,9 +87,19 @@ impl CullerBuilder {
         self
     }
 
-    /// Number of threads, the caller's included; 0 is taken as 1. Lists, counters and hashes don't depend on it.
+    /// Number of threads, the caller's included; 0 is taken as 1. Frames of little work stay on the caller's. Lists, counters and hashes don't depend on it.
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
+    }
+
+    /// The least work of a frame, in nanoseconds of one thread as counters tell them, for which threads besides the caller's are woken:
+    /// half a millisecond by default, 0 for always. Lists, counters and hashes don't depend on it.
+    pub fn worth_waking(self, nanoseconds: u64) -> Self {
+        let worth_waking = Some(nanoseconds);
+        Self {
+            worth_waking,
+            ..self
+        }
     }
 
     /// A tier of SIMD in place of the fastest. Lists, counters and hashes don't depend on it.
@@ -106,7 +117,8 @@ impl CullerBuilder {
     /// can't be carried out (a missing interest or budget, a body that doesn't exist); threads that the system refuses.
     pub fn build(&self, shapes: &[Shape], bodies: &Bodies) -> Result<Culler, CullError> {
         let tier = self.tier.unwrap_or_else(Tier::detect);
-        let threads = Threads::new(self.threads)?;
+        let worth_waking = self.worth_waking.unwrap_or(WORTH_WAKING);
+        let threads = FrameThreads::new(Threads::new(self.threads)?, worth_waking);
         Culler::build(shapes, bodies, &self.settings, tier, threads)
     }
 }

@@ -29,7 +29,7 @@ use crate::pairs::PairList;
 use crate::settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates};
 use crate::simd::Tier;
 use crate::strategy::{self, Inputs, Output, Scratch, SlotNames, Totals};
-use crate::threads::Threads;
+use crate::threads::FrameThreads;
 use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
 use crate::volume::Shape;
 
@@ -40,7 +40,7 @@ pub struct Culler {
     scheme: Scheme,
     needs: Needs,
     tier: Tier,
-    pool: Threads,
+    threads: FrameThreads,
     models: Models,
     places: Places,
     groups: Option<Vec<Groups>>,
@@ -83,7 +83,7 @@ impl Culler {
         bodies: &Bodies,
         settings: &CullSettings,
         tier: Tier,
-        pool: Threads,
+        mut threads: FrameThreads,
     ) -> Result<Self, CullError> {
         check::directions(shapes, settings)?;
         check_bodies(bodies, shapes)?;
@@ -96,12 +96,13 @@ impl Culler {
         let finder = PairFinder::new(settings.pairs, &population);
         let needs = Needs::of(scheme, settings.k, finder.name());
         let directions = needs.intervals;
+        threads.expect(needs.work(n as u64, &Totals::default()));
         let mut culler = Self {
             settings: settings.clone(),
             scheme,
             needs,
             tier,
-            pool,
+            threads,
             models,
             places,
             groups: None,
@@ -351,10 +352,11 @@ impl Culler {
     /// needs them. Returns whether the poses were found within the contract.
     fn update_volumes(&mut self, bodies: &Bodies, range: Range<usize>) -> bool {
         let (frames, places) = (&self.models.frames, &self.places);
-        let executor = self.pool.executor(self.tier);
+        let pool = self.threads.get();
+        let executor = pool.executor(self.tier);
         let is_sound = if self.needs.balls {
             let balls = &mut self.balls;
-            update_spheres(&self.pool, balls, frames, bodies, places, range.clone())
+            update_spheres(pool, balls, frames, bodies, places, range.clone())
         } else {
             check_poses(bodies, 0..bodies.len()).is_ok()
         };
@@ -402,12 +404,13 @@ impl Culler {
         } else {
             &self.places.body
         };
-        let executor = self.pool.executor(self.tier);
+        let pool = self.threads.get();
+        let executor = pool.executor(self.tier);
         self.finder
             .arrange(executor, &self.places, &self.balls, names);
         if let Some(intervals) = &self.intervals {
             let order = &self.finder.slots().names[..self.places.len()];
-            self.interval_slots.fill(&self.pool, order, &intervals.ends);
+            self.interval_slots.fill(pool, order, &intervals.ends);
         }
     }
 
@@ -428,7 +431,7 @@ impl Culler {
             SlotNames::Bodies
         };
         let inputs = Inputs {
-            executor: self.pool.executor(self.tier),
+            executor: self.threads.get().executor(self.tier),
             settings: &self.settings,
             finder: &self.finder,
             names,
@@ -462,5 +465,7 @@ impl Culler {
             None => totals.refining.tests,
         };
         self.finder.observe(candidates);
+        let work = self.needs.work(self.places.moving as u64, totals);
+        self.threads.expect(work);
     }
 }

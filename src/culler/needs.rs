@@ -4,6 +4,8 @@ use super::models::Models;
 use crate::bodies::Places;
 use crate::broad_phase::{Population, Volume};
 use crate::settings::{Finder, Scheme, TestedVolume};
+use crate::strategy::Totals;
+use crate::threads::Work;
 use crate::volume::DirectionSet;
 
 /// Which volumes are updated.
@@ -28,7 +30,21 @@ impl Needs {
             intervals: scheme.slabs(k),
         }
     }
+
+    /// The work of a frame with so many moving bodies, and with the tests of another.
+    pub fn work(&self, moving: u64, like: &Totals) -> Work {
+        let volumes = u64::from(self.balls) + u64::from(self.rows);
+        let slabs = if self.intervals.is_some() { SLABS } else { 0 };
+        Work {
+            updates: (volumes + slabs) * moving,
+            candidates: like.first.tests,
+            refined: like.refining.tests,
+        }
+    }
 }
+
+/// What a body's world-aligned slabs take, in updates of a ball.
+const SLABS: u64 = 16;
 
 /// What `auto` chooses a finder by.
 pub(super) fn population(scheme: Scheme, models: &Models, places: &Places) -> Population {

@@ -112,7 +112,8 @@ fn whatever_comes_and_goes_pairs_and_events_are_those_of_the_definition() {
             let way = BoxCuller::builder()
                 .finder(finder)
                 .tier(Tier::SCALAR)
-                .threads(2);
+                .threads(2)
+                .worth_waking(0);
             live(&mut BoxWorld::with(&way).unwrap(), kind, seed + 100);
         }
     }

@@ -21,7 +21,7 @@ fn ways() -> Vec<(String, BoxCuller)> {
         }
         ways.push((
             format!("{finder}, three threads"),
-            of.threads(3).build().unwrap(),
+            of.threads(3).worth_waking(0).build().unwrap(),
         ));
     }
     ways
@@ -59,7 +59,9 @@ fn lists_are_the_same_in_every_tier_and_on_any_number_of_threads() {
             .into_iter()
             .map(|tier| build(BoxCuller::builder().tier(tier)))
             .collect();
-        ways.extend([2, 3].map(|threads| build(BoxCuller::builder().threads(threads))));
+        ways.extend(
+            [2, 3].map(|threads| build(BoxCuller::builder().threads(threads).worth_waking(0))),
+        );
         let mut now = boxes(kind, 3000, random);
         for frame in 0..12 {
             let (first, others) = ways.split_first_mut().unwrap();
@@ -112,7 +114,7 @@ fn a_crowd_comes_in_portions_in_the_order_of_the_list_and_takes_no_memory() {
     let now = vec![boxes(Kind::Crowd, 1, &mut Random(4))[0]; 3000];
     let pairs = 3000 * 2999 / 2;
     for threads in [1, 3] {
-        let way = BoxCuller::builder().threads(threads);
+        let way = BoxCuller::builder().threads(threads).worth_waking(0);
         let (mut whole, mut culler) = (way.build().unwrap(), way.build().unwrap());
         for _ in 0..3 {
             let mut list = whole.cull(&now).unwrap().iter();

@@ -56,6 +56,7 @@ fn run(
         .settings(settings)
         .tier(tier)
         .threads(threads)
+        .worth_waking(0)
         .build(&scene.shapes, &bodies)
         .unwrap();
     for _ in 0..frames {
@@ -270,6 +271,7 @@ fn groups_leave_of_every_list_the_pairs_that_may_collide() {
                 let mut culler = Culler::builder()
                     .settings(&settings)
                     .threads(threads)
+                    .worth_waking(0)
                     .build(&scene.shapes, &scene.bodies)
                     .unwrap();
                 culler.set_groups(Some(groups.clone())).unwrap();

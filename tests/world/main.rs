@@ -125,7 +125,7 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
         let mut random = Random(ChaCha8Rng::seed_from_u64(7));
         let builder = Culler::builder().settings(&way);
         let mut world = World::with(shapes.clone(), &builder).unwrap();
-        let mut pool = World::with(shapes.clone(), &builder.threads(3)).unwrap();
+        let mut pool = World::with(shapes.clone(), &builder.threads(3).worth_waking(0)).unwrap();
         let mut bodies = HashMap::new();
         let mut before = Pairs::new();
         let mut lookup = PairLookup::default();

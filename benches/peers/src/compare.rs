@@ -219,7 +219,7 @@ fn timed(case: Case, entries: &[&Entry]) -> miette::Result<(Vec<Timed>, Vec<usiz
             first,
             threads: case.threads,
         };
-        let timed = |entry: &&Entry| Ok(Timed::new((entry.new)(&setup)?, entry.ages));
+        let timed = |entry: &&Entry| Ok(Timed::new((entry.new)(&setup)?, entry.ages, case.threads));
         entries.iter().map(timed).collect()
     })?;
     let truth = Truth::of(&last, schedule.warm_up + schedule.timed - 1);

@@ -100,9 +100,9 @@ fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
     let mut names = Vec::new();
     let (timed, _) = take_turns(course, Schedule::of(bodies), |course, first| {
         let mut timed = Vec::new();
-        let mut enter = |name, engine| {
+        let mut enter = |name, engine, threads| {
             names.push(name);
-            timed.push(Timed::new(engine, true));
+            timed.push(Timed::new(engine, true, threads));
         };
         for threads in [1, threads] {
             let setup = Setup {
@@ -111,11 +111,13 @@ fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
                 threads,
             };
             for entry in &ours::ENTRIES {
-                enter(entry.name, (entry.new)(&setup)?);
+                enter(entry.name, (entry.new)(&setup)?, threads);
             }
-            enter(ARITHMETIC, Box::new(Loop::new(threads, bodies, compute)?));
+            let arithmetic = Loop::new(threads, bodies, compute)?;
+            enter(ARITHMETIC, Box::new(arithmetic), threads);
             let floats = bodies * BYTES / size_of::<f32>();
-            enter(MEMORY, Box::new(Loop::new(threads, floats, touch)?));
+            let memory = Loop::new(threads, floats, touch)?;
+            enter(MEMORY, Box::new(memory), threads);
         }
         Ok(timed)
     })?;

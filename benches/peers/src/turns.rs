@@ -12,16 +12,19 @@ pub struct Timed {
     pub engine: Engine,
     /// Whether it keeps anything but buffers from frame to frame; if not, it joins for the last turn before the clock counts.
     pub ages: bool,
+    /// On how many threads it works.
+    pub threads: usize,
     /// Milliseconds of each frame that counts.
     pub ms: Vec<f64>,
 }
 
 impl Timed {
     /// An engine without times yet.
-    pub fn new(engine: Engine, ages: bool) -> Self {
+    pub fn new(engine: Engine, ages: bool, threads: usize) -> Self {
         Self {
             engine,
             ages,
+            threads,
             ms: Vec::new(),
         }
     }
@@ -51,11 +54,15 @@ pub fn take_turns(
         let joining = all
             .iter_mut()
             .filter(|one| one.ages || done + turn >= warm_up);
-        let (mut engines, mut times): (Vec<_>, Vec<_>) =
-            joining.map(|one| (&mut one.engine, &mut one.ms)).unzip();
+        let (mut engines, mut times): (Vec<_>, Vec<_>) = joining
+            .map(|one| (&mut one.engine, (&mut one.ms, one.threads)))
+            .unzip();
         turns.round(&mut engines, &frames, |frame| {
             if done + frame.frame >= warm_up {
-                times[frame.number].push(1e3 * frame.seconds);
+                let (ms, threads) = &mut times[frame.number];
+                // While one of several threads waits, the others work: that isn't time lost.
+                let waited = if *threads > 1 { frame.waited } else { 0.0 };
+                ms.push(1e3 * (frame.seconds + waited));
             }
         });
     }

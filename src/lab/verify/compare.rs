@@ -72,7 +72,8 @@ pub fn culler(
         .settings(settings)
         .updates(mode.updates)
         .tier(mode.tier)
-        .threads(mode.threads);
+        .threads(mode.threads)
+        .worth_waking(0);
     mode.build(shapes, bodies)
 }
 
