@@ -29,7 +29,7 @@ use report::Report;
 /// Hard cases first, then seeded rounds (a probe among bodies that nearly touch it, and a random crowd, for every k and
 /// axes), then the scenes given, meshes included. Strategies, overlap tests, finders, k, axes, update modes, SIMD tiers and
 /// numbers of threads meet in every combination; the matrix at the end says how often. Each list is held against the
-/// exact answers and against that of all-pairs. A missed pair, a list that differs from all-pairs' and an empty cell of the
+/// exact answers and against that of all-pairs. Given boxes are held against their definition. A missed pair, a list that differs from all-pairs' and an empty cell of the
 /// matrix end in exit code 1, the first two with the smallest scene that shows it.
 #[derive(clap::Args)]
 #[command(
@@ -199,16 +199,20 @@ impl Taken {
             let none = Ledger::default();
             report.add(name.to_owned(), self.ledgers.get(&origin).unwrap_or(&none));
         }
-        report.finish(seconds, run.rotation());
+        let none = Ledger::default();
+        let boxes = self.ledgers.get(&Origin::Boxes).unwrap_or(&none);
+        report.finish(seconds, &boxes.boxes, run.rotation());
         emit(format, &report, Report::tables)?;
         if report.passed() {
             return Ok(Outcome::Passed);
         }
         if let Some((origin, &unit)) = self.failed.first_key_value() {
             let judged = run.judge(unit)?.into_iter().filter(|(of, _)| of == origin);
-            match judged.flat_map(|(_, ledger)| ledger.failures).next() {
-                Some(failure) => show(&failure, out)?,
-                None => print("the failure doesn't show on this machine")?,
+            let ledger = judged.map(|(_, ledger)| ledger).next().unwrap_or_default();
+            match (ledger.failures.first(), &ledger.boxes.failure) {
+                (Some(failure), _) => show(failure, out)?,
+                (None, Some(boxes)) => print(boxes)?,
+                (None, None) => print("the failure doesn't show on this machine")?,
             }
         }
         Ok(Outcome::Failed)

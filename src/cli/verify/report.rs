@@ -4,6 +4,7 @@
 mod coverage;
 
 use sdop::lab::verify::Predicate;
+use sdop::lab::verify::boxes::BoxLedger;
 use sdop::lab::verify::matrix::Matrix;
 use sdop::lab::verify::rounds::{Judged, Ledger};
 use sdop::lab::verify::ways::Rotation;
@@ -21,7 +22,7 @@ pub struct Report {
     seconds: f64,
     /// Pairs missed, over all sources.
     missed: u64,
-    /// Pairs on which a list and that of all-pairs differ, over all sources.
+    /// Pairs on which a list and that of all-pairs differ, over all sources; of given boxes, a list and their definition.
     differ: u64,
     sources: Vec<SourceReport>,
     coverage: Coverage,
@@ -100,9 +101,10 @@ impl Report {
         });
     }
 
-    pub fn finish(&mut self, seconds: f64, rotation: &Rotation) {
+    pub fn finish(&mut self, seconds: f64, boxes: &BoxLedger, rotation: &Rotation) {
         self.seconds = seconds;
-        self.coverage = Coverage::of(&self.matrix, rotation);
+        self.differ += boxes.wrong();
+        self.coverage = Coverage::of(&self.matrix, boxes, rotation);
     }
 
     /// Whether no pair is missed, no finder disagrees with all-pairs, and no cell of the matrix is empty.

@@ -2,12 +2,13 @@
 //!
 //! [`answers`] are the reference's, pair by pair; [`compare()`] holds a culler's list against them. What is judged comes
 //! from seeds ([`draw`]: random crowds, and contacts put together on purpose), from the corpus of [`hard`] cases, and
-//! from scenes. When a pair is missed, [`shrink`] makes the smallest scene that shows it.
+//! from scenes. Given [`boxes`] are held against their definition. When a pair is missed, [`shrink`] makes the smallest scene that shows it.
 
 pub mod answers;
 #[cfg(feature = "proptest")]
 pub mod arbitrary;
 pub mod borders;
+pub mod boxes;
 pub mod compare;
 pub mod contact;
 pub mod draw;

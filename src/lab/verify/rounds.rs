@@ -4,11 +4,12 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use rand::SeedableRng as _;
+use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use sdop_reference::exact::Tally;
 
 use super::answers::{Answers, Predicate, explained_by_margins};
+use super::boxes::{self, BoxLedger};
 use super::compare::{Count, compare, culler, difference, found, settings};
 use super::draw::{ContactSpec, crowd, probe};
 use super::forms::{self, Form, FormError};
@@ -60,6 +61,8 @@ pub struct Ledger {
     pub failures: Vec<Failure>,
     /// In which cells lists were judged.
     pub matrix: Matrix,
+    /// Lists of given boxes.
+    pub boxes: BoxLedger,
 }
 
 /// A missed pair, or one on which a finder disagrees with all-pairs.
@@ -111,6 +114,7 @@ impl Ledger {
             self.rows.entry(row).or_default().add(&count);
         }
         self.matrix.add(&other.matrix);
+        self.boxes.add(other.boxes);
         self.failures.extend(other.failures);
         self.failures.truncate(MOST_FAILURES);
     }
@@ -310,6 +314,23 @@ pub enum Source {
     Near,
     /// A crowd in a box, uniform.
     Random,
+}
+
+/// The stream of draws of given boxes, behind those of sources.
+const BOXES: u64 = 8;
+
+/// Given boxes of a seed, in every cell.
+///
+/// # Errors
+/// Threads that the system refuses.
+pub fn boxes(seed: u64, rotation: &Rotation) -> Result<Ledger, RoundError> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(BOXES);
+    let frames = boxes::draw(&mut |n| rng.random_range(0..n));
+    Ok(Ledger {
+        boxes: boxes::judge(&frames, rotation)?,
+        ..Ledger::default()
+    })
 }
 
 /// Partners of a near round's probe.

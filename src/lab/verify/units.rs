@@ -9,10 +9,11 @@ use sdop_reference::exact::Tally;
 use serde::{Deserialize, Serialize};
 
 use super::answers::Predicate;
+use super::boxes::BoxCell;
 use super::compare::Count;
 use super::hard::{FILES, Group};
 use super::matrix::Cell;
-use super::rounds::{Judged, Ledger, Source, group, round};
+use super::rounds::{Judged, Ledger, Source, boxes, group, round};
 use super::scenes::{block, blocks, frames_of};
 use super::ways::{Rotation, variants};
 use crate::lab::scene::Scene;
@@ -50,6 +51,7 @@ pub struct Verification {
     rotation: Rotation,
     cells: Vec<Cell>,
     places: BTreeMap<Cell, usize>,
+    box_cells: Vec<BoxCell>,
     /// After which no round is started.
     deadline: Option<Instant>,
 }
@@ -73,6 +75,8 @@ pub enum Origin {
     Near,
     /// Rounds of random pairs.
     Random,
+    /// Given boxes.
+    Boxes,
     /// A scene, by its number.
     Scene(usize),
 }
@@ -109,6 +113,7 @@ impl Verification {
             scenes: Vec::new(),
             variants: variants().collect(),
             places: cells.iter().copied().zip(0..).collect(),
+            box_cells: BoxCell::all(&rotation).map(|(cell, _)| cell).collect(),
             cells,
             rotation,
             settings,
@@ -172,18 +177,19 @@ impl Verification {
             Unit::Hard(n, variant) => {
                 let (number, cases) = &self.groups[n];
                 let judged = group(*number, cases, variant, rotation).into_diagnostic()?;
-                Ok(vec![(Origin::Hard, judged)])
+                let boxes = boxes(!(unit as u64), rotation).into_diagnostic()?;
+                Ok(vec![(Origin::Hard, judged), (Origin::Boxes, boxes)])
             }
-            Unit::Rounds(seed, variant) => [
-                (Origin::Near, Source::Near),
-                (Origin::Random, Source::Random),
-            ]
-            .into_iter()
-            .map(|(origin, source)| {
-                let judged = round(source, seed, variant, rotation).into_diagnostic()?;
-                Ok((origin, judged))
-            })
-            .collect(),
+            Unit::Rounds(seed, variant) => {
+                let judge = |source| round(source, seed, variant, rotation).into_diagnostic();
+                let draw = self.variants.iter().position(|&known| known == variant);
+                let draw = draw.map_or(0, |at| seed.wrapping_mul(64).wrapping_add(at as u64));
+                Ok(vec![
+                    (Origin::Near, judge(Source::Near)?),
+                    (Origin::Random, judge(Source::Random)?),
+                    (Origin::Boxes, boxes(draw, rotation).into_diagnostic()?),
+                ])
+            }
             Unit::Frames(n, number) => {
                 let scene = self.scenes.get(n);
                 let scene = scene.ok_or_else(|| miette!("its scene was not read"))?;
@@ -200,8 +206,8 @@ impl Verification {
     pub fn take(&self, unit: usize, result: &str) -> miette::Result<Vec<(Origin, Ledger, bool)>> {
         let texts: Vec<LedgerText> = serde_json::from_str(result).into_diagnostic()?;
         let origins = match self.unit(unit) {
-            Unit::Hard(..) => vec![Origin::Hard],
-            Unit::Rounds(..) => vec![Origin::Near, Origin::Random],
+            Unit::Hard(..) => vec![Origin::Hard, Origin::Boxes],
+            Unit::Rounds(..) => vec![Origin::Near, Origin::Random, Origin::Boxes],
             Unit::Frames(n, _) => vec![Origin::Scene(n)],
         };
         let wrong = || miette!("the result of unit {unit} is none of `sdop verify`");
@@ -227,7 +233,11 @@ impl Verification {
             cells: cells
                 .map(|(cell, lists)| (self.places[cell], lists))
                 .collect(),
-            failures: ledger.failures.len(),
+            boxes: (self.box_cells.iter().enumerate())
+                .filter_map(|(place, cell)| Some((place, *ledger.boxes.cells.get(cell)?)))
+                .collect(),
+            box_pairs: ledger.boxes.required,
+            failures: ledger.failures.len() + usize::from(ledger.boxes.failure.is_some()),
         }
     }
 
@@ -250,6 +260,13 @@ impl Verification {
         for (place, lists) in text.cells {
             ledger.matrix.fill(*self.cells.get(place)?, lists);
         }
+        for (place, judged) in text.boxes {
+            ledger
+                .boxes
+                .cells
+                .insert(*self.box_cells.get(place)?, judged);
+        }
+        ledger.boxes.required = text.box_pairs;
         Some(ledger)
     }
 }
@@ -263,6 +280,10 @@ struct LedgerText {
     rows: Vec<(Strategy, Option<Overlap>, Count)>,
     /// Lists judged, by a cell's place among all.
     cells: Vec<(usize, u64)>,
+    /// Lists of given boxes and wrong pairs in them, by a cell's place among all of those.
+    boxes: Vec<(usize, [u64; 2])>,
+    /// Pairs of given boxes that meet.
+    box_pairs: u64,
     /// How many are known in full to who did the unit.
     failures: usize,
 }

@@ -1,6 +1,7 @@
 //! The matrix of what was judged, in two projections: thousands of cells are too many to read, and a tier, a mode or a
 //! finder that was left out shows in one of them.
 
+use sdop::lab::verify::boxes::{BoxCell, BoxLedger};
 use sdop::lab::verify::matrix::{Cell, Filled, Matrix};
 use sdop::lab::verify::ways::Rotation;
 use sdop::settings::Strategy;
@@ -23,6 +24,12 @@ pub struct Coverage {
     by_strategy: Vec<CoverageLine>,
     /// By tier, updates and threads against k and axes: over strategies, overlap tests and finders.
     by_mode: Vec<CoverageLine>,
+    /// Of given boxes: pairs that meet, over frames.
+    box_pairs: u64,
+    /// Those that a list had and shouldn't, or should have had.
+    box_wrong: u64,
+    /// Lists of given boxes: by tier and threads against finder.
+    boxes: Vec<CoverageLine>,
     /// The cells without a list, by name.
     empty: Vec<String>,
 }
@@ -42,7 +49,7 @@ struct Part {
 }
 
 impl Coverage {
-    pub fn of(matrix: &Matrix, rotation: &Rotation) -> Self {
+    pub fn of(matrix: &Matrix, boxes: &BoxLedger, rotation: &Rotation) -> Self {
         let all = matrix.fold(rotation, |_| ());
         let all = all.first().map_or_else(Filled::default, |(_, all)| *all);
         let unrefined = Strategy::ALL
@@ -61,7 +68,18 @@ impl Coverage {
                 matrix.fold(rotation, |cell| (strategy(cell), cell.finder.to_string())),
             ),
             by_mode: rows(matrix.fold(rotation, |cell| (mode(cell), variant(cell)))),
-            empty: matrix.empty(rotation).iter().map(name).collect(),
+            box_pairs: boxes.required,
+            box_wrong: boxes.wrong(),
+            boxes: rows(BoxCell::all(rotation).map(|(cell, _)| box_part(&cell, boxes))),
+            empty: {
+                let unjudged = BoxCell::all(rotation).map(|(cell, _)| cell);
+                let unjudged = unjudged.filter(|cell| boxes.lists(cell) == 0);
+                let names = matrix.empty(rotation).iter().map(name).collect::<Vec<_>>();
+                names
+                    .into_iter()
+                    .chain(unjudged.map(|cell| box_name(&cell)))
+                    .collect()
+            },
         }
     }
 
@@ -75,6 +93,12 @@ impl Coverage {
         let mut text = format!(
             "What was judged: {} of {} cells, each by {} lists or more ({})\n{finders}\n{modes}",
             self.filled, self.cells, self.fewest, self.impossible
+        );
+        text += &format!(
+            "\nGiven boxes, {} pairs that meet, {} wrong in a list:\n{}",
+            self.box_pairs,
+            self.box_wrong,
+            projection(&self.boxes)
         );
         for cell in &self.empty {
             text += &format!("\nempty: {cell}");
@@ -99,7 +123,7 @@ fn projection(rows: &[CoverageLine]) -> comfy_table::Table {
 }
 
 /// Rows and their parts in the order of their first cells.
-fn rows(folded: Vec<((String, String), Filled)>) -> Vec<CoverageLine> {
+fn rows(folded: impl IntoIterator<Item = ((String, String), Filled)>) -> Vec<CoverageLine> {
     let mut rows: Vec<CoverageLine> = Vec::new();
     for ((name, part), filled) in folded {
         let part = Part { name: part, filled };
@@ -124,11 +148,29 @@ fn variant(cell: &Cell) -> String {
 }
 
 fn mode(cell: &Cell) -> String {
-    let plural = if cell.threads == 1 { "" } else { "s" };
-    format!(
-        "{} {} {} thread{plural}",
-        cell.tier, cell.updates, cell.threads
-    )
+    format!("{} {} {}", cell.tier, cell.updates, threads(cell.threads))
+}
+
+fn threads(number: usize) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} thread{plural}")
+}
+
+/// The line and column of a cell of given boxes, and what it holds.
+fn box_part(cell: &BoxCell, boxes: &BoxLedger) -> ((String, String), Filled) {
+    let line = format!("{} {}", cell.tier, threads(cell.threads));
+    let lists = boxes.lists(cell);
+    let filled = Filled {
+        cells: 1,
+        filled: u64::from(lists > 0),
+        fewest: lists,
+    };
+    ((line, cell.finder.to_string()), filled)
+}
+
+fn box_name(cell: &BoxCell) -> String {
+    let threads = threads(cell.threads);
+    format!("given boxes, {}, {} {threads}", cell.finder, cell.tier)
 }
 
 fn name(cell: &Cell) -> String {
