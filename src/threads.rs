@@ -203,6 +203,26 @@ mod tests {
     use super::*;
 
     #[test]
+    fn others_are_woken_for_frames_that_are_worth_it_and_always_for_nothing() {
+        let work = |candidates| Work {
+            updates: 100,
+            candidates,
+            refined: 10,
+        };
+        assert_eq!(work(50).nanoseconds(), 1900);
+        let mut threads = FrameThreads::new(Threads::new(2).unwrap(), 1900);
+        assert_eq!(threads.get().threads(), 1, "before anything is known");
+        for (candidates, wanted) in [(50, 2), (49, 1), (1000, 2)] {
+            threads.expect(work(candidates));
+            assert_eq!(threads.get().threads(), wanted, "{candidates}");
+        }
+        let mut always = FrameThreads::new(Threads::new(2).unwrap(), 0);
+        assert_eq!(always.get().threads(), 2);
+        always.expect(Work::default());
+        assert_eq!(always.get().threads(), 2);
+    }
+
+    #[test]
     fn a_worker_of_another_pool_that_waits_takes_up_no_other_job() {
         thread_local!(static BUSY: Cell<bool> = const { Cell::new(false) });
         let job = || {

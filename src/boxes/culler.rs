@@ -235,10 +235,15 @@ mod tests {
     fn a_builder_keeps_each_choice_and_no_other() {
         let built = BoxCuller::builder();
         assert_eq!(built, BoxCullerBuilder::default());
-        let built = built.threads(3).tier(Tier::SCALAR).finder(Finder::Sweep);
+        let built = built
+            .threads(3)
+            .worth_waking(7)
+            .tier(Tier::SCALAR)
+            .finder(Finder::Sweep);
         let wanted = BoxCullerBuilder {
             finder: Finder::Sweep,
             threads: 3,
+            worth_waking: 7,
             tier: Some(Tier::SCALAR),
         };
         assert_eq!(built, wanted);

@@ -229,10 +229,12 @@ fn population(boxes: usize) -> Population {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::threads::Threads;
 
     #[test]
     fn cubes_decide_while_one_in_sixteen_is_small_beside_the_gap() {
-        let mut frames = Frames::new(Finder::Auto, Tier::SCALAR, Threads::default());
+        let threads = FrameThreads::new(Threads::default(), 0);
+        let mut frames = Frames::new(Finder::Auto, Tier::SCALAR, threads);
         assert!(frames.cubes_decide(1.0), "without boxes");
         for (small, decide) in [(0, true), (4, true), (5, false), (64, false)] {
             // One in ten is asked.

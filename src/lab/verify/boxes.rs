@@ -183,7 +183,8 @@ pub fn judge(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<BoxLedger, Cul
     };
     for (cell, mode) in BoxCell::all(rotation) {
         let of = BoxCuller::builder().finder(cell.finder);
-        let mut culler = of.tier(mode.tier).threads(mode.threads).build()?;
+        let of = of.tier(mode.tier).threads(mode.threads).worth_waking(0);
+        let mut culler = of.build()?;
         let mut wrong = 0;
         for (n, (boxes, wanted)) in frames.iter().zip(&wanted).enumerate() {
             let differing = difference(&culler.cull(boxes)?.sorted(), wanted);
