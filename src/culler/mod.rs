@@ -11,6 +11,7 @@ mod error;
 pub(crate) mod models;
 mod needs;
 mod portions;
+mod replace;
 
 pub use builder::CullerBuilder;
 pub use error::CullError;
@@ -22,7 +23,7 @@ use self::models::Models;
 use self::needs::Needs;
 use crate::bodies::contract::{check_bodies, check_column, check_poses};
 use crate::bodies::{Bodies, Groups, Places};
-use crate::broad_phase::{PairFinder, Reorder};
+use crate::broad_phase::PairFinder;
 use crate::counters::{Counters, Seconds};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
@@ -141,57 +142,6 @@ impl Culler {
     /// Adds a model: another grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the returned number.
     pub(crate) fn grow(&mut self, model: u32, margin: f32) -> u32 {
         self.models.grow(model, margin)
-    }
-
-    /// Re-reads `bodies.shape` after a change of margin class.
-    pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
-        self.fixed.shape.clone_from(&bodies.shape);
-        self.places.reread_shapes(bodies);
-    }
-
-    /// Takes up another set of bodies, those that are `present`, as far as it is new: what is known of the others' neighbours
-    /// is kept. Volumes of static bodies are placed anew.
-    pub(crate) fn exchange(&mut self, bodies: &Bodies, present: &[bool]) {
-        let stays = self.take_places(bodies, present);
-        let population = needs::population(self.scheme, &self.models, &self.places);
-        let (moving, all) = (self.places.moving, self.places.len());
-        let finder = self.settings.pairs;
-        if self.finder.replace(finder, &population, &stays, moving) {
-            self.update_volumes(bodies, moving..all); // the others in the frame to come
-        } else {
-            self.begin(bodies);
-        }
-    }
-
-    /// Replaces the set of bodies by those that are `present`, of which nothing is known.
-    pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
-        self.take_places(bodies, present);
-        let population = needs::population(self.scheme, &self.models, &self.places);
-        self.finder = PairFinder::new(self.settings.pairs, &population);
-        self.begin(bodies);
-    }
-
-    /// Gives places to the bodies that are `present`; whether each former place's body keeps its order.
-    fn take_places(&mut self, bodies: &Bodies, present: &[bool]) -> Vec<bool> {
-        let stays = self.places.replace(&bodies.dynamic, present);
-        self.places.reread_shapes(bodies);
-        self.fixed = check::fixed(bodies);
-        let n = self.places.len();
-        self.numbers = (0..n as u32).collect();
-        self.balls.resize(n, [0.0; 4]);
-        self.rows.resize(n);
-        if let Some(intervals) = &mut self.intervals {
-            intervals.resize(n);
-        }
-        self.interest.resize(bodies.len(), false);
-        stays
-    }
-
-    /// Places all volumes, and lets a new finder order and arrange them.
-    fn begin(&mut self, bodies: &Bodies) {
-        self.update_volumes(bodies, 0..self.places.len());
-        self.reorder(bodies);
-        self.arrange();
     }
 
     /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a body.
@@ -317,35 +267,6 @@ impl Culler {
     /// Whether slots are named by place: or-DOPs and slabs are looked up by place, spheres alone need the body only.
     fn names_are_places(&self) -> bool {
         self.needs.rows || self.needs.intervals.is_some()
-    }
-
-    /// Lets the finder put bodies in other places. What has moved is updated anyway, unless it is static.
-    fn reorder(&mut self, bodies: &Bodies) {
-        if self.scheme.flow == Flow::Nothing {
-            // Nothing is arranged, so there is no order to follow.
-            return;
-        }
-        let by_place = self.names_are_places();
-        let names = if by_place {
-            &self.numbers
-        } else {
-            &self.places.body
-        };
-        let (balls, order) = (&self.balls, &mut self.order);
-        let changed = self.finder.reorder(&self.places, balls, names, order);
-        if changed == Reorder::None {
-            return;
-        }
-        self.places.reorder(&self.fixed, &mut self.order, by_place);
-        if changed == Reorder::All {
-            let (moving, all) = (self.places.moving, self.places.len());
-            self.update_volumes(bodies, 0..moving);
-            if moving < all {
-                let fixed = std::mem::take(&mut self.fixed);
-                self.update_volumes(&fixed, moving..all);
-                self.fixed = fixed;
-            }
-        }
     }
 
     /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies are left until a pair
