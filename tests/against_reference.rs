@@ -5,11 +5,13 @@
 
 mod support;
 
+use std::collections::BTreeSet;
+
 use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::lab::verify::{Shapes, judged};
 use sdop::pairs::PairList;
-use sdop::settings::{Axes, Budget, CullSettings, Interest, Overlap, Strategy, Updates};
+use sdop::settings::{Axes, Budget, CullSettings, Flow, Interest, Overlap, Strategy, Updates};
 use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
 use sdop_reference as reference;
@@ -188,15 +190,24 @@ fn lazy_updates_change_the_count_of_updates_and_nothing_else() {
                 .build(&frame.shapes.built, &frame.bodies)
                 .unwrap()
         });
+        let mut tested = 0;
         for _ in 0..2 {
             let [eager, lazy] = cullers
                 .each_mut()
                 .map(|culler| culler.cull(&frame.bodies).unwrap().sorted());
             assert_eq!(eager, lazy);
+            let pairs = cullers[1].potentially_colliding();
+            tested += pairs.flatten().collect::<BTreeSet<_>>().len() as u64;
         }
         let [eager, lazy] = cullers.each_ref().map(|culler| culler.counters().ordop);
         assert_eq!(eager.updates, 2 * 108);
         assert!(lazy.updates <= eager.updates);
+        if matches!(strategy.scheme().flow, Flow::Sequential | Flow::Batch) {
+            assert_eq!(
+                lazy.updates, tested,
+                "{strategy}: once for each body of a pair"
+            );
+        }
         assert_eq!((eager.tests, eager.hits), (lazy.tests, lazy.hits));
     }
 }

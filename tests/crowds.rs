@@ -89,9 +89,20 @@ fn assert_counted(counters: &Counters, settings: &CullSettings, reported: u64) {
     }
 }
 
-/// Culls three frames in both ways, in which the crowd spreads.
-fn assert_same(settings: &CullSettings, threads: usize) {
-    let (shapes, mut bodies) = (shapes(), crowd(640));
+/// Whether a list of all candidates is kept: portions need one to sort it alone.
+fn keeps_candidates(settings: &CullSettings, in_portions: bool) -> bool {
+    let sorts = settings.order != Order::AsFound;
+    match settings.strategy.scheme().flow {
+        Flow::Nothing | Flow::FirstTest => false,
+        Flow::TimeCritical => sorts || !in_portions,
+        Flow::Batch => !in_portions,
+        Flow::Sequential | Flow::OfInterest => settings.updates == Updates::Lazy && !in_portions,
+    }
+}
+
+/// Culls three frames in both ways, in which the crowd of so many bodies spreads.
+fn assert_same(settings: &CullSettings, threads: usize, bodies: usize) {
+    let (shapes, mut bodies) = (shapes(), crowd(bodies));
     let mut whole = culler(&shapes, &bodies, settings, 1);
     let mut taken = culler(&shapes, &bodies, settings, threads);
     let mut total = 0;
@@ -107,6 +118,10 @@ fn assert_same(settings: &CullSettings, threads: usize) {
         assert!(pairs == expected, "{way}");
         assert_eq!(reported, expected.len() as u64, "{way}");
         assert_eq!(taken.counters(), whole.counters(), "{way}");
+        for (culler, in_portions) in [(&whole, false), (&taken, true)] {
+            let kept = culler.potentially_colliding().len() > 0;
+            assert_eq!(kept, keeps_candidates(settings, in_portions), "{way}");
+        }
         total += reported;
         if frame == 0 && expected.len() > 1 << 17 {
             assert!(portions > 1, "{way}");
@@ -121,10 +136,18 @@ fn assert_same(settings: &CullSettings, threads: usize) {
 }
 
 #[test]
+fn few_pairs_come_as_the_list_in_every_way_too() {
+    for settings in ways() {
+        assert_same(&settings, 1, 120);
+        assert_same(&settings, 3, 120);
+    }
+}
+
+#[test]
 fn portions_are_the_list_in_every_way_that_pairs_flow() {
     for settings in ways() {
         for threads in [1, 2, 3] {
-            assert_same(&settings, threads);
+            assert_same(&settings, threads, 640);
         }
     }
 }
@@ -133,7 +156,7 @@ fn portions_are_the_list_in_every_way_that_pairs_flow() {
 fn portions_are_the_list_of_every_finder() {
     for &pairs in Finder::ALL {
         for strategy in [Strategy::Sphere, Strategy::SDopSequential, Strategy::KDop] {
-            assert_same(&settings(strategy, pairs), 2);
+            assert_same(&settings(strategy, pairs), 2, 640);
         }
     }
 }
@@ -159,6 +182,22 @@ fn memory_is_bounded_whatever_the_number_of_pairs() {
         assert_eq!(pairs, if reports { all } else { 0 }, "{settings:?}");
         let bytes = culler.pair_bytes();
         assert!(bytes < BOUND, "{bytes}: {settings:?}");
+    }
+}
+
+#[test]
+fn memory_of_a_crowd_is_counted_and_given_back() {
+    let (shapes, bodies) = (shapes(), crowd(120));
+    for settings in ways() {
+        let mut culler = culler(&shapes, &bodies, &settings, 1);
+        let pairs = culler.cull(&bodies).unwrap().len();
+        let listed = pairs + culler.potentially_colliding().len();
+        let crowded = culler.pair_bytes();
+        assert!(crowded >= 8 * listed, "{crowded}: {settings:?}");
+        culler.shrink_to_fit();
+        let kept = culler.pair_bytes();
+        // A vector more behind each column.
+        assert!(kept <= 8 * (listed + 2 * 16), "{kept}: {settings:?}");
     }
 }
 

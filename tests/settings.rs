@@ -140,14 +140,17 @@ fn a_builder_keeps_each_setting_and_no_other() {
         .updates(settings.updates)
         .interest(Interest::Bodies(vec![1]))
         .budget(Budget::Tests(7))
+        .worth_waking(3)
         .order(settings.order);
-    let at_once = new().threads(2).tier(Tier::SCALAR).settings(&settings);
+    let on_two = new().threads(2).tier(Tier::SCALAR);
+    let at_once = on_two.clone().worth_waking(3).settings(&settings);
     assert_eq!(one_by_one, at_once);
     let others = [
         new().settings(&settings),
         new().settings(&settings).threads(2),
         new().settings(&settings).tier(Tier::SCALAR),
-        new().threads(2).tier(Tier::SCALAR),
+        on_two.clone().settings(&settings),
+        on_two.worth_waking(3),
     ];
     assert!(!others.contains(&at_once));
 }

@@ -63,3 +63,69 @@ fn copy(boxes: &[Aabb], names: &[u32], [fronts, backs]: &mut [[[f32; 4]; TOGETHE
     fronts[spare.clone()].fill(front);
     backs[spare].fill(back);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{Tier, dispatch};
+
+    /// What a tier makes of boxes in an order of its own: their cubes, the greatest H − h, and whether all are sound.
+    fn made(tier: Tier, boxes: &[Aabb], names: &[u32]) -> (Vec<[f32; 4]>, f32, bool) {
+        let mut cubes = vec![[f32::NAN; 4]; names.len()];
+        let make = Make {
+            boxes,
+            names,
+            cubes: &mut cubes,
+        };
+        let (gap, are_sound) = dispatch(tier, make);
+        (cubes, gap, are_sound)
+    }
+
+    /// Of so many boxes, the last of which is the longest.
+    fn boxes(count: usize) -> Vec<Aabb> {
+        let long = |i: usize| if i + 1 == count { 800.0 } else { 8.0 };
+        let from = |i: usize| [16.0 * i as f32, -24.0, 8.0 * (i % 7) as f32];
+        (0..count)
+            .map(|i| (from(i), long(i)))
+            .map(|([x, y, z], long)| Aabb::new([x, y, z], [x + 16.0, y + 8.0, z + long]))
+            .collect()
+    }
+
+    #[test]
+    fn every_box_has_its_cube_in_every_tier() {
+        for count in [1, 15, 16, 17, TOGETHER, TOGETHER + 1, 150] {
+            let boxes = boxes(count);
+            let names: Vec<u32> = (0..count as u32).rev().collect();
+            for tier in Tier::available() {
+                let (cubes, gap, are_sound) = made(tier, &boxes, &names);
+                for (cube, &name) in cubes.iter().zip(&names) {
+                    let Aabb { min, max } = boxes[name as usize];
+                    let centre: [f32; 3] = std::array::from_fn(|k| (min[k] + max[k]) / 16.0);
+                    let half = (0..3).map(|k| (max[k] - min[k]) / 16.0).fold(0.0, f32::max);
+                    assert_eq!(cube[..3], centre, "{tier}: {name} of {count}");
+                    assert!(
+                        cube[3] >= half && cube[3] <= half * 1.000_01,
+                        "{tier}: {name}"
+                    );
+                }
+                // The longest has H = 50 and h = 1/2.
+                assert!(
+                    (49.5..49.501).contains(&gap) && are_sound,
+                    "{tier}: {gap} of {count}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_box_that_is_none_is_told_wherever_it_stands() {
+        let names: Vec<u32> = (0..40).collect();
+        for bad in 0..40 {
+            let mut boxes = boxes(40);
+            boxes[bad].max[bad % 3] = f32::NAN;
+            for tier in Tier::available() {
+                assert!(!made(tier, &boxes, &names).2, "{tier}: {bad}");
+            }
+        }
+    }
+}

@@ -254,6 +254,16 @@ mod tests {
         assert_eq!(built.threads(5), other);
     }
 
+    #[test]
+    fn pairs_are_those_of_the_last_frame() {
+        let at = |x: f32| Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
+        let mut culler = BoxCuller::new();
+        assert_eq!(culler.cull(&[at(0.0), at(5.0), at(0.5)]).unwrap().len(), 1);
+        assert_eq!(culler.pairs().sorted(), [[0, 2]]);
+        culler.cull(&[at(0.0), at(5.0), at(4.5)]).unwrap();
+        assert_eq!(culler.pairs().sorted(), [[1, 2]]);
+    }
+
     /// All-pairs tests every pair, as `auto` would not.
     #[test]
     fn cullers_and_worlds_find_as_their_builder_says() {

@@ -228,7 +228,10 @@ fn population(boxes: usize) -> Population {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
     use super::*;
+    use crate::pairs::PairList;
     use crate::threads::Threads;
 
     #[test]
@@ -244,5 +247,58 @@ mod tests {
             }
             assert_eq!(frames.cubes_decide(3.0), decide, "{small}");
         }
+    }
+
+    fn all_in_a_row(boxes: u32) -> Vec<Aabb> {
+        (0..boxes)
+            .map(|i| [i as f32, i as f32 + 0.75])
+            .map(|[from, to]| Aabb::new([from, 0.0, 0.0], [to, 1.0, 1.0]))
+            .collect()
+    }
+
+    /// Frames of these boxes, all of which may move, before the first cull.
+    fn frames(choice: Finder, boxes: usize) -> Frames {
+        let mut frames = Frames::new(
+            choice,
+            Tier::SCALAR,
+            FrameThreads::new(Threads::default(), 0),
+        );
+        frames.replace(&vec![true; boxes], &vec![true; boxes]);
+        frames
+    }
+
+    #[test]
+    fn some_boxes_are_news_where_the_finder_knows_of_the_others() {
+        let mut frames = frames(Finder::Grid, 1000);
+        let set = |frames: &mut Frames, boxes: usize| {
+            frames.replace(&vec![true; boxes], &vec![true; boxes]);
+            frames.news
+        };
+        assert_eq!(set(&mut frames, 1001), News::All, "nothing was culled yet");
+        let mut pairs = PairList::default();
+        let boxes = all_in_a_row(2000);
+        frames.cull(&boxes, None, Output::List(&mut pairs)).unwrap();
+        assert_eq!((frames.news, frames.candidates > 0), (News::None, true));
+        assert_eq!(set(&mut frames, 1010), News::Some);
+        assert_eq!(set(&mut frames, 2000), News::All);
+        assert_eq!(frames.candidates, 0);
+        frames.choice = Finder::Sweep;
+        frames.news = News::None;
+        assert_eq!(
+            set(&mut frames, 2001),
+            News::All,
+            "another finder knows nothing"
+        );
+    }
+
+    /// Planned by boxes without an extent, giants and small ones would share cells: two million candidates.
+    #[test]
+    fn the_first_frame_is_planned_by_its_own_boxes() {
+        let mut boxes = all_in_a_row(2000);
+        boxes[1000] = Aabb::new([0.0, 5.0, 0.0], [2000.0, 6.0, 1.0]);
+        let mut pairs = PairList::default();
+        let counted = frames(Finder::Grid, 2000).cull(&boxes, None, Output::List(&mut pairs));
+        let tests = counted.unwrap().tests;
+        assert!((2000..20_000).contains(&tests), "{tests}");
     }
 }

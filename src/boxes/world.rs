@@ -231,3 +231,98 @@ impl BoxWorld {
         &self.counters
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    fn at(x: f32) -> Aabb {
+        Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0])
+    }
+
+    fn at_rest(x: f32) -> BoxBody {
+        BoxBody {
+            dynamic: false,
+            ..at(x).into()
+        }
+    }
+
+    #[test]
+    fn other_boxes_and_boxes_at_rest_are_news_to_the_next_cull_and_others_are_none() {
+        let mut world = BoxWorld::new();
+        assert!(world.is_empty() && !world.replaced);
+        let one = world.insert(at(0.0)).unwrap();
+        let fixed = world.insert(at_rest(0.5)).unwrap();
+        assert_eq!(
+            (world.is_empty(), world.len(), world.slots()),
+            (false, 2, 2)
+        );
+        // What is done to the world, and whether the next cull must look at boxes that it has seen.
+        type Call = fn(&mut BoxWorld, BodyId, BodyId);
+        let calls: [(Call, bool); 8] = [
+            (|_, _, _| (), false),
+            (
+                |world, one, _| world.set_bounds(one, at(0.2)).unwrap(),
+                false,
+            ),
+            (|world, one, _| world.set(one, at(0.1)).unwrap(), false),
+            (
+                |world, _, fixed| world.set_bounds(fixed, at(0.6)).unwrap(),
+                true,
+            ),
+            (
+                |world, _, fixed| world.set(fixed, at_rest(0.7)).unwrap(),
+                true,
+            ),
+            (|world, one, _| world.set(one, at_rest(0.0)).unwrap(), true),
+            (|world, one, _| world.set(one, at(0.0)).unwrap(), true),
+            (|world, _, fixed| world.remove(fixed).unwrap(), true),
+        ];
+        world.cull().unwrap();
+        for (call, (change, is_news)) in calls.into_iter().enumerate() {
+            change(&mut world, one, fixed);
+            assert_eq!(world.replaced, is_news, "call {call}");
+            world.set_bounds(one, at(0.0)).unwrap();
+            world.cull().unwrap();
+            assert_eq!(
+                world.pairs().len(),
+                usize::from(call < 7 && call != 5),
+                "call {call}"
+            );
+            assert!(!world.replaced);
+        }
+        assert_eq!(
+            (world.is_empty(), world.len(), world.slots()),
+            (false, 1, 2)
+        );
+        world.remove(one).unwrap();
+        assert_eq!((world.is_empty(), world.len(), world.slots()), (true, 0, 2));
+    }
+
+    #[test]
+    fn groups_count_where_some_or_none_collide_with_all() {
+        let only = |group| Groups {
+            member: group,
+            mask: group,
+        };
+        for (groups, meet) in [
+            ([Groups::ALL, Groups::ALL], true),
+            ([Groups::ALL, only(1)], true),
+            ([only(1), only(1)], true),
+            ([only(1), only(2)], false),
+        ] {
+            let mut world = BoxWorld::new();
+            for groups in groups {
+                let body = BoxBody {
+                    groups,
+                    ..at(0.0).into()
+                };
+                world.insert(body).unwrap();
+            }
+            world.cull().unwrap();
+            assert_eq!(world.pairs().len(), usize::from(meet), "{groups:?}");
+        }
+    }
+}

@@ -61,7 +61,7 @@ mod tests {
     #[test]
     fn few_bodies_go_to_all_pairs_many_to_lists_and_dear_tests_to_the_grid() {
         let pick = |bodies, widest, cheap_test| {
-            let radii = [1.0, widest];
+            let radii = [2.0, 2.0_f32 * widest];
             Population {
                 bodies,
                 radii,

@@ -269,3 +269,105 @@ impl PairFinder {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::Tier;
+    use crate::threads::Threads;
+
+    fn population(bodies: usize) -> Population {
+        Population {
+            bodies,
+            radii: [1.0; 2],
+            cheap_test: true,
+            volume: Volume::Ball,
+        }
+    }
+
+    /// Bodies in a row, of which this finder has arranged two frames.
+    fn arranged(finder: Finder, bodies: usize) -> PairFinder {
+        let balls: Vec<_> = (0..bodies).map(|i| [i as f32, 1.0, 1.0, 0.5]).collect();
+        let mut places = Places {
+            body: (0..bodies as u32).collect(),
+            shape: vec![0; bodies],
+            moving: bodies,
+        };
+        let (mut finder, pool) = (
+            PairFinder::new(finder, &population(bodies)),
+            Threads::default(),
+        );
+        let mut order = Vec::new();
+        for _ in 0..2 {
+            let names = &places.body;
+            if finder.reorder(&places, &balls, names, &mut order) != Reorder::None {
+                std::mem::swap(&mut places.body, &mut order);
+            }
+            let executor = pool.executor(Tier::SCALAR);
+            finder.arrange(executor, &places, &balls, &places.body);
+        }
+        finder
+    }
+
+    #[test]
+    fn behind_the_slots_is_a_vector_of_finite_entries() {
+        let mut slots = Slots::default();
+        for len in [0, 1, 5, 40, 3] {
+            slots.resize(len);
+            assert_eq!([slots.balls.len(), slots.names.len()], [len + MAX_WIDTH; 2]);
+            assert!(slots.balls[len..].iter().all(|ball| *ball == [0.0; 4]));
+            assert!(slots.names[len..].iter().all(|&name| name == 0));
+            slots.balls.fill([f32::NAN; 4]);
+            slots.names.fill(u32::MAX);
+        }
+        for &finder in Finder::ALL {
+            for bodies in [1, 2, 70] {
+                let (finder, padded) = (arranged(finder, bodies), bodies + MAX_WIDTH);
+                let Slots {
+                    balls,
+                    columns,
+                    names,
+                } = finder.slots();
+                let columns = columns.iter().map(Vec::len);
+                assert!(
+                    columns.eq([padded; 4]) || balls.len() == padded,
+                    "{}",
+                    finder.name()
+                );
+                assert_eq!(names.len(), padded);
+            }
+        }
+    }
+
+    #[test]
+    fn a_finder_holds_a_ball_and_a_name_for_each_body() {
+        for &finder in Finder::ALL {
+            assert!(arranged(finder, 1000).bytes() >= 20 * 1000, "{finder}");
+        }
+    }
+
+    #[test]
+    fn cells_are_kept_for_bodies_that_stay_as_long_as_the_same_finder_suits() {
+        for (finder, next, name, kept) in [
+            (Finder::Grid, Finder::Grid, Finder::Grid, true),
+            (
+                Finder::Neighbours,
+                Finder::Neighbours,
+                Finder::Neighbours,
+                true,
+            ),
+            (Finder::Auto, Finder::Auto, Finder::Neighbours, true),
+            (Finder::Grid, Finder::Neighbours, Finder::Neighbours, false),
+            (Finder::Neighbours, Finder::Grid, Finder::Grid, false),
+            (Finder::Sweep, Finder::Sweep, Finder::Sweep, false),
+            (Finder::AllPairs, Finder::Auto, Finder::Neighbours, false),
+        ] {
+            let mut finder = arranged(finder, 100);
+            let is_kept = finder.replace(next, &population(100), &[true; 100], 100);
+            assert_eq!((finder.name(), is_kept), (name, kept));
+        }
+        let mut few = arranged(Finder::Auto, 100);
+        assert!(!few.replace(Finder::Auto, &population(10), &[true; 100], 10));
+        assert_eq!(few.name(), Finder::AllPairs);
+    }
+}

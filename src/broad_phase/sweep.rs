@@ -306,4 +306,20 @@ mod tests {
         assert_eq!(turned(1, [none, four, none]), (1, true));
         assert_eq!(turned(1, [none; 3]), (1, true));
     }
+
+    #[test]
+    fn behind_the_ends_is_a_vector_of_finite_ones() {
+        let mut sweep = Sweep::default();
+        for bodies in [1, 3, 2] {
+            let places = Places {
+                body: (0..bodies as u32).collect(),
+                shape: vec![0; bodies],
+                moving: bodies,
+            };
+            sweep.arrange(&places, &vec![[1.0; 4]; bodies], &places.body);
+            let padded = bodies + MAX_WIDTH;
+            assert_eq!([sweep.lo.len(), sweep.hi.len()], [padded; 2]);
+            assert!(sweep.lo.iter().chain(&sweep.hi).all(|end| end.is_finite()));
+        }
+    }
 }

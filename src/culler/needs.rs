@@ -62,3 +62,38 @@ pub(super) fn population(scheme: Scheme, models: &Models, places: &Places) -> Po
         },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::counters::VolumeCounters;
+
+    #[test]
+    fn work_is_each_volume_of_moving_bodies_and_the_tests_of_the_frame_before() {
+        let counted = |tests| VolumeCounters {
+            tests,
+            ..VolumeCounters::default()
+        };
+        let like = Totals {
+            first: counted(1000),
+            refining: counted(20),
+            ..Totals::default()
+        };
+        for (balls, rows, intervals, volumes) in [
+            (false, false, None, 0),
+            (true, false, None, 1),
+            (true, true, None, 2),
+            (false, false, Some(DirectionSet::K6), SLABS),
+            (true, true, Some(DirectionSet::K18), SLABS + 2),
+        ] {
+            let needs = Needs {
+                balls,
+                rows,
+                intervals,
+            };
+            let work = needs.work(7, &like);
+            assert_eq!(work.updates, 7 * volumes, "{needs:?}");
+            assert_eq!((work.candidates, work.refined), (1000, 20));
+        }
+    }
+}

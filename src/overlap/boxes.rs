@@ -231,3 +231,31 @@ fn list<L: Lanes>(l: L, hit: u32, start: usize, hits: &mut [u32]) -> usize {
     l.compress(hit, slot, hits);
     hit.count_ones() as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_have_the_order_of_slots_and_a_vector_of_finite_ones_behind_it() {
+        let mut slots = EndSlots::default();
+        for bodies in [1, 3, 2] {
+            let boxes: Vec<_> = (0..bodies as u8)
+                .map(|i| Aabb::new([f32::from(i); 3], [f32::from(i) + 9.0; 3]))
+                .collect();
+            let order: Vec<u32> = (0..bodies as u32).rev().collect();
+            slots.fill(&Threads::default(), &order, &boxes);
+            let padded = bodies + MAX_WIDTH;
+            assert_eq!([slots.lower.len(), slots.upper.len()], [padded; 2]);
+            for (index, column) in slots.columns.iter().enumerate() {
+                let ends = order.iter().map(|&name| {
+                    let Aabb { min, max } = boxes[name as usize];
+                    [min, max][index / 3][index % 3]
+                });
+                assert_eq!(column[..bodies], ends.collect::<Vec<_>>());
+                assert_eq!(column.len(), padded);
+                assert!(column[bodies..].iter().all(|end| end.is_finite()));
+            }
+        }
+    }
+}

@@ -150,3 +150,43 @@ pub(crate) fn cull(
         Flow::TimeCritical => time_critical::flow(inputs, rows, scratch, output),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A list without room to spare.
+    fn list(pairs: u32) -> PairList {
+        let mut list: PairList = (0..pairs).map(|pair| [pair, pair + 1]).collect();
+        list.shrink_to_fit();
+        list
+    }
+
+    #[test]
+    fn bytes_are_those_of_all_lists_and_the_colliding_set_alone_is_kept() {
+        let task = |pairs| tasks::Task {
+            out: list(pairs),
+            block: list(10 * pairs),
+            selected: list(100 * pairs),
+            survivors: list(1000 * pairs),
+            ..tasks::Task::default()
+        };
+        let mut scratch = Scratch {
+            tasks: vec![task(1), task(2)],
+            candidates: list(50_000),
+            selected: list(600_000),
+            survivors: list(7),
+            portion: list(80),
+            ..Scratch::default()
+        };
+        // Two numbers a pair, and a vector more behind each column.
+        let pairs = 3 * 1111 + 650_087 + 12 * crate::simd::MAX_WIDTH;
+        assert_eq!(scratch.pair_bytes(), 8 * pairs);
+        scratch.candidates.clear();
+        for pair in 0..10 {
+            scratch.candidates.push(pair, pair + 1);
+        }
+        scratch.shrink_to_fit();
+        assert_eq!(scratch.pair_bytes(), list(10).bytes());
+    }
+}

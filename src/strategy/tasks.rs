@@ -85,3 +85,38 @@ pub(super) fn split_work(
     }
     totals
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What so much work leaves on so many threads: each task's share of it, in the order of the list, and the totals.
+    fn shares(threads: usize, units: usize) -> (Vec<[u32; 2]>, Totals) {
+        let pool = Threads::new(threads).expect("a few threads");
+        let mut out = PairList::default();
+        let work = |share: Range<usize>, task: &mut Task, _: &Outlet<'_, '_>| {
+            task.out.push(share.start as u32, share.end as u32);
+            (task.first.tests, task.refining.hits) = (share.len() as u64, 1);
+            task.seconds = 6.0;
+        };
+        let mut tasks = Vec::new();
+        let totals = split_work(&pool, &mut tasks, units, Output::List(&mut out), work);
+        (out.iter().collect(), totals)
+    }
+
+    #[test]
+    fn a_thread_has_four_tasks_unless_there_is_less_work() {
+        for (threads, units, tasks) in [(1, 100, 1), (3, 100, 12), (3, 5, 5), (2, 0, 1)] {
+            let (shares, totals) = shares(threads, units);
+            assert_eq!(shares.len(), tasks, "{units} units");
+            let ends = shares.iter().map(|&[_, end]| end);
+            let starts = shares.iter().map(|&[start, _]| start);
+            assert!(starts.eq(std::iter::once(0).chain(ends).take(tasks)));
+            assert_eq!(shares[tasks - 1][1], units as u32);
+            assert_eq!(totals.first.tests, units as u64);
+            assert_eq!(totals.refining.hits, tasks as u64);
+            // Wall time: threads refine at the same time.
+            assert_eq!(totals.refining_seconds, (6 * tasks) as f64 / threads as f64);
+        }
+    }
+}

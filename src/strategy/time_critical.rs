@@ -219,4 +219,21 @@ mod tests {
         // Apart by (4, −4, 7), whose length is 9, of radii that are 3 together.
         assert_eq!(relative_distance(&spheres, [1, 2]), 9.0);
     }
+
+    #[test]
+    fn answers_are_kept_and_buffers_are_given_back() {
+        let mut history = History::default();
+        history.remember([[0, 1], [0, 2], [3, 4]].into_iter(), 2, 7);
+        history.remember([[3, 4], [0, 1]].into_iter(), 1, 9);
+        history.ranked.reserve(100);
+        history.before.reserve(100);
+        history.refined.reserve(100);
+        history.shrink_to_fit();
+        assert_eq!(history.refined, HashMap::from([([3, 4], 9), ([0, 1], 7)]));
+        assert!(history.refined.capacity() < 100);
+        assert_eq!(
+            (history.before.capacity(), history.ranked.capacity()),
+            (0, 0)
+        );
+    }
 }

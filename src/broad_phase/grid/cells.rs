@@ -408,4 +408,55 @@ mod tests {
         }
         assert!(larger > 20, "{larger}");
     }
+
+    /// Cells of size 2 and a little, so many each way.
+    fn cells(count: [u8; 3]) -> Cells {
+        let bounds = Bounds {
+            lo: [0.0; 3],
+            hi: count.map(|n| 2.0 * f32::from(n) - 2.0),
+            widest: 1.0,
+        };
+        let cells = Cells::fit(&bounds, 1000, Layout::Box);
+        assert_eq!(cells.count(), count.map(u32::from));
+        cells
+    }
+
+    /// An empty cell lies behind each row, and an empty row behind each layer that has more than one; the table ends with the
+    /// last cell that the last body looks at.
+    #[test]
+    fn a_box_has_as_few_cells_as_looks_allow() {
+        for (count, row, layer, farthest) in [
+            ([10, 4, 2], 11, 55, 66),
+            ([10, 1, 2], 11, 11, 11),
+            ([10, 4, 1], 11, 55, 11),
+            ([10, 1, 1], 11, 11, 0),
+            ([1, 1, 1], 2, 2, 0),
+            ([1, 3, 3], 2, 8, 10),
+        ] {
+            let cells = cells(count);
+            assert_eq!(cells.index([0, 1, 0]), row, "{count:?}");
+            assert_eq!(cells.index([0, 0, 1]), layer, "{count:?}");
+            let [x, y, z] = count.map(u32::from);
+            let last = x - 1 + row * (y - 1) + layer * (z - 1);
+            assert_eq!(cells.last(), last, "{count:?}");
+            assert_eq!(cells.forward().last().copied().unwrap_or(0), farthest);
+            assert_eq!(
+                cells.table_len(),
+                (last + farthest + 2) as usize,
+                "{count:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn cells_far_from_the_origin_are_as_small_as_others() {
+        let lo = 2.0_f32.powi(34);
+        let bounds = Bounds {
+            lo: [lo; 3],
+            hi: [lo + 4096.0; 3],
+            widest: 1.0,
+        };
+        let size = Cells::fit(&bounds, 1000, Layout::Wrapped).size();
+        assert!((2.0..2.001).contains(&size), "{size}");
+    }
 }

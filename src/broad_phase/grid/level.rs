@@ -320,4 +320,83 @@ mod tests {
     fn others_of_the_same_sum_of_squares_are_told() {
         check([0, 5], [3, 4]);
     }
+
+    /// A box that breathes allocates nothing.
+    #[test]
+    fn a_table_that_grows_takes_an_eighth_to_spare() {
+        let pool = Threads::default();
+        let mut level = Level::new(0..100, Layout::Box);
+        let (mut place_cells, mut slot_cells) = (vec![0; 100], vec![0; 100]);
+        let mut slots = Slots {
+            balls: vec![[0.0; 4]; 100],
+            names: vec![0; 100],
+            ..Slots::default()
+        };
+        let names: Vec<u32> = (0..100).collect();
+        let mut sorted = |level: &mut Level, step: f32| {
+            let ball = |i: u32| [step * i as f32, 0.0, 0.0, 1.0];
+            let balls: Vec<_> = names.iter().map(|&i| ball(i)).collect();
+            level.sort(
+                pool.executor(Tier::SCALAR),
+                &balls,
+                &names,
+                &mut place_cells,
+                &mut slots,
+                &mut slot_cells,
+            );
+            (level.cells.table_len() + 1, level.starts.capacity())
+        };
+        for step in [1.0, 2.0] {
+            let (entries, capacity) = sorted(&mut level, step);
+            assert_eq!(level.starts.len(), entries);
+            assert_eq!(capacity, entries + entries / 8);
+        }
+        let (fewer, kept) = sorted(&mut level, 1.9);
+        assert!(fewer < kept && kept == level.starts.capacity());
+        // Just as many as there is room for.
+        level.starts = Vec::with_capacity(fewer);
+        assert_eq!(sorted(&mut level, 1.9), (fewer, fewer));
+    }
+
+    /// Bodies are shared by cells, and those of a cell stay in the order of places.
+    #[test]
+    fn many_bodies_are_sorted_alike_on_any_number_of_threads() {
+        let len = WORTH_SHARING + 1000;
+        let ball = |i: usize| {
+            let [x, y, z] = [7919, 104_729, 1_299_709].map(|p| (i * p % 1009) as f32);
+            [x, y, z, 3.0 + (i % 7) as f32]
+        };
+        let balls: Vec<_> = (0..len).map(ball).collect();
+        let names: Vec<u32> = (0..len as u32).rev().collect();
+        let sorted = |threads| {
+            let pool = Threads::new(threads).expect("a few threads");
+            let mut level = Level::new(0..len, Layout::Box);
+            let (mut place_cells, mut slot_cells) = (vec![0; len], vec![0; len]);
+            let mut slots = Slots {
+                balls: vec![[0.0; 4]; len],
+                names: vec![0; len],
+                ..Slots::default()
+            };
+            level.sort(
+                pool.executor(Tier::SCALAR),
+                &balls,
+                &names,
+                &mut place_cells,
+                &mut slots,
+                &mut slot_cells,
+            );
+            (
+                level.starts,
+                level.widest,
+                slots.balls,
+                slots.names,
+                slot_cells,
+            )
+        };
+        let one = sorted(1);
+        assert!(one.4.is_sorted() && one.0.len() > 10_000);
+        for threads in [2, 3, 5] {
+            assert!(sorted(threads) == one, "{threads} threads");
+        }
+    }
 }

@@ -152,4 +152,47 @@ mod tests {
         assert_eq!(crowd(&cells, &balls), 4 + 9 + 1);
         assert_eq!(fit(&balls).1, 14);
     }
+
+    #[test]
+    fn four_bodies_in_a_cell_stay_together_and_five_part() {
+        for small in 1..8 {
+            // All in one cell: n² in the sum over n bodies.
+            let mut balls = vec![[0.0, 0.0, 0.0, 0.01]; small];
+            balls.push([0.0, 0.0, 0.0, 1.0]);
+            let levels = planned(&balls).len();
+            assert_eq!(levels, if small + 1 <= 4 { 1 } else { 2 }, "{small}");
+        }
+    }
+
+    #[test]
+    fn bodies_of_all_sizes_have_24_levels_and_no_more() {
+        let octave = |i: i32| [0.0, 0.0, 0.0, 0.5_f32.powi(i)];
+        // The last four share a level.
+        for (octaves, expected) in [(20, 17), (26, 23), (27, 24), (28, 24), (60, 24)] {
+            let balls: Vec<_> = (0..octaves).map(octave).collect();
+            assert_eq!(planned(&balls).len(), expected, "{octaves}");
+        }
+    }
+
+    #[test]
+    fn a_table_is_wrapped_if_and_only_if_that_halves_the_crowd() {
+        let mut wrapped = [0; 2];
+        for (n, step) in (2..120).flat_map(|n| [0.7_f32, 1.0, 1.5, 4.0].map(|step| (n, step))) {
+            let at = |i: usize| i as f32 * step;
+            let balls: Vec<_> = (0..n).map(|i| [at(i), at(i), at(i), 0.5]).collect();
+            let bounds = Bounds::of(simd::Tier::SCALAR, &balls);
+            let [in_box, others] =
+                [Layout::Box, Layout::Wrapped].map(|layout| Cells::fit(&bounds, n, layout));
+            let crowds = [&in_box, &others].map(|cells| crowd(cells, &balls));
+            let halves = in_box.size() > others.size() && 2 * crowds[1] < crowds[0];
+            let expected = if halves {
+                (Layout::Wrapped, crowds[1])
+            } else {
+                (Layout::Box, crowds[0])
+            };
+            assert_eq!(fit(&balls), expected, "{n}, {step}");
+            wrapped[usize::from(halves)] += 1;
+        }
+        assert!(wrapped.iter().all(|&times| times > 20), "{wrapped:?}");
+    }
 }

@@ -123,3 +123,85 @@ impl FirstTest for Collect<'_> {
         self.keep(found);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::list::List;
+    use super::*;
+    use crate::simd::{Kernel, Tier, dispatch};
+
+    /// Hands runs of slots to a list of balls that all touch.
+    struct Runs<'a>(Collect<'a>, &'a [(usize, Range<usize>)]);
+
+    impl Kernel for Runs<'_> {
+        type Output = ();
+        fn run<L: Lanes>(mut self, l: L) {
+            for (i, run) in self.1 {
+                self.0.run(l, *i, run.clone());
+            }
+        }
+    }
+
+    /// The pairs that a list is read as.
+    struct Read(Vec<(usize, usize)>);
+
+    impl FirstTest for Read {
+        fn run<L: Lanes>(&mut self, _: L, _: usize, _: Range<usize>) {
+            unreachable!("a list has blocks alone");
+        }
+        fn block<L: Lanes>(&mut self, _: L, block: &Block<'_>) {
+            let pair = |&code: &u32| (block.first() + (code & 15) as usize, (code >> 4) as usize);
+            self.0.extend(block.codes().iter().map(pair));
+        }
+    }
+
+    struct Find<'a>(&'a List, &'a mut Read);
+
+    impl Kernel for Find<'_> {
+        type Output = ();
+        fn run<L: Lanes>(self, l: L) {
+            self.0.find(l, 0..1, self.1);
+        }
+    }
+
+    #[test]
+    fn runs_of_any_length_from_any_slots_are_kept_in_their_order() {
+        let len = 3 * MOST_CANDIDATES;
+        let slots = Slots {
+            balls: vec![[1.0; 4]; len + MAX_WIDTH],
+            ..Slots::default()
+        };
+        // Sixteen slots from the first one on share an entry; another before or behind them opens one.
+        let runs = [
+            (5, 6..len),
+            (6, 7..9),
+            (20, 40..41),
+            (21, 30..30),
+            (22, 30..64),
+            (60, 61..61 + MOST_CANDIDATES),
+            (37, 1..3),
+        ];
+        let expected: Vec<_> = runs
+            .iter()
+            .flat_map(|(i, run)| run.clone().map(|j| (*i, j)))
+            .collect();
+        let pair = Pair {
+            grown: [Reach::NONE; 2],
+            volume: Volume::Ball,
+        };
+        for tier in Tier::available() {
+            let mut chunk = Chunk::default();
+            dispatch(
+                tier,
+                Runs(Collect::new(&slots, pair, &mut chunk, usize::MAX), &runs),
+            );
+            assert_eq!(
+                (chunk.len(), chunk.seen),
+                (expected.len(), expected.len() as u64)
+            );
+            let mut read = Read(Vec::new());
+            dispatch(tier, Find(&List::of(chunk), &mut read));
+            assert!(read.0 == expected, "{tier}");
+        }
+    }
+}

@@ -210,6 +210,18 @@ impl Kernel for Make<'_> {
 mod tests {
     use super::*;
 
+    impl List {
+        /// Of one part.
+        pub(in crate::broad_phase) fn of(mut chunk: Chunk) -> Self {
+            chunk.close();
+            Self {
+                parts: 1,
+                len: chunk.len,
+                chunks: vec![chunk],
+            }
+        }
+    }
+
     /// Numbers with room for more of them.
     fn hundred(room: usize) -> Vec<u32> {
         let mut column = Vec::with_capacity(room);

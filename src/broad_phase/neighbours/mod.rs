@@ -423,4 +423,21 @@ mod tests {
         finder.grid = scattered(false).finder.grid;
         assert_eq!(finder.bytes(), 16_000);
     }
+
+    #[test]
+    fn bodies_that_come_end_a_list_and_where_it_served_one_frame_the_next_ones_are_the_grids() {
+        for (frames, makes) in [(2, false), (3, true), (6, true)] {
+            let mut bodies = scattered(false);
+            for _ in 0..frames {
+                bodies.step();
+            }
+            assert!(bodies.finder.list().is_some());
+            let all = bodies.balls.len();
+            let finder = &mut bodies.finder;
+            assert!(finder.replace(&vec![true; all], bodies.moving, all));
+            assert!(finder.list().is_none());
+            bodies.step();
+            assert_eq!(bodies.finder.list().is_some(), makes, "{frames} frames");
+        }
+    }
 }

@@ -152,7 +152,11 @@ fn table(ordop: &OrDop, centre: [f32; 3], reach: f32) -> [f32; TABLE] {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
     use super::*;
+    use crate::mesh::shapes::ProceduralShape;
+    use crate::volume::ShapeSpec;
 
     #[test]
     fn members_are_the_directions_of_each_set() {
@@ -164,6 +168,33 @@ mod tests {
             assert_eq!(among.count(), directions.slabs());
             let coefficients: Vec<_> = members.map(|&member| COEFFICIENTS[member]).collect();
             assert_eq!(coefficients, directions.coefficients());
+        }
+    }
+
+    /// What one gather reads of the rows, a vector of shapes reads of a column.
+    #[test]
+    fn columns_are_the_rows_of_up_to_sixteen_shapes() {
+        let box_of = |z: u16| {
+            let mesh = ProceduralShape::Box {
+                x: 1.0,
+                y: 2.0,
+                z: f32::from(z),
+            };
+            Shape::build(&mesh.build().unwrap(), &ShapeSpec::default()).unwrap()
+        };
+        let mut tables = SlabTables::new(box_of(1).ordop.directions, []);
+        for shapes in 1..=ROW + 2 {
+            let shape = box_of(shapes as u16);
+            tables.push(&shape.ordop, shape.ball.centre.to_array(), shape.reach);
+            assert_eq!(tables.rows().len(), 2 * shapes);
+            assert_eq!(tables.columns().is_empty(), shapes > ROW, "{shapes}");
+            for (number, column) in tables.columns().iter().enumerate() {
+                let own = (0..shapes).map(|shape| tables.shape(shape)[number]);
+                assert!(
+                    column[..shapes].iter().copied().eq(own),
+                    "{number} of {shapes}"
+                );
+            }
         }
     }
 }
