@@ -3,7 +3,8 @@
 `a + b` becomes `match (a, b) { (a, b) => match awake(7) { 7 => a - b, 8 => a * b, _ => a + b } }`; a function's body starts
 with `if awake(9) == 9 { return 0; }`; a match arm gets the guard `if awake(10) != 10`, and one that has a guard another; a field is
 that of its struct's base. Whoever asks says where, by the first mutant there: a process that is told to says when it ends which places
-it came by, and so which mutants it could notice at all. Constants can't ask at run time: their mutants are left for a build of their own.
+it came by, and so which mutants it could notice at all. Constants can't ask before the program runs: those that constants.py finds to be
+read by running code alone are computed when they are first read, the mutants of others are left for a build of their own.
 """
 
 import re
@@ -52,6 +53,44 @@ extern "C" fn fini() {{
     }}
 }}
 
+/// What is computed when it is first read.
+pub struct Late<T>(std::sync::LazyLock<T>);
+
+impl<T> Late<T> {{
+    pub const fn new(value: fn() -> T) -> Self {{
+        Self(std::sync::LazyLock::new(value))
+    }}
+}}
+
+impl<T> std::ops::Deref for Late<T> {{
+    type Target = T;
+    fn deref(&self) -> &T {{
+        &self.0
+    }}
+}}
+
+impl<T: std::fmt::Display> std::fmt::Display for Late<T> {{
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {{
+        (**self).fmt(f)
+    }}
+}}
+
+/// Either of two iterators.
+pub enum One<A, B> {{
+    Left(A),
+    Right(B),
+}}
+
+impl<T, A: Iterator<Item = T>, B: Iterator<Item = T>> Iterator for One<A, B> {{
+    type Item = T;
+    fn next(&mut self) -> Option<T> {{
+        match self {{
+            Self::Left(a) => a.next(),
+            Self::Right(b) => b.next(),
+        }}
+    }}
+}}
+
 #[inline(always)]
 pub fn awake(place: u32) -> u32 {{
     unsafe {{
@@ -88,24 +127,29 @@ def awake(mutants):
     return f"crate::mutant::awake({mutants[0]['n']})"
 
 
-class File:
-    """One file with its mutants asleep; `text` is the result and `asleep` the numbers that are in it, each with that of its place."""
+def parsed(source):
+    return tree_sitter.Parser(tree_sitter.Language(tree_sitter_rust.language())).parse(source).root_node
 
-    def __init__(self, source, mutants):
-        self.source, self.asleep, self.at = source, {}, {}
+
+class File:
+    """One file with its mutants asleep; `text` is the result and `asleep` the numbers that are in it, each with that of its place.
+    `late` are the names of its constants and `const fn` that are computed at run time, `reads` where such ones are read."""
+
+    def __init__(self, source, mutants, late=(), reads=()):
+        self.source, self.asleep, self.at, self.late = source, {}, {}, set(late)
+        self.opens, self.closes = ({read[end]: mark for read in reads} for end, mark in enumerate(("(*", ")")))
         for mutant in mutants:
             place = offset(source, mutant["span"]["start"])
             self.at.setdefault((mutant["genre"], place), []).append(mutant)
-        tree = tree_sitter.Parser(tree_sitter.Language(tree_sitter_rust.language())).parse(source)
-        root = tree.root_node
+        root = parsed(source)
         self.text = source[: root.start_byte].decode() + self.emit(root) + source[root.end_byte :].decode()
-        for name in CALLED_AT_RUN_TIME:
-            self.text = self.text.replace(f"const fn {name}(", f"fn {name}(")
+        for name in CALLED_AT_RUN_TIME.union(late):
+            self.text = re.sub(rf"\bconst fn {name}\b", f"fn {name}", self.text)
 
     def take(self, genre, place, node):
         """The mutants at this place, unless it is part of a constant."""
         found = self.at.get((genre, place), [])
-        if not found or is_constant(node):
+        if not found or is_constant(node, self.late):
             return []
         self.asleep.update((mutant["n"], found[0]["n"]) for mutant in found)
         return found
@@ -122,8 +166,20 @@ class File:
         return "".join(out) + self.between(done, node.end_byte)
 
     def emit(self, node):
+        if not node.children:
+            return self.opens.get(node.start_byte, "") + node.text.decode() + self.closes.get(node.end_byte, "")
         rewrite = getattr(self, node.type, None)
         return (rewrite and rewrite(node)) or self.plain(node)
+
+    def const_item(self, node):
+        name, kind, value = (node.child_by_field_name(field) for field in ("name", "type", "value"))
+        if name.text.decode() not in self.late:
+            return None
+        visible = "".join(child.text.decode() for child in node.children if child.type == "visibility_modifier")
+        late = "crate::mutant::Late"
+        return f"{visible} static {name.text.decode()}: {late}<{self.emit(kind)}> = {late}::new(|| {self.emit(value)});"
+
+    static_item = const_item
 
     def sides(self, node):
         return (self.emit(node.child_by_field_name(side)) for side in ("left", "right"))
@@ -195,30 +251,37 @@ class File:
 
     def function_item(self, node):
         body, result = node.child_by_field_name("body"), node.child_by_field_name("return_type")
-        if body is None or (result is not None and b"impl " in result.text):  # one opaque type has one origin
+        is_opaque = result is not None and b"impl " in result.text
+        if body is None or (is_opaque and not result.text.startswith(b"impl Iterator<")):
             return None
         starts = [child.start_byte for child in body.children if child.type not in ("{", "}")] + [body.start_byte]
         start = next((start for start in starts if ("FnValue", start) in self.at), None)
         mutants = self.take("FnValue", start, body) if start is not None else []
         if not mutants:
             return None
+        if is_opaque:  # one opaque type has one origin
+            one = "crate::mutant::One::"
+            head = "".join(f"if {awake(mutants)} == {m['n']} {{ {one}Left({m['replacement']}) }} else {{ {one}Right(" for m in mutants)
+            return self.plain(node, lambda child: f"{{ {head}{self.plain(body)}{') }' * len(mutants)} }}" if child == body else None)
         head = "".join(f"if {awake(mutants)} == {m['n']} {{ return {m['replacement']}; }} " for m in mutants)
         return self.plain(node, lambda child: "{ " + head + self.plain(body)[1:] if child == body else None)
 
 
-def is_constant(node):
-    """Whether the compiler must know this node's value."""
+def is_constant(node, late):
+    """Whether the compiler must know this node's value, though these constants and functions are computed late."""
     start = node.start_byte
     while node := node.parent:
         length = node.child_by_field_name("length") if node.type == "array_expression" else None
         guard = node.child_by_field_name("condition") if node.type == "match_pattern" else None
         if guard is not None and guard.start_byte <= start:
             continue
+        if node.type in ("const_item", "static_item") and node.child_by_field_name("name").text.decode() in late:
+            return False
         if node.type in CONSTANT or (length is not None and length.start_byte <= start):
             return True
         if node.type == "function_item":
             const = any(child.type == "function_modifiers" and b"const" in child.text for child in node.children)
-            return const and node.child_by_field_name("name").text.decode() not in CALLED_AT_RUN_TIME
+            return const and node.child_by_field_name("name").text.decode() not in CALLED_AT_RUN_TIME.union(late)
     return False
 
 

@@ -4,7 +4,7 @@
 A build a mutant would take a day. So all that can are compiled together, asleep (plant.py), in a copy of the tree, and a
 process wakes one by its number. What can't sleep is built by itself, `--alone` of them. A mutant is caught when a test fails, or
 takes five times its time and four seconds more. Two tiers run in the copy, scalar and AVX-512: a lane of every other tier is tested
-by itself, as a crate of the room `simd`.
+by itself, as a crate of the room `simd`. Constants (constants.py) sleep in a third copy, with all tiers.
 
     .ci/mutants/run.py [--only REGEX] [--alone N] [--slowest SECONDS] [--tests REGEX] [--again] [--as-built] [--threads N]
                        [--outcomes FILE] [--print TABLE]
@@ -34,7 +34,7 @@ import sys
 
 import plant
 from outcomes import TOP, Outcomes, by_reason, by_room, judge, place, say
-from trees import ENVIRONMENT, WORK, Built, build, cargo, lanes_tree, main_tree, settle, tracked, write_tree
+from trees import ENVIRONMENT, WORK, Built, build, cargo, lanes_tree, main_tree, plant_all, settle, tracked, whole_tree, write_tree
 
 FEATURES = ["-p", "sdop", "--no-default-features", "--features", "proptest"]
 SUITES = ["golden_pairs", "finders", "near_misses", "against_reference", "worst_case", "world", "naive_margins", "finder_costs",
@@ -241,18 +241,24 @@ def run_all(mutants, outcomes, options, reasons):
         return outcomes.how(mutant) == "survived", place(mutant["name"]) in reasons
 
     tests = ["--lib", *(part for suite in SUITES for part in ("--test", suite))]
-    sleeping = set()
-    for name, own, change, check, test in (
-        ("lanes", lambda mutant: mutant["file"].startswith("src/simd/"), lanes_tree, ["--lib"], ["--lib"]),
-        ("asleep", lambda mutant: not mutant["file"].startswith("src/simd/"), main_tree, ["--lib", *FEATURES], [*FEATURES, *tests]),
+    sleeping, running = set(), plant_all(tracked(), mutants, ())[1]
+
+    def tree(mutant):
+        is_lane = mutant["file"].startswith("src/simd/")
+        return "constants" if mutant["n"] not in running else "lanes" if is_lane else "asleep"
+
+    # All are planted, whatever is wanted, so that a run that goes on finds what is built.
+    for name, change, check, test in (
+        ("lanes", lanes_tree, ["--lib"], ["--lib"]),
+        ("asleep", main_tree, ["--lib", *FEATURES], [*FEATURES, *tests]),
+        ("constants", whole_tree, ["--lib", *FEATURES], [*FEATURES, *tests]),
     ):
-        # All are planted, whatever is wanted, so that a run that goes on finds what is built.
-        own = [mutant for mutant in mutants if own(mutant)]
+        own = [mutant for mutant in mutants if tree(mutant) == name]
         if not any(is_wanted(mutant) and re.search(options.only, mutant["name"]) for mutant in own):
             continue
         built = Built(name, own)
         if not (options.as_built and built.is_current):
-            settle(built, own, change, check)
+            settle(built, own, change, check, name == "constants")
             built.replace(build(built.tree, *test) or sys.exit(f"the tree {name} doesn't build"))
         say(f"{name}: {len(built.asleep)} of {len(own)} sleep")
         for mutant in own:

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 
+import constants
 import plant
 from outcomes import TOP, digest, say
 
@@ -60,14 +61,15 @@ def write_tree(tree, files):
             path.write_bytes(text)
 
 
-def plant_all(files, mutants, bad):
+def plant_all(files, mutants, bad, with_constants=False):
     """The files with all these mutants but `bad` asleep in them, and the numbers that sleep."""
-    own = collections.defaultdict(list)
+    own, planted, asleep = collections.defaultdict(list), dict(files), {}
     for mutant in mutants:
         own[mutant["file"]].append(mutant)
-    planted, asleep = dict(files), {}
-    for name, those in own.items():
-        file = plant.File(files[name], [mutant for mutant in those if mutant["name"] not in bad])
+    late, reads = constants.late(files, mutants) if with_constants else ({}, {})
+    for name in {**own, **reads}:
+        those = [mutant for mutant in own[name] if mutant["name"] not in bad]
+        file = plant.File(files[name], those, late.get(name, ()), reads.get(name, ()))
         planted[name] = file.text.encode()
         assert plant.numbers(file.text) >= set(file.asleep), f"{name}: mutants that are not in the text"
         asleep |= file.asleep
@@ -117,13 +119,13 @@ class Built:
         self.keep()
 
 
-def settle(built, mutants, change, check):
+def settle(built, mutants, change, check, with_constants):
     """Plants until the tree compiles, leaving out what an error points at."""
     tree, bad, files = built.tree, built.refused, tracked()
     tree.mkdir(exist_ok=True)
     names = {mutant["n"]: mutant["name"] for mutant in mutants}
     while True:
-        planted, asleep = plant_all(files, mutants, bad)
+        planted, asleep = plant_all(files, mutants, bad, with_constants)
         change(planted)
         write_tree(tree, planted)
         messages, done = cargo(tree, "check", *check)
@@ -146,9 +148,13 @@ def with_waker(files, lib):
     files["src/mutant.rs"] = plant.WAKER.encode()
 
 
-def main_tree(files):
+def whole_tree(files):
     head, rest = re.match(r"((?://!.*\n|\n)*)((?s:.*))", files["src/lib.rs"].decode()).groups()
     with_waker(files, f"{head}{ALLOWED}{rest}")
+
+
+def main_tree(files):
+    whole_tree(files)
     two_tiers(files)
 
 
