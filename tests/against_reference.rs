@@ -196,8 +196,9 @@ fn lazy_updates_change_the_count_of_updates_and_nothing_else() {
                 .each_mut()
                 .map(|culler| culler.cull(&frame.bodies).unwrap().sorted());
             assert_eq!(eager, lazy);
-            let pairs = cullers[1].potentially_colliding();
-            tested += pairs.flatten().collect::<BTreeSet<_>>().len() as u64;
+            let bodies = cullers[1].potentially_colliding().flatten();
+            let moving = bodies.filter(|&body| frame.bodies.dynamic[body as usize]);
+            tested += moving.collect::<BTreeSet<_>>().len() as u64;
         }
         let [eager, lazy] = cullers.each_ref().map(|culler| culler.counters().ordop);
         assert_eq!(eager.updates, 2 * 108);
@@ -205,7 +206,7 @@ fn lazy_updates_change_the_count_of_updates_and_nothing_else() {
         if matches!(strategy.scheme().flow, Flow::Sequential | Flow::Batch) {
             assert_eq!(
                 lazy.updates, tested,
-                "{strategy}: once for each body of a pair"
+                "{strategy}: once for each moving body of a pair"
             );
         }
         assert_eq!((eager.tests, eager.hits), (lazy.tests, lazy.hits));

@@ -295,7 +295,8 @@ def numbers(text):
 
 
 def culprits(text, start, end):
-    """The mutants that an error between these bytes of a rewritten file points at."""
-    before, own = text[:start].decode()[-400:], text[start:end].decode()
-    found = re.findall(NUMBER, before) or re.findall(NUMBER, own)
-    return {int(next(filter(None, groups))) for groups in found[-1:]}
+    """The mutants that an error between these bytes of a rewritten file points at: the last one before it or in it, or, where it is a
+    function's result that is wrong, the first one of its body."""
+    before, own, behind = text[:start].decode()[-400:], text[start:end].decode(), text[end:].decode()[:400]
+    found = re.findall(NUMBER, before)[-1:] or re.findall(NUMBER, own)[-1:] or re.findall(NUMBER, behind)[:1]
+    return {int(next(filter(None, groups))) for groups in found}
