@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::Bodies;
 use crate::rounding::LIMIT;
-use crate::simd::{MAX_WIDTH, MOST_QUADS};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, MOST_QUADS, Tier, dispatch};
 use crate::volume::Shape;
 
 /// A body outside of the contract.
@@ -210,10 +210,47 @@ fn with_zero(&[x, y, z]: &[f32; 3]) -> Vec4 {
     Vec4::new(x, y, z, 0.0)
 }
 
-/// Which of a ball's coordinates are at most 2⁶⁰ in size, and whether its radius, the fourth, is finite.
+/// Which of three coordinates are at most 2⁶⁰ in size.
 #[inline]
-pub(crate) fn within_limit(ball: Vec4) -> BVec4A {
-    ball.abs().cmple(Vec4::new(LIMIT, LIMIT, LIMIT, f32::MAX))
+fn within_limit(v: Vec4) -> BVec4A {
+    v.abs().cmple(Vec4::splat(LIMIT))
+}
+
+/// Whether the centres of all balls are within 2⁶⁰, and their radii finite.
+pub(crate) fn balls_are_within_limit(tier: Tier, balls: &[[f32; 4]]) -> bool {
+    dispatch(tier, BallsWithinLimit(balls))
+}
+
+struct BallsWithinLimit<'a>(&'a [[f32; 4]]);
+
+/// Numbers that are looked at together: some vectors of any tier, so that what a loop takes by itself is little beside them.
+const TOGETHER: usize = 64;
+
+impl Kernel for BallsWithinLimit<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) -> bool {
+        // Bits without a sign are in the order of sizes, and those of NaN above all: two instructions a vector.
+        let mut largest = [0; TOGETHER];
+        let (many, rest) = self.0.as_flattened().as_chunks::<TOGETHER>();
+        for numbers in many {
+            enlarge(&mut largest, numbers);
+        }
+        enlarge(&mut largest, rest);
+        let mut fine = true;
+        for ball in largest.as_chunks::<4>().0 {
+            let [x, y, z, radius] = *ball;
+            fine &= x.max(y).max(z) <= LIMIT.to_bits() && radius <= f32::MAX.to_bits();
+        }
+        fine
+    }
+}
+
+#[inline(always)]
+fn enlarge(largest: &mut [u32; TOGETHER], numbers: &[f32]) {
+    for (largest, number) in largest.iter_mut().zip(numbers) {
+        *largest = (*largest).max(number.to_bits() & !(1 << 31));
+    }
 }
 
 fn is_invertible(q: &[f32; 4]) -> bool {
@@ -237,6 +274,31 @@ mod tests {
             told,
             Err(format!("body {most}: number {more} of {most} at most"))
         );
+    }
+
+    #[test]
+    fn balls_are_refused_in_every_lane_for_an_ulp_beyond_the_limit() {
+        let beyond = LIMIT.next_up();
+        for tier in Tier::available() {
+            for count in [0, 1, 16, 17, 50] {
+                let fine = vec![[LIMIT, -LIMIT, 0.0, f32::MAX]; count];
+                assert!(balls_are_within_limit(tier, &fine), "{tier}, {count}");
+                for (ball, axis) in
+                    (0..count).flat_map(|ball| [0, 1, 2, 3].map(|axis| (ball, axis)))
+                {
+                    for bad in [beyond, -beyond, f32::INFINITY, f32::NAN, -f32::NAN] {
+                        let mut balls = fine.clone();
+                        balls[ball][axis] = bad;
+                        let is_fine = axis == 3 && bad.is_finite();
+                        assert_eq!(
+                            balls_are_within_limit(tier, &balls),
+                            is_fine,
+                            "{tier}, {ball}, {axis}: {bad}"
+                        );
+                    }
+                }
+            }
+        }
     }
 
     #[cfg(feature = "lab")]

@@ -277,7 +277,7 @@ impl Culler {
         let executor = pool.executor(self.tier);
         let is_sound = if self.needs.balls {
             let balls = &mut self.balls;
-            update_spheres(pool, balls, frames, bodies, places, range.clone())
+            update_spheres(executor, balls, frames, bodies, places, range.clone())
         } else {
             check_poses(bodies, 0..bodies.len()).is_ok()
         };

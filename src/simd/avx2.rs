@@ -191,6 +191,54 @@ impl Lanes for Avx2 {
         I8(unsafe { _mm256_add_epi32(a.0, b.0) })
     }
     #[inline(always)]
+    fn store_u32(self, v: I8, to: &mut [u32]) {
+        let to = &mut to[..8];
+        // SAFETY: room for 8 integers is there, and the token proves AVX.
+        unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), v.0) };
+    }
+    #[inline(always)]
+    fn gt_u32(self, a: I8, b: I8) -> M8 {
+        // SAFETY: the token proves AVX2, whose comparison is signed: flipped signs put the upper half above the lower.
+        M8(unsafe {
+            let sign = _mm256_set1_epi32(i32::MIN);
+            let [a, b] = [_mm256_xor_si256(a.0, sign), _mm256_xor_si256(b.0, sign)];
+            _mm256_castsi256_ps(_mm256_cmpgt_epi32(a, b))
+        })
+    }
+    #[inline(always)]
+    fn select_u32(self, m: M8, a: I8, b: I8) -> I8 {
+        // SAFETY: the token proves AVX.
+        I8(unsafe {
+            let [a, b] = [_mm256_castsi256_ps(a.0), _mm256_castsi256_ps(b.0)];
+            _mm256_castps_si256(_mm256_blendv_ps(b, a, m.0))
+        })
+    }
+    #[inline(always)]
+    fn gather_u32(self, table: &[u32], index: I8) -> I8 {
+        assert!(!table.is_empty(), "the table has an entry");
+        let last = table.len().min(1 << 31) as u32 - 1;
+        // SAFETY: every index is clamped to the last entry, below 2³¹ as the gather's signed ones must be; the token proves
+        // AVX2.
+        I8(unsafe {
+            let index = _mm256_min_epu32(index.0, _mm256_set1_epi32(last as i32));
+            _mm256_i32gather_epi32::<4>(table.as_ptr().cast(), index)
+        })
+    }
+    #[inline(always)]
+    fn lookup_16_u32(self, table: &[u32; 16], index: I8) -> I8 {
+        // SAFETY: 16 integers are there, and the token proves AVX2; the permutations read the low three bits, and bit 3,
+        // moved into the sign, picks the half.
+        I8(unsafe {
+            let low = _mm256_loadu_si256(table.as_ptr().cast());
+            let high = _mm256_loadu_si256(table.as_ptr().add(8).cast());
+            let low = _mm256_permutevar8x32_epi32(low, index.0);
+            let high = _mm256_permutevar8x32_epi32(high, index.0);
+            let half = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(index.0));
+            let [low, high] = [_mm256_castsi256_ps(low), _mm256_castsi256_ps(high)];
+            _mm256_castps_si256(_mm256_blendv_ps(low, high, half))
+        })
+    }
+    #[inline(always)]
     fn split_u32(self, a: I8) -> (I8, I8) {
         // SAFETY: the token proves AVX2.
         unsafe {

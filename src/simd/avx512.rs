@@ -161,6 +161,38 @@ impl Lanes for Avx512 {
         I16(unsafe { _mm512_add_epi32(a.0, b.0) })
     }
     #[inline(always)]
+    fn store_u32(self, v: I16, to: &mut [u32]) {
+        let to = &mut to[..16];
+        // SAFETY: room for 16 integers is there, and the token proves AVX-512 F.
+        unsafe { _mm512_storeu_epi32(to.as_mut_ptr().cast(), v.0) };
+    }
+    #[inline(always)]
+    fn gt_u32(self, a: I16, b: I16) -> M16 {
+        // SAFETY: the token proves AVX-512 F.
+        M16(unsafe { _mm512_cmpgt_epu32_mask(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn select_u32(self, m: M16, a: I16, b: I16) -> I16 {
+        // SAFETY: the token proves AVX-512 F.
+        I16(unsafe { _mm512_mask_blend_epi32(m.0, b.0, a.0) })
+    }
+    #[inline(always)]
+    fn gather_u32(self, table: &[u32], index: I16) -> I16 {
+        assert!(!table.is_empty(), "the table has an entry");
+        let last = table.len().min(1 << 31) as u32 - 1;
+        // SAFETY: every index is clamped to the last entry, below 2³¹ as the gather's signed ones must be; the token proves
+        // AVX-512 F.
+        I16(unsafe {
+            let index = _mm512_min_epu32(index.0, _mm512_set1_epi32(last as i32));
+            _mm512_i32gather_epi32::<4>(index, table.as_ptr().cast())
+        })
+    }
+    #[inline(always)]
+    fn lookup_16_u32(self, table: &[u32; 16], index: I16) -> I16 {
+        // SAFETY: 16 integers are there, and the token proves AVX-512 F; the permutation reads the low four bits.
+        I16(unsafe { _mm512_permutexvar_epi32(index.0, _mm512_loadu_epi32(table.as_ptr().cast())) })
+    }
+    #[inline(always)]
     fn split_u32(self, a: I16) -> (I16, I16) {
         // SAFETY: the token proves AVX-512 F.
         unsafe {

@@ -60,6 +60,16 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     fn load_u32(self, from: &[u32]) -> Self::I;
     /// Wrapping sum.
     fn add_u32(self, a: Self::I, b: Self::I) -> Self::I;
+    /// Writes all lanes to the front of `to`, which must have `WIDTH` elements.
+    fn store_u32(self, v: Self::I, to: &mut [u32]);
+    /// `a > b`.
+    fn gt_u32(self, a: Self::I, b: Self::I) -> Self::M;
+    /// `if m { a } else { b }`.
+    fn select_u32(self, m: Self::M, a: Self::I, b: Self::I) -> Self::I;
+    /// Entry `index` of a non-empty table, lane by lane; an index past the end reads the last entry.
+    fn gather_u32(self, table: &[u32], index: Self::I) -> Self::I;
+    /// Entry `index` (0 to 15) of a table, lane by lane.
+    fn lookup_16_u32(self, table: &[u32; 16], index: Self::I) -> Self::I;
     /// The upper 28 bits and the lower 4 bits.
     fn split_u32(self, a: Self::I) -> (Self::I, Self::I);
     /// Writes the lanes whose bit in `keep` is set to the front of `out`, in lane order; `out` has at least `WIDTH` elements and

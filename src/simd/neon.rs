@@ -170,6 +170,33 @@ impl Lanes for Neon {
         I4(unsafe { vaddq_u32(a.0, b.0) })
     }
     #[inline(always)]
+    fn store_u32(self, v: I4, to: &mut [u32]) {
+        to[..4].copy_from_slice(&self.array(v));
+    }
+    #[inline(always)]
+    fn gt_u32(self, a: I4, b: I4) -> M4 {
+        // SAFETY: the token proves NEON.
+        M4(unsafe { vcgtq_u32(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn select_u32(self, m: M4, a: I4, b: I4) -> I4 {
+        // SAFETY: the token proves NEON.
+        I4(unsafe { vbslq_u32(m.0, a.0, b.0) })
+    }
+    #[inline(always)]
+    fn gather_u32(self, table: &[u32], index: I4) -> I4 {
+        let last = table.len() - 1;
+        self.load_u32(
+            &self
+                .array(index)
+                .map(|entry| table[(entry as usize).min(last)]),
+        )
+    }
+    #[inline(always)]
+    fn lookup_16_u32(self, table: &[u32; 16], index: I4) -> I4 {
+        self.load_u32(&self.array(index).map(|entry| table[(entry & 15) as usize]))
+    }
+    #[inline(always)]
     fn split_u32(self, a: I4) -> (I4, I4) {
         // SAFETY: the token proves NEON.
         unsafe {

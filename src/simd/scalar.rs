@@ -158,6 +158,26 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
         a.wrapping_add(b)
     }
     #[inline(always)]
+    fn store_u32(self, v: u32, to: &mut [u32]) {
+        to[0] = v;
+    }
+    #[inline(always)]
+    fn gt_u32(self, a: u32, b: u32) -> Self::M {
+        M1(a > b)
+    }
+    #[inline(always)]
+    fn select_u32(self, m: Self::M, a: u32, b: u32) -> u32 {
+        if m.0 { a } else { b }
+    }
+    #[inline(always)]
+    fn gather_u32(self, table: &[u32], index: u32) -> u32 {
+        table[(index as usize).min(table.len() - 1)]
+    }
+    #[inline(always)]
+    fn lookup_16_u32(self, table: &[u32; 16], index: u32) -> u32 {
+        table[(index & 15) as usize]
+    }
+    #[inline(always)]
     fn split_u32(self, a: u32) -> (u32, u32) {
         (a >> 4, a & 15)
     }

@@ -169,6 +169,40 @@ impl Lanes for Sse2 {
         I4(unsafe { _mm_add_epi32(a.0, b.0) })
     }
     #[inline(always)]
+    fn store_u32(self, v: I4, to: &mut [u32]) {
+        to[..4].copy_from_slice(&self.array(v));
+    }
+    #[inline(always)]
+    fn gt_u32(self, a: I4, b: I4) -> M4 {
+        // SAFETY: the token proves SSE2, whose comparison is signed: flipped signs put the upper half above the lower.
+        M4(unsafe {
+            let sign = _mm_set1_epi32(i32::MIN);
+            let [a, b] = [_mm_xor_si128(a.0, sign), _mm_xor_si128(b.0, sign)];
+            _mm_castsi128_ps(_mm_cmpgt_epi32(a, b))
+        })
+    }
+    #[inline(always)]
+    fn select_u32(self, m: M4, a: I4, b: I4) -> I4 {
+        // SAFETY: the token proves SSE2.
+        I4(unsafe {
+            let m = _mm_castps_si128(m.0);
+            _mm_or_si128(_mm_and_si128(m, a.0), _mm_andnot_si128(m, b.0))
+        })
+    }
+    #[inline(always)]
+    fn gather_u32(self, table: &[u32], index: I4) -> I4 {
+        let last = table.len() - 1;
+        self.load_u32(
+            &self
+                .array(index)
+                .map(|entry| table[(entry as usize).min(last)]),
+        )
+    }
+    #[inline(always)]
+    fn lookup_16_u32(self, table: &[u32; 16], index: I4) -> I4 {
+        self.load_u32(&self.array(index).map(|entry| table[(entry & 15) as usize]))
+    }
+    #[inline(always)]
     fn split_u32(self, a: I4) -> (I4, I4) {
         // SAFETY: the token proves SSE2.
         unsafe {

@@ -161,6 +161,11 @@ fn integers<L: Lanes>(l: L, start: usize) {
         (0..L::WIDTH).map(|i| f(a[i], b[i])).collect()
     };
     assert_eq!(as_floats(l.add_u32(va, vb)), expect(&|a, b| a + b));
+    let mut stored = [99; MAX_WIDTH + 1];
+    l.store_u32(va, &mut stored);
+    assert_eq!(stored[..L::WIDTH], a[..L::WIDTH]);
+    assert_eq!(stored[L::WIDTH], 99, "nothing is written behind the lanes");
+    look_up_integers(l, start);
     let bits: Vec<u32> = X[start..][..L::WIDTH].iter().map(|x| x.to_bits()).collect();
     assert_eq!(as_floats(l.as_u32(l.load(&X[start..]))), bits);
     let any: u32 = (0..L::WIDTH)
@@ -187,6 +192,70 @@ fn integers<L: Lanes>(l: L, start: usize) {
     let mut out = [99; MAX_WIDTH];
     l.compress(any, va, &mut out);
     assert_eq!(out[..kept.len()], kept[..]);
+}
+
+/// The lanes of a vector.
+fn lanes_of<L: Lanes>(l: L, v: L::I) -> Vec<u32> {
+    let mut out = [0; MAX_WIDTH];
+    l.store_u32(v, &mut out);
+    out[..L::WIDTH].to_vec()
+}
+
+/// Comparisons of integers on either side of 2³¹, and tables of them.
+fn look_up_integers<L: Lanes>(l: L, start: usize) {
+    let numbers = [0, 1, 7, (1 << 31) - 1, 1 << 31, (1 << 31) + 1, u32::MAX];
+    for shift in 0..numbers.len() {
+        let column = |step: usize| -> Vec<u32> {
+            (start..start + L::WIDTH)
+                .map(|lane| numbers[(step * lane + shift * step / 2) % numbers.len()])
+                .collect()
+        };
+        let (a, b) = (column(1), column(3));
+        let expect = |f: &dyn Fn(u32, u32) -> u32| -> Vec<u32> {
+            a.iter().zip(&b).map(|(&a, &b)| f(a, b)).collect()
+        };
+        let (va, vb) = (l.load_u32(&a), l.load_u32(&b));
+        let greater = l.gt_u32(va, vb);
+        let lanes = (0..L::WIDTH).filter(|&lane| a[lane] > b[lane]);
+        assert_eq!(
+            l.bits(greater),
+            lanes.fold(0, |bits, lane| bits | 1 << lane)
+        );
+        assert_eq!(
+            lanes_of(l, l.select_u32(greater, va, vb)),
+            expect(&u32::max)
+        );
+        assert_eq!(
+            lanes_of(l, l.select_u32(greater, vb, va)),
+            expect(&u32::min)
+        );
+    }
+    let table: [u32; 16] = std::array::from_fn(|entry| u32::MAX - 10 * entry as u32);
+    let entries = |scale: u32| -> Vec<u32> {
+        let first = start as u32;
+        (first..first + L::WIDTH as u32)
+            .map(|lane| (scale * lane + 3) % 24)
+            .collect()
+    };
+    let index = entries(7);
+    let gathered: Vec<u32> = index
+        .iter()
+        .map(|&entry| table[entry.min(15) as usize])
+        .collect();
+    assert_eq!(
+        lanes_of(l, l.gather_u32(&table, l.load_u32(&index))),
+        gathered
+    );
+    assert_eq!(
+        lanes_of(l, l.gather_u32(&table, l.splat_u32(u32::MAX))),
+        [table[15]; 16][..L::WIDTH]
+    );
+    let index: Vec<u32> = entries(5).iter().map(|entry| entry % 16).collect();
+    let found: Vec<u32> = index.iter().map(|&entry| table[entry as usize]).collect();
+    assert_eq!(
+        lanes_of(l, l.lookup_16_u32(&table, l.load_u32(&index))),
+        found
+    );
 }
 
 fn transposed<L: Lanes>(l: L, start: usize) {
@@ -244,14 +313,18 @@ fn every_tier_does_plain_arithmetic() {
     }
 }
 
-/// A safe call with nothing to read from must not read.
-struct GatherFromNothing;
+/// A safe call with nothing to read from must not read; of integers, or of numbers.
+struct GatherFromNothing(bool);
 
 impl Kernel for GatherFromNothing {
     type Output = u32;
 
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> u32 {
+        if self.0 {
+            let read = l.gather_u32(&[], l.splat_u32(3));
+            return l.bits(l.gt_u32(read, read));
+        }
         let read = l.gather(&[], l.splat_u32(3));
         l.bits(l.gt(read, read))
     }
@@ -260,8 +333,10 @@ impl Kernel for GatherFromNothing {
 #[test]
 fn an_empty_table_is_refused_in_every_tier() {
     for tier in Tier::available() {
-        let read = std::panic::catch_unwind(|| dispatch(tier, GatherFromNothing));
-        assert!(read.is_err(), "{tier}");
+        for integers in [false, true] {
+            let read = std::panic::catch_unwind(|| dispatch(tier, GatherFromNothing(integers)));
+            assert!(read.is_err(), "{tier}");
+        }
     }
 }
 

@@ -79,6 +79,24 @@ impl<'a> Listing<'a> {
         }
     }
 
+    /// What is listed of pairs of slots with these names, that of the lower body first.
+    #[inline(always)]
+    fn in_order<L: Lanes>(&self, l: L, [a, b]: [L::I; 2]) -> [L::I; 2] {
+        let bodies = match self.names {
+            SlotNames::Bodies => [a, b],
+            SlotNames::Places(body) => [l.gather_u32(body, a), l.gather_u32(body, b)],
+        };
+        let [one, other] = match self.listed {
+            Listed::Bodies => bodies,
+            Listed::Places => [a, b],
+        };
+        let swapped = l.gt_u32(bodies[0], bodies[1]);
+        [
+            l.select_u32(swapped, other, one),
+            l.select_u32(swapped, one, other),
+        ]
+    }
+
     /// Lists the pairs of some parts of the finder's work that pass the first test, and counts tests and hits. `flush`
     /// gets the list whenever it has reached `enough` pairs.
     pub(super) fn run(
@@ -251,7 +269,7 @@ impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
             let piece = start..run.end.min(start + PIECE);
             start = piece.end;
             let found = self.test.run(l, i, piece, &mut self.hits);
-            self.append(found, |slot| (i, slot as usize));
+            self.append(l, found, Hits::With(i));
         }
     }
 
@@ -259,22 +277,38 @@ impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>) {
         self.counters.tests += block.codes().len() as u64;
         let found = self.test.block(l, block, &mut self.hits);
-        let first = block.first();
-        self.append(found, |code| {
-            (first + (code & 15) as usize, (code >> 4) as usize)
-        });
+        self.append(l, found, Hits::Codes(block.first()));
+    }
+}
+
+/// What hits stand for.
+#[derive(Clone, Copy)]
+enum Hits {
+    /// Slots that this one meets.
+    With(usize),
+    /// Codes of a block whose lane 0 is this slot.
+    Codes(usize),
+}
+
+impl Hits {
+    /// The two slots of a hit.
+    fn slots(self, hit: u32) -> [usize; 2] {
+        match self {
+            Self::With(slot) => [slot, hit as usize],
+            Self::Codes(first) => [first + (hit & 15) as usize, (hit >> 4) as usize],
+        }
     }
 }
 
 impl<T> Lister<'_, '_, T> {
     /// Lists the first `found` hits.
     #[inline(always)]
-    fn append(&mut self, found: usize, slots: impl Fn(u32) -> (usize, usize)) {
+    fn append<L: Lanes>(&mut self, l: L, found: usize, hits: Hits) {
         let listed = self.out.len();
         if let Some(groups) = self.listing.groups {
-            self.append_colliding(found, slots, groups);
+            self.append_colliding(found, hits, groups);
         } else {
-            self.append_all(found, slots);
+            self.append_all(l, found, hits);
         }
         self.counters.hits += (self.out.len() - listed) as u64;
         if self.out.len() >= self.flush.enough {
@@ -282,55 +316,42 @@ impl<T> Lister<'_, '_, T> {
         }
     }
 
+    /// A vector of hits at a time; what is computed of the lanes behind the last hit is overwritten by the next pairs.
     #[inline(always)]
-    fn append_all(&mut self, found: usize, slots: impl Fn(u32) -> (usize, usize)) {
-        let names = |hit: u32| {
-            let (i, j) = slots(hit);
-            (self.names[i], self.names[j])
-        };
+    fn append_all<L: Lanes>(&mut self, l: L, found: usize, hits: Hits) {
         let (first, second) = self.out.room(found);
-        let pairs = first.iter_mut().zip(second).zip(&self.hits[..found]);
-        match (self.listing.names, self.listing.listed) {
-            (SlotNames::Bodies, _) => {
-                for ((first, second), &hit) in pairs {
-                    let (a, b) = names(hit);
-                    (*first, *second) = (a.min(b), a.max(b));
+        let mut start = 0;
+        while start < found {
+            let hit = l.load_u32(&self.hits[start..]);
+            let names = match hits {
+                Hits::With(slot) => [l.splat_u32(self.names[slot]), l.gather_u32(self.names, hit)],
+                Hits::Codes(slot) => {
+                    let ((other, lane), own) = (l.split_u32(hit), &self.names[slot..]);
+                    let own = match own.first_chunk() {
+                        Some(own) => l.lookup_16_u32(own, lane),
+                        None => l.gather_u32(own, lane),
+                    };
+                    [own, l.gather_u32(self.names, other)]
                 }
-            }
-            (SlotNames::Places(body), Listed::Bodies) => {
-                for ((first, second), &hit) in pairs {
-                    let (i, j) = names(hit);
-                    let (a, b) = (body[i as usize], body[j as usize]);
-                    (*first, *second) = (a.min(b), a.max(b));
-                }
-            }
-            (SlotNames::Places(body), Listed::Places) => {
-                for ((first, second), &hit) in pairs {
-                    let (i, j) = names(hit);
-                    let swap = body[i as usize] > body[j as usize];
-                    (*first, *second) = if swap { (j, i) } else { (i, j) };
-                }
-            }
+            };
+            let [lower, higher] = self.listing.in_order(l, names);
+            l.store_u32(lower, &mut first[start..]);
+            l.store_u32(higher, &mut second[start..]);
+            start += L::WIDTH;
         }
         self.out.advance(found);
     }
 
     /// Lists those hits whose bodies may collide. Apart, so that the common case stays small.
     #[inline(never)]
-    fn append_colliding(
-        &mut self,
-        found: usize,
-        slots: impl Fn(u32) -> (usize, usize),
-        groups: &[Groups],
-    ) {
+    fn append_colliding(&mut self, found: usize, hits: Hits, groups: &[Groups]) {
         let Listing { names, listed, .. } = self.listing;
         let body = |name: u32| match names {
             SlotNames::Bodies => name,
             SlotNames::Places(body) => body[name as usize],
         };
         for &hit in &self.hits[..found] {
-            let (i, j) = slots(hit);
-            let (i, j) = (self.names[i], self.names[j]);
+            let [i, j] = hits.slots(hit).map(|slot| self.names[slot]);
             let (a, b) = (body(i), body(j));
             if groups[a as usize].collide(groups[b as usize]) {
                 let [i, j] = match listed {

@@ -15,16 +15,14 @@ pub use rows::{OrDopRows, Posed};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use glam::{BVec4A, Vec4};
-
 use self::row::{O, Q, S, SHAPE, T};
-use crate::bodies::contract::{is_within_limit, within_limit};
+use crate::bodies::contract::{balls_are_within_limit, is_within_limit};
 use crate::bodies::{Bodies, Places};
 use crate::rounding::pose::{over_norm, rotate, rotation, world_axes};
 use crate::rounding::sphere::{inflate_radius, world_ball};
 use crate::rounding::up;
 use crate::simd::{ROW, prefetch};
-use crate::threads::Threads;
+use crate::threads::Executor;
 use crate::volume::{Basis, Shape};
 
 /// The index of the centre in the row of a shape.
@@ -156,17 +154,18 @@ const SPHERES: usize = 4096;
 /// a rotation takes part in, are within the contract: checked here, where they are at hand, this costs few instructions
 /// a body (`benches/README.md`).
 pub fn update_spheres(
-    pool: &Threads,
+    executor: Executor<'_>,
     spheres: &mut [[f32; 4]],
     frames: &[ShapeFrame],
     bodies: &Bodies,
     places: &Places,
     range: Range<usize>,
 ) -> bool {
+    let Executor { tier, pool } = executor;
     let (first, is_sound) = (range.start, AtomicBool::new(true));
     pool.pieces(&mut spheres[range], SPHERES, |start, spheres| {
         let start = first + start;
-        let mut sound = BVec4A::new(true, true, true, true);
+        let (mut turned, mut sound) = (false, true);
         let who = places.body[start..].iter().zip(&places.shape[start..]);
         for (place, (sphere, (&body, &shape))) in (start..).zip(spheres.iter_mut().zip(who)) {
             if let Some(&later) = places.body.get(place + AHEAD) {
@@ -176,24 +175,33 @@ pub fn update_spheres(
             let t = bodies.translation[body];
             // The rotation lies elsewhere in memory: reading it for nothing doubles the time of a million bodies.
             *sphere = match frame.inflated {
-                Some(inflated) => {
-                    let ball = Vec4::new(t[0], t[1], t[2], inflated);
-                    sound &= within_limit(ball);
-                    ball.to_array()
-                }
+                Some(inflated) => [t[0], t[1], t[2], inflated],
                 None => {
                     let sphere = frame.sphere(bodies.rotation[body], t);
-                    let fine = is_within_limit(&t) & sphere.iter().all(|x| x.is_finite());
-                    sound &= BVec4A::new(fine, fine, fine, fine);
+                    turned = true;
+                    sound &= is_within_limit(&t) && sphere.iter().all(|x| x.is_finite());
                     sphere
                 }
             };
         }
-        if !sound.all() {
+        // A centre apart from its body's origin may lie a little further out than the translation.
+        if !balls_are_within_limit(tier, spheres) {
+            sound &= turned && centred_within_limit(spheres, frames, &places.shape[start..]);
+        }
+        if !sound {
             is_sound.store(false, Ordering::Relaxed);
         }
     });
     is_sound.into_inner()
+}
+
+/// Whether those of the balls are within the contract whose centres are translations.
+fn centred_within_limit(balls: &[[f32; 4]], frames: &[ShapeFrame], shapes: &[u32]) -> bool {
+    let mut balls = balls.iter().zip(shapes);
+    balls.all(|([x, y, z, radius], &shape)| {
+        frames[shape as usize].inflated.is_none()
+            || is_within_limit(&[*x, *y, *z]) && radius.is_finite()
+    })
 }
 
 #[cfg(test)]

@@ -201,15 +201,16 @@ impl Posed<'_> {
         (made[T], made[T + 1], made[T + 2], made[S]) = (x, y, z, shape);
         for (half, unit) in units.into_iter().enumerate() {
             let start = half * EIGHT;
-            let eight = |column: &[f32; BODIES]| Eight::of(&column[start..]);
-            let turn = rotation_of([eight(&q[0]), eight(&q[1]), eight(&q[2]), eight(&q[3])]);
-            let basis = [0, 3, 6].map(|j| {
-                [
-                    eight(&shapes[j]),
-                    eight(&shapes[j + 1]),
-                    eight(&shapes[j + 2]),
-                ]
-            });
+            // Loops and no closures, which would be compiled apart and without the tier's features.
+            let mut pose = [Eight::splat(0.0); 4];
+            for (number, column) in pose.iter_mut().zip(&q) {
+                *number = Eight::of(&column[start..]);
+            }
+            let mut basis = [[Eight::splat(0.0); 3]; 3];
+            for (number, column) in basis.as_flattened_mut().iter_mut().zip(&shapes) {
+                *number = Eight::of(&column[start..]);
+            }
+            let turn = rotation_of(pose);
             let axes = axes_of(&turn, basis, Eight(unit));
             for (number, along) in axes.as_flattened().iter().enumerate() {
                 made[Q + number][start..start + EIGHT].copy_from_slice(&along.rounded());
