@@ -2,7 +2,7 @@
 //!
 //! A list holds the pairs that come within reach while each ball's drift, the distance that its centre has moved plus what
 //! its radius has grown since, is at most its budget B. The drift is measured in f32 and held against the skin
-//! s = max(fl(Rσ), 2⁻⁶⁰) of a share σ of the radius; the budget is what the measurement can hide beyond that,
+//! s = max(fl(Rσ), a): a share σ of the radius, or the same length a ≥ 2⁻⁶⁰ for all; the budget is what the measurement can hide beyond that,
 //! B = s(1 + 32u) + 2⁻⁶⁰. Both in the order of operations of [`stays`]; a list is made of balls grown by [`Reach`].
 
 use super::{U, exp2};
@@ -19,13 +19,36 @@ pub const SKIN_FLOOR: f64 = exp2(-60);
 pub const REACH_FACTOR: f64 = 1.0 + 64.0 * U;
 
 /// 2⁻⁵⁶: the same for the floors. Proof: `skin_reach.g`.
-pub const REACH_FLOOR: f32 = exp2(-56) as f32;
+pub const REACH_FLOOR: f64 = exp2(-56);
+
+/// How far a ball may drift: a share of its radius, but no less than a length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Skin {
+    share: f32,
+    least: f32,
+}
+
+impl Skin {
+    /// A share of each ball's radius.
+    #[must_use]
+    pub fn share(share: f32) -> Self {
+        let least = SKIN_FLOOR as f32;
+        Self { share, least }
+    }
+
+    /// The same length for all balls.
+    #[must_use]
+    pub fn length(length: f32) -> Self {
+        let least = length.max(SKIN_FLOOR as f32);
+        Self { share: 0.0, least }
+    }
+}
 
 /// Whether each ball (x, y, z, R) has drifted by less than its skin since it was `then`: the sum of squares of the
 /// coordinates' differences is below the square of what growth has left of the skin. NaN has drifted.
 #[inline(always)]
-pub fn stays<L: Lanes>(l: L, share: f32, now: [L::F; 4], then: [L::F; 4]) -> L::M {
-    let skin = l.max(then[3] * l.splat(share), l.splat(SKIN_FLOOR as f32));
+pub fn stays<L: Lanes>(l: L, skin: Skin, now: [L::F; 4], then: [L::F; 4]) -> L::M {
+    let skin = l.max(then[3] * l.splat(skin.share), l.splat(skin.least));
     let grown = l.max(now[3] - then[3], l.splat(0.0));
     let left = l.max(skin - grown, l.splat(0.0));
     let [dx, dy, dz] = [now[0] - then[0], now[1] - then[1], now[2] - then[2]];
@@ -46,13 +69,13 @@ impl Reach {
         floor: 0.0,
     };
 
-    /// By a share of the radius as skin: the sphere test of balls so grown loses no pair of balls that may be reported within
-    /// their budgets.
+    /// By a skin: the sphere test of balls so grown loses no pair of balls that may be reported within their budgets.
     #[must_use]
-    pub fn with_skin(share: f32) -> Self {
+    pub fn with_skin(skin: Skin) -> Self {
+        let [share, least] = [skin.share, skin.least].map(f64::from);
         Self {
-            factor: ((1.0 + f64::from(share)) * REACH_FACTOR) as f32,
-            floor: REACH_FLOOR,
+            factor: ((1.0 + share) * REACH_FACTOR) as f32,
+            floor: (least * REACH_FACTOR + REACH_FLOOR) as f32,
         }
     }
 

@@ -12,10 +12,12 @@
 mod collect;
 mod drift;
 mod list;
+mod motion;
 mod policy;
 
 pub(super) use self::list::List;
-use self::policy::Policy;
+use self::motion::{Motion, typical_radius};
+use self::policy::{Ended, Policy};
 use super::{Grid, Reorder, Slots, bytes};
 use crate::rounding::skin::Reach;
 use crate::threads::Executor;
@@ -122,8 +124,14 @@ impl Neighbours {
                 self.policy.followed();
                 return;
             }
-            self.policy
-                .ended(self.list.len(), self.list.seen(), balls.len());
+            let typical = typical_radius(balls);
+            self.policy.ended(&Ended {
+                pairs: self.list.len(),
+                candidates: self.list.seen(),
+                bodies: balls.len(),
+                motion: Motion::of(executor, now, then, typical, slots),
+                typical,
+            });
         }
         self.state = State::Searching;
         let Some(skin) = self.policy.next() else {
@@ -133,6 +141,7 @@ impl Neighbours {
         };
         self.grid.set_reach(Reach::with_skin(skin));
         self.grid.arrange(executor, balls, names);
+        let skin = (skin, self.policy.widest());
         if !self.list.make(executor, &self.grid, skin, self.volume) {
             self.policy.overflowed();
             return;
@@ -142,8 +151,8 @@ impl Neighbours {
             .extend_from_slice(&self.grid.slots().balls[..moving]);
         self.state = State::Made;
         // The grid plans by the candidates that it would have handed out without a skin.
-        let wider = f64::from(1.0 + skin).powi(3);
-        self.grid.observe((self.list.seen() as f64 / wider) as u64);
+        let seen = self.list.seen() as f64 / self.policy.wider();
+        self.grid.observe(seen as u64);
     }
 
     pub(super) fn bytes(&self) -> usize {

@@ -1,14 +1,16 @@
-//! When a list pays, and with which skin: by counts of frames and pairs alone, so that no choice depends on the machine.
+//! When a list pays, and with which skin: by counts of frames and pairs and by how far bodies got, so that no choice depends on
+//! the machine.
 //!
-//! A list with a skin of σ radii that served n frames tells the speed of the fastest body, v ≈ σ/(n − ½) radii a frame: as
-//! long as it lasts, another list with a skin of σ′ serves σ′/v frames and one more. A wider skin makes fewer lists, each of
-//! (1 + σ′)³ as many pairs, from as many more candidates.
+//! A skin is so many radii σ: of each body's own, or the same length for all, in [typical radii](super::motion). Where the small
+//! move as fast as the wide, their own radii are soon used up, and a length lasts. The body that got farthest by the end of a list
+//! tells how long another list would have lasted: σ/v frames and one more. A wider skin makes fewer lists, each of (1 + σ)³ as
+//! many pairs, from as many more candidates.
+
+use super::motion::Motion;
+use crate::rounding::skin::Skin;
 
 /// Skins to choose from, in radii. With wider ones than these the frame that makes a list takes more than 1.3 of the grid's.
-const SKINS: [f32; 6] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375];
-
-/// The widest.
-pub const WIDEST: f32 = SKINS[SKINS.len() - 1];
+const SKINS: [f64; 6] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375];
 
 /// The first one, before anything is known of the motion.
 const FIRST: usize = 3;
@@ -24,14 +26,27 @@ const PAIR: f64 = 25.0;
 /// A list must promise to take at most this share of the grid's time: where it hardly pays, it may as well cost.
 const WORTH: f64 = 0.8;
 
+/// By how much skins by other radii must be cheaper than those at hand: where all bodies have one size both are the same.
+const WORTH_CHANGING: f64 = 0.9;
+
 /// Frames of the grid between two attempts: at first, and at most.
 const PAUSE: u32 = 16;
 const LONGEST_PAUSE: u32 = 256;
 
+/// Whose radii a skin is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Radii {
+    Own,
+    Typical,
+}
+
 /// What is known of the motion.
 #[derive(Clone, Debug)]
 pub struct Policy {
+    radii: Radii,
     skin: usize,
+    /// The typical radius.
+    typical: f64,
     /// Frames that the present list has served.
     served: u32,
     /// Frames of the grid to come.
@@ -43,7 +58,9 @@ pub struct Policy {
 impl Default for Policy {
     fn default() -> Self {
         Self {
+            radii: Radii::Own,
             skin: FIRST,
+            typical: 0.0,
             served: 0,
             // The first frame places bodies and isn't searched.
             wait: 1,
@@ -52,14 +69,43 @@ impl Default for Policy {
     }
 }
 
+/// What is known of a list that can't be followed any longer.
+#[derive(Clone, Copy, Debug)]
+pub struct Ended {
+    /// Its pairs.
+    pub pairs: usize,
+    /// The candidates that it was made of.
+    pub candidates: u64,
+    /// Bodies.
+    pub bodies: usize,
+    /// How far they got.
+    pub motion: Motion,
+    /// The typical radius.
+    pub typical: f64,
+}
+
 impl Policy {
     /// The skin of the list at hand.
-    pub fn skin(&self) -> f32 {
-        SKINS[self.skin]
+    pub fn skin(&self) -> Skin {
+        let share = SKINS[self.skin];
+        match self.radii {
+            Radii::Own => Skin::share(share as f32),
+            Radii::Typical => Skin::length((share * self.typical) as f32),
+        }
+    }
+
+    /// How many times the pairs and candidates of a list without a skin the one at hand has.
+    pub fn wider(&self) -> f64 {
+        wider(self.skin)
+    }
+
+    /// How many times the pairs of the list at hand one with the widest skin has.
+    pub fn widest(&self) -> f64 {
+        wider(SKINS.len() - 1) / self.wider()
     }
 
     /// The skin of a list to be made in this frame, if it is to be made.
-    pub fn next(&mut self) -> Option<f32> {
+    pub fn next(&mut self) -> Option<Skin> {
         if self.wait > 0 {
             self.wait -= 1;
             return None;
@@ -73,33 +119,51 @@ impl Policy {
         self.served += 1;
     }
 
-    /// A list of so many pairs, made of so many candidates, can't be followed any longer.
-    pub fn ended(&mut self, pairs: usize, candidates: u64, bodies: usize) {
-        let skin = |index: usize| f64::from(SKINS[index]);
-        let wider = |index: usize| (1.0 + skin(index)).powi(3);
-        let speed = skin(self.skin) / (f64::from(self.served) - 0.5);
+    /// The list can't be followed any longer.
+    pub fn ended(&mut self, list: &Ended) {
+        let [own, typical] = self.speeds(list.motion);
         // A body's, if there were no skin.
-        let [pairs, candidates] = [pairs as f64, candidates as f64]
-            .map(|number| number / bodies.max(1) as f64 / wider(self.skin));
-        let cost = |index: usize| {
-            let frames = (skin(index) / speed).floor() + 1.0;
-            let make = SORT + MAKE * candidates * wider(index);
-            make / frames + FOLLOW + PAIR * pairs * wider(index)
-        };
-        let mut best = 0;
-        for index in 1..SKINS.len() {
-            if cost(index) < cost(best) {
-                best = index;
+        let [pairs, candidates] = [list.pairs as f64, list.candidates as f64]
+            .map(|number| number / list.bodies.max(1) as f64 / self.wider());
+        let mut best = (f64::INFINITY, self.radii, 0);
+        for (radii, speed) in [(Radii::Own, own), (Radii::Typical, typical)] {
+            for (index, skin) in SKINS.into_iter().enumerate() {
+                let frames = (skin / speed).floor() + 1.0;
+                let make = SORT + MAKE * candidates * wider(index);
+                let cost = make / frames + FOLLOW + PAIR * pairs * wider(index);
+                let penalty = if radii == self.radii { 1.0 } else { 1.0 / WORTH_CHANGING };
+                if cost * penalty < best.0 {
+                    best = (cost * penalty, radii, index);
+                }
             }
         }
-        self.skin = best;
-        if cost(best) < WORTH * (SORT + SEARCH * candidates) {
+        (self.radii, self.skin, self.typical) = (best.1, best.2, list.typical);
+        if best.0 < WORTH * (SORT + SEARCH * candidates) {
             self.pause = PAUSE;
         } else {
             // Of a list that served one frame alone the widest skin tells most.
             self.skin = SKINS.len() - 1;
             self.give_up();
         }
+    }
+
+    /// How many radii the fastest body moves in a frame, own ones and typical ones.
+    fn speeds(&self, Motion { own, common }: Motion) -> [f64; 2] {
+        let served = f64::from(self.served);
+        let (skin, drift) = match self.radii {
+            Radii::Own => (SKINS[self.skin], own),
+            Radii::Typical => (SKINS[self.skin], common),
+        };
+        // A body that has just used up its skin is within two of them, if it goes straight on. Beyond, it has jumped, and tells
+        // nothing of the others.
+        if self.served > 1 && drift > 2.0 * skin {
+            let speed = skin / (served - 0.5);
+            return match self.radii {
+                Radii::Own => [speed, f64::INFINITY],
+                Radii::Typical => [f64::INFINITY, speed],
+            };
+        }
+        [own / served, common / served]
     }
 
     /// The list was of other bodies.
@@ -112,7 +176,7 @@ impl Policy {
 
     /// The list would have had too many pairs.
     pub fn overflowed(&mut self) {
-        self.skin = 0;
+        (self.radii, self.skin) = (Radii::Own, 0);
         self.give_up();
     }
 
@@ -120,6 +184,11 @@ impl Policy {
         self.wait = self.pause;
         self.pause = LONGEST_PAUSE.min(2 * self.pause);
     }
+}
+
+/// How many times the pairs a skin brings.
+fn wider(skin: usize) -> f64 {
+    (1.0 + SKINS[skin]).powi(3)
 }
 
 #[cfg(test)]
