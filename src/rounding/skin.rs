@@ -136,7 +136,7 @@ mod tests {
             for radius in [0.0, exp2(-40) as f32, 0.3, 1.7, 2.5e9] {
                 // Three roundings of f32, and what both floors add.
                 let exact = (f64::from(radius) * (1.0 + share) + length) * REACH_FACTOR;
-                let floors = REACH_FLOOR + SKIN_FLOOR;
+                let floors = REACH_FLOOR + SKIN_FLOOR * REACH_FACTOR;
                 let (least, most) = (exact * (1.0 - 3.1 * U), (exact + floors) * (1.0 + 3.1 * U));
                 let found = f64::from(grown.of(radius));
                 assert!(

@@ -132,12 +132,8 @@ fn small_bodies_and_wide_ones_that_move_by_a_common_length_meet_whom_they_meet()
                     if bodies.dynamic[body] {
                         let sign = [1.0, -1.0][body % 2];
                         let away = [0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 1.0, 0.0][frame];
-                        let aside = if frame < 2 { 0.0 } else { 0.05 };
-                        *t = [
-                            home[0] + sign * away * share * length,
-                            home[1] + aside,
-                            home[2],
-                        ];
+                        let before = if frame < 2 { 0.05 } else { 0.0 };
+                        t[0] = home[0] + sign * (away * share * length - before);
                     }
                 }
             });
