@@ -2,7 +2,7 @@
 //!
 //! A list holds the pairs that come within reach while each ball's drift, the distance that its centre has moved plus what
 //! its radius has grown since, is at most its budget B. The drift is measured in f32 and held against the skin
-//! s = max(fl(Rσ), 2⁻⁶⁰) of a share σ of the radius; the budget is what the measurement can hide beyond that,
+//! s = max(fl(Rσ), a): a share σ of the radius, or the same length a ≥ 2⁻⁶⁰ for all; the budget is what the measurement can hide beyond that,
 //! B = s(1 + 32u) + 2⁻⁶⁰. Both in the order of operations of [`stays`]; a list is made of balls grown by [`Reach`].
 
 use super::{U, exp2};
@@ -19,13 +19,36 @@ pub const SKIN_FLOOR: f64 = exp2(-60);
 pub const REACH_FACTOR: f64 = 1.0 + 64.0 * U;
 
 /// 2⁻⁵⁶: the same for the floors. Proof: `skin_reach.g`.
-pub const REACH_FLOOR: f32 = exp2(-56) as f32;
+pub const REACH_FLOOR: f64 = exp2(-56);
+
+/// How far a ball may drift: a share of its radius, but no less than a length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Skin {
+    share: f32,
+    least: f32,
+}
+
+impl Skin {
+    /// A share of each ball's radius.
+    #[must_use]
+    pub fn share(share: f32) -> Self {
+        let least = SKIN_FLOOR as f32;
+        Self { share, least }
+    }
+
+    /// The same length for all balls.
+    #[must_use]
+    pub fn length(length: f32) -> Self {
+        let least = length.max(SKIN_FLOOR as f32);
+        Self { share: 0.0, least }
+    }
+}
 
 /// Whether each ball (x, y, z, R) has drifted by less than its skin since it was `then`: the sum of squares of the
 /// coordinates' differences is below the square of what growth has left of the skin. NaN has drifted.
 #[inline(always)]
-pub fn stays<L: Lanes>(l: L, share: f32, now: [L::F; 4], then: [L::F; 4]) -> L::M {
-    let skin = l.max(then[3] * l.splat(share), l.splat(SKIN_FLOOR as f32));
+pub fn stays<L: Lanes>(l: L, skin: Skin, now: [L::F; 4], then: [L::F; 4]) -> L::M {
+    let skin = l.max(then[3] * l.splat(skin.share), l.splat(skin.least));
     let grown = l.max(now[3] - then[3], l.splat(0.0));
     let left = l.max(skin - grown, l.splat(0.0));
     let [dx, dy, dz] = [now[0] - then[0], now[1] - then[1], now[2] - then[2]];
@@ -46,13 +69,13 @@ impl Reach {
         floor: 0.0,
     };
 
-    /// By a share of the radius as skin: the sphere test of balls so grown loses no pair of balls that may be reported within
-    /// their budgets.
+    /// By a skin: the sphere test of balls so grown loses no pair of balls that may be reported within their budgets.
     #[must_use]
-    pub fn with_skin(share: f32) -> Self {
+    pub fn with_skin(skin: Skin) -> Self {
+        let [share, least] = [skin.share, skin.least].map(f64::from);
         Self {
-            factor: ((1.0 + f64::from(share)) * REACH_FACTOR) as f32,
-            floor: REACH_FLOOR,
+            factor: ((1.0 + share) * REACH_FACTOR) as f32,
+            floor: (least * REACH_FACTOR + REACH_FLOOR) as f32,
         }
     }
 
@@ -79,7 +102,7 @@ mod tests {
     use crate::simd::{Kernel, Tier, dispatch};
 
     struct Stays {
-        share: f32,
+        skin: Skin,
         now: [f32; 4],
         then: [f32; 4],
     }
@@ -89,12 +112,12 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> bool {
             let [now, then] = [self.now, self.then].map(|ball| ball.map(|x| l.splat(x)));
-            l.bits(stays(l, self.share, now, then)) & 1 == 1
+            l.bits(stays(l, self.skin, now, then)) & 1 == 1
         }
     }
 
-    fn stays_in(tier: Tier, share: f32, now: [f32; 4], then: [f32; 4]) -> bool {
-        dispatch(tier, Stays { share, now, then })
+    fn stays_in(tier: Tier, skin: Skin, now: [f32; 4], then: [f32; 4]) -> bool {
+        dispatch(tier, Stays { skin, now, then })
     }
 
     /// Numbers in [0, 1), the same ones each time.
@@ -105,19 +128,23 @@ mod tests {
 
     #[test]
     fn radii_grow_by_the_skin_and_what_rounding_needs() {
-        for share in [0.0, 0.0625, 0.25, 0.375] {
-            let grown = Reach::with_skin(share);
-            for radius in [exp2(-40) as f32, 0.3, 1.7, 2.5e9] {
-                // Three roundings of f32.
-                let exact = f64::from(radius) * (1.0 + f64::from(share)) * REACH_FACTOR;
-                let (least, most) = (exact * (1.0 - 3.1 * U), exact * (1.0 + 3.1 * U));
-                let found = f64::from(grown.of(radius)) - f64::from(REACH_FLOOR);
+        let shares = [0.0, 0.0625, 0.25, 0.375].map(|share| (Skin::share(share), share, 0.0));
+        let lengths = [1e-9, 0.5, 40.0].map(|length| (Skin::length(length), 0.0, length));
+        for (skin, share, length) in shares.into_iter().chain(lengths) {
+            let grown = Reach::with_skin(skin);
+            let [share, length] = [share, length].map(f64::from);
+            for radius in [0.0, exp2(-40) as f32, 0.3, 1.7, 2.5e9] {
+                // Three roundings of f32, and what both floors add.
+                let exact = (f64::from(radius) * (1.0 + share) + length) * REACH_FACTOR;
+                let floors = REACH_FLOOR + SKIN_FLOOR * REACH_FACTOR;
+                let (least, most) = (exact * (1.0 - 3.1 * U), (exact + floors) * (1.0 + 3.1 * U));
+                let found = f64::from(grown.of(radius));
                 assert!(
-                    least <= found && found <= most,
-                    "{share}, {radius}: {found}"
+                    least + REACH_FLOOR * 0.99 <= found || exact > 1e-9 && least <= found,
+                    "{skin:?}, {radius}: {found}"
                 );
+                assert!(found <= most, "{skin:?}, {radius}: {found}");
             }
-            assert_eq!(grown.of(0.0), REACH_FLOOR);
         }
         assert_eq!(Reach::NONE.of(0.3), 0.3);
     }
@@ -146,7 +173,9 @@ mod tests {
                 let moved = [0, 1, 2].map(|k| (f64::from(then[k]) + drift * direction[k]) as f32);
                 let now_radius = (f64::from(radius) + f64::from(skin) * grown) as f32;
                 let now = [moved[0], moved[1], moved[2], now_radius];
-                if stays_in(tier, share, now, then) {
+                // The same skin as a share and as a length.
+                let skin_is = [Skin::share(share), Skin::length(skin)][n as usize / 3 % 2];
+                if stays_in(tier, skin_is, now, then) {
                     let d = [0, 1, 2].map(|k| f64::from(now[k]) - f64::from(then[k]));
                     let drift = d.iter().map(|x| x * x).sum::<f64>().sqrt();
                     let growth = f64::from(now_radius) - f64::from(radius);
@@ -164,12 +193,15 @@ mod tests {
     fn a_drift_of_the_skin_is_too_long_and_one_unit_less_is_not() {
         let then = [3.0, -2.0, 5.0, 1.0];
         for tier in Tier::available() {
-            let to = |x: f32, radius: f32| stays_in(tier, 0.25, [x, -2.0, 5.0, radius], then);
-            assert!(to(3.0, 1.0) && to(3.25f32.next_down(), 1.0) && to(3.25f32.next_down(), 0.1));
-            assert!(!to(3.25, 1.0) && !to(3.25f32.next_up(), 1.0) && !to(2.75, 0.1));
-            assert!(to(3.125f32.next_down(), 1.125) && !to(3.125, 1.125) && !to(3.0, 1.25));
-            assert!(!to(3.0, 7.0), "growth beyond the skin leaves nothing of it");
-            assert!(!to(f32::NAN, 1.0) && !to(f32::INFINITY, 1.0) && !to(1e30, 1.0));
+            for skin in [Skin::share(0.25), Skin::length(0.25)] {
+                let to = |x: f32, radius: f32| stays_in(tier, skin, [x, -2.0, 5.0, radius], then);
+                let below = 3.25f32.next_down();
+                assert!(to(3.0, 1.0) && to(below, 1.0) && to(below, 0.1));
+                assert!(!to(3.25, 1.0) && !to(3.25f32.next_up(), 1.0) && !to(2.75, 0.1));
+                assert!(to(3.125f32.next_down(), 1.125) && !to(3.125, 1.125) && !to(3.0, 1.25));
+                assert!(!to(3.0, 7.0), "growth beyond the skin leaves nothing of it");
+                assert!(!to(f32::NAN, 1.0) && !to(f32::INFINITY, 1.0) && !to(1e30, 1.0));
+            }
         }
     }
 
@@ -177,8 +209,10 @@ mod tests {
     fn tiny_balls_have_a_skin_that_underflow_cannot_take() {
         let then = [0.0, 0.0, 0.0, exp2(-70) as f32];
         for tier in Tier::available() {
-            let to = |x: f64| stays_in(tier, 0.25, [0.0, x as f32, 0.0, then[3]], then);
-            assert!(to(0.0) && to(exp2(-126)) && to(exp2(-61)) && !to(exp2(-60)));
+            for skin in [Skin::share(0.25), Skin::length(0.0), Skin::length(f32::NAN)] {
+                let to = |x: f64| stays_in(tier, skin, [0.0, x as f32, 0.0, then[3]], then);
+                assert!(to(0.0) && to(exp2(-126)) && to(exp2(-61)) && !to(exp2(-60)));
+            }
         }
     }
 }

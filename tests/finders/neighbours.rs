@@ -104,20 +104,63 @@ fn bodies_that_move_by_their_skins_meet_whom_they_meet() {
     }
 }
 
-/// Bodies that keep their course, by so many radii a frame, and turn round now and then.
-fn fly(scene: &Scene, speed: f32, seed: u64) -> impl FnMut(usize, &mut Bodies) {
+/// Small balls beside wide ones come together as above, by a skin of the same length for both: one of six, since a frame in which
+/// all move by half a small one's radius has ended the first list.
+#[test]
+fn small_bodies_and_wide_ones_that_move_by_a_common_length_meet_whom_they_meet() {
+    let mut scene = Scene::new("small beside wide", &[0.1, 1.0], 240, |_, _| [0.0; 3]);
+    let balls = [0, 1].map(|shape| f64::from(scene.shapes[shape].ball.radius));
+    let mean = |power| 0.5 * balls.iter().map(|r: &f64| r.powi(power)).sum::<f64>();
+    let typical = (mean(3) + 3.0 * mean(1) * mean(2)) / (2.0 * (mean(2) + mean(1) * mean(1)));
+    for (sixteenths, fixed) in (1..=6).flat_map(|k| [(k, false), (k, true)]) {
+        let length = (typical * f64::from(sixteenths) / 16.0) as f32;
+        let movers = if fixed { 1.0 } else { 2.0 };
+        for (body, dynamic) in scene.bodies.dynamic.iter_mut().enumerate() {
+            *dynamic = body % 2 == 0 || !fixed;
+        }
+        for share in [0.5, 0.9, 0.99, 1.0, 1.01, 1.5] {
+            for (pair, centres) in scene.bodies.translation.chunks_exact_mut(2).enumerate() {
+                let beyond = 1.0 + (pair as f32 - 60.0) * 2e-6;
+                let [y, z] = [pair % 20, pair / 20].map(|k| 4.0 * k as f32);
+                let apart = (balls[0] + balls[1]) as f32 + movers * length * beyond;
+                (centres[0], centres[1]) = ([0.0, y, z], [apart, y, z]);
+            }
+            let what = format!("{}, {sixteenths}, {share}", scene.name);
+            let (pairs, _) = judge(&scene, Strategy::Sphere, 8, &what, |frame, bodies| {
+                let home = scene.bodies.translation.iter();
+                for (body, (t, home)) in bodies.translation.iter_mut().zip(home).enumerate() {
+                    if bodies.dynamic[body] {
+                        let sign = [1.0, -1.0][body % 2];
+                        let away = [0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 1.0, 0.0][frame];
+                        let before = if frame < 2 { 0.05 } else { 0.0 };
+                        t[0] = home[0] + sign * (away * share * length - before);
+                    }
+                }
+            });
+            assert!(share < 1.005 || pairs >= 240, "{what}: {pairs}");
+        }
+    }
+}
+
+/// Bodies that keep their course, by so many of the radii that `pace` makes of theirs a frame, and turn round now and then.
+fn fly(
+    scene: &Scene,
+    pace: impl Fn(f32) -> f32,
+    speed: f32,
+    seed: u64,
+) -> impl FnMut(usize, &mut Bodies) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let radii: Vec<f32> = scene.shapes.iter().map(|s| s.ball.radius).collect();
+    let paces: Vec<f32> = scene.shapes.iter().map(|s| pace(s.ball.radius)).collect();
     let course: Vec<[f32; 3]> = (0..scene.bodies.len())
         .map(|_| uniform(&mut rng, 2.0).map(|x| (x - 1.0) * speed))
         .collect();
     move |frame, bodies| {
         let sign = if frame / 12 % 2 == 0 { 1.0 } else { -1.0 };
         for body in 0..bodies.len() {
-            let radius = radii[bodies.shape[body] as usize];
+            let pace = paces[bodies.shape[body] as usize];
             for (x, by) in bodies.translation[body].iter_mut().zip(course[body]) {
                 *x += if bodies.dynamic[body] {
-                    sign * radius * by
+                    sign * pace * by
                 } else {
                     0.0
                 };
@@ -146,7 +189,7 @@ fn lists_are_followed_at_any_speed_and_lose_nothing() {
         ] {
             for speed in [0.0, 0.003, 0.03, 0.3, 3.0] {
                 let what = format!("{}, {speed} r a frame", scene.name);
-                let fly = fly(scene, speed, 5);
+                let fly = fly(scene, |radius| radius, speed, 5);
                 let (pairs, [lists, grid]) = judge(scene, strategy, 40, &what, fly);
                 assert!(pairs > 500, "{what}: {pairs} pairs");
                 let slow = speed < 0.1 && scene.name == "uniform" && strategy == Strategy::Sphere;
@@ -155,6 +198,24 @@ fn lists_are_followed_at_any_speed_and_lose_nothing() {
                     "{what}: {lists} tests, {grid} by the grid"
                 );
             }
+        }
+    }
+}
+
+/// All bodies are equally fast, so that a share of their radius wouldn't last for the small ones.
+#[test]
+fn small_bodies_as_fast_as_wide_ones_are_followed_and_lose_nothing() {
+    let scene = Scene::new("radii 1:16", &[0.25, 1.0, 4.0], 400, |_, rng| {
+        uniform(rng, 60.0)
+    });
+    for strategy in [Strategy::Sphere, Strategy::Aabb, Strategy::OrDop] {
+        for speed in [0.03, 0.1] {
+            let what = format!("{speed} a frame");
+            let fly = fly(&scene, |_| 1.0, speed, 5);
+            let (pairs, [lists, grid]) = judge(&scene, strategy, 40, &what, fly);
+            assert!(pairs > 1000, "{what}: {pairs} pairs");
+            let is_followed = 2 * lists < grid || strategy != Strategy::Sphere;
+            assert!(is_followed, "{what}: {lists} tests, {grid} by the grid");
         }
     }
 }

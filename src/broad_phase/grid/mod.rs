@@ -282,6 +282,7 @@ fn push_parts(parts: &mut Vec<Part>, whole: Part, size: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rounding::skin::Skin;
 
     impl Grid {
         /// Frames since the last plan, and candidates of the last frame.
@@ -337,9 +338,10 @@ mod tests {
     #[test]
     fn moving_levels_alone_grow_and_their_parts_are_told() {
         let mut grid = planned(3);
-        grid.set_reach(Reach::with_skin(0.5));
+        let half = Reach::with_skin(Skin::share(0.5));
+        grid.set_reach(half);
         let reaches: Vec<_> = grid.levels.iter().map(|level| level.reach).collect();
-        assert_eq!(reaches, [Reach::with_skin(0.5), Reach::NONE]);
+        assert_eq!(reaches, [half, Reach::NONE]);
         grid.slot_cells.resize(6, 0);
         assert_eq!(grid.bodies(), 6);
         grid.parts = [(0, 0), (0, 1), (1, 0)]

@@ -3,18 +3,18 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::broad_phase::BLOCK_BODIES;
-use crate::rounding::skin::stays;
+use crate::rounding::skin::{Skin, stays};
 use crate::simd::{Kernel, Lanes, dispatch};
 use crate::threads::Executor;
 
 /// Balls that one thread measures at a time.
 const PIECE: usize = 4096;
 
-/// Copies the balls to `slots` and returns true if none has drifted by a share `skin` of its radius since `then`. Otherwise
+/// Copies the balls to `slots` and returns true if none has drifted by its skin since `then`. Otherwise
 /// what `slots` holds is of no use.
 pub fn follow(
     executor: Executor<'_>,
-    skin: f32,
+    skin: Skin,
     now: &[[f32; 4]],
     then: &[[f32; 4]],
     slots: &mut [[f32; 4]],
@@ -39,7 +39,7 @@ pub fn follow(
 }
 
 struct Measure<'a> {
-    skin: f32,
+    skin: Skin,
     now: &'a [[f32; 4]],
     then: &'a [[f32; 4]],
     slots: &'a mut [[f32; 4]],
@@ -71,7 +71,7 @@ impl Kernel for Measure<'_> {
 #[inline(always)]
 fn all_stay<L: Lanes>(
     l: L,
-    skin: f32,
+    skin: Skin,
     now: &[[f32; 4]; BLOCK_BODIES],
     then: &[[f32; 4]; BLOCK_BODIES],
 ) -> bool {

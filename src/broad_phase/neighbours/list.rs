@@ -5,15 +5,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::Volume;
 use super::collect::{Collect, Pair};
-use super::policy::WIDEST;
 use crate::broad_phase::{Block, FirstTest, Grid, MOST_CANDIDATES, bytes};
-use crate::rounding::skin::Reach;
+use crate::rounding::skin::{Reach, Skin};
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch};
 use crate::threads::Executor;
 
 /// Pairs a body that a list with the widest skin may hold, and a few more for small scenes: crowds are bound by what is
 /// reported, and there a list would take more memory than all the rest.
-const PAIRS_PER_BODY: usize = 4;
+const PAIRS_PER_BODY: usize = 6;
 const FEW_PAIRS: usize = 256;
 
 /// Room that a list is given, in lengths of its own.
@@ -42,14 +41,19 @@ pub struct Chunk {
 }
 
 impl List {
-    /// Makes the list of a grid that has just been arranged. False, and there is none, if it would be too long.
-    pub fn make(&mut self, executor: Executor<'_>, grid: &Grid, skin: f32, volume: Volume) -> bool {
+    /// Makes the list of a grid that has just been arranged, with room for as many pairs as the widest skin will bring, `spare`
+    /// times those of this one, so that another skin allocates nothing. False, and there is none, if it would be too long.
+    pub fn make(
+        &mut self,
+        executor: Executor<'_>,
+        grid: &Grid,
+        (skin, spare): (Skin, f64),
+        volume: Volume,
+    ) -> bool {
         self.parts = grid.parts();
         if self.chunks.len() < self.parts {
             self.chunks.resize(self.parts, Chunk::default());
         }
-        // Room for as many pairs as the widest skin will bring, so that another skin allocates nothing.
-        let spare = f64::from((1.0 + WIDEST) / (1.0 + skin)).powi(3);
         let most = ((PAIRS_PER_BODY * grid.bodies()) as f64 / spare) as usize + FEW_PAIRS;
         let listed = AtomicUsize::new(0);
         let chunks = &mut self.chunks[..self.parts];
@@ -60,8 +64,9 @@ impl List {
             if listed.load(Ordering::Relaxed) > most {
                 return;
             }
-            let share = |moves| if moves { skin } else { 0.0 };
-            let grown = grid.moves(part).map(|moves| Reach::with_skin(share(moves)));
+            let still = Skin::share(0.0);
+            let skin = |moves| if moves { skin } else { still };
+            let grown = grid.moves(part).map(|moves| Reach::with_skin(skin(moves)));
             let make = Make {
                 grid,
                 part,

@@ -1,0 +1,193 @@
+//! How far balls have drifted by the end of a list, and how wide they are: what the next skin is chosen by. It decides how long
+//! lists last, never what they hold.
+
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use crate::broad_phase::BLOCK_BODIES;
+use crate::simd::{Kernel, Lanes, dispatch, quads_in_columns};
+use crate::threads::Executor;
+
+/// Balls that one thread looks at at a time.
+const PIECE: usize = 4096;
+
+/// Balls whose radii are asked, at most.
+const ASKED: usize = 256;
+
+/// 2⁻⁶⁰: smaller radii count as this one, whose square is no subnormal.
+const LEAST: f32 = crate::rounding::skin::SKIN_FLOOR as f32;
+
+/// The farthest that any ball has drifted: sums of squares of what the centre has moved and the radius has grown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// In radii of the ball's own.
+    pub own: f64,
+    /// In typical radii.
+    pub typical: f64,
+}
+
+impl Motion {
+    /// Of balls since `then`. What `scratch`, of their number, holds afterwards is of no use.
+    pub fn of(
+        executor: Executor<'_>,
+        now: &[[f32; 4]],
+        then: &[[f32; 4]],
+        typical: f64,
+        scratch: &mut [[f32; 4]],
+    ) -> Self {
+        // Bits of numbers that aren't negative are in their order.
+        let farthest = [const { AtomicU32::new(0) }; 2];
+        executor.pool.pieces(scratch, PIECE, |start, scratch| {
+            let range = start..start + scratch.len();
+            let (now, then) = (&now[range.clone()], &then[range]);
+            let found = dispatch(executor.tier, Farthest { now, then });
+            for (farthest, found) in farthest.iter().zip(found) {
+                farthest.fetch_max(found.to_bits(), Relaxed);
+            }
+        });
+        let [own, length] =
+            farthest.map(|square| f64::from(f32::from_bits(square.into_inner())).sqrt());
+        Self {
+            own,
+            typical: length / typical,
+        }
+    }
+}
+
+/// The radius r of bodies of one size that would be as hard to find: a skin of σr adds about as many pairs to a list of bodies
+/// of these sizes, all alike, as one of σ radii each. Pairs go by the cube of the sum of two radii, so that their growth by a
+/// length goes by its square: r = Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)².
+pub fn typical_radius(balls: &[[f32; 4]]) -> f64 {
+    let (mut sums, mut asked) = ([0.0; 3], 0.0);
+    for ball in balls.iter().step_by(balls.len().div_ceil(ASKED).max(1)) {
+        let r = f64::from(ball[3].max(LEAST));
+        sums = [sums[0] + r, sums[1] + r * r, sums[2] + r * r * r];
+        asked += 1.0;
+    }
+    let [first, second, third] = sums.map(|sum| sum / f64::max(asked, 1.0));
+    (third + 3.0 * first * second) / (2.0 * (second + first * first))
+}
+
+struct Farthest<'a> {
+    now: &'a [[f32; 4]],
+    then: &'a [[f32; 4]],
+}
+
+impl Kernel for Farthest<'_> {
+    /// Squares, in radii of their own and as lengths.
+    type Output = [f32; 2];
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> [f32; 2] {
+        let mut farthest = [[0.0; BLOCK_BODIES]; 2];
+        let (now, now_rest) = self.now.as_chunks::<BLOCK_BODIES>();
+        let (then, then_rest) = self.then.as_chunks::<BLOCK_BODIES>();
+        for (now, then) in now.iter().zip(then) {
+            raise(l, &mut farthest, now, then);
+        }
+        let [now, then] = [now_rest, then_rest].map(|rest| {
+            let mut balls = [[0.0; 4]; BLOCK_BODIES];
+            balls[..rest.len()].copy_from_slice(rest);
+            balls
+        });
+        raise(l, &mut farthest, &now, &then);
+        farthest.map(|lanes| lanes.into_iter().fold(0.0, f32::max))
+    }
+}
+
+/// Plain loops over sixteen numbers, which the compiler turns into vectors of the tier.
+#[inline(always)]
+fn raise<L: Lanes>(
+    l: L,
+    [own, length]: &mut [[f32; BLOCK_BODIES]; 2],
+    now: &[[f32; 4]; BLOCK_BODIES],
+    then: &[[f32; 4]; BLOCK_BODIES],
+) {
+    let (now, then) = (quads_in_columns(l, now), quads_in_columns(l, then));
+    for i in 0..BLOCK_BODIES {
+        let [dx, dy, dz, growth] = [0, 1, 2, 3].map(|k| now[k][i] - then[k][i]);
+        let growth = if growth > 0.0 { growth } else { 0.0 };
+        let square = dx * dx + dy * dy + dz * dz + growth * growth;
+        let radius = if then[3][i] > LEAST {
+            then[3][i]
+        } else {
+            LEAST
+        };
+        let share = square / (radius * radius);
+        // NaN, of a body outside the contract, is no farther than anything.
+        own[i] = if share > own[i] { share } else { own[i] };
+        length[i] = if square > length[i] {
+            square
+        } else {
+            length[i]
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::Tier;
+    use crate::threads::Threads;
+
+    #[test]
+    fn the_farthest_counts_wherever_it_is_in_every_tier() {
+        let pool = Threads::default();
+        for n in [1, 15, 16, 33, PIECE + 1] {
+            let then: Vec<_> = (0..n).map(|i| [i as f32, 2.0, -3.0, 4.0]).collect();
+            let mut scratch = then.clone();
+            for (wide, far) in [(0, n - 1), (n - 1, 0), (n / 2, n / 2)] {
+                let (mut then, mut now) = (then.clone(), then.clone());
+                // 2, 4, 4 and a growth of 8 are 10; 6 is 3 of one's own radii.
+                for (k, by) in [2.0, -4.0, 4.0, 8.0].into_iter().enumerate() {
+                    now[far][k] += by;
+                }
+                (then[wide][3], now[wide][3]) = (0.5, if wide == far { 8.5 } else { 0.5 });
+                now[wide][1] -= 1.0;
+                let expected = match wide == far {
+                    true => [20.880_613, 10.440_307],
+                    false => [2.5, 10.0],
+                };
+                for tier in Tier::available() {
+                    let executor = pool.executor(tier);
+                    let found = Motion::of(executor, &now, &then, 0.5, &mut scratch);
+                    let found = [found.own, 0.5 * found.typical];
+                    for (found, expected) in found.into_iter().zip(expected) {
+                        let off = (found / expected - 1.0).abs();
+                        assert!(off < 1e-6, "{tier}, {far} of {n}: {found}, {expected}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn balls_that_shrink_or_stay_or_have_no_radius_are_no_trouble() {
+        let (pool, mut scratch) = (Threads::default(), [[0.0; 4]; 2]);
+        let executor = pool.executor(Tier::SCALAR);
+        let mut motion =
+            |now| Motion::of(executor, now, &[[0.0, 0.0, 0.0, 1.0]; 2], 1.0, &mut scratch);
+        assert_eq!(motion(&[[0.0, 0.0, 0.0, 0.25]; 2]), Motion::default());
+        assert_eq!(motion(&[[f32::NAN; 4]; 2]), Motion::default());
+        let still = [[5.0, 0.0, 0.0, 0.0]; 1];
+        let motion = Motion::of(executor, &still, &still, 1.0, &mut scratch[..1]);
+        assert_eq!(motion, Motion::default());
+    }
+
+    #[test]
+    fn the_typical_radius_is_that_of_equal_ones_and_leans_to_the_wide() {
+        let balls =
+            |radii: &[f32]| -> Vec<_> { radii.iter().map(|&r| [7.0, 8.0, 9.0, r]).collect() };
+        for n in [1, 2, 300, 10_000] {
+            let found = typical_radius(&balls(&vec![3.0; n]));
+            assert!((found - 3.0).abs() < 1e-12, "{n}: {found}");
+        }
+        // All four sums of 1 and 3: 8, 64, 64 and 216 over twice 4, 16, 16 and 36.
+        let found = typical_radius(&balls(&[1.0, 3.0]));
+        assert!((found - 352.0 / 144.0).abs() < 1e-12, "{found}");
+        // One in two is asked of more than 256.
+        let every_other: Vec<f32> = (0..512)
+            .map(|i| if i % 2 == 0 { 1.0 } else { 50.0 })
+            .collect();
+        assert!((typical_radius(&balls(&every_other)) - 1.0).abs() < 1e-12);
+        assert!(typical_radius(&balls(&[0.0])) > 0.0);
+    }
+}
