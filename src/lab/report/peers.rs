@@ -185,8 +185,10 @@ pub(super) const PEERS: &[Experiment] = &[
         about: "what a second thread is worth, and a million bodies by stage",
         steps: &[
             Step::Peers(&["control"]),
-            Step::SdopPrints("stages-1.json", &stages("1")),
-            Step::SdopPrints("stages-2.json", &stages("2")),
+            Step::SdopPrints("stages-grid-1.json", &stages("grid", "1")),
+            Step::SdopPrints("stages-grid-2.json", &stages("grid", "2")),
+            Step::SdopPrints("stages-auto-1.json", &stages("auto", "1")),
+            Step::SdopPrints("stages-auto-2.json", &stages("auto", "2")),
         ],
         deterministic: &[],
         scenes: MILLION,
@@ -206,12 +208,12 @@ pub(super) const PEERS: &[Experiment] = &[
 ];
 
 /// A million bodies by stage.
-const fn stages(threads: &'static str) -> [&'static str; 12] {
+const fn stages(finder: &'static str, threads: &'static str) -> [&'static str; 12] {
     [
         "run",
         "data/scenes/uniform-1m.toml",
         "--pairs",
-        "grid",
+        finder,
         "--strategy",
         "s-dop-batch",
         "--frames",

@@ -1,7 +1,7 @@
-//! The culler as a user has it: poses in, pairs out, found on the grid.
+//! The culler as a user has it: poses in, pairs out, by the finder that `auto` picks.
 
 use sdop::culler::Culler;
-use sdop::settings::{Finder, Strategy};
+use sdop::settings::Strategy;
 
 use sdop::lab::measure::contestant::Contestant;
 
@@ -16,7 +16,6 @@ impl Culled {
     pub fn new(setup: &Setup<'_>, strategy: Strategy) -> miette::Result<Self> {
         let culler = Culler::builder()
             .strategy(strategy)
-            .finder(Finder::Grid)
             .threads(setup.threads)
             .build(&setup.scene.shapes, &setup.first.bodies)?;
         Ok(Self(culler))
