@@ -1,7 +1,7 @@
 //! One scene, everyone on the same frames: checked, then timed in turns.
 //!
-//! Turns are those of every measurement here ([`Turns`]). Frames are made between turns and never timed. A ratio is the
-//! median over frames of theirs over ours *on the same frame*.
+//! Turns are those of every measurement here ([`Turns`]). Frames are made between turns and never timed. A time is the mean of a
+//! turn's frames, a ratio theirs over ours *on the same frames*; both are medians over turns.
 //!
 //! Where a limit is given, an engine that takes longer than that for a frame is left out, and named.
 
@@ -70,15 +70,19 @@ pub struct EngineTiming {
     pub work: &'static str,
     /// Pairs in the last frame.
     pub pairs: usize,
-    /// Milliseconds per frame: the lower quartile, the median and the upper quartile.
+    /// Milliseconds per frame, the mean of a turn: over turns the lower quartile, the median and the upper quartile.
     pub ms_low: f64,
     /// See above.
     pub ms: f64,
     /// See above.
     pub ms_high: f64,
-    /// The median over the number of bodies.
+    /// Milliseconds of single frames: the median and the most.
+    pub ms_p50: f64,
+    /// See above.
+    pub ms_most: f64,
+    /// `ms` over the number of bodies.
     pub ns_a_body: f64,
-    /// Median over frames of its time over ours for boxes.
+    /// Median over turns of its time over ours for boxes.
     pub ratio: f64,
     /// Bytes per body that it holds.
     pub bytes_a_body: f64,
@@ -100,8 +104,9 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compa
     let ours = ours.map(|at| &timed[at]);
     let mut rows = Vec::new();
     for ((own, pairs), (entry, memory)) in timed.iter().zip(pairs).zip(checked) {
-        let ratio = ours.map(|ours| median_ratio(&own.ms, &ours.ms));
-        let ms = Quartiles::of(own.ms.clone());
+        let turn = case.schedule.turn;
+        let ratio = ours.map(|ours| median_ratio(&own.turns(turn), &ours.turns(turn)));
+        let ms = Quartiles::of(own.turns(turn));
         let bodies = case.bodies as f64;
         rows.push(EngineTiming {
             case,
@@ -112,6 +117,8 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compa
             ms_low: ms.low,
             ms: ms.median,
             ms_high: ms.high,
+            ms_p50: median(own.ms.clone()),
+            ms_most: own.ms.iter().copied().fold(0.0, f64::max),
             ns_a_body: 1e6 * ms.median / bodies,
             ratio: ratio.unwrap_or(f64::NAN),
             bytes_a_body: memory.held as f64 / bodies,
@@ -229,7 +236,7 @@ fn timed(case: Case, entries: &[&Entry]) -> miette::Result<(Vec<Timed>, Vec<usiz
     Ok((timed, pairs))
 }
 
-/// The median over frames of one time over the other on the same frame.
+/// The median of times over others of the same frames.
 pub fn median_ratio(times: &[f64], others: &[f64]) -> f64 {
     let ratios = times.iter().zip(others).map(|(time, other)| time / other);
     median(ratios.collect())

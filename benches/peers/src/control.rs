@@ -1,7 +1,7 @@
 //! What a second thread is worth: ours on one and on several threads, in turns with two control loops that divide without
 //! a rest, one bound by arithmetic and one by memory.
 //!
-//! speed-up = t(one thread) / t(several), the median over frames of the same frame's times; a control's is what the machine
+//! speed-up = t(one thread) / t(several) of the same frames, the median over turns; a control's is what the machine
 //! has to give at the time, and ours is quoted as a share of it. The loops run on the same pool, in as many pieces, with as
 //! much work or as many bytes per body as the culler, so that waking threads costs them what it costs us.
 
@@ -98,7 +98,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
 fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
     let course = Course::new(Spread::Uniform, bodies, Order::Random, 0)?;
     let mut names = Vec::new();
-    let (timed, _) = take_turns(course, Schedule::of(bodies), |course, first| {
+    let schedule = Schedule::of(bodies);
+    let (timed, _) = take_turns(course, schedule, |course, first| {
         let mut timed = Vec::new();
         let mut enter = |name, engine, threads| {
             names.push(name);
@@ -121,13 +122,13 @@ fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
         }
         Ok(timed)
     })?;
-    rows(bodies, threads, &names, &timed)
+    rows(bodies, (threads, schedule.turn), &names, &timed)
 }
 
 /// The second half of the engines does what the first does, on more threads.
 fn rows(
     bodies: usize,
-    threads: usize,
+    (threads, turn): (usize, usize),
     names: &[&'static str],
     timed: &[Timed],
 ) -> miette::Result<Vec<SpeedUp>> {
@@ -143,13 +144,14 @@ fn rows(
         if sorted(one) != sorted(several) {
             return Err(miette!("{name} finds other pairs on {threads} threads"));
         }
+        let (one, several) = (one.turns(turn), several.turns(turn));
         rows.push(SpeedUp {
             bodies,
             work: name,
             threads,
-            speed_up: median_ratio(&one.ms, &several.ms),
-            ms_1: median(one.ms.clone()),
-            ms: median(several.ms.clone()),
+            speed_up: median_ratio(&one, &several),
+            ms_1: median(one),
+            ms: median(several),
             share_of_arithmetic: f64::NAN,
             share_of_memory: f64::NAN,
         });

@@ -59,6 +59,8 @@ impl Record {
             "ms_low",
             "ms",
             "ms_high",
+            "ms_p50",
+            "ms_most",
             "ns_a_body",
             "ratio",
             "bytes_a_body",
@@ -83,7 +85,8 @@ impl Record {
                     schedule.timed,
                 ),
                 (row.engine, row.version, row.work, row.pairs),
-                (row.ms_low, row.ms, row.ms_high, row.ns_a_body, row.ratio),
+                (row.ms_low, row.ms, row.ms_high, row.ms_p50, row.ms_most),
+                (row.ns_a_body, row.ratio),
                 (row.bytes_a_body, row.peak_bytes_a_body),
             ))
             .into_diagnostic()?;
@@ -96,7 +99,7 @@ impl Record {
     pub fn page(&self) -> String {
         let mut out = format!("# Side by side\n\n{}", self.facts);
         out.push_str(
-            "- milliseconds a frame, median (times ours for the same boxes); bytes a body that are held\n\
+            "- milliseconds a frame, the mean of a turn, median over turns (times ours for the same boxes); bytes a body that are held\n\
              - what favours or harms whom: `benches/peers/BIAS.md`\n",
         );
         let mut tables: Vec<(Spread, Order, usize)> = Vec::new();

@@ -64,8 +64,8 @@ impl Schedule {
     pub fn of(bodies: usize) -> Self {
         let [warm_up, timed, turn, checked] = match bodies {
             0..=10_000 => [300, 200, 20, 20],
-            10_001..=100_000 => [60, 40, 10, 4],
-            _ => [20, 12, 4, 3],
+            10_001..=100_000 => [60, 60, 10, 4],
+            _ => [20, 20, 4, 3],
         };
         Self {
             warm_up,

@@ -28,6 +28,17 @@ impl Timed {
             ms: Vec::new(),
         }
     }
+
+    /// The mean of each turn of so many frames. An engine that does something now and then, a list of neighbours or a balanced
+    /// tree, pays for it in the frame where it happens, which a median over frames would hide.
+    pub fn turns(&self, turn: usize) -> Vec<f64> {
+        means(&self.ms, turn)
+    }
+}
+
+fn means(ms: &[f64], turn: usize) -> Vec<f64> {
+    let mean = |turn: &[f64]| turn.iter().sum::<f64>() / turn.len() as f64;
+    ms.chunks(turn).map(mean).collect()
 }
 
 /// Builds engines on the first frame of a course, and times them in turns on those behind it. Returns them with the last frame.
@@ -67,4 +78,15 @@ pub fn take_turns(
         });
     }
     Ok((all, frames.pop().unwrap_or_default()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_counts_with_its_mean_and_the_last_one_may_be_shorter() {
+        let ms = [1.0, 1.0, 7.0, 2.0, 2.0, 2.0, 5.0];
+        assert_eq!(means(&ms, 3), [3.0, 2.0, 5.0]);
+    }
 }
