@@ -9,7 +9,7 @@ use crate::entry::{Entry, OURS, Work};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The grid on boxes; spheres alone; spheres, then or-DOPs.
+/// Boxes; spheres alone; spheres, then or-DOPs.
 pub const ENTRIES: [Entry; 3] = [
     Entry {
         name: OURS,
