@@ -13,6 +13,9 @@ const PIECE: usize = 4096;
 /// Balls whose radii are asked, at most.
 const ASKED: usize = 256;
 
+/// The most that a typical radius may be of the smallest one.
+const MANY_SIZES: f64 = 16.0;
+
 /// 2⁻⁶⁰: smaller radii count as this one, whose square is no subnormal.
 const LEAST: f32 = crate::rounding::skin::SKIN_FLOOR as f32;
 
@@ -55,16 +58,22 @@ impl Motion {
 
 /// The radius r of bodies of one size that would be as hard to find: a skin of σr adds about as many pairs to a list of bodies
 /// of these sizes, all alike, as one of σ radii each. Pairs go by the cube of the sum of two radii, so that their growth by a
-/// length goes by its square: r = Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)².
+/// length goes by its square: r = Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)². Zero, of which no body drifts less, where it is many times the smallest
+/// radius: a skin of a giant's size would make all the small ones neighbours.
 pub fn typical_radius(balls: &[[f32; 4]]) -> f64 {
-    let (mut sums, mut asked) = ([0.0; 3], 0.0);
+    let (mut sums, mut asked, mut smallest) = ([0.0; 3], 0.0, f64::INFINITY);
     for ball in balls.iter().step_by(balls.len().div_ceil(ASKED).max(1)) {
         let r = f64::from(ball[3].max(LEAST));
         sums = [sums[0] + r, sums[1] + r * r, sums[2] + r * r * r];
-        asked += 1.0;
+        (asked, smallest) = (asked + 1.0, smallest.min(r));
     }
     let [first, second, third] = sums.map(|sum| sum / f64::max(asked, 1.0));
-    (third + 3.0 * first * second) / (2.0 * (second + first * first))
+    let typical = (third + 3.0 * first * second) / (2.0 * (second + first * first));
+    if typical > MANY_SIZES * smallest {
+        0.0
+    } else {
+        typical
+    }
 }
 
 struct Farthest<'a> {
@@ -189,5 +198,18 @@ mod tests {
             .collect();
         assert!((typical_radius(&balls(&every_other)) - 1.0).abs() < 1e-12);
         assert!(typical_radius(&balls(&[0.0])) > 0.0);
+    }
+
+    #[test]
+    fn sixteen_times_the_smallest_radius_is_typical_and_more_is_not() {
+        let balls = |wide: f32| -> Vec<_> {
+            let radius = |i: u32| if i == 0 { wide } else { 1.0 };
+            (0..256).map(|i| [0.0, 0.0, 0.0, radius(i)]).collect()
+        };
+        // One of x among 255 of 1: sixteen at x = 39.82.
+        let found = typical_radius(&balls(39.8));
+        assert!((15.9..16.0).contains(&found), "{found}");
+        assert_eq!(typical_radius(&balls(39.9)), 0.0);
+        assert_eq!(typical_radius(&balls(0.01)), 0.0, "one speck");
     }
 }
