@@ -12,7 +12,7 @@ use crate::threads::Executor;
 
 /// Pairs a body that a list with the widest skin may hold, and a few more for small scenes: crowds are bound by what is
 /// reported, and there a list would take more memory than all the rest.
-const PAIRS_PER_BODY: usize = 6;
+const PAIRS_PER_BODY: usize = 8;
 const FEW_PAIRS: usize = 256;
 
 /// Room that a list is given, in lengths of its own.

@@ -15,13 +15,18 @@ const SKINS: [f64; 6] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375];
 /// The first one, before anything is known of the motion.
 const FIRST: usize = 3;
 
-/// Costs in instructions of AVX2 (10,000 uniform bodies, spheres): to sort a body; to look at a candidate, in a frame of the
-/// grid and in one that makes a list; to follow a list, a body and a pair.
-const SORT: f64 = 160.0;
-const SEARCH: f64 = 25.0;
-const MAKE: f64 = 13.0;
+/// Costs in instructions of AVX2, what it takes to name pairs included: lines through the counts of frames of 4,000 uniform spheres
+/// with 2 to 18 candidates each, update excepted.
+///
+/// The grid's frame, a body and a candidate.
+const SORT: f64 = 240.0;
+const SEARCH: f64 = 9.5;
+/// What a frame that makes a list takes beyond one that follows it.
+const MAKE: f64 = 260.0;
+const COLLECT: f64 = 11.0;
+/// A frame of a list, a body and a pair.
 const FOLLOW: f64 = 35.0;
-const PAIR: f64 = 25.0;
+const PAIR: f64 = 14.0;
 
 /// A list must promise to take at most this share of the grid's time: where it hardly pays, it may as well cost.
 const WORTH: f64 = 0.8;
@@ -129,7 +134,7 @@ impl Policy {
         for (radii, speed) in [(Radii::Own, own), (Radii::Typical, typical)] {
             for (index, skin) in SKINS.into_iter().enumerate() {
                 let frames = (skin / speed).floor() + 1.0;
-                let make = SORT + MAKE * candidates * wider(index);
+                let make = MAKE + COLLECT * candidates * wider(index);
                 let cost = make / frames + FOLLOW + PAIR * pairs * wider(index);
                 let penalty = if radii == self.radii {
                     1.0
@@ -254,17 +259,16 @@ mod tests {
 
     #[test]
     fn slow_bodies_are_followed_and_fast_ones_searched_for() {
-        let mut widest = 0;
+        let mut before = 0;
         for speed in [0.0, 0.001, 0.01, 0.03, 0.1] {
-            let (made, served, policy) = frames([speed; 2]);
+            let (made, served, _) = frames([speed; 2]);
             assert!(served >= 1990, "{speed}: {served}");
             assert!(
                 f64::from(made) <= 2000.0 * speed / 0.06 + 2.0,
                 "{speed}: {made}"
             );
-            let skin = policy.skin;
-            assert!(speed == 0.0 || skin >= widest, "{speed}: {skin}");
-            widest = if speed == 0.0 { 0 } else { skin };
+            assert!(made >= before, "{speed}: {made}, and {before} when slower");
+            before = made;
         }
         for speed in [1.0, 100.0] {
             let (made, served, _) = frames([speed; 2]);
@@ -349,33 +353,40 @@ mod tests {
         let own = |skin| Some((Radii::Own, skin));
         let typical = |skin| Some((Radii::Typical, skin));
         for (at, served, drifts, candidates, pairs, next) in [
-            (own(3), 2, [0.3, FAR], 6, 6_399_680, [own(4), own(2)]),
-            (own(3), 3, [0.26, FAR], 4, 1_971_318, [own(5), own(2)]),
-            (own(0), 2, [0.1, FAR], 5, 9_031_249, [own(3), own(1)]),
-            (own(3), 10, [0.27, FAR], 6, 6_574_841, [own(2), own(1)]),
-            (own(2), 5, [0.2, FAR], 0, 2_493_326, [own(1), None]),
-            (own(3), 2, [0.4, FAR], 3, 943_396, [own(3), None]),
-            (own(4), 2, [0.33, FAR], 1, 1_594_266, [own(5), None]),
-            (own(3), 3, [9.0, 0.1], 6, 8_233_311, [own(4), own(1)]),
+            (own(3), 2, [0.3, FAR], 6, 3_837_626, [own(4), None]),
+            (own(3), 3, [0.26, FAR], 4, 6_009_424, [own(5), own(2)]),
+            (own(0), 2, [0.1, FAR], 5, 18_812_129, [own(3), None]),
+            (own(3), 10, [0.27, FAR], 6, 2_195_551, [own(4), own(3)]),
+            (own(2), 5, [0.2, FAR], 0, 7_728_640, [own(1), None]),
+            (own(3), 2, [0.4, FAR], 3, 1_434_156, [own(3), None]),
+            (own(4), 2, [0.33, FAR], 1, 4_149_165, [own(5), None]),
+            (own(3), 3, [9.0, 0.1], 6, 7_692_074, [own(4), None]),
             (
                 typical(5),
                 100,
                 [FAR, 0.376],
                 10,
-                6_504_333,
-                [typical(1), typical(0)],
+                2_458_240,
+                [typical(2), typical(1)],
             ),
             (
                 typical(1),
                 2,
                 [0.02, 0.251],
                 6,
-                611_410,
+                1_661_698,
                 [typical(5), typical(3)],
             ),
-            (own(3), 1, [0.4, 0.05], 6, 992_095, [typical(4), typical(3)]),
-            (own(3), 4, [0.3, 0.2], 5, 429_322, [typical(5), own(5)]),
-            (own(3), 4, [0.3, 0.2], 5, 728_693, [own(5), typical(4)]),
+            (
+                own(3),
+                1,
+                [0.4, 0.05],
+                6,
+                1_862_170,
+                [typical(5), typical(4)],
+            ),
+            (own(3), 3, [0.3, 0.25], 8, 658_971, [typical(5), own(4)]),
+            (own(3), 3, [0.3, 0.25], 8, 6_635_479, [own(4), typical(3)]),
         ] {
             let (radii, skin) = at.expect("a list has a skin");
             for (more, next) in (0..).zip(next) {

@@ -250,13 +250,13 @@ fn clusters(bodies: usize, first: &[usize], last: &[usize]) -> Followed {
 }
 
 #[test]
-fn a_list_of_six_pairs_a_body_with_the_widest_skin_is_made_and_no_longer_one() {
-    // 6·1000/(1.375/1.25)³ + 256 = 4763.9, and twice as many bodies are in two parts of the grid's work.
+fn a_list_of_eight_pairs_a_body_with_the_widest_skin_is_made_and_no_longer_one() {
+    // 8·1000/(1.375/1.25)³ + 256 = 6266.5, and twice as many bodies are in two parts of the grid's work.
     for (bodies, first, last, pairs, is_made) in [
-        (1000, &[97, 15, 2, 2][..], &[][..], 4763, true),
-        (1000, &[97, 15, 2, 2], &[2], 4764, false),
-        (2000, &[136, 13, 5, 2, 2], &[2], 9271, true),
-        (2000, &[136, 13, 5, 2, 2, 2], &[2], 9272, false),
+        (1000, &[112, 10, 3, 2, 2][..], &[][..], 6266, true),
+        (1000, &[112, 10, 3, 2, 2], &[2], 6267, false),
+        (2000, &[157, 8, 2, 2], &[2], 12_277, true),
+        (2000, &[157, 8, 2, 2, 2], &[2], 12_278, false),
     ] {
         let mut bodies = clusters(bodies, first, last);
         for _ in 0..2 {
