@@ -128,6 +128,19 @@ impl PairList {
         }
     }
 
+    /// Drops those from pair `start` on that aren't to be kept.
+    pub(crate) fn keep_from(&mut self, start: usize, keep: impl Fn([u32; 2]) -> bool) {
+        let mut kept = start;
+        for at in start..self.len {
+            let pair = [self.first[at], self.second[at]];
+            if keep(pair) {
+                [self.first[kept], self.second[kept]] = pair;
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+
     /// Both columns behind the last pair, with room for `pairs` of them and a vector more.
     #[inline(always)]
     pub(crate) fn room(&mut self, pairs: usize) -> (&mut [u32], &mut [u32]) {
@@ -182,6 +195,16 @@ mod tests {
         twice.append(&list);
         assert_eq!(twice.len(), 10_000);
         assert_eq!(twice.first()[9_999], 4_999);
+    }
+
+    #[test]
+    fn pairs_from_one_on_are_kept_in_their_order() {
+        let mut list: PairList = (0..9).map(|i| [i, 20 - i]).collect();
+        list.keep_from(3, |[i, j]| i % 2 == 1 && j != 15);
+        let kept: Vec<_> = list.iter().collect();
+        assert_eq!(kept, [[0, 20], [1, 19], [2, 18], [3, 17], [7, 13]]);
+        list.keep_from(5, |_| false);
+        assert_eq!(list.len(), 5);
     }
 
     #[test]

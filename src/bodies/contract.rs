@@ -5,7 +5,6 @@
 
 use std::ops::Range;
 
-use glam::{BVec4A, Vec4};
 use miette::Diagnostic;
 use thiserror::Error;
 
@@ -118,13 +117,12 @@ pub(crate) fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), Co
 
 /// Whether all coordinates of a column are at most 2⁶⁰ in size.
 fn are_within_limit(column: &[[f32; 3]]) -> bool {
-    // Without an early exit, four lanes a vector that are asked once: a column that fails is the last one.
+    // Without an early exit, so that the compiler makes vectors of it: a column that fails is the last one.
     column
+        .as_flattened()
         .iter()
-        .fold(BVec4A::splat(true), |fine, v| {
-            fine & within_limit(with_zero(v))
-        })
-        .all()
+        .fold(0, |most, x| size(*x).max(most))
+        <= size(LIMIT)
 }
 
 /// Checks that so many bodies can be numbered.
@@ -193,6 +191,12 @@ pub(crate) fn refuse(
 
 // All limits are written as `x ≤ limit`, and what isn't so is refused: a NaN fails.
 
+/// A number's size: its bits without the sign. They are in the order of sizes, and those of NaN above all.
+#[inline(always)]
+fn size(number: f32) -> u32 {
+    number.to_bits() & !(1 << 31)
+}
+
 pub(crate) fn has_sound_size(shape: &Shape) -> bool {
     // The reach bounds the ball's centre and radius; a NaN in them it does not.
     [shape.reach, shape.ball.radius, shape.ball.centre.length()]
@@ -202,18 +206,7 @@ pub(crate) fn has_sound_size(shape: &Shape) -> bool {
 
 #[inline]
 pub(crate) fn is_within_limit(v: &[f32; 3]) -> bool {
-    within_limit(with_zero(v)).all()
-}
-
-#[inline]
-fn with_zero(&[x, y, z]: &[f32; 3]) -> Vec4 {
-    Vec4::new(x, y, z, 0.0)
-}
-
-/// Which of three coordinates are at most 2⁶⁰ in size.
-#[inline]
-fn within_limit(v: Vec4) -> BVec4A {
-    v.abs().cmple(Vec4::splat(LIMIT))
+    v.iter().all(|&x| size(x) <= size(LIMIT))
 }
 
 /// Whether the centres of all balls are within 2⁶⁰, and their radii finite. A function of its own, of which callgrind tells what the
@@ -232,7 +225,7 @@ impl Kernel for BallsWithinLimit<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) -> bool {
-        // Bits without a sign are in the order of sizes, and those of NaN above all: two instructions a vector.
+        // The largest of each column, for two instructions a vector.
         let mut largest = [0; TOGETHER];
         let (many, rest) = self.0.as_flattened().as_chunks::<TOGETHER>();
         for numbers in many {
@@ -242,7 +235,7 @@ impl Kernel for BallsWithinLimit<'_> {
         let mut fine = true;
         for ball in largest.as_chunks::<4>().0 {
             let [x, y, z, radius] = *ball;
-            fine &= x.max(y).max(z) <= LIMIT.to_bits() && radius <= f32::MAX.to_bits();
+            fine &= x.max(y).max(z) <= size(LIMIT) && radius <= size(f32::MAX);
         }
         fine
     }
@@ -251,7 +244,7 @@ impl Kernel for BallsWithinLimit<'_> {
 #[inline(always)]
 fn enlarge(largest: &mut [u32; TOGETHER], numbers: &[f32]) {
     for (largest, number) in largest.iter_mut().zip(numbers) {
-        *largest = (*largest).max(number.to_bits() & !(1 << 31));
+        *largest = size(*number).max(*largest);
     }
 }
 
@@ -276,6 +269,24 @@ mod tests {
             told,
             Err(format!("body {most}: number {more} of {most} at most"))
         );
+    }
+
+    #[test]
+    fn coordinates_are_refused_for_an_ulp_beyond_the_limit() {
+        let beyond = LIMIT.next_up();
+        for count in [1, 2, 40] {
+            let fine = vec![[LIMIT, -LIMIT, -0.0]; count];
+            assert_eq!(check_vectors("translation", &fine, 7), Ok(()));
+            for (at, axis) in (0..count).flat_map(|at| [0, 1, 2].map(|axis| (at, axis))) {
+                for bad in [beyond, -beyond, f32::INFINITY, f32::NAN, -f32::NAN] {
+                    let mut column = fine.clone();
+                    column[at][axis] = bad;
+                    assert!(!is_within_limit(&column[at]));
+                    let told = check_vectors("translation", &column, 7);
+                    assert_eq!(told.map_err(|error| error.body), Err(7 + at), "{bad}");
+                }
+            }
+        }
     }
 
     #[test]

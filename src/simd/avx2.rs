@@ -63,6 +63,16 @@ impl Avx2 {
             && is_x86_feature_detected!("popcnt"))
         .then_some(Self(()))
     }
+
+    /// Indices of entries of a non-empty table of this length: those past its end become its last one's, which is below 2³¹ as the
+    /// gather's signed indices must be.
+    #[inline(always)]
+    fn clamped(self, index: I8, len: usize) -> I8 {
+        assert!(len > 0, "the table has an entry");
+        let last = len.min(1 << 31) as u32 - 1;
+        // SAFETY: the token proves AVX2.
+        I8(unsafe { _mm256_min_epu32(index.0, _mm256_set1_epi32(last as i32)) })
+    }
 }
 
 pub(super) fn run<K: Kernel>(token: Avx2, kernel: K) -> K::Output {
@@ -149,25 +159,14 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn gather(self, table: &[f32], index: I8) -> F8 {
-        assert!(!table.is_empty(), "the table has an entry");
-        let last = table.len().min(1 << 31) as u32 - 1;
-        // SAFETY: every index is clamped to the last entry, below 2³¹ as the gather's signed ones must be; the token proves
-        // AVX2.
-        F8(unsafe {
-            let index = _mm256_min_epu32(index.0, _mm256_set1_epi32(last as i32));
-            _mm256_i32gather_ps::<4>(table.as_ptr(), index)
-        })
+        let index = self.clamped(index, table.len());
+        // SAFETY: every index is that of an entry, and the token proves AVX2.
+        F8(unsafe { _mm256_i32gather_ps::<4>(table.as_ptr(), index.0) })
     }
     #[inline(always)]
     fn lookup_16(self, table: &[f32; 16], index: I8) -> F8 {
-        // SAFETY: 16 floats are there, and the token proves AVX2; the permutations read the low three bits, and bit 3,
-        // moved into the sign, picks the half.
-        F8(unsafe {
-            let low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(table.as_ptr()), index.0);
-            let high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(table.as_ptr().add(8)), index.0);
-            let half = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(index.0));
-            _mm256_blendv_ps(low, high, half)
-        })
+        // SAFETY: 16 floats are there, and the token proves AVX2.
+        F8(unsafe { lookup(table.as_ptr(), index.0) })
     }
     #[inline(always)]
     fn as_u32(self, a: F8) -> I8 {
@@ -215,28 +214,14 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn gather_u32(self, table: &[u32], index: I8) -> I8 {
-        assert!(!table.is_empty(), "the table has an entry");
-        let last = table.len().min(1 << 31) as u32 - 1;
-        // SAFETY: every index is clamped to the last entry, below 2³¹ as the gather's signed ones must be; the token proves
-        // AVX2.
-        I8(unsafe {
-            let index = _mm256_min_epu32(index.0, _mm256_set1_epi32(last as i32));
-            _mm256_i32gather_epi32::<4>(table.as_ptr().cast(), index)
-        })
+        let index = self.clamped(index, table.len());
+        // SAFETY: every index is that of an entry, and the token proves AVX2.
+        I8(unsafe { _mm256_i32gather_epi32::<4>(table.as_ptr().cast(), index.0) })
     }
     #[inline(always)]
     fn lookup_16_u32(self, table: &[u32; 16], index: I8) -> I8 {
-        // SAFETY: 16 integers are there, and the token proves AVX2; the permutations read the low three bits, and bit 3,
-        // moved into the sign, picks the half.
-        I8(unsafe {
-            let low = _mm256_loadu_si256(table.as_ptr().cast());
-            let high = _mm256_loadu_si256(table.as_ptr().add(8).cast());
-            let low = _mm256_permutevar8x32_epi32(low, index.0);
-            let high = _mm256_permutevar8x32_epi32(high, index.0);
-            let half = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(index.0));
-            let [low, high] = [_mm256_castsi256_ps(low), _mm256_castsi256_ps(high)];
-            _mm256_castps_si256(_mm256_blendv_ps(low, high, half))
-        })
+        // SAFETY: 16 integers are there, of the size of floats, and the token proves AVX2.
+        I8(unsafe { _mm256_castps_si256(lookup(table.as_ptr().cast(), index.0)) })
     }
     #[inline(always)]
     fn split_u32(self, a: I8) -> (I8, I8) {
@@ -328,6 +313,22 @@ impl Lanes for Avx2 {
             }
         }
         out
+    }
+}
+
+/// Entries of a table of sixteen, whatever its bits mean: the permutations read the low three bits of an index, and bit 3, moved
+/// into the sign, picks the half.
+///
+/// # Safety
+/// The CPU has AVX2, and the pointer leads to sixteen floats.
+#[inline(always)]
+unsafe fn lookup(table: *const f32, index: __m256i) -> __m256 {
+    // SAFETY: the caller vouches for the feature and the pointer.
+    unsafe {
+        let low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(table), index);
+        let high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(table.add(8)), index);
+        let half = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(index));
+        _mm256_blendv_ps(low, high, half)
     }
 }
 

@@ -44,6 +44,16 @@ impl Avx512 {
             && is_x86_feature_detected!("popcnt"))
         .then_some(Self(()))
     }
+
+    /// Indices of entries of a non-empty table of this length: those past its end become its last one's, which is below 2³¹ as the
+    /// gather's signed indices must be.
+    #[inline(always)]
+    fn clamped(self, index: I16, len: usize) -> I16 {
+        assert!(len > 0, "the table has an entry");
+        let last = len.min(1 << 31) as u32 - 1;
+        // SAFETY: the token proves AVX-512 F.
+        I16(unsafe { _mm512_min_epu32(index.0, _mm512_set1_epi32(last as i32)) })
+    }
 }
 
 pub(super) fn run<K: Kernel>(token: Avx512, kernel: K) -> K::Output {
@@ -125,14 +135,9 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn gather(self, table: &[f32], index: I16) -> F16 {
-        assert!(!table.is_empty(), "the table has an entry");
-        let last = table.len().min(1 << 31) as u32 - 1;
-        // SAFETY: every index is clamped to the last entry, below 2³¹ as the gather's signed ones must be; the token proves
-        // AVX-512 F.
-        F16(unsafe {
-            let index = _mm512_min_epu32(index.0, _mm512_set1_epi32(last as i32));
-            _mm512_i32gather_ps::<4>(index, table.as_ptr())
-        })
+        let index = self.clamped(index, table.len());
+        // SAFETY: every index is that of an entry, and the token proves AVX-512 F.
+        F16(unsafe { _mm512_i32gather_ps::<4>(index.0, table.as_ptr()) })
     }
     #[inline(always)]
     fn lookup_16(self, table: &[f32; 16], index: I16) -> F16 {
@@ -178,14 +183,9 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn gather_u32(self, table: &[u32], index: I16) -> I16 {
-        assert!(!table.is_empty(), "the table has an entry");
-        let last = table.len().min(1 << 31) as u32 - 1;
-        // SAFETY: every index is clamped to the last entry, below 2³¹ as the gather's signed ones must be; the token proves
-        // AVX-512 F.
-        I16(unsafe {
-            let index = _mm512_min_epu32(index.0, _mm512_set1_epi32(last as i32));
-            _mm512_i32gather_epi32::<4>(index, table.as_ptr().cast())
-        })
+        let index = self.clamped(index, table.len());
+        // SAFETY: every index is that of an entry, and the token proves AVX-512 F.
+        I16(unsafe { _mm512_i32gather_epi32::<4>(index.0, table.as_ptr().cast()) })
     }
     #[inline(always)]
     fn lookup_16_u32(self, table: &[u32; 16], index: I16) -> I16 {

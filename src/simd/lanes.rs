@@ -106,6 +106,14 @@ pub(super) fn pack_lanes<T: Copy, const N: usize>(keep: u32, lanes: [T; N], out:
     }
 }
 
+/// [`Lanes::gather`] and [`Lanes::gather_u32`] lane by lane, where the CPU has no instruction for them.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[inline(always)]
+pub(super) fn entries<T: Copy, const N: usize>(table: &[T], index: [u32; N]) -> [T; N] {
+    let last = table.len() - 1;
+    index.map(|entry| table[(entry as usize).min(last)])
+}
+
 /// The greatest code that leads to a quad of a table with `len` quads, of which there is one at least.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]

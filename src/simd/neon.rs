@@ -4,7 +4,7 @@
 
 use std::arch::aarch64::*;
 
-use super::lanes::{Lanes, Sealed, float_operators, pack_lanes};
+use super::lanes::{Lanes, Sealed, entries, float_operators, pack_lanes};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has NEON.
@@ -138,11 +138,7 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn gather(self, table: &[f32], index: I4) -> F4 {
-        self.load(
-            &self
-                .array(index)
-                .map(|entry| table[(entry as usize).min(table.len() - 1)]),
-        )
+        self.load(&entries(table, self.array(index)))
     }
     #[inline(always)]
     fn lookup_16(self, table: &[f32; 16], index: I4) -> F4 {
@@ -185,12 +181,7 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn gather_u32(self, table: &[u32], index: I4) -> I4 {
-        let last = table.len() - 1;
-        self.load_u32(
-            &self
-                .array(index)
-                .map(|entry| table[(entry as usize).min(last)]),
-        )
+        self.load_u32(&entries(table, self.array(index)))
     }
     #[inline(always)]
     fn lookup_16_u32(self, table: &[u32; 16], index: I4) -> I4 {

@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::{Lanes, Sealed, float_operators, pack_lanes};
+use super::lanes::{Lanes, Sealed, entries, float_operators, pack_lanes};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has SSE2, which is part of x86-64 itself.
@@ -137,11 +137,7 @@ impl Lanes for Sse2 {
     }
     #[inline(always)]
     fn gather(self, table: &[f32], index: I4) -> F4 {
-        self.load(
-            &self
-                .array(index)
-                .map(|entry| table[(entry as usize).min(table.len() - 1)]),
-        )
+        self.load(&entries(table, self.array(index)))
     }
     #[inline(always)]
     fn lookup_16(self, table: &[f32; 16], index: I4) -> F4 {
@@ -191,12 +187,7 @@ impl Lanes for Sse2 {
     }
     #[inline(always)]
     fn gather_u32(self, table: &[u32], index: I4) -> I4 {
-        let last = table.len() - 1;
-        self.load_u32(
-            &self
-                .array(index)
-                .map(|entry| table[(entry as usize).min(last)]),
-        )
+        self.load_u32(&entries(table, self.array(index)))
     }
     #[inline(always)]
     fn lookup_16_u32(self, table: &[u32; 16], index: I4) -> I4 {

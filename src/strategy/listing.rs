@@ -290,25 +290,14 @@ enum Hits {
     Codes(usize),
 }
 
-impl Hits {
-    /// The two slots of a hit.
-    fn slots(self, hit: u32) -> [usize; 2] {
-        match self {
-            Self::With(slot) => [slot, hit as usize],
-            Self::Codes(first) => [first + (hit & 15) as usize, (hit >> 4) as usize],
-        }
-    }
-}
-
 impl<T> Lister<'_, '_, T> {
     /// Lists the first `found` hits.
     #[inline(always)]
     fn append<L: Lanes>(&mut self, l: L, found: usize, hits: Hits) {
         let listed = self.out.len();
+        self.name(l, found, hits);
         if let Some(groups) = self.listing.groups {
-            self.append_colliding(found, hits, groups);
-        } else {
-            self.append_all(l, found, hits);
+            self.keep_colliding(listed, groups);
         }
         self.counters.hits += (self.out.len() - listed) as u64;
         if self.out.len() >= self.flush.enough {
@@ -316,9 +305,9 @@ impl<T> Lister<'_, '_, T> {
         }
     }
 
-    /// A vector of hits at a time; what is computed of the lanes behind the last hit is overwritten by the next pairs.
+    /// Lists them all, a vector at a time; what is computed of the lanes behind the last hit is overwritten by the next pairs.
     #[inline(always)]
-    fn append_all<L: Lanes>(&mut self, l: L, found: usize, hits: Hits) {
+    fn name<L: Lanes>(&mut self, l: L, found: usize, hits: Hits) {
         let (first, second) = self.out.room(found);
         let mut start = 0;
         while start < found {
@@ -342,25 +331,17 @@ impl<T> Lister<'_, '_, T> {
         self.out.advance(found);
     }
 
-    /// Lists those hits whose bodies may collide. Apart, so that the common case stays small.
+    /// Drops those listed from this one on whose bodies don't collide. Apart, so that the common case stays small.
     #[inline(never)]
-    fn append_colliding(&mut self, found: usize, hits: Hits, groups: &[Groups]) {
-        let Listing { names, listed, .. } = self.listing;
-        let body = |name: u32| match names {
-            SlotNames::Bodies => name,
-            SlotNames::Places(body) => body[name as usize],
+    fn keep_colliding(&mut self, listed: usize, groups: &[Groups]) {
+        let groups_of = |name: u32| {
+            let body = match (self.listing.listed, self.listing.names) {
+                (Listed::Places, SlotNames::Places(body)) => body[name as usize],
+                _ => name,
+            };
+            groups[body as usize]
         };
-        for &hit in &self.hits[..found] {
-            let [i, j] = hits.slots(hit).map(|slot| self.names[slot]);
-            let (a, b) = (body(i), body(j));
-            if groups[a as usize].collide(groups[b as usize]) {
-                let [i, j] = match listed {
-                    Listed::Bodies => [a, b],
-                    Listed::Places => [i, j],
-                };
-                let (i, j) = if a > b { (j, i) } else { (i, j) };
-                self.out.push(i, j);
-            }
-        }
+        self.out
+            .keep_from(listed, |[a, b]| groups_of(a).collide(groups_of(b)));
     }
 }

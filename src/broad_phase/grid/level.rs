@@ -321,28 +321,43 @@ mod tests {
         check([0, 5], [3, 4]);
     }
 
+    /// Sorts balls with these names: their slots, and each slot's cell.
+    fn sort(
+        level: &mut Level,
+        threads: usize,
+        balls: &[[f32; 4]],
+        names: &[u32],
+    ) -> (Slots, Vec<u32>) {
+        let pool = Threads::new(threads).expect("a few threads");
+        let (mut place_cells, mut slot_cells) = (vec![0; balls.len()], vec![0; balls.len()]);
+        let mut slots = Slots {
+            balls: vec![[0.0; 4]; balls.len()],
+            names: vec![0; balls.len()],
+            ..Slots::default()
+        };
+        level.sort(
+            pool.executor(Tier::SCALAR),
+            balls,
+            names,
+            &mut place_cells,
+            &mut slots,
+            &mut slot_cells,
+        );
+        (slots, slot_cells)
+    }
+
     /// A box that breathes allocates nothing.
     #[test]
     fn a_table_that_grows_takes_an_eighth_to_spare() {
-        let pool = Threads::default();
         let mut level = Level::new(0..100, Layout::Box);
-        let (mut place_cells, mut slot_cells) = (vec![0; 100], vec![0; 100]);
-        let mut slots = Slots {
-            balls: vec![[0.0; 4]; 100],
-            names: vec![0; 100],
-            ..Slots::default()
-        };
         let names: Vec<u32> = (0..100).collect();
-        let mut sorted = |level: &mut Level, step: f32| {
-            let ball = |i: u32| [step * i as f32, 0.0, 0.0, 1.0];
-            let balls: Vec<_> = names.iter().map(|&i| ball(i)).collect();
-            level.sort(
-                pool.executor(Tier::SCALAR),
-                &balls,
+        let sorted = |level: &mut Level, step: f32| {
+            let ball = |&i: &u32| [step * i as f32, 0.0, 0.0, 1.0];
+            sort(
+                level,
+                1,
+                &names.iter().map(ball).collect::<Vec<_>>(),
                 &names,
-                &mut place_cells,
-                &mut slots,
-                &mut slot_cells,
             );
             (level.cells.table_len() + 1, level.starts.capacity())
         };
@@ -369,22 +384,8 @@ mod tests {
         let balls: Vec<_> = (0..len).map(ball).collect();
         let names: Vec<u32> = (0..len as u32).rev().collect();
         let sorted = |threads| {
-            let pool = Threads::new(threads).expect("a few threads");
             let mut level = Level::new(0..len, Layout::Box);
-            let (mut place_cells, mut slot_cells) = (vec![0; len], vec![0; len]);
-            let mut slots = Slots {
-                balls: vec![[0.0; 4]; len],
-                names: vec![0; len],
-                ..Slots::default()
-            };
-            level.sort(
-                pool.executor(Tier::SCALAR),
-                &balls,
-                &names,
-                &mut place_cells,
-                &mut slots,
-                &mut slot_cells,
-            );
+            let (slots, slot_cells) = sort(&mut level, threads, &balls, &names);
             (
                 level.starts,
                 level.widest,

@@ -7,8 +7,8 @@ use crate::rounding::skin::{Skin, stays};
 use crate::simd::{Kernel, Lanes, dispatch};
 use crate::threads::Executor;
 
-/// Balls that one thread measures at a time.
-const PIECE: usize = 4096;
+/// Balls that one thread looks at at a time.
+pub const PIECE: usize = 4096;
 
 /// Copies the balls to `slots` and returns true if none has drifted by its skin since `then`. Otherwise
 /// what `slots` holds is of no use.
@@ -59,13 +59,15 @@ impl Kernel for Measure<'_> {
             *slots = *now;
         }
         slots_rest.copy_from_slice(now_rest);
-        let [now, then] = [now_rest, then_rest].map(|rest| {
-            let mut balls = [[0.0; 4]; BLOCK_BODIES];
-            balls[..rest.len()].copy_from_slice(rest);
-            balls
-        });
-        all_stay(l, self.skin, &now, &then)
+        all_stay(l, self.skin, &padded(now_rest), &padded(then_rest))
     }
+}
+
+/// Fewer balls than a block has, and balls without a size at the origin.
+pub fn padded(rest: &[[f32; 4]]) -> [[f32; 4]; BLOCK_BODIES] {
+    let mut balls = [[0.0; 4]; BLOCK_BODIES];
+    balls[..rest.len()].copy_from_slice(rest);
+    balls
 }
 
 #[inline(always)]

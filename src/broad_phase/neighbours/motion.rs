@@ -3,18 +3,16 @@
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
+use super::drift::{PIECE, padded};
 use crate::broad_phase::BLOCK_BODIES;
 use crate::simd::{Kernel, Lanes, dispatch, quads_in_columns};
 use crate::threads::Executor;
 
-/// Balls that one thread looks at at a time.
-const PIECE: usize = 4096;
-
 /// Balls whose radii are asked, at most.
 const ASKED: usize = 256;
 
-/// The most that a typical radius may be of the smallest one.
-const MANY_SIZES: f64 = 16.0;
+/// How many times the smallest radius the typical one may be.
+const MOST_OF_SMALLEST: f64 = 16.0;
 
 /// 2⁻⁶⁰: smaller radii count as this one, whose square is no subnormal.
 const LEAST: f32 = crate::rounding::skin::SKIN_FLOOR as f32;
@@ -58,8 +56,10 @@ impl Motion {
 
 /// The radius r of bodies of one size that would be as hard to find: a skin of σr adds about as many pairs to a list of bodies
 /// of these sizes, all alike, as one of σ radii each. Pairs go by the cube of the sum of two radii, so that their growth by a
-/// length goes by its square: r = Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)². Zero, of which no body drifts less, where it is many times the smallest
-/// radius: a skin of a giant's size would make all the small ones neighbours.
+/// length goes by its square: r = Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)².
+///
+/// Zero, so that any drift is infinitely many of it and no skin goes by it, where it is more than [`MOST_OF_SMALLEST`] times the
+/// smallest radius: a skin of a giant's size would make all the small ones neighbours.
 pub fn typical_radius(balls: &[[f32; 4]]) -> f64 {
     let (mut sums, mut asked, mut smallest) = ([0.0; 3], 0.0, f64::INFINITY);
     for ball in balls.iter().step_by(balls.len().div_ceil(ASKED).max(1)) {
@@ -69,7 +69,7 @@ pub fn typical_radius(balls: &[[f32; 4]]) -> f64 {
     }
     let [first, second, third] = sums.map(|sum| sum / f64::max(asked, 1.0));
     let typical = (third + 3.0 * first * second) / (2.0 * (second + first * first));
-    if typical > MANY_SIZES * smallest {
+    if typical > MOST_OF_SMALLEST * smallest {
         0.0
     } else {
         typical
@@ -92,12 +92,7 @@ impl Kernel for Farthest<'_> {
         for (now, then) in now.iter().zip(then) {
             raise(l, &mut farthest, now, then);
         }
-        let [now, then] = [now_rest, then_rest].map(|rest| {
-            let mut balls = [[0.0; 4]; BLOCK_BODIES];
-            balls[..rest.len()].copy_from_slice(rest);
-            balls
-        });
-        raise(l, &mut farthest, &now, &then);
+        raise(l, &mut farthest, &padded(now_rest), &padded(then_rest));
         farthest.map(|lanes| lanes.into_iter().fold(0.0, f32::max))
     }
 }
@@ -112,23 +107,24 @@ fn raise<L: Lanes>(
 ) {
     let (now, then) = (quads_in_columns(l, now), quads_in_columns(l, then));
     for i in 0..BLOCK_BODIES {
-        let [dx, dy, dz, growth] = [0, 1, 2, 3].map(|k| now[k][i] - then[k][i]);
-        let growth = if growth > 0.0 { growth } else { 0.0 };
+        let (dx, dy, dz) = (
+            now[0][i] - then[0][i],
+            now[1][i] - then[1][i],
+            now[2][i] - then[2][i],
+        );
+        let growth = larger(now[3][i] - then[3][i], 0.0);
         let square = dx * dx + dy * dy + dz * dz + growth * growth;
-        let radius = if then[3][i] > LEAST {
-            then[3][i]
-        } else {
-            LEAST
-        };
-        let share = square / (radius * radius);
+        let radius = larger(then[3][i], LEAST);
         // NaN, of a body outside the contract, is no farther than anything.
-        own[i] = if share > own[i] { share } else { own[i] };
-        length[i] = if square > length[i] {
-            square
-        } else {
-            length[i]
-        };
+        own[i] = larger(square / (radius * radius), own[i]);
+        length[i] = larger(square, length[i]);
     }
+}
+
+/// The larger number, and the second one of any with NaN: one instruction, where `f32::max` takes four.
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 #[cfg(test)]
