@@ -199,8 +199,52 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
+    use super::super::ShapeFrame;
     use super::*;
+    use crate::bodies::{Bodies, Places};
+    use crate::mesh::ProceduralShape;
     use crate::rounding::exp2;
+    use crate::simd::Tier;
+    use crate::threads::Threads;
+    use crate::volume::ShapeSpec;
+
+    /// To round outward once more would lose no pair, and report some that are apart.
+    #[test]
+    fn without_a_margin_slabs_are_one_place_wider_than_the_body_and_with_one_by_that() {
+        let half = [1.0, 2.5, 0.75];
+        let [x, y, z] = half.map(|half| 2.0 * half);
+        let mesh = ProceduralShape::Box { x, y, z }.build().expect("a box");
+        let shape = Shape::build(&mesh, &ShapeSpec::default()).expect("a shape");
+        let frame = ShapeFrame::new(&shape, &shape.ordop.basis);
+        let grown = frame.grown(0.25);
+        let mut bodies = Bodies::default();
+        let t = [3.0, -7.0, 0.5];
+        bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], t);
+        let mut intervals = Intervals::new(DirectionSet::K6, &[shape], 1);
+        for (frame, margin) in [(frame, 0.0), (grown, 0.25)] {
+            let posed = Posed {
+                frames: &[frame],
+                bodies: &bodies,
+                places: &Places::new(&bodies),
+                balls: &[],
+            };
+            let pool = Threads::default();
+            let executor = pool.executor(Tier::SCALAR);
+            intervals.update(executor, &mut [[0.0; 4]], posed, 0..1);
+            // All sums are numbers of f32.
+            for (axis, &[lo, hi]) in intervals.ends.iter().enumerate() {
+                let out = half[axis] + margin;
+                let [below, above] = [t[axis] - out, t[axis] + out];
+                let places = if margin > 0.0 { 2 } else { 1 };
+                let [mut least, mut most] = [below, above];
+                for _ in 0..places {
+                    (least, most) = (least.next_down(), most.next_up());
+                }
+                assert!((least..below).contains(&lo), "{lo} of {below}");
+                assert!(above < hi && hi <= most, "{hi} of {above}");
+            }
+        }
+    }
 
     #[test]
     fn a_cube_contains_its_box_and_is_as_small_as_the_box_is_wide() {

@@ -212,6 +212,9 @@ mod tests {
 
     use super::*;
     use crate::mesh::ProceduralShape;
+    use crate::rounding::LIMIT;
+    use crate::simd::Tier;
+    use crate::threads::Threads;
     use crate::volume::{Origin, ShapeSpec};
 
     /// A box whose ball's centre is there.
@@ -256,6 +259,50 @@ mod tests {
                 let most = least * (1.0 + 1e-6) + 1e-6;
                 assert!((least..most).contains(&f64::from(inflated)), "{inflated}");
             }
+        }
+    }
+
+    /// Whether bodies with these shapes, rotations and places are within the contract.
+    fn are_sound(shapes: &[Shape], bodies: &[(u32, [f32; 4], [f32; 3])]) -> bool {
+        let frame = |shape: &Shape| ShapeFrame::new(shape, &shape.ordop.basis);
+        let frames: Vec<_> = shapes.iter().map(frame).collect();
+        let mut columns = Bodies::default();
+        for &(shape, rotation, translation) in bodies {
+            columns.push(shape, true, rotation, translation);
+        }
+        let places = Places::new(&columns);
+        let answers = Tier::available().into_iter().map(|tier| {
+            let (pool, all) = (Threads::default(), 0..bodies.len());
+            let executor = pool.executor(tier);
+            let mut spheres = vec![[0.0; 4]; bodies.len()];
+            update_spheres(executor, &mut spheres, &frames, &columns, &places, all)
+        });
+        let answers: Vec<bool> = answers.collect();
+        assert_eq!(answers, vec![answers[0]; answers.len()]);
+        answers[0]
+    }
+
+    #[test]
+    fn a_body_off_its_ball_s_centre_is_judged_by_its_pose_and_others_by_their_ball() {
+        let shapes = [boxed([0.0; 3]), boxed([LIMIT / 4.0, 0.0, 0.0])];
+        let (still, no_turn, at) = ([0.0, 0.0, 0.0, 1.0], [0.0; 4], [3.0, -7.0, 0.5]);
+        let [near, edge, beyond] = [LIMIT / 2.0, LIMIT, LIMIT.next_up()].map(|x| [x, 0.0, 0.0]);
+        let back = [-LIMIT.next_up(), 0.0, 0.0];
+        let (plain, off) = (0, 1);
+        for (bodies, sound) in [
+            (vec![(plain, still, edge)], true),
+            (vec![(plain, still, beyond)], false),
+            (vec![(off, still, near)], true),
+            // Only its ball's centre is beyond the limit.
+            (vec![(off, still, edge)], true),
+            // Its ball's centre alone is within.
+            (vec![(off, still, back)], false),
+            (vec![(off, no_turn, at)], false),
+            (vec![(off, still, edge), (plain, still, edge)], true),
+            (vec![(off, still, edge), (plain, still, beyond)], false),
+            (vec![(plain, still, back), (off, still, edge)], false),
+        ] {
+            assert_eq!(are_sound(&shapes, &bodies), sound, "{bodies:?}");
         }
     }
 }
