@@ -122,3 +122,32 @@ impl CullerBuilder {
         Culler::build(shapes, bodies, &self.settings, tier, threads)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_builder_keeps_each_choice_and_no_other() {
+        let built = Culler::builder()
+            .threads(3)
+            .worth_waking(7)
+            .tier(Tier::SCALAR)
+            .finder(Finder::Sweep);
+        let wanted = CullerBuilder {
+            settings: CullSettings {
+                pairs: Finder::Sweep,
+                ..CullSettings::default()
+            },
+            threads: 3,
+            worth_waking: Some(7),
+            tier: Some(Tier::SCALAR),
+        };
+        assert_eq!(built, wanted);
+        let other = CullerBuilder {
+            threads: 5,
+            ..wanted
+        };
+        assert_eq!(built.threads(5), other);
+    }
+}

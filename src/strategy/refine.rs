@@ -121,3 +121,74 @@ impl<'a> Refiner<'a> {
         self.totals.update_seconds += start.elapsed().as_secs_f64();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+    use crate::bodies::{Bodies, Places};
+    use crate::broad_phase::{AllPairs, PairFinder};
+    use crate::mesh::ProceduralShape;
+    use crate::overlap::intervals::IntervalSlots;
+    use crate::overlap::ordop::SlabTables;
+    use crate::settings::{CullSettings, DirectionSet, Updates};
+    use crate::strategy::SlotNames;
+    use crate::threads::Threads;
+    use crate::update::{Posed, ShapeFrame};
+    use crate::volume::{Shape, ShapeSpec};
+
+    /// What refining both pairs of three boxes in one place takes, with such updates.
+    fn refined(updates: Updates) -> Totals {
+        let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
+        let shape = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
+        let mut bodies = Bodies::default();
+        for _ in 0..3 {
+            bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
+        }
+        let (places, pool) = (Places::new(&bodies), Threads::default());
+        let posed = Posed {
+            frames: &[ShapeFrame::new(&shape, &shape.ordop.basis)],
+            bodies: &bodies,
+            places: &places,
+            balls: &[],
+        };
+        let (mut rows, executor) = (OrDopRows::new(3), pool.executor(Tier::SCALAR));
+        if updates == Updates::Eager {
+            rows.update(executor, posed, 0..3, 1);
+        }
+        let inputs = Inputs {
+            executor,
+            settings: &CullSettings {
+                updates,
+                ..CullSettings::default()
+            },
+            finder: &PairFinder::AllPairs(AllPairs::default()),
+            names: SlotNames::Places(&places.body),
+            posed,
+            groups: None,
+            intervals: &IntervalSlots::default(),
+            tables: &SlabTables::new(DirectionSet::K18, [(&shape, &shape.ordop)].into_iter()),
+            interest: &[],
+            stamp: 1,
+        };
+        let list: PairList = [[0, 1], [0, 2]].into_iter().collect();
+        let mut out = PairList::default();
+        let mut refiner = Refiner::new(inputs, &mut rows);
+        refiner.refine(&list, None, &mut out);
+        assert_eq!(out.sorted(), [[0, 1], [0, 2]]);
+        refiner.totals
+    }
+
+    #[test]
+    fn rows_made_on_demand_count_as_updates_and_take_an_update_s_time() {
+        let [eager, lazy] = [Updates::Eager, Updates::Lazy].map(refined);
+        assert_eq!([eager, lazy].map(|t| t.refining.updates), [0, 3]);
+        assert_eq!(eager.update_seconds, 0.0);
+        for totals in [eager, lazy] {
+            assert_eq!((totals.refining.tests, totals.refining.hits), (2, 2));
+            assert!(totals.refining_seconds > 0.0);
+        }
+        assert!(lazy.update_seconds > 0.0);
+    }
+}

@@ -137,3 +137,37 @@ fn a_box_at_rest_that_is_moved_is_found_where_it_is() {
         assert!(world.pairs().eq(meets.then_some([still, moving])), "{x}");
     }
 }
+
+/// The cube about the plate holds all that moves; only its ends tell that nothing touches it.
+#[test]
+fn a_plate_at_rest_is_no_cube_because_those_that_move_are() {
+    for &finder in Finder::ALL {
+        let mut world = BoxWorld::with(&BoxCuller::builder().finder(finder)).unwrap();
+        let plate = Aabb::new([-9.0, -9.0, -0.125], [9.0, 9.0, 0.0]);
+        let plate = world
+            .insert(BoxBody {
+                dynamic: false,
+                ..plate.into()
+            })
+            .unwrap();
+        let cube = |x: u16, z: f32| {
+            let x = 2.0 * f32::from(x) - 8.0;
+            Aabb::new([x, x, z], [x + 1.0, x + 1.0, z + 1.0])
+        };
+        let cubes: Vec<BodyId> = (0..8)
+            .map(|x| world.insert(cube(x, 0.5)).unwrap())
+            .collect();
+        for landed in 0..4 {
+            for (x, &id) in (0..).zip(&cubes) {
+                let z = if x < landed { 0.0 } else { 0.0_f32.next_up() };
+                world.set_bounds(id, cube(x, z)).unwrap();
+            }
+            world.cull().unwrap();
+            let wanted = cubes[..usize::from(landed)].iter().map(|&id| [plate, id]);
+            assert!(
+                world.pairs().collect::<BTreeSet<_>>() == wanted.collect(),
+                "{finder}, {landed} landed"
+            );
+        }
+    }
+}

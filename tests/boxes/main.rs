@@ -6,7 +6,7 @@ mod misuse;
 mod scenes;
 
 use sdop::boxes::BoxCullerBuilder;
-use sdop::{BoxCuller, Finder, Groups, Tier};
+use sdop::{Aabb, BoxCuller, Finder, Groups, Tier};
 
 use scenes::{Kind, Random, boxes, expected, moved};
 
@@ -60,6 +60,29 @@ fn the_pairs_of_a_hundred_boxes_are_exact() {
     let random = &mut Random(6);
     for kind in Kind::ALL {
         assert_exact(kind, 100, 3, 0.05, random);
+    }
+}
+
+/// The cubes about neighbours touch, and those within don't: each pair is looked up, in runs as in blocks.
+#[test]
+fn boxes_that_are_nearly_cubes_touch_or_miss_each_other_by_a_step() {
+    let random = &mut Random(7);
+    let mut ends = |at: usize| {
+        let (lo, hi) = (at as f32, at as f32 + 1.0);
+        [lo, [hi, hi.next_down(), hi + 0.015_625][random.below(3)]]
+    };
+    let on_a_lattice: Vec<Aabb> = (0..216)
+        .map(|n| {
+            let [x, y, z] = [n % 6, n / 6 % 6, n / 36].map(&mut ends);
+            Aabb::new([x[0], y[0], z[0]], [x[1], y[1], z[1]])
+        })
+        .collect();
+    let wanted = expected(&on_a_lattice, |_| true, |_| Groups::ALL);
+    for (way, mut culler) in ways() {
+        for frame in 0..3 {
+            let found = culler.cull(&on_a_lattice).unwrap().sorted();
+            assert!(found == wanted, "{way}, frame {frame}");
+        }
     }
 }
 
