@@ -136,6 +136,11 @@ fn a_box_at_rest_that_is_moved_is_found_where_it_is() {
         let meets = (4.0..=6.0).contains(&x);
         assert!(world.pairs().eq(meets.then_some([still, moving])), "{x}");
     }
+    // Far from where it was, so that the cube it had there is of no use.
+    world.set_bounds(still, cube(20.0)).unwrap();
+    world.set_bounds(moving, cube(20.5)).unwrap();
+    world.cull().unwrap();
+    assert!(world.pairs().eq([[still, moving]]));
 }
 
 /// The cube about the plate holds all that moves; only its ends tell that nothing touches it.
