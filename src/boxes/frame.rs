@@ -301,4 +301,20 @@ mod tests {
         let tests = counted.unwrap().tests;
         assert!((2000..20_000).contains(&tests), "{tests}");
     }
+
+    /// All but the first task's list, which is the caller's, stay for the next frame.
+    #[test]
+    fn bytes_of_lists_are_counted_until_they_are_given_back() {
+        let threads = FrameThreads::new(Threads::new(3).unwrap(), 0);
+        let mut frames = Frames::new(Finder::AllPairs, Tier::SCALAR, threads);
+        let boxes = vec![Aabb::new([0.0; 3], [1.0; 3]); 200];
+        frames.replace(&[true; 200], &[true; 200]);
+        let mut pairs = PairList::default();
+        frames.cull(&boxes, None, Output::List(&mut pairs)).unwrap();
+        assert_eq!(pairs.len(), 200 * 199 / 2);
+        // Two numbers a pair, of half of the pairs at least.
+        assert!(frames.pair_bytes() > 4 * pairs.len());
+        frames.shrink_to_fit();
+        assert!(frames.pair_bytes() < pairs.len());
+    }
 }
