@@ -168,7 +168,7 @@ mod tests {
             posed,
             groups: None,
             intervals: &IntervalSlots::default(),
-            tables: &SlabTables::new(DirectionSet::K18, [(&shape, &shape.ordop)].into_iter()),
+            tables: &SlabTables::new(DirectionSet::K18, [(&shape, &shape.ordop)]),
             interest: &[],
             stamp: 1,
         };
