@@ -259,6 +259,15 @@ fn is_invertible(q: &[f32; 4]) -> bool {
 mod tests {
     use super::*;
 
+    /// No coordinates: an ulp beyond the limit, and more.
+    const BEYOND: [f32; 5] = [
+        LIMIT.next_up(),
+        -LIMIT.next_up(),
+        f32::INFINITY,
+        f32::NAN,
+        -f32::NAN,
+    ];
+
     #[test]
     fn as_many_bodies_are_taken_as_can_be_numbered() {
         assert_eq!(check_number(0), Ok(()));
@@ -273,12 +282,11 @@ mod tests {
 
     #[test]
     fn coordinates_are_refused_for_an_ulp_beyond_the_limit() {
-        let beyond = LIMIT.next_up();
         for count in [1, 2, 40] {
             let fine = vec![[LIMIT, -LIMIT, -0.0]; count];
             assert_eq!(check_vectors("translation", &fine, 7), Ok(()));
             for (at, axis) in (0..count).flat_map(|at| [0, 1, 2].map(|axis| (at, axis))) {
-                for bad in [beyond, -beyond, f32::INFINITY, f32::NAN, -f32::NAN] {
+                for bad in BEYOND {
                     let mut column = fine.clone();
                     column[at][axis] = bad;
                     assert!(!is_within_limit(&column[at]));
@@ -291,7 +299,6 @@ mod tests {
 
     #[test]
     fn balls_are_refused_in_every_lane_for_an_ulp_beyond_the_limit() {
-        let beyond = LIMIT.next_up();
         for tier in Tier::available() {
             for count in [0, 1, 16, 17, 50] {
                 let fine = vec![[LIMIT, -LIMIT, 0.0, f32::MAX]; count];
@@ -299,7 +306,7 @@ mod tests {
                 for (ball, axis) in
                     (0..count).flat_map(|ball| [0, 1, 2, 3].map(|axis| (ball, axis)))
                 {
-                    for bad in [beyond, -beyond, f32::INFINITY, f32::NAN, -f32::NAN] {
+                    for bad in BEYOND {
                         let mut balls = fine.clone();
                         balls[ball][axis] = bad;
                         let is_fine = axis == 3 && bad.is_finite();
