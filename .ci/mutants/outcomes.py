@@ -19,22 +19,27 @@ def digest(content):
     return hashlib.sha256(content).hexdigest()[:12]
 
 
+def digests():
+    """Of the code of each file of the library, as it is now."""
+    found = {}
+    for path in TOP.glob("src/**/*.rs"):
+        # A test more takes nothing back, nor does a comment.
+        code = path.read_bytes().split(b"\n#[cfg(test)]\nmod tests")[0]
+        found[str(path.relative_to(TOP))] = digest(re.sub(rb"(?m)^\s*//.*$", b"", code))
+    return found
+
+
 class Outcomes:
     """What is known of each mutant, as long as its file is as it was then."""
 
     def __init__(self, path):
-        self.path, self.lock, self.digests = path, threading.Lock(), {}
+        # Read once: whoever edits the tree during a run has what was tried, not what is there by then.
+        self.path, self.lock, self.digests = path, threading.Lock(), digests()
         lines = path.read_text().splitlines() if path.exists() else []
         self.known = {outcome["name"]: outcome for outcome in map(json.loads, lines)}
 
     def digest(self, mutant):
-        file = mutant["file"]
-        if file not in self.digests:
-            # A test more takes nothing back, nor does a comment.
-            code = (TOP / file).read_bytes().split(b"\n#[cfg(test)]\nmod tests")[0]
-            code = re.sub(rb"(?m)^\s*//.*$", b"", code)
-            self.digests[file] = digest(code)
-        return self.digests[file]
+        return self.digests[mutant["file"]]
 
     def of(self, mutant):
         known = self.known.get(mutant["name"])

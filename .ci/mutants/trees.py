@@ -1,6 +1,7 @@
 """Trees in which mutants sleep: what is planted in them, and what cargo builds of them."""
 
 import collections
+import functools
 import json
 import os
 import pathlib
@@ -44,8 +45,9 @@ def cargo(tree, *arguments):
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")], done
 
 
+@functools.cache
 def tracked():
-    """The files of the tree, by name."""
+    """The files of the tree, by name, as they are when first asked for: all that a run builds is of one state."""
     names = subprocess.run(["git", "ls-files", "-z"], cwd=TOP, stdout=subprocess.PIPE, check=True).stdout.decode()
     return {name: (TOP / name).read_bytes() for name in names.split("\0") if name and (TOP / name).is_file()}
 

@@ -37,7 +37,7 @@ pub struct Block<'a> {
 impl<'a> Block<'a> {
     /// The candidates `padded[..len]` of the slots from `first` on; a vector of whatever codes stands behind them.
     #[inline(always)]
-    pub(super) fn new(first: usize, padded: &'a [u32], len: usize) -> Self {
+    pub(crate) fn new(first: usize, padded: &'a [u32], len: usize) -> Self {
         Self {
             first,
             codes: &padded[..len],

@@ -234,7 +234,34 @@ fn list<L: Lanes>(l: L, hit: u32, start: usize, hits: &mut [u32]) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use super::super::whole_vectors::{SLOTS, check};
     use super::*;
+
+    #[test]
+    fn boxes_that_fill_their_vectors_cost_no_vector_more() {
+        check(&EndSlots {
+            lower: vec![[1.0, 1.0, 1.0, 0.0]; SLOTS],
+            upper: vec![[2.0, 2.0, 2.0, 0.0]; SLOTS],
+            columns: [1.0, 1.0, 1.0, 2.0, 2.0, 2.0].map(|end| vec![end; SLOTS]),
+        });
+        let mut slots = Slots {
+            balls: vec![[1.5, 1.5, 1.5, 0.5]; SLOTS],
+            names: (0..SLOTS as u32).collect(),
+            ..Slots::default()
+        };
+        let boxes = [Aabb::new([1.0; 3], [2.0; 3]); SLOTS];
+        let cubes = |slots: &Slots| {
+            check(&Cubes {
+                slots,
+                boxes: &boxes,
+                less: 0.0,
+            });
+        };
+        cubes(&slots);
+        let [x, y, z, half] = [1.5, 1.5, 1.5, 0.5].map(|number| vec![number; SLOTS]);
+        slots.columns = [x, y, z, half];
+        cubes(&slots);
+    }
 
     #[test]
     fn ends_have_the_order_of_slots_and_a_vector_of_finite_ones_behind_it() {

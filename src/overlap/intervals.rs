@@ -97,7 +97,14 @@ impl SlotTest for IntervalSlots {
 
 #[cfg(test)]
 mod tests {
+    use super::super::whole_vectors::{SLOTS, check};
     use super::*;
+
+    #[test]
+    fn slabs_that_fill_their_vectors_cost_no_vector_more() {
+        let [lo, hi] = [1.0, 2.0].map(|end| vec![vec![end; SLOTS]; 3]);
+        check(&IntervalSlots { lo, hi });
+    }
 
     #[test]
     fn columns_have_the_order_of_slots_and_a_vector_of_finite_ends_behind_it() {

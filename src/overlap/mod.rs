@@ -23,3 +23,6 @@ pub trait SlotTest {
     /// vector more. Returns their number.
     fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize;
 }
+
+#[cfg(test)]
+mod whole_vectors;

@@ -93,3 +93,20 @@ fn touching<L: Lanes>(l: L, one: [L::F; 4], other: [L::F; 4], count: usize) -> u
     let s = other[3] + one[3];
     !l.bits(apart(l, [dx, dy, dz], s)) & l.bits(l.first(count))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::whole_vectors::{SLOTS, check};
+    use super::*;
+
+    #[test]
+    fn balls_that_fill_their_vectors_cost_no_vector_more() {
+        let mut slots = Slots {
+            balls: vec![[1.0; 4]; SLOTS],
+            ..Slots::default()
+        };
+        check(&slots);
+        slots.columns = [(); 4].map(|()| vec![1.0; SLOTS]);
+        check(&slots);
+    }
+}

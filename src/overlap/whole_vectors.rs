@@ -1,0 +1,39 @@
+//! A run or a block that fills its vectors costs no vector more.
+
+use super::SlotTest;
+use crate::broad_phase::Block;
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
+
+/// Slots of the test: whole vectors in every tier.
+pub const SLOTS: usize = 2 * MAX_WIDTH;
+
+/// Tests slot 0 against all of [`SLOTS`] slots, and as many pairs as a block. All touch. The test's columns have no padding,
+/// and the hits of the block no room behind them: what begins a vector more in vain, panics.
+pub fn check(test: &impl SlotTest) {
+    struct Touching<'a, T>(&'a T);
+    impl<T: SlotTest> Kernel for Touching<'_, T> {
+        type Output = [Vec<u32>; 2];
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> Self::Output {
+            let mut slots = vec![0; SLOTS + MAX_WIDTH];
+            let found = self.0.run(l, 0, 0..SLOTS, &mut slots);
+            slots.truncate(found);
+            let (padded, mut codes) = (codes(SLOTS + MAX_WIDTH), vec![0; SLOTS]);
+            let block = Block::new(0, &padded, SLOTS);
+            let found = self.0.block(l, &block, &mut codes);
+            codes.truncate(found);
+            [slots, codes]
+        }
+    }
+    let all = [(0..SLOTS as u32).collect(), codes(SLOTS)];
+    for tier in Tier::available() {
+        assert_eq!(dispatch(tier, Touching(test)), all, "{tier}");
+    }
+}
+
+/// Pairs of the first sixteen slots and others, as a block writes them.
+fn codes(pairs: usize) -> Vec<u32> {
+    (0..pairs as u32)
+        .map(|pair| pair << 4 | pair % 16)
+        .collect()
+}
