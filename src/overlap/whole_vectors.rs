@@ -34,6 +34,6 @@ pub fn check(test: &impl SlotTest) {
 /// Pairs of the first sixteen slots and others, as a block writes them.
 fn codes(pairs: usize) -> Vec<u32> {
     (0..pairs as u32)
-        .map(|pair| pair << 4 | pair % 16)
+        .map(|pair| (pair << 4) | (pair % 16))
         .collect()
 }
