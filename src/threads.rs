@@ -6,6 +6,7 @@
 //! The calling thread works too: waking another takes as long as finding the pairs of some thousand bodies. Each thread
 //! that is free takes the next part, so one that wakes late delays nothing.
 
+use std::ops::Range;
 use std::sync::Mutex;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -153,6 +154,17 @@ impl Threads {
             _ => pieces.for_each(|(index, piece)| work(index * size, piece)),
         }
     }
+
+    /// Calls `work` for consecutive ranges of 0..`len`, `size` long. Less than eight are the caller's own.
+    pub fn ranges(&self, len: usize, size: usize, work: impl Fn(Range<usize>) + Sync) {
+        let worth_waking = len >= FEWEST_PIECES * size;
+        let starts = (0..len).step_by(size);
+        let ranges = starts.map(|start| start..len.min(start + size));
+        match &self.0 {
+            Some(pool) if worth_waking => distribute(pool, ranges, work),
+            _ => ranges.for_each(work),
+        }
+    }
 }
 
 /// Calls `work` for each item, on the calling thread and on those of the pool.
@@ -221,6 +233,23 @@ mod tests {
         assert_eq!(always.get().threads(), 2);
         always.expect(Work::default());
         assert_eq!(always.get().threads(), 2);
+    }
+
+    #[test]
+    fn ranges_cover_each_number_once_on_any_number_of_threads() {
+        for threads in [1, 3] {
+            let threads = Threads::new(threads).unwrap();
+            for (len, size, expected) in [(0, 4, 0), (3, 4, 1), (4, 4, 1), (33, 4, 9), (79, 8, 10)]
+            {
+                let seen = Mutex::new(Vec::new());
+                threads.ranges(len, size, |range| seen.lock().unwrap().push(range));
+                let mut seen = seen.into_inner().unwrap();
+                seen.sort_by_key(|range| range.start);
+                assert_eq!(seen.len(), expected, "{len} by {size}");
+                assert!(seen.iter().all(|range| range.len() <= size));
+                assert!(seen.into_iter().flatten().eq(0..len), "{len} by {size}");
+            }
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod groups;
     allow(dead_code, reason = "benches use the rest")
 )]
 mod places;
+mod read_ahead;
 
 pub use aabb::Aabb;
 pub use groups::Groups;
@@ -15,6 +16,7 @@ pub use groups::Groups;
 pub use places::Places;
 #[cfg(not(feature = "internals"))]
 pub(crate) use places::Places;
+pub(crate) use read_ahead::read_ahead;
 
 /// Rigid bodies as columns. All columns have one length.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
 use super::cubes::Make;
 use crate::bodies::contract::ContractError;
-use crate::bodies::{Aabb, Groups, Places};
+use crate::bodies::{Aabb, Groups, Places, read_ahead};
 use crate::broad_phase::{PairFinder, Population, Reorder, Volume};
 use crate::counters::VolumeCounters;
 use crate::overlap::boxes::{Cubes, EndSlots};
@@ -164,6 +164,7 @@ impl Frames {
         if changed == Reorder::All && moving < all {
             self.make_cubes(boxes, moving..all)?;
         }
+        read_ahead(self.threads.get(), boxes, moving, |aabb| aabb.min[0]);
         let gap = self.make_cubes(boxes, 0..moving)?;
         Some(gap.max(self.fixed_gap))
     }

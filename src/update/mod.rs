@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use self::row::{O, Q, S, SHAPE, T};
 use crate::bodies::contract::{balls_are_within_limit, is_within_limit};
-use crate::bodies::{Bodies, Places};
+use crate::bodies::{Bodies, Places, read_ahead};
 use crate::rounding::pose::{over_norm, rotate, rotation, world_axes};
 use crate::rounding::sphere::{inflate_radius, world_ball};
 use crate::rounding::up;
@@ -163,6 +163,7 @@ pub fn update_spheres(
 ) -> bool {
     let Executor { tier, pool } = executor;
     let (first, is_sound) = (range.start, AtomicBool::new(true));
+    read_ahead(pool, &bodies.translation, range.len(), |t| t[0]);
     pool.pieces(&mut spheres[range], SPHERES, |start, spheres| {
         let start = first + start;
         let (mut turned, mut sound) = (false, true);
