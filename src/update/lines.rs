@@ -64,7 +64,7 @@ mod tests {
             let kept: Vec<_> = lines.iter().take(len).copied().collect();
             lines.resize(len);
             assert_eq!(lines.len(), len);
-            assert_eq!(lines.as_ptr().addr() % LINE, 0);
+            assert_eq!(lines.as_ptr().addr() % 64, 0);
             assert_eq!(lines[..kept.len()], kept);
             assert!(lines[kept.len()..].iter().all(|row| *row == [0.0; ROW]));
             lines.iter_mut().for_each(|row| row[5] = len as f32);
