@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 use super::cubes::Make;
 use crate::bodies::contract::ContractError;
 use crate::bodies::{Aabb, Groups, Places, read_ahead};
-use crate::broad_phase::{PairFinder, Population, Reorder, Volume};
+use crate::broad_phase::{Balls, PairFinder, Population, Reorder, Volume};
 use crate::counters::VolumeCounters;
 use crate::overlap::boxes::{Cubes, EndSlots};
 use crate::rounding::cube::less_than_sure;
@@ -36,7 +36,7 @@ pub(super) struct Frames {
     places: Places,
     order: Vec<u32>,
     /// Cubes about the boxes by place: centre and half side, an eighth in size.
-    cubes: Vec<[f32; 4]>,
+    cubes: Balls,
     /// The greatest H − h of the boxes that don't move.
     fixed_gap: f32,
     news: News,
@@ -65,7 +65,7 @@ impl Frames {
             finder: finder(choice, 0),
             places: Places::default(),
             order: Vec::new(),
-            cubes: Vec::new(),
+            cubes: Balls::new(0),
             fixed_gap: 0.0,
             news: News::All,
             ends: EndSlots::default(),
@@ -87,7 +87,7 @@ impl Frames {
         let finder = &mut self.finder;
         if finder.replace(self.choice, &population, &stays, moving) && self.news != News::All {
             self.news = News::Some;
-            self.cubes.resize(self.len(), [0.0; 4]);
+            self.cubes.resize(self.len());
         } else {
             self.start_anew();
         }
@@ -95,8 +95,8 @@ impl Frames {
 
     fn start_anew(&mut self) {
         self.finder = finder(self.choice, self.len());
-        self.cubes.clear();
-        self.cubes.resize(self.len(), [0.0; 4]);
+        self.cubes.resize(self.len());
+        self.cubes.fill([0.0; 4]);
         (self.news, self.candidates) = (News::All, 0);
     }
 
@@ -123,7 +123,7 @@ impl Frames {
         let names = &self.places.body;
         self.finder
             .arrange(executor, &self.places, &self.cubes, names);
-        let slots = self.finder.slots();
+        let slots = self.finder.slots(&self.cubes);
         let test = if self.cubes_decide(gap) {
             let less = less_than_sure(gap);
             BoxTest::Cubes(Cubes { slots, boxes, less })
@@ -242,7 +242,7 @@ mod tests {
         assert!(frames.cubes_decide(1.0), "without boxes");
         for (small, decide) in [(0, true), (4, true), (5, false), (64, false)] {
             // One in ten is asked.
-            frames.cubes = vec![[0.0; 4]; 10 * ASKED];
+            frames.cubes = Balls::new(10 * ASKED);
             for (asked, cube) in frames.cubes.iter_mut().step_by(10).enumerate() {
                 cube[3] = CUBIC * if asked < small { 2.9 } else { 3.0 };
             }

@@ -18,12 +18,16 @@ const REPORTED: f64 = 1.0 + 4.0 * crate::rounding::U;
 
 impl PairFinder {
     /// Checks the candidates of a frame that has just been arranged, without allocating.
-    pub(super) fn check(&self, tier: Tier, places: &Places) {
+    pub(super) fn check(&self, tier: Tier, places: &Places, balls: &[[f32; 4]]) {
         let n = places.len();
         if n > MOST_BODIES {
             return;
         }
-        let finite = |slot| self.slots().ball(slot).iter().all(|x| x.is_finite());
+        let ball = |slot: usize| match self {
+            Self::Neighbours(finder) if finder.slots_are_places() => balls[slot],
+            _ => self.own_slots().arranged().ball(slot),
+        };
+        let finite = |slot| ball(slot).iter().all(|x| x.is_finite());
         if !(0..n).all(finite) {
             return; // outside the contract
         }
@@ -36,7 +40,7 @@ impl PairFinder {
                 "static slots are candidates: {i}"
             );
             for j in i + 1..n {
-                let may_lack = i >= places.moving || !self.meet(i, j);
+                let may_lack = i >= places.moving || !self.meet(ball(i), ball(j));
                 assert!(
                     may_lack || seen.has(i, j),
                     "slots {i} and {j} meet and are no candidates"
@@ -45,9 +49,9 @@ impl PairFinder {
         }
     }
 
-    /// Whether the cubes of two slots meet, or the balls where these alone are reported.
-    fn meet(&self, i: usize, j: usize) -> bool {
-        let [a, b] = [i, j].map(|slot| self.slots().ball(slot).map(f64::from));
+    /// Whether the cubes about two balls meet, or the balls where these alone are reported.
+    fn meet(&self, a: [f32; 4], b: [f32; 4]) -> bool {
+        let [a, b] = [a, b].map(|ball| ball.map(f64::from));
         let apart: [f64; 3] = std::array::from_fn(|axis| (a[axis] - b[axis]).abs());
         let reach = (a[3] + b[3]) * REPORTED;
         match self {

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::bodies::Places;
 use crate::settings::Finder;
-use crate::simd::{Lanes, MAX_WIDTH};
+use crate::simd::Lanes;
 use crate::threads::Executor;
 
 mod all_pairs;
@@ -20,6 +20,7 @@ mod grid;
 #[cfg(debug_assertions)]
 mod invariants;
 mod neighbours;
+mod slots;
 mod sweep;
 
 pub use all_pairs::AllPairs;
@@ -30,6 +31,7 @@ pub use bounds::Bounds;
 pub use grid::{Cells, Grid, Layout};
 use neighbours::List;
 pub use neighbours::{Neighbours, Volume};
+pub use slots::{Arranged, Balls, Slots};
 pub use sweep::Sweep;
 
 /// The strategy's first volume test.
@@ -38,44 +40,6 @@ pub trait FirstTest {
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>);
     /// Scattered pairs of slots, but not the block's long runs.
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>);
-}
-
-/// World balls (x, y, z, R) in slot order, padded by [`MAX_WIDTH`] finite entries, with the names of their bodies.
-#[derive(Clone, Debug, Default)]
-pub struct Slots {
-    /// The balls as the first test takes them.
-    pub balls: Vec<[f32; 4]>,
-    /// The same as columns, for finders whose runs are long; otherwise empty.
-    pub columns: [Vec<f32>; 4],
-    /// The name of each slot's body.
-    pub names: Vec<u32>,
-}
-
-impl Slots {
-    /// Room for `slots` slots.
-    fn resize(&mut self, slots: usize) {
-        self.balls.resize(slots + MAX_WIDTH, [0.0; 4]);
-        self.names.resize(slots + MAX_WIDTH, 0);
-        // What was a slot may be padding now.
-        self.balls[slots..].fill([0.0; 4]);
-        self.names[slots..].fill(0);
-    }
-
-    fn bytes(&self) -> usize {
-        let columns = self.columns.iter().map(bytes).sum::<usize>();
-        bytes(&self.balls) + columns + bytes(&self.names)
-    }
-
-    /// The ball in a slot.
-    #[inline(always)]
-    pub fn ball(&self, slot: usize) -> [f32; 4] {
-        let [x, y, z, r] = &self.columns;
-        if x.is_empty() {
-            self.balls[slot]
-        } else {
-            [x[slot], y[slot], z[slot], r[slot]]
-        }
-    }
 }
 
 /// Bytes that a column has taken, used or not.
@@ -218,12 +182,25 @@ impl PairFinder {
             Self::Neighbours(finder) => finder.arrange(executor, places.moving, balls, names),
         }
         #[cfg(debug_assertions)]
-        self.check(executor.tier, places);
+        self.check(executor.tier, places, balls);
     }
 
-    /// The arranged bodies.
+    /// The arranged bodies. `balls` are those that were arranged: where places have the order of slots, they are read as they stand.
     #[must_use]
-    pub fn slots(&self) -> &Slots {
+    pub fn slots<'a>(&'a self, balls: &'a Balls) -> Arranged<'a> {
+        match self {
+            Self::Neighbours(finder) if finder.slots_are_places() => finder.slots().followed(balls),
+            _ => self.own_slots().arranged(),
+        }
+    }
+
+    /// The name of each slot's body, and a vector of names behind them.
+    #[must_use]
+    pub fn names(&self) -> &[u32] {
+        &self.own_slots().names
+    }
+
+    fn own_slots(&self) -> &Slots {
         match self {
             Self::AllPairs(finder) => finder.slots(),
             Self::Grid(finder) => finder.slots(),
@@ -273,7 +250,7 @@ impl PairFinder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simd::Tier;
+    use crate::simd::{MAX_WIDTH, Tier};
     use crate::threads::Threads;
 
     fn population(bodies: usize) -> Population {
@@ -310,31 +287,18 @@ mod tests {
     }
 
     #[test]
-    fn behind_the_slots_is_a_vector_of_finite_entries() {
-        let mut slots = Slots::default();
-        for len in [0, 1, 5, 40, 3] {
-            slots.resize(len);
-            assert_eq!([slots.balls.len(), slots.names.len()], [len + MAX_WIDTH; 2]);
-            assert!(slots.balls[len..].iter().all(|ball| *ball == [0.0; 4]));
-            assert!(slots.names[len..].iter().all(|&name| name == 0));
-            slots.balls.fill([f32::NAN; 4]);
-            slots.names.fill(u32::MAX);
-        }
+    fn every_finder_has_a_vector_of_entries_behind_its_slots() {
         for &finder in Finder::ALL {
             for bodies in [1, 2, 70] {
                 let (finder, padded) = (arranged(finder, bodies), bodies + MAX_WIDTH);
-                let Slots {
-                    balls,
-                    columns,
-                    names,
-                } = finder.slots();
-                let columns = columns.iter().map(Vec::len);
+                let slots = finder.own_slots();
+                let columns = slots.columns.iter().map(Vec::len);
                 assert!(
-                    columns.eq([padded; 4]) || balls.len() == padded,
+                    columns.eq([padded; 4]) || slots.balls.len() == padded,
                     "{}",
                     finder.name()
                 );
-                assert_eq!(names.len(), padded);
+                assert_eq!(finder.names().len(), padded);
             }
         }
     }

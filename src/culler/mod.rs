@@ -23,7 +23,7 @@ use self::models::Models;
 use self::needs::Needs;
 use crate::bodies::contract::{check_bodies, check_column, check_poses};
 use crate::bodies::{Bodies, Groups, Places};
-use crate::broad_phase::PairFinder;
+use crate::broad_phase::{Balls, PairFinder};
 use crate::counters::{Counters, Seconds};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
@@ -52,7 +52,7 @@ pub struct Culler {
     order: Vec<u32>,
     finder: PairFinder,
     /// What the finder bins, by place: the spheres, or what contains the volumes of a homogeneous strategy.
-    balls: Vec<[f32; 4]>,
+    balls: Balls,
     rows: OrDopRows,
     intervals: Option<Intervals>,
     interval_slots: IntervalSlots,
@@ -111,7 +111,7 @@ impl Culler {
             numbers: (0..n as u32).collect(),
             order: Vec::new(),
             finder,
-            balls: vec![[0.0; 4]; n],
+            balls: Balls::new(n),
             rows: OrDopRows::new(n),
             intervals: directions.map(|directions| Intervals::new(directions, shapes, n)),
             interval_slots: IntervalSlots::default(),
@@ -330,7 +330,7 @@ impl Culler {
         self.finder
             .arrange(executor, &self.places, &self.balls, names);
         if let Some(intervals) = &self.intervals {
-            let order = &self.finder.slots().names[..self.places.len()];
+            let order = &self.finder.names()[..self.places.len()];
             self.interval_slots.fill(pool, order, &intervals.ends);
         }
     }
@@ -355,6 +355,7 @@ impl Culler {
             executor: self.threads.get().executor(self.tier),
             settings: &self.settings,
             finder: &self.finder,
+            slots: self.finder.slots(&self.balls),
             names,
             posed: Posed {
                 frames: &self.models.frames,

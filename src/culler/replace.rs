@@ -42,7 +42,7 @@ impl Culler {
         self.fixed = check::fixed(bodies);
         let n = self.places.len();
         self.numbers = (0..n as u32).collect();
-        self.balls.resize(n, [0.0; 4]);
+        self.balls.resize(n);
         self.rows.resize(n);
         if let Some(intervals) = &mut self.intervals {
             intervals.resize(n);

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use super::SlotTest;
 use crate::bodies::Aabb;
-use crate::broad_phase::{Block, Slots};
+use crate::broad_phase::{Arranged, Block};
 use crate::rounding::cube::sure;
 use crate::simd::{LANES, Lanes, MAX_WIDTH, quads_in_columns};
 use crate::threads::Threads;
@@ -21,7 +21,7 @@ const PIECE: usize = 4096;
 #[derive(Clone, Copy, Debug)]
 pub struct Cubes<'a> {
     /// The cubes; slots are named by box.
-    pub slots: &'a Slots,
+    pub slots: Arranged<'a>,
     /// All boxes by name.
     pub boxes: &'a [Aabb],
     /// See [`less_than_sure`](crate::rounding::cube::less_than_sure).
@@ -64,7 +64,7 @@ impl Cubes<'_> {
     /// The cubes in the slots from `start` on, a vector of them, as columns.
     #[inline(always)]
     fn vector<L: Lanes>(&self, l: L, start: usize) -> [L::F; 4] {
-        let [x, y, z, half] = &self.slots.columns;
+        let [x, y, z, half] = self.slots.columns;
         if x.is_empty() {
             l.load_quads(&self.slots.balls[start..])
         } else {
@@ -98,7 +98,7 @@ impl SlotTest for Cubes<'_> {
         let (first, codes) = (block.first(), block.codes());
         let (mut start, mut found) = (0, 0);
         while start < codes.len() {
-            let (code, cubes) = block.balls(l, start, &ours, &self.slots.balls);
+            let (code, cubes) = block.balls(l, start, &ours, self.slots.balls);
             let hit = self.meeting(l, cubes, codes.len() - start, |lane| {
                 let code = codes[start + lane];
                 (first + (code & 15) as usize, (code >> 4) as usize)
@@ -236,6 +236,7 @@ fn list<L: Lanes>(l: L, hit: u32, start: usize, hits: &mut [u32]) -> usize {
 mod tests {
     use super::super::whole_vectors::{SLOTS, check};
     use super::*;
+    use crate::broad_phase::Slots;
 
     #[test]
     fn boxes_that_fill_their_vectors_cost_no_vector_more() {
@@ -252,7 +253,7 @@ mod tests {
         let boxes = [Aabb::new([1.0; 3], [2.0; 3]); SLOTS];
         let cubes = |slots: &Slots| {
             check(&Cubes {
-                slots,
+                slots: slots.arranged(),
                 boxes: &boxes,
                 less: 0.0,
             });

@@ -7,15 +7,15 @@
 use std::ops::Range;
 
 use super::SlotTest;
-use crate::broad_phase::{Block, Slots};
+use crate::broad_phase::{Arranged, Block};
 use crate::rounding::sphere::apart;
 use crate::simd::{LANES, Lanes, MAX_WIDTH, quads_in_columns};
 
-impl SlotTest for Slots {
+impl SlotTest for Arranged<'_> {
     #[inline(always)]
     fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
         let me = self.ball(i).map(|number| l.splat(number));
-        let [x, y, z, r] = &self.columns;
+        let [x, y, z, r] = self.columns;
         let (mut start, mut found) = (run.start, 0);
         if x.is_empty() {
             while start < run.end {
@@ -59,7 +59,7 @@ impl SlotTest for Slots {
         let count = block.codes().len();
         let (mut start, mut found) = (0, 0);
         while start < count {
-            let (code, [one, other]) = block.balls(l, start, &ours, &self.balls);
+            let (code, [one, other]) = block.balls(l, start, &ours, self.balls);
             let hit = touching(l, one, other, count - start);
             l.compress(hit, code, &mut hits[found..]);
             found += hit.count_ones() as usize;
@@ -97,7 +97,7 @@ fn touching<L: Lanes>(l: L, one: [L::F; 4], other: [L::F; 4], count: usize) -> u
 #[cfg(test)]
 mod tests {
     use super::super::whole_vectors::{SLOTS, check};
-    use super::*;
+    use crate::broad_phase::Slots;
 
     #[test]
     fn balls_that_fill_their_vectors_cost_no_vector_more() {
@@ -105,8 +105,8 @@ mod tests {
             balls: vec![[1.0; 4]; SLOTS],
             ..Slots::default()
         };
-        check(&slots);
+        check(&slots.arranged());
         slots.columns = [(); 4].map(|()| vec![1.0; SLOTS]);
-        check(&slots);
+        check(&slots.arranged());
     }
 }

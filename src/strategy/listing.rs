@@ -6,7 +6,7 @@ use super::output::{Outlet, Output};
 use super::tasks::{Task, split_work};
 use super::{Inputs, Scratch, SlotNames, Totals};
 use crate::bodies::Groups;
-use crate::broad_phase::{Block, FirstTest, MOST_CANDIDATES, PairFinder};
+use crate::broad_phase::{Arranged, Block, FirstTest, MOST_CANDIDATES, PairFinder};
 use crate::counters::VolumeCounters;
 use crate::overlap::SlotTest;
 use crate::overlap::boxes::{Cubes, EndSlots};
@@ -22,8 +22,8 @@ const PIECE: usize = MOST_CANDIDATES;
 /// The first volume test of a strategy.
 #[derive(Clone, Copy)]
 enum First<'a> {
-    /// Spheres, which the finder has in its slots.
-    Spheres,
+    /// Spheres in slot order.
+    Spheres(Arranged<'a>),
     /// World-aligned slabs.
     Intervals(&'a IntervalSlots),
     /// None: every candidate passes.
@@ -66,7 +66,7 @@ impl<'a> Listing<'a> {
     pub(super) fn new(inputs: Inputs<'a>, listed: Listed) -> Self {
         let first = match inputs.settings.strategy.scheme().first {
             None => First::PassAll,
-            Some(TestedVolume::Sphere) => First::Spheres,
+            Some(TestedVolume::Sphere) => First::Spheres(inputs.slots),
             Some(_) => First::Intervals(inputs.intervals),
         };
         Self {
@@ -199,9 +199,8 @@ impl Kernel for List<'_> {
     type Output = VolumeCounters;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> VolumeCounters {
-        let finder = self.listing.finder;
         match self.listing.first {
-            First::Spheres => self.with(l, finder.slots()),
+            First::Spheres(slots) => self.with(l, &slots),
             First::Intervals(intervals) => self.with(l, intervals),
             First::PassAll => self.with(l, &PassAll),
             First::Boxes(BoxTest::Cubes(cubes)) => self.with(l, &cubes),
@@ -216,7 +215,7 @@ impl List<'_> {
         let finder = self.listing.finder;
         let mut lister = Lister {
             test,
-            names: &finder.slots().names,
+            names: finder.names(),
             listing: self.listing,
             out: self.out,
             flush: self.flush,

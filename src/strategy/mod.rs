@@ -5,7 +5,7 @@
 //! and time, never in misses: each reports every pair whose meshes meet, `none` excepted.
 
 use crate::bodies::Groups;
-use crate::broad_phase::PairFinder;
+use crate::broad_phase::{Arranged, PairFinder};
 use crate::counters::VolumeCounters;
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::ordop::SlabTables;
@@ -50,6 +50,8 @@ pub(crate) struct Inputs<'a> {
     pub executor: Executor<'a>,
     pub settings: &'a CullSettings,
     pub finder: &'a PairFinder,
+    /// What the finder has arranged.
+    pub slots: Arranged<'a>,
     pub names: SlotNames<'a>,
     /// The poses, and spheres by place where there are any.
     pub posed: Posed<'a>,

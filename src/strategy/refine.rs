@@ -128,7 +128,7 @@ mod tests {
 
     use super::*;
     use crate::bodies::{Bodies, Places};
-    use crate::broad_phase::{AllPairs, PairFinder};
+    use crate::broad_phase::{AllPairs, PairFinder, Slots};
     use crate::mesh::ProceduralShape;
     use crate::overlap::intervals::IntervalSlots;
     use crate::overlap::ordop::SlabTables;
@@ -157,6 +157,7 @@ mod tests {
         if updates == Updates::Eager {
             rows.update(executor, posed, 0..3, 1);
         }
+        let slots = Slots::default();
         let inputs = Inputs {
             executor,
             settings: &CullSettings {
@@ -164,6 +165,7 @@ mod tests {
                 ..CullSettings::default()
             },
             finder: &PairFinder::AllPairs(AllPairs::default()),
+            slots: slots.arranged(),
             names: SlotNames::Places(&places.body),
             posed,
             groups: None,

@@ -10,28 +10,15 @@ use crate::threads::Executor;
 /// Balls that one thread looks at at a time.
 pub const PIECE: usize = 4096;
 
-/// Copies the balls to `slots` and returns true if none has drifted by its skin since `then`. Otherwise
-/// what `slots` holds is of no use.
-pub fn follow(
-    executor: Executor<'_>,
-    skin: Skin,
-    now: &[[f32; 4]],
-    then: &[[f32; 4]],
-    slots: &mut [[f32; 4]],
-) -> bool {
+/// Whether none has drifted by its skin since `then`.
+pub fn all_stay(executor: Executor<'_>, skin: Skin, now: &[[f32; 4]], then: &[[f32; 4]]) -> bool {
     let (tier, drifted) = (executor.tier, AtomicBool::new(false));
-    executor.pool.pieces(slots, PIECE, |start, slots| {
+    executor.pool.ranges(now.len(), PIECE, |range| {
         if drifted.load(Ordering::Relaxed) {
             return;
         }
-        let range = start..start + slots.len();
-        let measure = Measure {
-            skin,
-            now: &now[range.clone()],
-            then: &then[range],
-            slots,
-        };
-        if !dispatch(tier, measure) {
+        let (now, then) = (&now[range.clone()], &then[range]);
+        if !dispatch(tier, Measure { skin, now, then }) {
             drifted.store(true, Ordering::Relaxed);
         }
     });
@@ -42,7 +29,6 @@ struct Measure<'a> {
     skin: Skin,
     now: &'a [[f32; 4]],
     then: &'a [[f32; 4]],
-    slots: &'a mut [[f32; 4]],
 }
 
 impl Kernel for Measure<'_> {
@@ -51,15 +37,12 @@ impl Kernel for Measure<'_> {
     fn run<L: Lanes>(self, l: L) -> bool {
         let (now, now_rest) = self.now.as_chunks::<BLOCK_BODIES>();
         let (then, then_rest) = self.then.as_chunks::<BLOCK_BODIES>();
-        let (slots, slots_rest) = self.slots.as_chunks_mut::<BLOCK_BODIES>();
-        for ((now, then), slots) in now.iter().zip(then).zip(slots) {
-            if !all_stay(l, self.skin, now, then) {
+        for (now, then) in now.iter().zip(then) {
+            if !block_stays(l, self.skin, now, then) {
                 return false;
             }
-            *slots = *now;
         }
-        slots_rest.copy_from_slice(now_rest);
-        all_stay(l, self.skin, &padded(now_rest), &padded(then_rest))
+        block_stays(l, self.skin, &padded(now_rest), &padded(then_rest))
     }
 }
 
@@ -71,7 +54,7 @@ pub fn padded(rest: &[[f32; 4]]) -> [[f32; 4]; BLOCK_BODIES] {
 }
 
 #[inline(always)]
-fn all_stay<L: Lanes>(
+fn block_stays<L: Lanes>(
     l: L,
     skin: Skin,
     now: &[[f32; 4]; BLOCK_BODIES],

@@ -21,7 +21,7 @@ mod policy;
 pub(super) use self::list::List;
 use self::motion::{Motion, typical_radius};
 use self::policy::{Ended, Policy};
-use super::{Grid, Reorder, Slots, bytes};
+use super::{Grid, Reorder, Slots};
 use crate::rounding::skin::Reach;
 use crate::threads::Executor;
 
@@ -35,14 +35,12 @@ pub enum Volume {
     Cube,
 }
 
-/// A grid, and the list that was made of it last.
+/// A grid, whose slots stay as they were when the list was made, and that list.
 #[derive(Clone, Debug, Default)]
 pub struct Neighbours {
     grid: Grid,
     volume: Volume,
     list: List,
-    /// The balls by slot when the list was made.
-    then: Vec<[f32; 4]>,
     state: State,
     policy: Policy,
 }
@@ -117,9 +115,8 @@ impl Neighbours {
         names: &[u32],
     ) {
         if matches!(self.state, State::Ordered | State::Followed) {
-            let slots = &mut self.grid.slots_mut().balls[..moving];
-            let (now, then) = (&balls[..moving], &self.then[..moving]);
-            if drift::follow(executor, self.policy.skin(), now, then, slots) {
+            let (now, then) = (&balls[..moving], &self.grid.slots().balls[..moving]);
+            if drift::all_stay(executor, self.policy.skin(), now, then) {
                 if self.state == State::Ordered {
                     self.grid.slots_mut().names[..names.len()].copy_from_slice(names);
                     self.state = State::Followed;
@@ -132,7 +129,7 @@ impl Neighbours {
                 pairs: self.list.len(),
                 candidates: self.list.seen(),
                 bodies: balls.len(),
-                motion: Motion::of(executor, now, then, typical, slots),
+                motion: Motion::of(executor, now, then, typical),
                 typical,
             });
         }
@@ -149,9 +146,6 @@ impl Neighbours {
             self.policy.overflowed();
             return;
         }
-        self.then.clear();
-        self.then
-            .extend_from_slice(&self.grid.slots().balls[..moving]);
         self.state = State::Made;
         // The grid plans by the candidates that it would have handed out without a skin.
         let seen = self.list.seen() as f64 / self.policy.wider();
@@ -159,11 +153,18 @@ impl Neighbours {
     }
 
     pub(super) fn bytes(&self) -> usize {
-        self.grid.bytes() + bytes(&self.then) + self.list.bytes()
+        self.grid.bytes() + self.list.bytes()
     }
 
+    /// Those of the frame in which they were arranged last.
     pub(super) fn slots(&self) -> &Slots {
         self.grid.slots()
+    }
+
+    /// Whether places have the order of slots, so that the frame's balls are read by place.
+    #[inline(always)]
+    pub(super) fn slots_are_places(&self) -> bool {
+        self.state == State::Followed
     }
 
     /// The list, in frames that follow one.

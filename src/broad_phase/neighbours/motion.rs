@@ -27,18 +27,11 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Of balls since `then`. What `scratch`, of their number, holds afterwards is of no use.
-    pub fn of(
-        executor: Executor<'_>,
-        now: &[[f32; 4]],
-        then: &[[f32; 4]],
-        typical: f64,
-        scratch: &mut [[f32; 4]],
-    ) -> Self {
+    /// Of balls since `then`.
+    pub fn of(executor: Executor<'_>, now: &[[f32; 4]], then: &[[f32; 4]], typical: f64) -> Self {
         // Bits of numbers that aren't negative are in their order.
         let farthest = [const { AtomicU32::new(0) }; 2];
-        executor.pool.pieces(scratch, PIECE, |start, scratch| {
-            let range = start..start + scratch.len();
+        executor.pool.ranges(now.len(), PIECE, |range| {
             let (now, then) = (&now[range.clone()], &then[range]);
             let found = dispatch(executor.tier, Farthest { now, then });
             for (farthest, found) in farthest.iter().zip(found) {
@@ -138,7 +131,6 @@ mod tests {
         let pool = Threads::default();
         for n in [1, 15, 16, 33, PIECE + 1] {
             let then: Vec<_> = (0..n).map(|i| [i as f32, 2.0, -3.0, 4.0]).collect();
-            let mut scratch = then.clone();
             for (wide, far) in [(0, n - 1), (n - 1, 0), (n / 2, n / 2)] {
                 let (mut then, mut now) = (then.clone(), then.clone());
                 // 2, 4, 4 and a growth of 8 are 10; 6 is 3 of one's own radii.
@@ -153,7 +145,7 @@ mod tests {
                 };
                 for tier in Tier::available() {
                     let executor = pool.executor(tier);
-                    let found = Motion::of(executor, &now, &then, 0.5, &mut scratch);
+                    let found = Motion::of(executor, &now, &then, 0.5);
                     let found = [found.own, 0.5 * found.typical];
                     for (found, expected) in found.into_iter().zip(expected) {
                         let off = (found / expected - 1.0).abs();
@@ -166,14 +158,13 @@ mod tests {
 
     #[test]
     fn balls_that_shrink_or_stay_or_have_no_radius_are_no_trouble() {
-        let (pool, mut scratch) = (Threads::default(), [[0.0; 4]; 2]);
+        let pool = Threads::default();
         let executor = pool.executor(Tier::SCALAR);
-        let mut motion =
-            |now| Motion::of(executor, now, &[[0.0, 0.0, 0.0, 1.0]; 2], 1.0, &mut scratch);
+        let motion = |now| Motion::of(executor, now, &[[0.0, 0.0, 0.0, 1.0]; 2], 1.0);
         assert_eq!(motion(&[[0.0, 0.0, 0.0, 0.25]; 2]), Motion::default());
         assert_eq!(motion(&[[f32::NAN; 4]; 2]), Motion::default());
         let still = [[5.0, 0.0, 0.0, 0.0]; 1];
-        let motion = Motion::of(executor, &still, &still, 1.0, &mut scratch[..1]);
+        let motion = Motion::of(executor, &still, &still, 1.0);
         assert_eq!(motion, Motion::default());
     }
 
