@@ -105,7 +105,7 @@ fn main() -> miette::Result<()> {
     threads::claim_caller()?;
     match &cli.other {
         Some(Other::Narrow(args)) => return narrow::run(args),
-        Some(Other::Control(args)) => return control::run(args),
+        Some(Other::Control(args)) => return threads::outside_of_pools(|| control::run(args)),
         Some(Other::Kernels(args)) => return kernels::run(args),
         Some(Other::Verdicts(args)) => return verdicts::run(args),
         Some(Other::Answer(args)) => return verdicts::answer(args),
@@ -118,7 +118,11 @@ fn main() -> miette::Result<()> {
             "{:?}, {:?}, {} bodies, {} threads",
             case.spread, case.order, case.bodies, case.threads
         );
-        record.add(compare::run(case, &entries, cli.limit_ms)?);
+        let compare = || compare::run(case, &entries, cli.limit_ms);
+        record.add(match case.threads {
+            1 => compare()?,
+            _ => threads::outside_of_pools(compare)?,
+        });
         if let Some(directory) = &cli.out {
             record.write(directory)?;
         }

@@ -66,3 +66,25 @@ pub fn claim_caller() -> miette::Result<()> {
     let alone = ThreadPoolBuilder::new().num_threads(1).use_current_thread();
     alone.build_global().into_diagnostic()
 }
+
+/// Does the work on a thread that is no pool's. [`claim_caller`] makes the caller's one of rayon's, and on such a thread a culler with
+/// threads of its own starts another one for each section of a frame, lest it take up the pool's other jobs while it waits.
+pub fn outside_of_pools<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let done = std::thread::scope(|scope| scope.spawn(work).join());
+    done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    #[test]
+    fn what_is_done_outside_is_no_pool_s_work() {
+        let threads = Threads::new(2).unwrap();
+        let number = rayon::current_thread_index;
+        let [inside, outside] = threads.run(|| [number(), outside_of_pools(number)]);
+        assert!(inside.is_some() && outside.is_none());
+    }
+}
