@@ -7,13 +7,13 @@ use crate::overlap::ordop::SlabTables;
 use crate::overlap::ordop::reach::reach;
 use crate::rounding::up;
 use crate::settings::CullSettings;
-use crate::update::ShapeFrame;
+use crate::update::{Frames, ShapeFrame};
 use crate::volume::{DirectionSet, Hull, OrDop, Shape};
 
 /// Frames and tables of all models.
 #[derive(Debug)]
 pub(crate) struct Models {
-    pub frames: Vec<ShapeFrame>,
+    pub frames: Frames,
     pub tables: SlabTables,
     /// The slabs of every model: an or-DOP, or an oriented box.
     ordops: Vec<OrDop>,
@@ -30,7 +30,7 @@ impl Models {
     pub fn new(shapes: &[Shape], settings: &CullSettings) -> Self {
         let scheme = settings.strategy.scheme();
         let mut models = Self {
-            frames: Vec::new(),
+            frames: Frames::default(),
             tables: SlabTables::new(settings.k, std::iter::empty()),
             ordops: Vec::new(),
             shapes: 0,

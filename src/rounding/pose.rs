@@ -32,20 +32,14 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// 1.
-    fn one() -> Self;
-    /// 2.
-    fn two() -> Self;
+    /// `x`, once or as often as there are numbers in `self`.
+    fn like(self, x: f64) -> Self;
 }
 
 impl Real for f64 {
     #[inline(always)]
-    fn one() -> Self {
-        1.0
-    }
-    #[inline(always)]
-    fn two() -> Self {
-        2.0
+    fn like(self, x: f64) -> Self {
+        x
     }
 }
 
@@ -58,7 +52,7 @@ pub fn rotation(q: [f32; 4]) -> Rotation {
 #[inline(always)]
 pub fn rotation_of<N: Real>([x, y, z, w]: [N; 4]) -> [[N; 3]; 3] {
     let (xx, yy, zz, ww) = (x * x, y * y, z * z, w * w);
-    let over = N::one() / (xx + yy + zz + ww);
+    let over = x.like(1.0) / (xx + yy + zz + ww);
     [
         [
             ((xx - yy) + (ww - zz)) * over,
@@ -80,7 +74,7 @@ pub fn rotation_of<N: Real>([x, y, z, w]: [N; 4]) -> [[N; 3]; 3] {
 
 #[inline(always)]
 fn twice<N: Real>(a: N, b: N, over: N) -> N {
-    N::two() * (a + b) * over
+    over.like(2.0) * (a + b) * over
 }
 
 /// R·x, each coordinate within (24 − 3)·2⁻⁵³·|x|∞.

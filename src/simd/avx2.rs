@@ -2,7 +2,9 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::{Lanes, Sealed, clamp_codes, float_operators, last_code, quad_of};
+use super::lanes::{
+    Lanes, Sealed, clamp_codes, double_operators, float_operators, last_code, quad_of,
+};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has AVX2.
@@ -12,11 +14,20 @@ pub struct Avx2(());
 #[derive(Clone, Copy)]
 pub struct F8(__m256);
 #[derive(Clone, Copy)]
+pub struct D8([__m256d; 2]);
+#[derive(Clone, Copy)]
 pub struct I8(__m256i);
 #[derive(Clone, Copy)]
 pub struct M8(__m256);
 
 float_operators!(F8, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps);
+double_operators!(
+    D8,
+    _mm256_add_pd,
+    _mm256_sub_pd,
+    _mm256_mul_pd,
+    _mm256_div_pd
+);
 
 impl std::ops::BitAnd for M8 {
     type Output = Self;
@@ -89,6 +100,7 @@ impl Sealed for Avx2 {}
 impl Lanes for Avx2 {
     const WIDTH: usize = 8;
     type F = F8;
+    type D = D8;
     type I = I8;
     type M = M8;
 
@@ -156,6 +168,27 @@ impl Lanes for Avx2 {
     fn bits(self, m: M8) -> u32 {
         // SAFETY: the token proves AVX.
         (unsafe { _mm256_movemask_ps(m.0) }) as u32
+    }
+    #[inline(always)]
+    fn splat_f64(self, x: f64) -> D8 {
+        // SAFETY: the token proves AVX.
+        D8([unsafe { _mm256_set1_pd(x) }; 2])
+    }
+    #[inline(always)]
+    fn widen(self, a: F8) -> D8 {
+        // SAFETY: the token proves AVX.
+        D8(unsafe {
+            [
+                _mm256_cvtps_pd(_mm256_castps256_ps128(a.0)),
+                _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(a.0)),
+            ]
+        })
+    }
+    #[inline(always)]
+    fn narrow(self, a: D8) -> F8 {
+        let D8([low, high]) = a;
+        // SAFETY: the token proves AVX.
+        F8(unsafe { _mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low)) })
     }
     #[inline(always)]
     fn gather(self, table: &[f32], index: I8) -> F8 {

@@ -2,7 +2,9 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::{Lanes, Sealed, clamp_codes, float_operators, last_code, quad_of};
+use super::lanes::{
+    Lanes, Sealed, clamp_codes, double_operators, float_operators, last_code, quad_of,
+};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has AVX-512 F, BW, DQ and VL.
@@ -12,11 +14,20 @@ pub struct Avx512(());
 #[derive(Clone, Copy)]
 pub struct F16(__m512);
 #[derive(Clone, Copy)]
+pub struct D16([__m512d; 2]);
+#[derive(Clone, Copy)]
 pub struct I16(__m512i);
 #[derive(Clone, Copy)]
 pub struct M16(__mmask16);
 
 float_operators!(F16, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps);
+double_operators!(
+    D16,
+    _mm512_add_pd,
+    _mm512_sub_pd,
+    _mm512_mul_pd,
+    _mm512_div_pd
+);
 
 impl std::ops::BitAnd for M16 {
     type Output = Self;
@@ -70,6 +81,7 @@ impl Sealed for Avx512 {}
 impl Lanes for Avx512 {
     const WIDTH: usize = 16;
     type F = F16;
+    type D = D16;
     type I = I16;
     type M = M16;
 
@@ -132,6 +144,30 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn bits(self, m: M16) -> u32 {
         u32::from(m.0)
+    }
+    #[inline(always)]
+    fn splat_f64(self, x: f64) -> D16 {
+        // SAFETY: the token proves AVX-512 F and DQ.
+        D16([unsafe { _mm512_set1_pd(x) }; 2])
+    }
+    #[inline(always)]
+    fn widen(self, a: F16) -> D16 {
+        // SAFETY: the token proves AVX-512 F and DQ.
+        D16(unsafe {
+            [
+                _mm512_cvtps_pd(_mm512_castps512_ps256(a.0)),
+                _mm512_cvtps_pd(_mm512_extractf32x8_ps::<1>(a.0)),
+            ]
+        })
+    }
+    #[inline(always)]
+    fn narrow(self, a: D16) -> F16 {
+        let D16([low, high]) = a;
+        // SAFETY: the token proves AVX-512 F and DQ.
+        F16(unsafe {
+            let low = _mm512_castps256_ps512(_mm512_cvtpd_ps(low));
+            _mm512_insertf32x8::<1>(low, _mm512_cvtpd_ps(high))
+        })
     }
     #[inline(always)]
     fn gather(self, table: &[f32], index: I16) -> F16 {

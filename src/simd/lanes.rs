@@ -1,6 +1,6 @@
 //! The sealed trait of a tier: what a kernel may do with a vector of f32.
 
-use std::ops::{Add, BitAnd, BitOr, Mul, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
 use super::ROW;
 
@@ -17,6 +17,12 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     const WIDTH: usize;
     /// A vector of f32.
     type F: Copy + Add<Output = Self::F> + Sub<Output = Self::F> + Mul<Output = Self::F>;
+    /// As many f64 as [`Self::F`] has f32.
+    type D: Copy
+        + Add<Output = Self::D>
+        + Sub<Output = Self::D>
+        + Mul<Output = Self::D>
+        + Div<Output = Self::D>;
     /// A vector of u32.
     type I: Copy;
     /// A truth value a lane.
@@ -46,6 +52,13 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     fn first(self, n: usize) -> Self::M;
     /// Lane i as bit i.
     fn bits(self, m: Self::M) -> u32;
+
+    /// `x` in every lane.
+    fn splat_f64(self, x: f64) -> Self::D;
+    /// The same numbers as f64.
+    fn widen(self, a: Self::F) -> Self::D;
+    /// Rounded to f32.
+    fn narrow(self, a: Self::D) -> Self::F;
 
     /// Entry `index` of a non-empty table, lane by lane; an index past the end reads the last entry.
     fn gather(self, table: &[f32], index: Self::I) -> Self::F;
@@ -164,3 +177,27 @@ macro_rules! float_operators {
 }
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 pub(super) use float_operators;
+
+/// Implements the arithmetic operators of a tier's f64, of which two vectors have as many as one of f32 has, by its intrinsics.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+macro_rules! double_operators {
+    ($vector:ident, $add:ident, $sub:ident, $mul:ident, $div:ident) => {
+        double_operators!(@one $vector, Add, add, $add);
+        double_operators!(@one $vector, Sub, sub, $sub);
+        double_operators!(@one $vector, Mul, mul, $mul);
+        double_operators!(@one $vector, Div, div, $div);
+    };
+    (@one $vector:ident, $trait:ident, $method:ident, $intrinsic:ident) => {
+        impl std::ops::$trait for $vector {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let (Self([low, high]), Self([other_low, other_high])) = (self, other);
+                // SAFETY: a vector exists only if its token did, and the token proves the CPU feature.
+                Self(unsafe { [$intrinsic(low, other_low), $intrinsic(high, other_high)] })
+            }
+        }
+    };
+}
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+pub(super) use double_operators;

@@ -4,7 +4,7 @@
 
 use std::arch::aarch64::*;
 
-use super::lanes::{Lanes, Sealed, entries, float_operators, pack_lanes};
+use super::lanes::{Lanes, Sealed, double_operators, entries, float_operators, pack_lanes};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has NEON.
@@ -14,11 +14,14 @@ pub struct Neon(());
 #[derive(Clone, Copy)]
 pub struct F4(float32x4_t);
 #[derive(Clone, Copy)]
+pub struct D4([float64x2_t; 2]);
+#[derive(Clone, Copy)]
 pub struct I4(uint32x4_t);
 #[derive(Clone, Copy)]
 pub struct M4(uint32x4_t);
 
 float_operators!(F4, vaddq_f32, vsubq_f32, vmulq_f32);
+double_operators!(D4, vaddq_f64, vsubq_f64, vmulq_f64, vdivq_f64);
 
 impl std::ops::BitAnd for M4 {
     type Output = Self;
@@ -66,6 +69,7 @@ impl Sealed for Neon {}
 impl Lanes for Neon {
     const WIDTH: usize = 4;
     type F = F4;
+    type D = D4;
     type I = I4;
     type M = M4;
 
@@ -135,6 +139,22 @@ impl Lanes for Neon {
         let weight = self.load_u32(&[1, 2, 4, 8]);
         // SAFETY: the token proves NEON.
         unsafe { vaddvq_u32(vandq_u32(m.0, weight.0)) }
+    }
+    #[inline(always)]
+    fn splat_f64(self, x: f64) -> D4 {
+        // SAFETY: the token proves NEON.
+        D4([unsafe { vdupq_n_f64(x) }; 2])
+    }
+    #[inline(always)]
+    fn widen(self, a: F4) -> D4 {
+        // SAFETY: the token proves NEON.
+        D4(unsafe { [vcvt_f64_f32(vget_low_f32(a.0)), vcvt_high_f64_f32(a.0)] })
+    }
+    #[inline(always)]
+    fn narrow(self, a: D4) -> F4 {
+        let D4([low, high]) = a;
+        // SAFETY: the token proves NEON.
+        F4(unsafe { vcvt_high_f32_f64(vcvt_f32_f64(low), high) })
     }
     #[inline(always)]
     fn gather(self, table: &[f32], index: I4) -> F4 {

@@ -80,6 +80,7 @@ impl<const FLUSH: bool> Sealed for Scalar<FLUSH> {}
 impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
     const WIDTH: usize = 1;
     type F = F1<FLUSH>;
+    type D = f64;
     type I = u32;
     type M = M1;
 
@@ -132,6 +133,18 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
     #[inline(always)]
     fn bits(self, m: Self::M) -> u32 {
         u32::from(m.0)
+    }
+    #[inline(always)]
+    fn splat_f64(self, x: f64) -> f64 {
+        x
+    }
+    #[inline(always)]
+    fn widen(self, a: F1<FLUSH>) -> f64 {
+        f64::from(F1::<FLUSH>::of(a.0).0)
+    }
+    #[inline(always)]
+    fn narrow(self, a: f64) -> F1<FLUSH> {
+        F1::of(a as f32)
     }
     #[inline(always)]
     fn gather(self, table: &[f32], index: u32) -> Self::F {

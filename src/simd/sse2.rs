@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::{Lanes, Sealed, entries, float_operators, pack_lanes};
+use super::lanes::{Lanes, Sealed, double_operators, entries, float_operators, pack_lanes};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has SSE2, which is part of x86-64 itself.
@@ -12,11 +12,14 @@ pub struct Sse2(());
 #[derive(Clone, Copy)]
 pub struct F4(__m128);
 #[derive(Clone, Copy)]
+pub struct D4([__m128d; 2]);
+#[derive(Clone, Copy)]
 pub struct I4(__m128i);
 #[derive(Clone, Copy)]
 pub struct M4(__m128);
 
 float_operators!(F4, _mm_add_ps, _mm_sub_ps, _mm_mul_ps);
+double_operators!(D4, _mm_add_pd, _mm_sub_pd, _mm_mul_pd, _mm_div_pd);
 
 impl std::ops::BitAnd for M4 {
     type Output = Self;
@@ -67,6 +70,7 @@ impl Sealed for Sse2 {}
 impl Lanes for Sse2 {
     const WIDTH: usize = 4;
     type F = F4;
+    type D = D4;
     type I = I4;
     type M = M4;
 
@@ -134,6 +138,22 @@ impl Lanes for Sse2 {
     fn bits(self, m: M4) -> u32 {
         // SAFETY: the token proves SSE2.
         (unsafe { _mm_movemask_ps(m.0) }) as u32
+    }
+    #[inline(always)]
+    fn splat_f64(self, x: f64) -> D4 {
+        // SAFETY: the token proves SSE2.
+        D4([unsafe { _mm_set1_pd(x) }; 2])
+    }
+    #[inline(always)]
+    fn widen(self, a: F4) -> D4 {
+        // SAFETY: the token proves SSE2.
+        D4(unsafe { [_mm_cvtps_pd(a.0), _mm_cvtps_pd(_mm_movehl_ps(a.0, a.0))] })
+    }
+    #[inline(always)]
+    fn narrow(self, a: D4) -> F4 {
+        let D4([low, high]) = a;
+        // SAFETY: the token proves SSE2.
+        F4(unsafe { _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high)) })
     }
     #[inline(always)]
     fn gather(self, table: &[f32], index: I4) -> F4 {

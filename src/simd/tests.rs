@@ -19,6 +19,7 @@ impl Kernel for Check {
     fn run<L: Lanes>(self, l: L) {
         for start in (0..16).step_by(L::WIDTH) {
             arithmetic(l, start);
+            doubles(l, start);
             integers(l, start);
             transposed(l, start);
             quads(l, start);
@@ -55,6 +56,35 @@ fn columns<L: Lanes>(l: L) {
         assert_eq!(turned.map(|column| column[i]), rows[i]);
     }
     assert_eq!(back, rows);
+}
+
+/// A number that f32 hasn't, and whose product with one of f32 rounds.
+const THIRD: f64 = 1.0 / 3.0;
+
+fn doubles<L: Lanes>(l: L, start: usize) {
+    let (x, y) = (l.load(&X[start..]), l.load(&Y[start..]));
+    let (a, b, third) = (l.widen(x), l.widen(y), l.splat_f64(THIRD));
+    let found = [
+        a * third + b,
+        b - third * a,
+        (a + third) / (b + third),
+        a * b,
+        a,
+    ];
+    for lane in 0..L::WIDTH {
+        let [a, b] = [X[start + lane], Y[start + lane]].map(f64::from);
+        let expected = [
+            a * THIRD + b,
+            b - THIRD * a,
+            (a + THIRD) / (b + THIRD),
+            a * b,
+            a,
+        ];
+        for (found, expected) in found.into_iter().zip(expected) {
+            let found = bits_of(l, l.narrow(found))[lane];
+            assert_eq!(found, (expected as f32).to_bits(), "lane {}", start + lane);
+        }
+    }
 }
 
 fn masks<L: Lanes>(l: L) {

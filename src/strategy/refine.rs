@@ -148,7 +148,9 @@ mod tests {
         }
         let (places, pool) = (Places::new(&bodies), Threads::default());
         let posed = Posed {
-            frames: &[ShapeFrame::new(&shape, &shape.ordop.basis)],
+            frames: &[ShapeFrame::new(&shape, &shape.ordop.basis)]
+                .into_iter()
+                .collect(),
             bodies: &bodies,
             places: &places,
             balls: &[],

@@ -25,27 +25,6 @@ impl Eight {
         Self([x; EIGHT])
     }
 
-    /// The first eight of some f32.
-    #[inline(always)]
-    pub fn of(numbers: &[f32]) -> Self {
-        let numbers = &numbers[..EIGHT];
-        let mut out = [0.0; EIGHT];
-        for lane in 0..EIGHT {
-            out[lane] = f64::from(numbers[lane]);
-        }
-        Self(out)
-    }
-
-    /// Rounded to f32.
-    #[inline(always)]
-    pub fn rounded(self) -> [f32; EIGHT] {
-        let mut out = [0.0; EIGHT];
-        for lane in 0..EIGHT {
-            out[lane] = self.0[lane] as f32;
-        }
-        out
-    }
-
     /// Smaller lane by lane.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
@@ -99,11 +78,7 @@ impl Neg for Eight {
 
 impl Real for Eight {
     #[inline(always)]
-    fn one() -> Self {
-        Self::splat(1.0)
-    }
-    #[inline(always)]
-    fn two() -> Self {
-        Self::splat(2.0)
+    fn like(self, x: f64) -> Self {
+        Self::splat(x)
     }
 }

@@ -223,7 +223,7 @@ mod tests {
         let mut intervals = Intervals::new(DirectionSet::K6, &[shape], 1);
         for (frame, margin) in [(frame, 0.0), (grown, 0.25)] {
             let posed = Posed {
-                frames: &[frame],
+                frames: &[frame].into_iter().collect(),
                 bodies: &bodies,
                 places: &Places::new(&bodies),
                 balls: &[],

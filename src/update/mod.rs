@@ -4,144 +4,24 @@
 //! transformed point, an or-DOP update turns the basis. World-aligned volumes alone are re-fitted, from hull vertices.
 
 mod eight;
+mod frame;
 mod intervals;
 mod lines;
 pub mod row;
 mod rows;
+mod wide;
 
+pub use frame::{Frames, ShapeFrame};
 pub use intervals::Intervals;
 pub use rows::{OrDopRows, Posed};
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use self::row::{O, Q, S, SHAPE, T};
 use crate::bodies::contract::{balls_are_within_limit, is_within_limit};
 use crate::bodies::{Bodies, Places, read_ahead};
-use crate::rounding::pose::{over_norm, rotate, rotation, world_axes};
-use crate::rounding::sphere::{inflate_radius, world_ball};
-use crate::rounding::up;
-use crate::simd::{ROW, prefetch};
+use crate::simd::prefetch;
 use crate::threads::Executor;
-use crate::volume::{Basis, Shape};
-
-/// The index of the centre in the row of a shape.
-const CENTRE: usize = 9;
-
-/// The numbers of a shape from which a body's volumes are updated, in the body frame.
-#[derive(Clone, Debug)]
-pub struct ShapeFrame {
-    /// The shape, and how far it is grown.
-    shape: u32,
-    margin: f32,
-    centre: [f32; 3],
-    radius: f32,
-    /// R, if the ball's centre is the body's origin: no pose changes it then.
-    inflated: Option<f32>,
-    reach: f32,
-    /// The basis, column after column, then the centre: sixteen such rows are transposed into vectors.
-    row: [f32; ROW],
-    /// One over the length of each of the basis' columns.
-    unit: f64,
-}
-
-impl ShapeFrame {
-    /// Of a shape whose or-DOP has the axes `basis`.
-    #[must_use]
-    pub fn new(shape: &Shape, basis: &Basis) -> Self {
-        let columns = basis.columns.map(|column| column.to_array());
-        let centre = shape.ball.centre.to_array();
-        let mut row = [0.0; ROW];
-        row[..9].copy_from_slice(columns.as_flattened());
-        row[CENTRE..CENTRE + 3].copy_from_slice(&centre);
-        let frame = Self {
-            shape: 0,
-            margin: 0.0,
-            centre,
-            radius: 0.0,
-            inflated: None,
-            reach: shape.reach,
-            row,
-            unit: over_norm(columns[0]),
-        };
-        frame.with_radius(shape.ball.radius)
-    }
-
-    /// The same with another radius about the ball's centre.
-    #[must_use]
-    pub fn with_radius(self, radius: f32) -> Self {
-        let centred = self.centre == [0.0; 3];
-        Self {
-            radius,
-            inflated: centred.then(|| inflate_radius(radius)),
-            ..self
-        }
-    }
-
-    /// The same with the number of its shape, to whose hull world-aligned volumes are fitted.
-    #[must_use]
-    pub fn numbered(self, shape: u32) -> Self {
-        Self { shape, ..self }
-    }
-
-    /// The same, grown by `margin` all around.
-    #[must_use]
-    pub fn grown(&self, margin: f32) -> Self {
-        let grow = |size: f32| up(f64::from(size) + f64::from(margin));
-        let frame = Self {
-            margin,
-            reach: grow(self.reach),
-            ..*self
-        };
-        frame.with_radius(grow(self.radius))
-    }
-
-    /// The ball's radius, not inflated.
-    #[must_use]
-    pub fn radius(&self) -> f32 {
-        self.radius
-    }
-
-    /// The ball's centre, body frame.
-    #[must_use]
-    pub fn centre(&self) -> [f32; 3] {
-        self.centre
-    }
-
-    /// An upper bound on the distance of the shape's points from the body origin.
-    #[must_use]
-    pub fn reach(&self) -> f32 {
-        self.reach
-    }
-
-    /// The or-DOP's row of a body in this shape, whose slabs are in the table of number `table`.
-    #[must_use]
-    pub fn row(&self, table: u32, q: [f32; 4], t: [f32; 3]) -> [f32; ROW] {
-        let (turn, mut row) = (rotation(q), [0.0; ROW]);
-        let basis = [0, 3, 6].map(|j| [self.row[j], self.row[j + 1], self.row[j + 2]]);
-        row[Q..Q + 9].copy_from_slice(world_axes(&turn, basis).as_flattened());
-        row[T..T + 3].copy_from_slice(&t);
-        if self.centre != [0.0; 3] {
-            row[O..O + 3].copy_from_slice(&rotate(&turn, self.centre).map(|x| x as f32));
-        }
-        row[S] = f32::from_bits(SHAPE + table);
-        row
-    }
-
-    /// Inflated world sphere (x, y, z, R) of a body in this shape.
-    #[inline]
-    #[must_use]
-    pub fn sphere(&self, q: [f32; 4], t: [f32; 3]) -> [f32; 4] {
-        let (centre, inflated) = match self.inflated {
-            Some(inflated) => (t, inflated),
-            None => {
-                let (centre, radius) = world_ball(&rotation(q), t, self.centre, self.radius);
-                (centre, inflate_radius(radius))
-            }
-        };
-        [centre[0], centre[1], centre[2], inflated]
-    }
-}
 
 /// How many places ahead a pose is prefetched: bodies that are neighbours in space lie anywhere in the user's columns, and a
 /// cache miss takes as long as some ten updates.
@@ -214,8 +94,11 @@ mod tests {
     use super::*;
     use crate::mesh::ProceduralShape;
     use crate::rounding::LIMIT;
+    use crate::rounding::pose::{rotate, rotation};
+    use crate::rounding::sphere::inflate_radius;
     use crate::simd::Tier;
     use crate::threads::Threads;
+    use crate::volume::Shape;
     use crate::volume::{Origin, ShapeSpec};
 
     /// A box whose ball's centre is there.

@@ -1,19 +1,18 @@
 //! or-DOP updates: the basis is turned with the body, its slabs stay.
 //!
-//! Sixteen bodies at a time, in two halves of eight f64.
+//! Sixteen bodies at a time, whatever the tier.
 
 use std::ops::Range;
 
-use super::eight::{EIGHT, Eight};
+use super::AHEAD;
+use super::frame::{BASIS, CENTRE, Frames, UNIT};
 use super::lines::Lines;
 use super::row::{O, Q, S, SHAPE, T};
-use super::{AHEAD, CENTRE, ShapeFrame};
+use super::wide::Wide;
 use crate::bodies::Bodies;
 use crate::bodies::Places;
 use crate::rounding::pose::{axes_of, rotate_of, rotation_of};
-use crate::simd::{
-    Kernel, Lanes, MAX_WIDTH, ROW, Tier, dispatch, prefetch, quads_in_columns, turn_rows,
-};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, ROW, Tier, dispatch, prefetch, turn_rows};
 use crate::threads::Executor;
 
 /// Bodies whose rows one thread makes at a time: some microseconds.
@@ -35,7 +34,7 @@ pub struct OrDopRows {
 #[derive(Clone, Copy)]
 pub struct Posed<'a> {
     /// Of every shape.
-    pub frames: &'a [ShapeFrame],
+    pub frames: &'a Frames,
     /// The poses.
     pub bodies: &'a Bodies,
     /// The body in each place.
@@ -118,22 +117,42 @@ impl Kernel for InTurn<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
+        let Posed { places, balls, .. } = self.posed;
+        let balls = match self.posed.frames.are_centred() {
+            true => balls,
+            false => &[],
+        };
         let mut first = self.first;
         for rows in self.rows.chunks_mut(BODIES) {
-            let last = first + rows.len() - 1;
-            let places = std::array::from_fn(|lane| (first + lane).min(last) as u32);
             self.posed.prefetch(first + AHEAD);
-            match rows.try_into() {
-                Ok(rows) => self.posed.make(l, &places, rows),
-                Err(_) => {
+            let (count, here) = (rows.len(), first..first + rows.len());
+            let in_order = (
+                places.body[here.clone()].first_chunk(),
+                places.shape[here.clone()].first_chunk(),
+                balls.get(here).and_then(<[_]>::first_chunk),
+            );
+            match (in_order, rows.first_chunk_mut()) {
+                ((Some(&bodies), Some(&shapes), Some(ends)), Some(rows)) => {
+                    let sixteen = Sixteen { bodies, shapes };
+                    self.posed.make(l, &sixteen, ends, rows);
+                }
+                _ => {
+                    let last = first + count - 1;
+                    let places = std::array::from_fn(|lane| (first + lane).min(last) as u32);
                     let mut made = [[0.0; ROW]; BODIES];
-                    self.posed.make(l, &places, &mut made);
-                    rows.copy_from_slice(&made[..rows.len()]);
+                    self.posed.make_listed(l, &places, &mut made);
+                    rows.copy_from_slice(&made[..count]);
                 }
             }
             first += BODIES;
         }
     }
+}
+
+/// Bodies whose rows are made together, and their shapes.
+struct Sixteen {
+    bodies: [u32; BODIES],
+    shapes: [u32; BODIES],
 }
 
 /// Rows of listed places.
@@ -151,7 +170,7 @@ impl Kernel for Listed<'_> {
         for some in self.places.chunks(BODIES) {
             let mut places = [some[0]; BODIES];
             places[..some.len()].copy_from_slice(some);
-            self.posed.make(l, &places, &mut made);
+            self.posed.make_listed(l, &places, &mut made);
             for (&place, row) in some.iter().zip(&made) {
                 self.rows[place as usize] = *row;
             }
@@ -172,74 +191,94 @@ impl Posed<'_> {
         }
     }
 
-    /// The rows (Q, t, o, shape) of the bodies in sixteen places. What is read a body at a time is turned into columns, and
-    /// these into rows again, a vector at a time: number by number it would take longer than the arithmetic.
+    /// The rows of the bodies in any sixteen places.
     #[inline(always)]
-    fn make<L: Lanes>(&self, l: L, places: &[u32; BODIES], rows: &mut [[f32; ROW]; BODIES]) {
-        let (mut rotations, mut frames) = ([[0.0; 4]; BODIES], [[0.0; ROW]; BODIES]);
-        let (mut ends, mut units) = ([[0.0; 4]; BODIES], [[0.0; EIGHT]; BODIES / EIGHT]);
-        let mut centred = true;
+    fn make_listed<L: Lanes>(&self, l: L, places: &[u32; BODIES], rows: &mut [[f32; ROW]; BODIES]) {
+        let mut sixteen = Sixteen {
+            bodies: [0; BODIES],
+            shapes: [0; BODIES],
+        };
+        let mut ends = [[0.0; 4]; BODIES];
         for lane in 0..BODIES {
             let place = places[lane] as usize;
-            let (body, shape) = (self.places.body[place] as usize, self.places.shape[place]);
-            let frame = &self.frames[shape as usize];
-            let [x, y, z] = match (frame.inflated, self.balls.get(place)) {
+            let (body, shape) = (self.places.body[place], self.places.shape[place]);
+            let [x, y, z] = match (self.frames[shape as usize].inflated, self.balls.get(place)) {
                 (Some(_), Some(&[x, y, z, _])) => [x, y, z],
-                _ => self.bodies.translation[body],
+                _ => self.bodies.translation[body as usize],
             };
-            rotations[lane] = self.bodies.rotation[body];
-            ends[lane] = [x, y, z, f32::from_bits(SHAPE + shape)];
-            frames[lane] = frame.row;
-            units[lane / EIGHT][lane % EIGHT] = frame.unit;
-            centred &= frame.inflated.is_some();
+            (sixteen.bodies[lane], sixteen.shapes[lane]) = (body, shape);
+            ends[lane] = [x, y, z, 0.0];
         }
-        let q = quads_in_columns(l, &rotations);
-        let [x, y, z, shape] = quads_in_columns(l, &ends);
-        let mut shapes = [[0.0; BODIES]; ROW];
-        turn_rows(l, &frames, &mut shapes);
-        let mut made = [[0.0; BODIES]; ROW];
-        (made[T], made[T + 1], made[T + 2], made[S]) = (x, y, z, shape);
-        for (half, unit) in units.into_iter().enumerate() {
-            let start = half * EIGHT;
+        self.make(l, &sixteen, &ends, rows);
+    }
+
+    /// The rows (Q, t, o, shape) of sixteen bodies; the first three numbers of `origins` are their translations. What is read a body
+    /// at a time is turned into columns, and these into rows again, a vector at a time: number by number it would take longer
+    /// than the arithmetic.
+    #[inline(always)]
+    fn make<L: Lanes>(
+        &self,
+        l: L,
+        Sixteen { bodies, shapes }: &Sixteen,
+        origins: &[[f32; 4]; BODIES],
+        rows: &mut [[f32; ROW]; BODIES],
+    ) {
+        let (mut codes, mut made) = ([0; BODIES], [[0.0; BODIES]; ROW]);
+        for lane in 0..BODIES {
+            codes[lane] = bodies[lane] << 4;
+            made[S][lane] = f32::from_bits(SHAPE + shapes[lane]);
+        }
+        let are_centred = self.frames.are_centred();
+        let mut start = 0;
+        while start < BODIES {
             // Loops and no closures, which would be compiled apart and without the tier's features.
-            let mut pose = [Eight::splat(0.0); 4];
-            for (number, column) in pose.iter_mut().zip(&q) {
-                *number = Eight::of(&column[start..]);
+            let q = l.gather_quads(&self.bodies.rotation, &codes[start..]);
+            let record = l.load_transposed(&self.frames.records, &shapes[start..]);
+            let translation = l.load_quads(&origins[start..]);
+            let zero = Wide(l, l.splat_f64(0.0));
+            let (mut pose, mut shape) = ([zero; 4], [zero; ROW]);
+            for (number, q) in pose.iter_mut().zip(q) {
+                *number = Wide::of(l, q);
             }
-            let mut basis = [[Eight::splat(0.0); 3]; 3];
-            for (number, column) in basis.as_flattened_mut().iter_mut().zip(&shapes) {
-                *number = Eight::of(&column[start..]);
+            for (number, entry) in shape.iter_mut().zip(record) {
+                *number = Wide::of(l, entry);
             }
+            let basis = [
+                column(&shape, BASIS),
+                column(&shape, BASIS + 3),
+                column(&shape, BASIS + 6),
+            ];
+            let unit = (shape[UNIT] + shape[UNIT + 1]) + shape[UNIT + 2];
             let turn = rotation_of(pose);
-            let axes = axes_of(&turn, basis, Eight(unit));
+            let axes = axes_of(&turn, basis, unit);
             for (number, along) in axes.as_flattened().iter().enumerate() {
-                made[Q + number][start..start + EIGHT].copy_from_slice(&along.rounded());
+                l.store(along.rounded(), &mut made[Q + number][start..]);
             }
-            if !centred {
-                offsets(&turn, &shapes, start, &mut made);
+            for (number, along) in translation.iter().take(3).enumerate() {
+                l.store(*along, &mut made[T + number][start..]);
             }
+            if !are_centred {
+                let centre = [record[CENTRE], record[CENTRE + 1], record[CENTRE + 2]];
+                let zero = l.splat(0.0);
+                let is_apart = l.gt(l.abs(centre[0]), zero)
+                    | l.gt(l.abs(centre[1]), zero)
+                    | l.gt(l.abs(centre[2]), zero);
+                let offset = rotate_of(&turn, column(&shape, CENTRE));
+                for (number, along) in offset.iter().enumerate() {
+                    let along = l.select(is_apart, along.rounded(), zero);
+                    l.store(along, &mut made[O + number][start..]);
+                }
+            }
+            start += L::WIDTH;
         }
         turn_rows(l, &made, rows);
     }
 }
 
-/// Writes the turned centres of the eight bodies from lane `start` on: R·c, zero where c is.
+/// Three numbers that follow each other.
 #[inline(always)]
-fn offsets(
-    turn: &[[Eight; 3]; 3],
-    shapes: &[[f32; BODIES]; ROW],
-    start: usize,
-    made: &mut [[f32; BODIES]; ROW],
-) {
-    for lane in start..start + EIGHT {
-        let centre = [0, 1, 2].map(|i| f64::from(shapes[CENTRE + i][lane]));
-        if centre != [0.0; 3] {
-            let turn = turn.map(|row| row.map(|entry| entry.0[lane - start]));
-            for (i, offset) in rotate_of(&turn, centre).into_iter().enumerate() {
-                made[O + i][lane] = offset as f32;
-            }
-        }
-    }
+fn column<N: Copy>(numbers: &[N; ROW], first: usize) -> [N; 3] {
+    [numbers[first], numbers[first + 1], numbers[first + 2]]
 }
 
 #[cfg(test)]
@@ -251,6 +290,7 @@ mod tests {
     use super::*;
     use crate::rounding::pose::{rotate, rotation, world_axes};
     use crate::threads::Threads;
+    use crate::update::ShapeFrame;
     use crate::volume::{Axes, Shape, ShapeSpec};
     use crate::{mesh::ProceduralShape, volume::Origin};
 
@@ -279,7 +319,7 @@ mod tests {
     #[test]
     fn every_lane_of_every_tier_computes_what_one_f64_would() {
         let shapes = shapes();
-        let frames: Vec<_> = shapes
+        let frames: Frames = shapes
             .iter()
             .map(|s| ShapeFrame::new(s, &s.ordop.basis))
             .collect();

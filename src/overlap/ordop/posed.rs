@@ -7,7 +7,7 @@ use crate::bodies::Places;
 use crate::settings::Overlap;
 use crate::simd::Tier;
 use crate::threads::Threads;
-use crate::update::{OrDopRows, Posed, ShapeFrame};
+use crate::update::{Frames, OrDopRows, Posed, ShapeFrame};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
 /// Rows and tables of bodies in the order of their columns, so that pairs of rows are pairs of bodies.
@@ -26,7 +26,7 @@ impl PosedOrDops {
         tier: Tier,
     ) -> Self {
         let directions = shapes.clone().next().map(|(_, ordop)| ordop.directions);
-        let frames: Vec<_> = shapes
+        let frames: Frames = shapes
             .clone()
             .map(|(shape, ordop)| ShapeFrame::new(shape, &ordop.basis))
             .collect();
