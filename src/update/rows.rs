@@ -117,24 +117,20 @@ impl Kernel for InTurn<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
-        let Posed { places, balls, .. } = self.posed;
-        let balls = match self.posed.frames.are_centred() {
-            true => balls,
-            false => &[],
-        };
+        let places = self.posed.places;
         let mut first = self.first;
         for rows in self.rows.chunks_mut(BODIES) {
             self.posed.prefetch(first + AHEAD);
             let (count, here) = (rows.len(), first..first + rows.len());
-            let in_order = (
-                places.body[here.clone()].first_chunk(),
-                places.shape[here.clone()].first_chunk(),
-                balls.get(here).and_then(<[_]>::first_chunk),
-            );
-            match (in_order, rows.first_chunk_mut()) {
-                ((Some(&bodies), Some(&shapes), Some(ends)), Some(rows)) => {
-                    let sixteen = Sixteen { bodies, shapes };
-                    self.posed.make(l, &sixteen, ends, rows);
+            let (bodies, shapes) = (&places.body[here.clone()], &places.shape[here]);
+            match (
+                bodies.first_chunk(),
+                shapes.first_chunk(),
+                rows.first_chunk_mut(),
+            ) {
+                (Some(bodies), Some(shapes), Some(rows)) => {
+                    let origins = self.posed.origins(first, bodies);
+                    self.posed.make(l, (bodies, shapes), &origins, rows);
                 }
                 _ => {
                     let last = first + count - 1;
@@ -147,12 +143,6 @@ impl Kernel for InTurn<'_> {
             first += BODIES;
         }
     }
-}
-
-/// Bodies whose rows are made together, and their shapes.
-struct Sixteen {
-    bodies: [u32; BODIES],
-    shapes: [u32; BODIES],
 }
 
 /// Rows of listed places.
@@ -191,25 +181,36 @@ impl Posed<'_> {
         }
     }
 
+    /// The translations of the bodies in sixteen places from `first` on, as the first three numbers of quads.
+    #[inline(always)]
+    fn origins(&self, first: usize, bodies: &[u32; BODIES]) -> [[f32; 4]; BODIES] {
+        if self.frames.are_centred()
+            && let Some(Some(balls)) = self.balls.get(first..).map(<[_]>::first_chunk)
+        {
+            return *balls;
+        }
+        let mut origins = [[0.0; 4]; BODIES];
+        for (origin, &body) in origins.iter_mut().zip(bodies) {
+            let [x, y, z] = self.bodies.translation[body as usize];
+            *origin = [x, y, z, 0.0];
+        }
+        origins
+    }
+
     /// The rows of the bodies in any sixteen places.
     #[inline(always)]
     fn make_listed<L: Lanes>(&self, l: L, places: &[u32; BODIES], rows: &mut [[f32; ROW]; BODIES]) {
-        let mut sixteen = Sixteen {
-            bodies: [0; BODIES],
-            shapes: [0; BODIES],
-        };
-        let mut ends = [[0.0; 4]; BODIES];
-        for lane in 0..BODIES {
-            let place = places[lane] as usize;
-            let (body, shape) = (self.places.body[place], self.places.shape[place]);
-            let [x, y, z] = match (self.frames[shape as usize].inflated, self.balls.get(place)) {
-                (Some(_), Some(&[x, y, z, _])) => [x, y, z],
-                _ => self.bodies.translation[body as usize],
-            };
-            (sixteen.bodies[lane], sixteen.shapes[lane]) = (body, shape);
-            ends[lane] = [x, y, z, 0.0];
+        let (mut bodies, mut shapes) = ([0; BODIES], [0; BODIES]);
+        for (lane, &place) in places.iter().enumerate() {
+            bodies[lane] = self.places.body[place as usize];
+            shapes[lane] = self.places.shape[place as usize];
         }
-        self.make(l, &sixteen, &ends, rows);
+        let mut origins = [[0.0; 4]; BODIES];
+        for (origin, &body) in origins.iter_mut().zip(&bodies) {
+            let [x, y, z] = self.bodies.translation[body as usize];
+            *origin = [x, y, z, 0.0];
+        }
+        self.make(l, (&bodies, &shapes), &origins, rows);
     }
 
     /// The rows (Q, t, o, shape) of sixteen bodies; the first three numbers of `origins` are their translations. What is read a body
@@ -219,7 +220,7 @@ impl Posed<'_> {
     fn make<L: Lanes>(
         &self,
         l: L,
-        Sixteen { bodies, shapes }: &Sixteen,
+        (bodies, shapes): (&[u32; BODIES], &[u32; BODIES]),
         origins: &[[f32; 4]; BODIES],
         rows: &mut [[f32; ROW]; BODIES],
     ) {
