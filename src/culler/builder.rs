@@ -93,7 +93,7 @@ impl CullerBuilder {
     }
 
     /// The least work of a frame, in nanoseconds of one thread as counters tell them, for which threads besides the caller's are woken:
-    /// two milliseconds by default, 0 for always. Lists, counters and hashes don't depend on it.
+    /// a millisecond (2²⁰ ns) by default, 0 for always. Lists, counters and hashes don't depend on it.
     pub fn worth_waking(self, nanoseconds: u64) -> Self {
         let worth_waking = Some(nanoseconds);
         Self {
