@@ -129,8 +129,9 @@ impl Kernel for InTurn<'_> {
                 rows.first_chunk_mut(),
             ) {
                 (Some(bodies), Some(shapes), Some(rows)) => {
-                    let origins = self.posed.origins(first, bodies);
-                    self.posed.make(l, (bodies, shapes), &origins, rows);
+                    let mut buffer = [[0.0; 4]; BODIES];
+                    let origins = self.posed.origins(first, bodies, &mut buffer);
+                    self.posed.make(l, (bodies, shapes), origins, rows);
                 }
                 _ => {
                     let last = first + count - 1;
@@ -181,20 +182,34 @@ impl Posed<'_> {
         }
     }
 
-    /// The translations of the bodies in sixteen places from `first` on, as the first three numbers of quads.
+    /// The translations of the bodies in sixteen places from `first` on, as the first three numbers of quads: the balls where they
+    /// stand, or else what is gathered in `buffer`.
     #[inline(always)]
-    fn origins(&self, first: usize, bodies: &[u32; BODIES]) -> [[f32; 4]; BODIES] {
-        if self.frames.are_centred()
-            && let Some(Some(balls)) = self.balls.get(first..).map(<[_]>::first_chunk)
-        {
-            return *balls;
+    fn origins<'b>(
+        &'b self,
+        first: usize,
+        bodies: &[u32; BODIES],
+        buffer: &'b mut [[f32; 4]; BODIES],
+    ) -> &'b [[f32; 4]; BODIES] {
+        let balls = self.balls.get(first..).and_then(<[_]>::first_chunk);
+        match balls.filter(|_| self.frames.are_centred()) {
+            Some(balls) => balls,
+            None => self.gather(bodies, buffer),
         }
-        let mut origins = [[0.0; 4]; BODIES];
-        for (origin, &body) in origins.iter_mut().zip(bodies) {
+    }
+
+    /// Gathers translations as the first three numbers of quads.
+    #[inline(always)]
+    fn gather<'b>(
+        &self,
+        bodies: &[u32; BODIES],
+        buffer: &'b mut [[f32; 4]; BODIES],
+    ) -> &'b [[f32; 4]; BODIES] {
+        for (origin, &body) in buffer.iter_mut().zip(bodies) {
             let [x, y, z] = self.bodies.translation[body as usize];
             *origin = [x, y, z, 0.0];
         }
-        origins
+        buffer
     }
 
     /// The rows of the bodies in any sixteen places.
@@ -205,12 +220,9 @@ impl Posed<'_> {
             bodies[lane] = self.places.body[place as usize];
             shapes[lane] = self.places.shape[place as usize];
         }
-        let mut origins = [[0.0; 4]; BODIES];
-        for (origin, &body) in origins.iter_mut().zip(&bodies) {
-            let [x, y, z] = self.bodies.translation[body as usize];
-            *origin = [x, y, z, 0.0];
-        }
-        self.make(l, (&bodies, &shapes), &origins, rows);
+        let mut buffer = [[0.0; 4]; BODIES];
+        let origins = self.gather(&bodies, &mut buffer);
+        self.make(l, (&bodies, &shapes), origins, rows);
     }
 
     /// The rows (Q, t, o, shape) of sixteen bodies; the first three numbers of `origins` are their translations. What is read a body
