@@ -128,13 +128,9 @@ impl Threads {
 
     /// Calls `work` once for each item, with its index.
     pub fn each<T: Send>(&self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
+        let is_worth_waking = items.len() > 1;
         let items = items.iter_mut().enumerate();
-        match &self.0 {
-            Some(pool) if items.len() > 1 => {
-                distribute(pool, items, |(index, item)| work(index, item))
-            }
-            _ => items.for_each(|(index, item)| work(index, item)),
-        }
+        self.share_out(is_worth_waking, items, |(index, item)| work(index, item));
     }
 
     /// Calls `work` for consecutive pieces of a column, `size` long, with the index of each one's first element. Less than
@@ -145,24 +141,31 @@ impl Threads {
         size: usize,
         work: impl Fn(usize, &mut [T]) + Sync,
     ) {
-        let worth_waking = column.len() >= FEWEST_PIECES * size;
+        let is_worth_waking = column.len() >= FEWEST_PIECES * size;
         let pieces = column.chunks_mut(size).enumerate();
-        match &self.0 {
-            Some(pool) if worth_waking => {
-                distribute(pool, pieces, |(index, piece)| work(index * size, piece));
-            }
-            _ => pieces.for_each(|(index, piece)| work(index * size, piece)),
-        }
+        self.share_out(is_worth_waking, pieces, |(index, piece)| {
+            work(index * size, piece)
+        });
     }
 
     /// Calls `work` for consecutive ranges of 0..`len`, `size` long. Less than eight are the caller's own.
     pub fn ranges(&self, len: usize, size: usize, work: impl Fn(Range<usize>) + Sync) {
-        let worth_waking = len >= FEWEST_PIECES * size;
+        let is_worth_waking = len >= FEWEST_PIECES * size;
         let starts = (0..len).step_by(size);
         let ranges = starts.map(|start| start..len.min(start + size));
+        self.share_out(is_worth_waking, ranges, work);
+    }
+
+    /// Calls `work` for each item, on all threads if these are worth waking.
+    fn share_out<T>(
+        &self,
+        is_worth_waking: bool,
+        items: impl Iterator<Item = T> + Send,
+        work: impl Fn(T) + Sync,
+    ) {
         match &self.0 {
-            Some(pool) if worth_waking => distribute(pool, ranges, work),
-            _ => ranges.for_each(work),
+            Some(pool) if is_worth_waking => distribute(pool, items, work),
+            _ => items.for_each(work),
         }
     }
 }

@@ -23,9 +23,13 @@ impl PairFinder {
         if n > MOST_BODIES {
             return;
         }
-        let ball = |slot: usize| match self {
-            Self::Neighbours(finder) if finder.slots_are_places() => balls[slot],
-            _ => self.own_slots().arranged().ball(slot),
+        let (slots, by_place) = (self.own_slots().arranged(), self.slots_are_places());
+        let ball = |slot: usize| {
+            if by_place {
+                balls[slot]
+            } else {
+                slots.ball(slot)
+            }
         };
         let finite = |slot| ball(slot).iter().all(|x| x.is_finite());
         if !(0..n).all(finite) {

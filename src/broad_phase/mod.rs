@@ -188,10 +188,17 @@ impl PairFinder {
     /// The arranged bodies. `balls` are those that were arranged: where places have the order of slots, they are read as they stand.
     #[must_use]
     pub fn slots<'a>(&'a self, balls: &'a Balls) -> Arranged<'a> {
-        match self {
-            Self::Neighbours(finder) if finder.slots_are_places() => finder.slots().followed(balls),
-            _ => self.own_slots().arranged(),
+        let slots = self.own_slots();
+        if self.slots_are_places() {
+            slots.followed(balls)
+        } else {
+            slots.arranged()
         }
+    }
+
+    /// Whether places have the order of slots, so that the frame's balls are read by place.
+    fn slots_are_places(&self) -> bool {
+        matches!(self, Self::Neighbours(finder) if finder.slots_are_places())
     }
 
     /// The name of each slot's body, and a vector of names behind them.

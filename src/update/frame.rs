@@ -9,12 +9,11 @@ use crate::rounding::up;
 use crate::simd::ROW;
 use crate::volume::{Basis, Shape};
 
-/// Where the basis begins in a shape's record, column by column; the centre; and one over the length of each of the basis'
-/// columns, a number of f64 as the sum of three of f32.
+/// Where the basis begins in a shape's record, column by column.
 pub const BASIS: usize = 0;
-/// See [`BASIS`].
+/// Where the centre of its ball begins.
 pub const CENTRE: usize = 9;
-/// See [`BASIS`].
+/// Where one over the length of each of the basis' columns begins, a number of f64 as the sum of three of f32.
 pub const UNIT: usize = 12;
 
 /// The frames of all shapes.
@@ -23,21 +22,21 @@ pub struct Frames {
     frames: Vec<ShapeFrame>,
     /// What or-DOPs are turned by: records that are read as columns, a vector of shapes at a time.
     pub(super) records: Vec<[f32; ROW]>,
-    /// How many have a ball whose centre isn't the body's origin.
-    eccentric: usize,
+    /// Whether some ball's centre isn't its body's origin.
+    some_eccentric: bool,
 }
 
 impl Frames {
     /// Adds the next shape's.
     pub fn push(&mut self, frame: ShapeFrame) {
         self.records.push(frame.record());
-        self.eccentric += usize::from(frame.inflated.is_none());
+        self.some_eccentric |= frame.inflated.is_none();
         self.frames.push(frame);
     }
 
     /// Whether the centre of each body's ball is its origin.
     pub(super) fn are_centred(&self) -> bool {
-        self.eccentric == 0
+        !self.some_eccentric
     }
 }
 

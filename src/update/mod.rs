@@ -98,8 +98,7 @@ mod tests {
     use crate::rounding::sphere::inflate_radius;
     use crate::simd::Tier;
     use crate::threads::Threads;
-    use crate::volume::Shape;
-    use crate::volume::{Origin, ShapeSpec};
+    use crate::volume::{Origin, Shape, ShapeSpec};
 
     /// A box whose ball's centre is there.
     fn boxed(centre: [f32; 3]) -> Shape {

@@ -39,7 +39,7 @@ pub struct Posed<'a> {
     pub bodies: &'a Bodies,
     /// The body in each place.
     pub places: &'a Places,
-    /// Updated spheres by place, or none: where a ball's centre is its body's origin, the translation is read here, in order,
+    /// Updated spheres by place, or none: where the centre of each ball is its body's origin, translations are read here, in order,
     /// and not again from anywhere in the user's columns.
     pub balls: &'a [[f32; 4]],
 }
@@ -176,10 +176,16 @@ impl Posed<'_> {
         let end = self.places.body.len();
         for &body in &self.places.body[place.min(end)..end.min(place + BODIES)] {
             prefetch(&self.bodies.rotation[body as usize]);
-            if self.balls.is_empty() {
+            if !self.balls_are_at_origins() {
                 prefetch(&self.bodies.translation[body as usize]);
             }
         }
+    }
+
+    /// Whether translations can be read off the balls.
+    #[inline(always)]
+    fn balls_are_at_origins(&self) -> bool {
+        self.frames.are_centred() && !self.balls.is_empty()
     }
 
     /// The translations of the bodies in sixteen places from `first` on, as the first three numbers of quads: the balls where they
@@ -191,10 +197,9 @@ impl Posed<'_> {
         bodies: &[u32; BODIES],
         buffer: &'b mut [[f32; 4]; BODIES],
     ) -> &'b [[f32; 4]; BODIES] {
-        let balls = self.balls.get(first..).and_then(<[_]>::first_chunk);
-        match balls.filter(|_| self.frames.are_centred()) {
-            Some(balls) => balls,
-            None => self.gather(bodies, buffer),
+        match self.balls.get(first..).and_then(<[_]>::first_chunk) {
+            Some(balls) if self.balls_are_at_origins() => balls,
+            _ => self.gather(bodies, buffer),
         }
     }
 
@@ -238,7 +243,7 @@ impl Posed<'_> {
     ) {
         let (mut codes, mut made) = ([0; BODIES], [[0.0; BODIES]; ROW]);
         for lane in 0..BODIES {
-            codes[lane] = bodies[lane] << 4;
+            codes[lane] = bodies[lane] << 4; // fits: the contract has fewer bodies than there are codes
             made[S][lane] = f32::from_bits(SHAPE + shapes[lane]);
         }
         let are_centred = self.frames.are_centred();

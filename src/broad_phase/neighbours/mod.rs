@@ -161,8 +161,7 @@ impl Neighbours {
         self.grid.slots()
     }
 
-    /// Whether places have the order of slots, so that the frame's balls are read by place.
-    #[inline(always)]
+    /// Whether the frame follows a list in whose order places are; the slots' balls are then those that the list was made of.
     pub(super) fn slots_are_places(&self) -> bool {
         self.state == State::Followed
     }
