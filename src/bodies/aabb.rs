@@ -4,7 +4,7 @@ use super::contract::{ContractError, refuse};
 
 /// A closed box on the world's axes: boxes that touch meet. Its ends are finite, and no lower one is above the upper one;
 /// sides of no length are fine.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Aabb {
     /// The lower corner.

@@ -2,15 +2,18 @@
 
 use crate::bodies::Aabb;
 use crate::rounding::cube::Cube;
-use crate::simd::{Kernel, Lanes, MAX_WIDTH};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, prefetch};
 
-/// Boxes that are copied before any is looked at: each is a cache miss, and so more of them are on their way at once.
-const TOGETHER: usize = 64;
+/// How many names ahead boxes are prefetched: neighbours in space lie anywhere in the user's list, and a core can wait for dozens
+/// of cache misses at once.
+pub(super) const AHEAD: usize = 128;
 
 /// Makes the cubes of the boxes of these names. Returns the greatest H − h, and whether all boxes are sound.
 pub(super) struct Make<'a> {
     pub boxes: &'a [Aabb],
     pub names: &'a [u32],
+    /// The names from the one at [`AHEAD`] on, whose boxes are prefetched, or none where boxes are in the caches.
+    pub ahead: &'a [u32],
     pub cubes: &'a mut [[f32; 4]],
 }
 
@@ -18,50 +21,63 @@ impl Kernel for Make<'_> {
     type Output = (f32, bool);
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> (f32, bool) {
-        let all = l.bits(l.first(L::WIDTH));
-        let (mut greatest, mut sound) = (l.splat(0.0), all);
-        let mut near = [[[0.0; 4]; TOGETHER]; 2];
-        let cubes = self.cubes.chunks_mut(TOGETHER);
-        for (cubes, names) in cubes.zip(self.names.chunks(TOGETHER)) {
-            copy(self.boxes, names, &mut near);
-            let [fronts, backs] = &near;
-            for (start, cubes) in (0..).step_by(MAX_WIDTH).zip(cubes.chunks_mut(MAX_WIDTH)) {
-                let mut columns = [[0.0; MAX_WIDTH]; 4];
-                for lane in (0..MAX_WIDTH).step_by(L::WIDTH) {
-                    let [x, y, z, _] = l.load_quads(&fronts[start + lane..]);
-                    let [_, to_x, to_y, to_z] = l.load_quads(&backs[start + lane..]);
-                    let cube = Cube::about(l, [x, y, z], [to_x, to_y, to_z]);
-                    for (column, lanes) in columns.iter_mut().zip(cube.outer) {
-                        l.store(lanes, &mut column[lane..]);
-                    }
-                    greatest = l.max(cube.gap, greatest);
-                    sound &= cube.sound;
-                }
-                let [x, y, z, half] = columns;
-                let numbers = x.into_iter().zip(y).zip(z).zip(half);
-                for (to, (((x, y), z), half)) in cubes.iter_mut().zip(numbers) {
-                    *to = [x, y, z, half];
+        let mut seen = Seen {
+            gap: l.splat(0.0),
+            sound: u32::MAX,
+        };
+        let numbers: &[[f32; 6]] = bytemuck::cast_slice(self.boxes);
+        let mut ahead = self.ahead.chunks(MAX_WIDTH);
+        let cubes = self.cubes.chunks_mut(MAX_WIDTH);
+        for (cubes, names) in cubes.zip(self.names.chunks(MAX_WIDTH)) {
+            for &name in ahead.next().unwrap_or_default() {
+                let Aabb { min, max } = &self.boxes[name as usize];
+                prefetch(&min[0]);
+                prefetch(&max[2]); // often in the next cache line
+            }
+            match (names.first_chunk(), cubes.first_chunk_mut()) {
+                (Some(names), Some(cubes)) => seen.make(l, numbers, names, cubes),
+                _ => {
+                    let (mut whole, mut made) = ([names[0]; MAX_WIDTH], [[0.0; 4]; MAX_WIDTH]);
+                    whole[..names.len()].copy_from_slice(names);
+                    seen.make(l, numbers, &whole, &mut made);
+                    cubes.copy_from_slice(&made[..cubes.len()]);
                 }
             }
         }
         let mut gaps = [0.0; MAX_WIDTH];
-        l.store(greatest, &mut gaps);
-        (gaps.into_iter().fold(0.0, f32::max), sound == all)
+        l.store(seen.gap, &mut gaps);
+        let all = l.bits(l.first(L::WIDTH));
+        let gap = gaps.into_iter().fold(0.0, f32::max);
+        (gap, seen.sound & all == all)
     }
 }
 
-/// Copies boxes as their first and last four numbers, each of which is one load; lanes without a box take the first one again.
-#[inline(always)]
-fn copy(boxes: &[Aabb], names: &[u32], [fronts, backs]: &mut [[[f32; 4]; TOGETHER]; 2]) {
-    for ((front, back), &name) in fronts.iter_mut().zip(&mut *backs).zip(names) {
-        let Aabb { min, max } = boxes[name as usize];
-        *front = [min[0], min[1], min[2], max[0]];
-        *back = [min[2], max[0], max[1], max[2]];
+/// What the cubes that were made have in common.
+struct Seen<L: Lanes> {
+    /// The greatest H − h in each lane.
+    gap: L::F,
+    /// Bits of the lanes that had sound boxes alone.
+    sound: u32,
+}
+
+impl<L: Lanes> Seen<L> {
+    /// Makes the cubes of sixteen boxes, each of which is six numbers.
+    #[inline(always)]
+    fn make(
+        &mut self,
+        l: L,
+        boxes: &[[f32; 6]],
+        names: &[u32; MAX_WIDTH],
+        cubes: &mut [[f32; 4]; MAX_WIDTH],
+    ) {
+        for lane in (0..MAX_WIDTH).step_by(L::WIDTH) {
+            let [x, y, z, to_x, to_y, to_z] = l.gather_sixes(boxes, &names[lane..]);
+            let cube = Cube::about(l, [x, y, z], [to_x, to_y, to_z]);
+            l.store_quads(cube.outer, &mut cubes[lane..]);
+            self.gap = l.max(cube.gap, self.gap);
+            self.sound &= cube.sound;
+        }
     }
-    let spare = names.len()..names.len().next_multiple_of(MAX_WIDTH);
-    let (front, back) = (fronts[0], backs[0]);
-    fronts[spare.clone()].fill(front);
-    backs[spare].fill(back);
 }
 
 #[cfg(test)]
@@ -75,6 +91,7 @@ mod tests {
         let make = Make {
             boxes,
             names,
+            ahead: names.get(AHEAD..).unwrap_or_default(),
             cubes: &mut cubes,
         };
         let (gap, are_sound) = dispatch(tier, make);
@@ -93,7 +110,7 @@ mod tests {
 
     #[test]
     fn every_box_has_its_cube_in_every_tier() {
-        for count in [1, 15, 16, 17, TOGETHER, TOGETHER + 1, 150] {
+        for count in [1, 15, 16, 17, 33, AHEAD + 22] {
             let boxes = boxes(count);
             let names: Vec<u32> = (0..count as u32).rev().collect();
             for tier in Tier::available() {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
-use super::cubes::Make;
+use super::cubes::{AHEAD, Make};
 use crate::bodies::contract::ContractError;
 use crate::bodies::{Aabb, Groups, Places, read_ahead};
 use crate::broad_phase::{Balls, PairFinder, Population, Reorder, Volume};
@@ -17,6 +17,10 @@ use crate::threads::{FrameThreads, Work};
 
 /// Boxes whose cubes one thread makes at once.
 const CUBES: usize = 4096;
+
+/// Bytes of boxes that fit the first caches: so many are read there from end to end, and of more, each is prefetched by its name.
+/// Measured on an AMD (Zen 5) with cold caches: as fast at 48 KB, 3 % slower at 96 KB, 20 % at 240 KB.
+const FEW_BYTES: usize = 64 << 10;
 
 /// Boxes of a frame that are asked which test suits it.
 const ASKED: usize = 64;
@@ -164,7 +168,6 @@ impl Frames {
         if changed == Reorder::All && moving < all {
             self.make_cubes(boxes, moving..all)?;
         }
-        read_ahead(self.threads.get(), boxes, moving, |aabb| aabb.min[0]);
         let gap = self.make_cubes(boxes, 0..moving)?;
         Some(gap.max(self.fixed_gap))
     }
@@ -172,14 +175,19 @@ impl Frames {
     /// Makes the cubes of a range of places; the greatest H − h, or `None` if some box is none.
     fn make_cubes(&mut self, boxes: &[Aabb], range: Range<usize>) -> Option<f32> {
         let pool = self.threads.get();
+        let are_few = size_of_val(boxes) <= FEW_BYTES;
+        if are_few {
+            read_ahead(pool, boxes, range.len(), |aabb| aabb.min[0]);
+        }
         let names = &self.places.body[range.clone()];
         // Bits of numbers that aren't negative are in their order.
         let (greatest, are_sound) = (AtomicU32::new(0), AtomicBool::new(true));
         pool.pieces(&mut self.cubes[range], CUBES, |start, cubes| {
-            let names = &names[start..start + cubes.len()];
+            let ahead = names.get(start + AHEAD..).filter(|_| !are_few);
             let make = Make {
                 boxes,
-                names,
+                names: &names[start..start + cubes.len()],
+                ahead: ahead.unwrap_or_default(),
                 cubes,
             };
             let (gap, is_sound) = dispatch(self.tier, make);

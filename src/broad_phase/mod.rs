@@ -196,8 +196,9 @@ impl PairFinder {
         }
     }
 
-    /// Whether places have the order of slots, so that the frame's balls are read by place.
-    fn slots_are_places(&self) -> bool {
+    /// Whether places have the order of slots, so that what is known by place can be read by slot.
+    #[must_use]
+    pub fn slots_are_places(&self) -> bool {
         matches!(self, Self::Neighbours(finder) if finder.slots_are_places())
     }
 

@@ -346,10 +346,11 @@ impl Culler {
             };
             strategy::mark(interest, bodies, centre, &mut self.interest);
         }
-        let names = if self.names_are_places() {
-            SlotNames::Places(&self.places.body)
-        } else {
-            SlotNames::Bodies
+        let body = &self.places.body;
+        let names = match self.names_are_places() {
+            false => SlotNames::Bodies,
+            true if self.finder.slots_are_places() => SlotNames::Slots(body),
+            true => SlotNames::Places(body),
         };
         let inputs = Inputs {
             executor: self.threads.get().executor(self.tier),

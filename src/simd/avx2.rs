@@ -1,7 +1,10 @@
 //! The AVX2 tier: 8 lanes, masks as vectors, compress by a permutation table.
 
+mod transpose;
+
 use std::arch::x86_64::*;
 
+use self::transpose::{transpose, transpose_quads, turn_in_halves};
 use super::lanes::{
     Lanes, Sealed, clamp_codes, double_operators, float_operators, last_code, quad_of,
 };
@@ -325,17 +328,45 @@ impl Lanes for Avx2 {
         }
     }
     #[inline(always)]
+    fn store_quads(self, columns: [F8; 4], to: &mut [[f32; 4]]) {
+        let to = &mut to[..8];
+        // SAFETY: room for 8 quads is there, and the token proves AVX.
+        unsafe {
+            for (i, pair) in turn_in_halves(columns.map(|column| column.0))
+                .into_iter()
+                .enumerate()
+            {
+                let [near, far] = [i, i + 4].map(|quad| to.as_mut_ptr().add(quad).cast());
+                _mm256_storeu2_m128(far, near, pair);
+            }
+        }
+    }
+    #[inline(always)]
+    fn gather_sixes(self, sixes: &[[f32; 6]], pick: &[u32]) -> [F8; 6] {
+        let pick = &pick[..8];
+        assert!(!sixes.is_empty());
+        let last = sixes.len() as u32 - 1;
+        // SAFETY: 8 integers are there, every index is clamped to the last six, which has four floats from the first and from the
+        // third one on; the token proves AVX2.
+        unsafe {
+            let (mut fronts, mut backs) = ([sixes.as_ptr().cast(); 8], [sixes.as_ptr().cast(); 8]);
+            for (lane, index) in clamped(pick.as_ptr(), last).into_iter().enumerate() {
+                let six: *const f32 = sixes.as_ptr().add(index as usize).cast();
+                (fronts[lane], backs[lane]) = (six, six.add(2));
+            }
+            let ([x, y, z, a], [_, _, b, c]) = (transpose_quads(fronts), transpose_quads(backs));
+            [x, y, z, a, b, c]
+        }
+    }
+    #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F8; ROW] {
         let pick = &pick[..8];
         assert!(!rows.is_empty());
         let last = rows.len() as u32 - 1;
-        let mut lanes = [0u32; 8];
         let mut out = [self.splat(0.0); ROW];
         // SAFETY: 8 integers are there, every index is clamped to the last row; the token proves AVX2.
         unsafe {
-            let pick = _mm256_loadu_si256(pick.as_ptr().cast());
-            let index = _mm256_min_epu32(pick, _mm256_set1_epi32(last as i32));
-            _mm256_storeu_si256(lanes.as_mut_ptr().cast(), index);
+            let lanes = clamped(pick.as_ptr(), last);
             for half in [0, 8] {
                 let mut picked = [out[0].0; 8];
                 for (row, lane) in picked.iter_mut().zip(lanes) {
@@ -365,56 +396,20 @@ unsafe fn lookup(table: *const f32, index: __m256i) -> __m256 {
     }
 }
 
-/// Eight quads as four columns: quads i and i + 4 share a register, so a 4 × 4 transpose within halves puts all in place.
+/// Eight integers, none of them above `last`.
 ///
 /// # Safety
-/// The CPU has AVX, and each pointer leads to four floats.
+/// The CPU has AVX2, and the pointer leads to eight integers.
 #[inline(always)]
-unsafe fn transpose_quads(quads: [*const f32; 8]) -> [F8; 4] {
-    // SAFETY: the caller vouches for the feature and the pointers.
+unsafe fn clamped(from: *const u32, last: u32) -> [u32; 8] {
+    let mut lanes = [0; 8];
+    // SAFETY: the caller vouches for the feature and the pointer.
     unsafe {
-        let mut r = [_mm256_setzero_ps(); 4];
-        for (i, r) in r.iter_mut().enumerate() {
-            *r = _mm256_loadu2_m128(quads[i + 4], quads[i]);
-        }
-        let [a, b, c, d] = r;
-        let [ab_lo, ab_hi] = [_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b)];
-        let [cd_lo, cd_hi] = [_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d)];
-        [
-            F8(_mm256_shuffle_ps::<0x44>(ab_lo, cd_lo)),
-            F8(_mm256_shuffle_ps::<0xee>(ab_lo, cd_lo)),
-            F8(_mm256_shuffle_ps::<0x44>(ab_hi, cd_hi)),
-            F8(_mm256_shuffle_ps::<0xee>(ab_hi, cd_hi)),
-        ]
+        let index = _mm256_min_epu32(
+            _mm256_loadu_si256(from.cast()),
+            _mm256_set1_epi32(last as i32),
+        );
+        _mm256_storeu_si256(lanes.as_mut_ptr().cast(), index);
     }
-}
-
-/// An 8 × 8 transpose: 4 × 4 blocks within 128-bit halves, then the halves themselves.
-///
-/// # Safety
-/// The CPU has AVX.
-#[inline(always)]
-unsafe fn transpose(r: [__m256; 8]) -> [F8; 8] {
-    let mut quad = [r[0]; 8];
-    for i in 0..2 {
-        let [a, b, c, d] = [r[4 * i], r[4 * i + 1], r[4 * i + 2], r[4 * i + 3]];
-        // SAFETY: the caller vouches for the feature.
-        unsafe {
-            let [ab_lo, ab_hi] = [_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b)];
-            let [cd_lo, cd_hi] = [_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d)];
-            quad[4 * i] = _mm256_shuffle_ps::<0x44>(ab_lo, cd_lo);
-            quad[4 * i + 1] = _mm256_shuffle_ps::<0xee>(ab_lo, cd_lo);
-            quad[4 * i + 2] = _mm256_shuffle_ps::<0x44>(ab_hi, cd_hi);
-            quad[4 * i + 3] = _mm256_shuffle_ps::<0xee>(ab_hi, cd_hi);
-        }
-    }
-    let mut out = [F8(r[0]); 8];
-    for j in 0..4 {
-        // SAFETY: the caller vouches for the feature.
-        unsafe {
-            out[j] = F8(_mm256_permute2f128_ps::<0x20>(quad[j], quad[4 + j]));
-            out[4 + j] = F8(_mm256_permute2f128_ps::<0x31>(quad[j], quad[4 + j]));
-        }
-    }
-    out
+    lanes
 }

@@ -1,7 +1,10 @@
 //! The AVX-512 tier: 16 lanes, compares into mask registers, in-register compress.
 
+mod transpose;
+
 use std::arch::x86_64::*;
 
+use self::transpose::{transpose, transpose_quads, turn_in_quarters, turn_quarters};
 use super::lanes::{
     Lanes, Sealed, clamp_codes, double_operators, float_operators, last_code, quad_of,
 };
@@ -292,17 +295,43 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
+    fn store_quads(self, columns: [F16; 4], to: &mut [[f32; 4]]) {
+        let to = to[..16].as_flattened_mut();
+        // SAFETY: room for 64 floats is there, and the token proves AVX-512 F.
+        unsafe {
+            let quarters = turn_in_quarters(columns.map(|column| column.0));
+            for (i, quads) in turn_quarters(quarters).into_iter().enumerate() {
+                _mm512_storeu_ps(to.as_mut_ptr().add(16 * i), quads);
+            }
+        }
+    }
+    #[inline(always)]
+    fn gather_sixes(self, sixes: &[[f32; 6]], pick: &[u32]) -> [F16; 6] {
+        let pick = &pick[..16];
+        assert!(!sixes.is_empty());
+        let last = sixes.len() as u32 - 1;
+        // SAFETY: 16 integers are there, every index is clamped to the last six, which has four floats from the first and from the
+        // third one on; the token proves AVX-512 F.
+        unsafe {
+            let (mut fronts, mut backs) =
+                ([sixes.as_ptr().cast(); 16], [sixes.as_ptr().cast(); 16]);
+            for (lane, index) in clamped(pick.as_ptr(), last).into_iter().enumerate() {
+                let six: *const f32 = sixes.as_ptr().add(index as usize).cast();
+                (fronts[lane], backs[lane]) = (six, six.add(2));
+            }
+            let ([x, y, z, a], [_, _, b, c]) = (transpose_quads(fronts), transpose_quads(backs));
+            [x, y, z, a, b, c]
+        }
+    }
+    #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F16; ROW] {
         let pick = &pick[..16];
         assert!(!rows.is_empty());
         let last = rows.len() as u32 - 1;
-        let mut lanes = [0u32; 16];
         let mut picked = [self.splat(0.0).0; 16];
         // SAFETY: 16 integers are there, every index is clamped to the last row; the token proves AVX-512 F.
         unsafe {
-            let pick = _mm512_loadu_epi32(pick.as_ptr().cast());
-            let index = _mm512_min_epu32(pick, _mm512_set1_epi32(last as i32));
-            _mm512_storeu_epi32(lanes.as_mut_ptr().cast(), index);
+            let lanes = clamped(pick.as_ptr(), last);
             for (row, lane) in picked.iter_mut().zip(lanes) {
                 *row = _mm512_loadu_ps(rows.as_ptr().add(lane as usize).cast());
             }
@@ -311,68 +340,20 @@ impl Lanes for Avx512 {
     }
 }
 
-/// Sixteen quads as four columns: quads i, i + 4, i + 8 and i + 12 share a register, so a 4 × 4 transpose within quarters
-/// puts all in place. Some 12 cycles, where four gathers take 80.
+/// Sixteen integers, none of them above `last`.
 ///
 /// # Safety
-/// The CPU has AVX-512 F, and each pointer leads to four floats.
+/// The CPU has AVX-512 F, and the pointer leads to sixteen integers.
 #[inline(always)]
-unsafe fn transpose_quads(quads: [*const f32; 16]) -> [F16; 4] {
-    // SAFETY: the caller vouches for the feature and the pointers.
+unsafe fn clamped(from: *const u32, last: u32) -> [u32; 16] {
+    let mut lanes = [0; 16];
+    // SAFETY: the caller vouches for the feature and the pointer.
     unsafe {
-        let mut r = [_mm512_setzero_ps(); 4];
-        for (i, r) in r.iter_mut().enumerate() {
-            let first = _mm512_castps128_ps512(_mm_loadu_ps(quads[i]));
-            let second = _mm512_insertf32x4::<1>(first, _mm_loadu_ps(quads[i + 4]));
-            let third = _mm512_insertf32x4::<2>(second, _mm_loadu_ps(quads[i + 8]));
-            *r = _mm512_insertf32x4::<3>(third, _mm_loadu_ps(quads[i + 12]));
-        }
-        let [a, b, c, d] = r;
-        let [ab_lo, ab_hi] = [_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b)];
-        let [cd_lo, cd_hi] = [_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d)];
-        [
-            F16(_mm512_shuffle_ps::<0x44>(ab_lo, cd_lo)),
-            F16(_mm512_shuffle_ps::<0xee>(ab_lo, cd_lo)),
-            F16(_mm512_shuffle_ps::<0x44>(ab_hi, cd_hi)),
-            F16(_mm512_shuffle_ps::<0xee>(ab_hi, cd_hi)),
-        ]
+        let index = _mm512_min_epu32(
+            _mm512_loadu_epi32(from.cast()),
+            _mm512_set1_epi32(last as i32),
+        );
+        _mm512_storeu_epi32(lanes.as_mut_ptr().cast(), index);
     }
-}
-
-/// A 16 × 16 transpose: 4 × 4 blocks within 128-bit quarters, then the quarters themselves.
-///
-/// # Safety
-/// The CPU has AVX-512 F.
-#[inline(always)]
-unsafe fn transpose(r: [__m512; 16]) -> [F16; 16] {
-    let mut quad = [r[0]; 16];
-    for i in 0..4 {
-        let [a, b, c, d] = [r[4 * i], r[4 * i + 1], r[4 * i + 2], r[4 * i + 3]];
-        // SAFETY: the caller vouches for the feature.
-        unsafe {
-            let [ab_lo, ab_hi] = [_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b)];
-            let [cd_lo, cd_hi] = [_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d)];
-            quad[4 * i] = _mm512_shuffle_ps::<0x44>(ab_lo, cd_lo);
-            quad[4 * i + 1] = _mm512_shuffle_ps::<0xee>(ab_lo, cd_lo);
-            quad[4 * i + 2] = _mm512_shuffle_ps::<0x44>(ab_hi, cd_hi);
-            quad[4 * i + 3] = _mm512_shuffle_ps::<0xee>(ab_hi, cd_hi);
-        }
-    }
-    // Now quad[4i + j], quarter q, holds column 4q + j of rows 4i … 4i + 3.
-    let mut out = [F16(r[0]); 16];
-    for j in 0..4 {
-        let [a, b, c, d] = [quad[j], quad[4 + j], quad[8 + j], quad[12 + j]];
-        // SAFETY: the caller vouches for the feature.
-        unsafe {
-            let ab_even = _mm512_shuffle_f32x4::<0x88>(a, b);
-            let ab_odd = _mm512_shuffle_f32x4::<0xdd>(a, b);
-            let cd_even = _mm512_shuffle_f32x4::<0x88>(c, d);
-            let cd_odd = _mm512_shuffle_f32x4::<0xdd>(c, d);
-            out[j] = F16(_mm512_shuffle_f32x4::<0x88>(ab_even, cd_even));
-            out[4 + j] = F16(_mm512_shuffle_f32x4::<0x88>(ab_odd, cd_odd));
-            out[8 + j] = F16(_mm512_shuffle_f32x4::<0xdd>(ab_even, cd_even));
-            out[12 + j] = F16(_mm512_shuffle_f32x4::<0xdd>(ab_odd, cd_odd));
-        }
-    }
-    out
+    lanes
 }

@@ -97,6 +97,11 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     /// Quads of a non-empty table as columns: of each of the first `WIDTH` codes, of which there must be that many, the
     /// upper 28 bits are the index (see [`Self::split_u32`]). An index past the end reads the last quad.
     fn gather_quads(self, quads: &[[f32; 4]], codes: &[u32]) -> [Self::F; 4];
+    /// Writes columns as the first `WIDTH` quads of `to`, which has that many: the reverse of [`Self::load_quads`].
+    fn store_quads(self, columns: [Self::F; 4], to: &mut [[f32; 4]]);
+    /// Sixes `sixes[pick[lane]]` of a non-empty table as columns; an index past the end reads the last one. `pick` has at least
+    /// `WIDTH` elements.
+    fn gather_sixes(self, sixes: &[[f32; 6]], pick: &[u32]) -> [Self::F; 6];
     /// Rows `rows[pick[lane]]` of a non-empty table as columns: element c of the result holds number c of every picked row;
     /// an index past the end reads the last row. `pick` has at least `WIDTH` elements.
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW];

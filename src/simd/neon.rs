@@ -239,6 +239,23 @@ impl Lanes for Neon {
         self.load_quads(&[quad(0), quad(1), quad(2), quad(3)])
     }
     #[inline(always)]
+    fn store_quads(self, [a, b, c, d]: [F4; 4], to: &mut [[f32; 4]]) {
+        let to = to[..4].as_flattened_mut();
+        // SAFETY: room for 16 floats is there, and the token proves NEON. The store itself takes one of each vector in turn.
+        unsafe { vst4q_f32(to.as_mut_ptr(), float32x4x4_t(a.0, b.0, c.0, d.0)) };
+    }
+    #[inline(always)]
+    fn gather_sixes(self, sixes: &[[f32; 6]], pick: &[u32]) -> [F4; 6] {
+        let (pick, last) = (&pick[..4], sixes.len() - 1);
+        let (mut fronts, mut backs) = ([[0.0; 4]; 4], [[0.0; 4]; 4]);
+        for (lane, &pick) in pick.iter().enumerate() {
+            let [x, y, z, a, b, c] = sixes[(pick as usize).min(last)];
+            (fronts[lane], backs[lane]) = ([x, y, z, a], [z, a, b, c]);
+        }
+        let ([x, y, z, a], [_, _, b, c]) = (self.load_quads(&fronts), self.load_quads(&backs));
+        [x, y, z, a, b, c]
+    }
+    #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F4; ROW] {
         let (pick, last) = (&pick[..4], rows.len() - 1);
         let mut out = [self.splat(0.0); ROW];

@@ -215,6 +215,14 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
         quads[((codes[0] >> 4) as usize).min(quads.len() - 1)].map(F1::of)
     }
     #[inline(always)]
+    fn store_quads(self, columns: [Self::F; 4], to: &mut [[f32; 4]]) {
+        to[0] = columns.map(|column| column.0);
+    }
+    #[inline(always)]
+    fn gather_sixes(self, sixes: &[[f32; 6]], pick: &[u32]) -> [Self::F; 6] {
+        sixes[(pick[0] as usize).min(sixes.len() - 1)].map(F1::of)
+    }
+    #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW] {
         rows[(pick[0] as usize).min(rows.len() - 1)].map(F1::of)
     }

@@ -243,6 +243,27 @@ impl Lanes for Sse2 {
         self.transposed([quad(0), quad(1), quad(2), quad(3)])
     }
     #[inline(always)]
+    fn store_quads(self, columns: [F4; 4], to: &mut [[f32; 4]]) {
+        let [mut a, mut b, mut c, mut d] = columns.map(|column| column.0);
+        // SAFETY: the token proves SSE2.
+        unsafe { _MM_TRANSPOSE4_PS(&mut a, &mut b, &mut c, &mut d) };
+        for (quad, to) in [a, b, c, d].into_iter().zip(&mut to[..4]) {
+            self.store(F4(quad), to);
+        }
+    }
+    #[inline(always)]
+    fn gather_sixes(self, sixes: &[[f32; 6]], pick: &[u32]) -> [F4; 6] {
+        let (pick, last) = (&pick[..4], sixes.len() - 1);
+        let six = |lane: usize| {
+            let [x, y, z, a, b, c] = sixes[(pick[lane] as usize).min(last)];
+            [[x, y, z, a], [z, a, b, c]]
+        };
+        let [[one, i], [two, j], [three, k], [four, m]] = [six(0), six(1), six(2), six(3)];
+        let [x, y, z, a] = self.transposed([&one, &two, &three, &four]);
+        let [_, _, b, c] = self.transposed([&i, &j, &k, &m]);
+        [x, y, z, a, b, c]
+    }
+    #[inline(always)]
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [F4; ROW] {
         let (pick, last) = (&pick[..4], rows.len() - 1);
         let mut out = [self.splat(0.0); ROW];

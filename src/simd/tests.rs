@@ -334,6 +334,18 @@ fn quads<L: Lanes>(l: L, start: usize) {
             .collect();
         assert!(same(l, gathered, &gathered_from), "column {column}");
     }
+    let mut stored = [[0.5; 4]; MAX_WIDTH + 1];
+    l.store_quads(l.load_quads(&quads[3..]), &mut stored);
+    assert_eq!(stored[..L::WIDTH], quads[3..3 + L::WIDTH]);
+    assert_eq!(stored[L::WIDTH], [0.5; 4], "nothing is written behind");
+    let sixes: Vec<[f32; 6]> = (0..40)
+        .map(|six| std::array::from_fn(|column| (six * 10 + column) as f32))
+        .collect();
+    for (column, lanes) in l.gather_sixes(&sixes, &pick).into_iter().enumerate() {
+        let of_six = |&six: &u32| sixes[(six as usize).min(39)][column];
+        let expected: Vec<f32> = pick.iter().map(of_six).collect();
+        assert!(same(l, lanes, &expected), "column {column}");
+    }
 }
 
 #[test]

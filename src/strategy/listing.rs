@@ -13,11 +13,20 @@ use crate::overlap::boxes::{Cubes, EndSlots};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
 use crate::settings::TestedVolume;
-use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
 use crate::threads::{Executor, Threads};
 
 /// Slots of a run that are tested before their hits are listed.
 const PIECE: usize = MOST_CANDIDATES;
+
+/// How far beyond the farthest slot of a block names are prefetched: some twenty blocks ahead of their use.
+const AHEAD: usize = 256;
+
+/// Up to so many names the second-level cache keeps, and prefetching only costs.
+const FEW_NAMES: usize = 1 << 16;
+
+/// Names in a cache line.
+const LINE: usize = 16;
 
 /// The first volume test of a strategy.
 #[derive(Clone, Copy)]
@@ -79,16 +88,12 @@ impl<'a> Listing<'a> {
         }
     }
 
-    /// What is listed of pairs of slots with these names, that of the lower body first.
+    /// What is listed of pairs with these names, that of the lower body first.
     #[inline(always)]
-    fn in_order<L: Lanes>(&self, l: L, [a, b]: [L::I; 2]) -> [L::I; 2] {
-        let bodies = match self.names {
-            SlotNames::Bodies => [a, b],
-            SlotNames::Places(body) => [l.gather_u32(body, a), l.gather_u32(body, b)],
-        };
+    fn in_order<L: Lanes>(&self, l: L, names: [L::I; 2], bodies: [L::I; 2]) -> [L::I; 2] {
         let [one, other] = match self.listed {
             Listed::Bodies => bodies,
-            Listed::Places => [a, b],
+            Listed::Places => names,
         };
         let swapped = l.gt_u32(bodies[0], bodies[1]);
         [
@@ -213,13 +218,18 @@ impl List<'_> {
     #[inline(always)]
     fn with<L: Lanes>(self, l: L, test: &impl SlotTest) -> VolumeCounters {
         let finder = self.listing.finder;
+        let by_slot = match self.listing.names {
+            SlotNames::Bodies | SlotNames::Places(_) => finder.names(),
+            SlotNames::Slots(body) => body,
+        };
         let mut lister = Lister {
             test,
-            names: finder.names(),
+            by_slot,
             listing: self.listing,
             out: self.out,
             flush: self.flush,
             counters: VolumeCounters::default(),
+            prefetched: 0,
             hits: [0; PIECE + MAX_WIDTH],
         };
         finder.find(l, self.parts, &mut lister);
@@ -249,12 +259,14 @@ impl SlotTest for PassAll {
 /// A first test that lists what passes it.
 struct Lister<'a, 'f, T> {
     test: &'a T,
-    /// The name of each slot.
-    names: &'a [u32],
+    /// The name of each slot, or its body where slots name themselves.
+    by_slot: &'a [u32],
     listing: Listing<'a>,
     out: &'f mut PairList,
     flush: Flush<'f>,
     counters: VolumeCounters,
+    /// Up to this slot, names are prefetched.
+    prefetched: usize,
     /// Of the piece or block at hand.
     hits: [u32; PIECE + MAX_WIDTH],
 }
@@ -275,6 +287,9 @@ impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
     #[cfg_attr(not(unoptimised), inline(always))]
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>) {
         self.counters.tests += block.codes().len() as u64;
+        if self.by_slot.len() > FEW_NAMES {
+            self.prefetch_beyond(block);
+        }
         let found = self.test.block(l, block, &mut self.hits);
         self.append(l, found, Hits::Codes(block.first()));
     }
@@ -289,7 +304,51 @@ enum Hits {
     Codes(usize),
 }
 
+impl Hits {
+    /// The slots of a vector of pairs.
+    #[inline(always)]
+    fn slots<L: Lanes>(self, l: L, hit: L::I) -> [L::I; 2] {
+        match self {
+            Self::With(slot) => [l.splat_u32(slot as u32), hit],
+            Self::Codes(first) => {
+                let (other, lane) = l.split_u32(hit);
+                [l.add_u32(l.splat_u32(first as u32), lane), other]
+            }
+        }
+    }
+
+    /// The entries of a table by slot for a vector of pairs.
+    #[inline(always)]
+    fn entries<L: Lanes>(self, l: L, hit: L::I, table: &[u32]) -> [L::I; 2] {
+        match self {
+            Self::With(slot) => [l.splat_u32(table[slot]), l.gather_u32(table, hit)],
+            Self::Codes(first) => {
+                let ((other, lane), own) = (l.split_u32(hit), &table[first..]);
+                let own = match own.first_chunk() {
+                    Some(own) => l.lookup_16_u32(own, lane),
+                    None => l.gather_u32(own, lane),
+                };
+                [own, l.gather_u32(table, other)]
+            }
+        }
+    }
+}
+
 impl<T> Lister<'_, '_, T> {
+    /// Prefetches the names that the next blocks will be the first to read: those behind the farthest slot so far. Apart, so that
+    /// scenes whose names are in the caches pay for a comparison only.
+    #[inline(never)]
+    fn prefetch_beyond(&mut self, block: &Block<'_>) {
+        let farthest = block.codes().last().map_or(0, |code| code >> 4) as usize;
+        let end = self.by_slot.len().min(farthest + AHEAD);
+        let mut slot = self.prefetched.max(end.saturating_sub(2 * AHEAD));
+        while slot < end {
+            prefetch(&self.by_slot[slot]);
+            slot += LINE;
+        }
+        self.prefetched = slot;
+    }
+
     /// Lists the first `found` hits.
     #[inline(always)]
     fn append<L: Lanes>(&mut self, l: L, found: usize, hits: Hits) {
@@ -311,18 +370,14 @@ impl<T> Lister<'_, '_, T> {
         let mut start = 0;
         while start < found {
             let hit = l.load_u32(&self.hits[start..]);
-            let names = match hits {
-                Hits::With(slot) => [l.splat_u32(self.names[slot]), l.gather_u32(self.names, hit)],
-                Hits::Codes(slot) => {
-                    let ((other, lane), own) = (l.split_u32(hit), &self.names[slot..]);
-                    let own = match own.first_chunk() {
-                        Some(own) => l.lookup_16_u32(own, lane),
-                        None => l.gather_u32(own, lane),
-                    };
-                    [own, l.gather_u32(self.names, other)]
-                }
-            };
-            let [lower, higher] = self.listing.in_order(l, names);
+            let [a, b] = hits.entries(l, hit, self.by_slot);
+            let (mut names, mut bodies) = ([a, b], [a, b]);
+            match self.listing.names {
+                SlotNames::Bodies => {}
+                SlotNames::Places(body) => bodies = [l.gather_u32(body, a), l.gather_u32(body, b)],
+                SlotNames::Slots(_) => names = hits.slots(l, hit),
+            }
+            let [lower, higher] = self.listing.in_order(l, names, bodies);
             l.store_u32(lower, &mut first[start..]);
             l.store_u32(higher, &mut second[start..]);
             start += L::WIDTH;
@@ -335,7 +390,9 @@ impl<T> Lister<'_, '_, T> {
     fn keep_colliding(&mut self, listed: usize, groups: &[Groups]) {
         let groups_of = |name: u32| {
             let body = match (self.listing.listed, self.listing.names) {
-                (Listed::Places, SlotNames::Places(body)) => body[name as usize],
+                (Listed::Places, SlotNames::Places(body) | SlotNames::Slots(body)) => {
+                    body[name as usize]
+                }
                 _ => name,
             };
             groups[body as usize]

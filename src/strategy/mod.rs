@@ -42,6 +42,8 @@ pub(crate) enum SlotNames<'a> {
     Bodies,
     /// Places, in which these bodies are.
     Places(&'a [u32]),
+    /// Themselves: places have the order of slots, and these bodies are in them.
+    Slots(&'a [u32]),
 }
 
 /// What culling a frame reads, once volumes are updated and bodies arranged in slots.
