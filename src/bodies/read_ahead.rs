@@ -11,29 +11,28 @@ use crate::threads::Threads;
 /// Bytes that come with any one of them, on any processor that is known of.
 const LINE: usize = 64;
 
-/// The longest column that is worth it, in bytes: of a longer one, the second-level cache has lost the beginning when the end
-/// is read, and a third-level cache that is shared with others may have, too.
-const LONGEST: usize = 4 << 20;
-
 /// Elements that one thread reads at a time.
 const PIECE: usize = 8192;
 
 /// Reads a number of each cache line of a column whose elements will be wanted soon, `wanted` of them in any order. Does nothing
-/// where most won't be, or where the column is too long.
+/// and returns false where most won't be, or where the column is longer than so many bytes: then, what is wanted is better
+/// prefetched element by element.
 pub fn read_ahead<T: Sync>(
     pool: &Threads,
     column: &[T],
     wanted: usize,
+    longest: usize,
     number: impl Fn(&T) -> f32 + Sync,
-) {
-    if 2 * wanted < column.len() || size_of_val(column) > LONGEST {
-        return;
+) -> bool {
+    if 2 * wanted < column.len() || size_of_val(column) > longest {
+        return false;
     }
     let stride = (LINE / size_of::<T>().max(1)).max(1);
     pool.ranges(column.len(), PIECE, |range| {
         let numbers = column[range].iter().step_by(stride);
         black_box(numbers.fold(0, |bits, element| bits ^ number(element).to_bits()));
     });
+    true
 }
 
 #[cfg(test)]
@@ -42,16 +41,21 @@ mod tests {
 
     use super::*;
 
+    /// The longest column that is read, in bytes.
+    const LONGEST: usize = 1 << 20;
+
     /// The numbers that are read of a column of `N` numbers an element, each of which is its own index.
     fn read<const N: usize>(elements: usize, wanted: usize) -> Vec<usize> {
         let column: Vec<[f32; N]> = (0..elements).map(|i| [(N * i) as f32; N]).collect();
         let seen = Mutex::new(Vec::new());
-        read_ahead(&Threads::default(), &column, wanted, |element| {
+        let is_read = read_ahead(&Threads::default(), &column, wanted, LONGEST, |element| {
             let mut seen = seen.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
             seen.push(element[0] as usize);
             element[0]
         });
-        seen.into_inner().unwrap_or_default()
+        let seen = seen.into_inner().unwrap_or_default();
+        assert_eq!(is_read, !seen.is_empty() || elements == 0);
+        seen
     }
 
     fn leaves_no_line_out<const N: usize>() {
@@ -81,7 +85,7 @@ mod tests {
     #[test]
     fn columns_of_which_less_than_half_is_wanted_or_that_are_too_long_are_left_alone() {
         assert!(!read::<4>(101, 51).is_empty() && read::<4>(101, 50).is_empty());
-        let longest = (4 << 20) / 16;
+        let longest = LONGEST / 16;
         assert!(!read::<4>(longest, longest).is_empty());
         assert!(read::<4>(longest + 1, longest + 1).is_empty());
         assert!(read::<3>(0, 0).is_empty());

@@ -2,7 +2,7 @@
 
 use crate::bodies::Aabb;
 use crate::rounding::cube::Cube;
-use crate::simd::{Kernel, Lanes, MAX_WIDTH, prefetch};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, prefetch_ends};
 
 /// How many names ahead boxes are prefetched: neighbours in space lie anywhere in the user's list, and a core can wait for dozens
 /// of cache misses at once.
@@ -30,9 +30,7 @@ impl Kernel for Make<'_> {
         let cubes = self.cubes.chunks_mut(MAX_WIDTH);
         for (cubes, names) in cubes.zip(self.names.chunks(MAX_WIDTH)) {
             for &name in ahead.next().unwrap_or_default() {
-                let Aabb { min, max } = &self.boxes[name as usize];
-                prefetch(&min[0]);
-                prefetch(&max[2]); // often in the next cache line
+                prefetch_ends(&numbers[name as usize]);
             }
             match (names.first_chunk(), cubes.first_chunk_mut()) {
                 (Some(names), Some(cubes)) => seen.make(l, numbers, names, cubes),

@@ -221,13 +221,18 @@ impl Culler {
         self.stamp += 1;
         self.reorder(bodies);
         let reordered = Instant::now();
-        if !self.update_volumes(bodies, 0..self.places.moving) {
+        let without_rows = strategy::makes_rows(&self.settings, &self.places, &output);
+        let moving = 0..self.places.moving;
+        if !self.update_first(bodies, moving.clone()) {
             self.check_moved(bodies)?;
+        }
+        if !without_rows {
+            self.update_rows(bodies, moving);
         }
         self.count_updates();
         let updated = Instant::now();
         self.arrange();
-        let totals = self.run(bodies, output);
+        let totals = self.run(bodies, output, without_rows);
 
         let finding = (reordered - start) + updated.elapsed();
         let refining = totals.refining_seconds + totals.update_seconds;
@@ -269,38 +274,54 @@ impl Culler {
         self.needs.rows || self.needs.intervals.is_some()
     }
 
-    /// Updates the volumes in a range of places; with lazy updates, rows of moving bodies are left until a pair
-    /// needs them. Returns whether the poses were found within the contract.
+    /// Updates the volumes in a range of places. Returns whether the poses were found within the contract.
     fn update_volumes(&mut self, bodies: &Bodies, range: Range<usize>) -> bool {
+        let is_sound = self.update_first(bodies, range.clone());
+        self.update_rows(bodies, range);
+        is_sound
+    }
+
+    /// Updates all but the rows: what the first test takes.
+    fn update_first(&mut self, bodies: &Bodies, range: Range<usize>) -> bool {
         let (frames, places) = (&self.models.frames, &self.places);
-        let pool = self.threads.get();
-        let executor = pool.executor(self.tier);
+        let executor = self.threads.get().executor(self.tier);
         let is_sound = if self.needs.balls {
             let balls = &mut self.balls;
             update_spheres(executor, balls, frames, bodies, places, range.clone())
         } else {
             check_poses(bodies, 0..bodies.len()).is_ok()
         };
-        let posed = Posed {
-            frames,
-            bodies,
-            places,
-            balls: &[],
-        };
-        if self.needs.rows {
-            let start = match self.settings.updates {
-                Updates::Eager => range.start,
-                Updates::Lazy => range.start.max(places.moving),
-            };
-            let eager = start.min(range.end)..range.end;
-            let balls = if self.needs.balls { &*self.balls } else { &[] };
-            let posed = Posed { balls, ..posed };
-            self.rows.update(executor, posed, eager, self.stamp);
-        }
         if let Some(intervals) = &mut self.intervals {
+            let posed = Posed {
+                frames,
+                bodies,
+                places,
+                balls: &[],
+            };
             intervals.update(executor, &mut self.balls, posed, range);
         }
         is_sound
+    }
+
+    /// Makes the rows in a range of places, if there are any; with lazy updates, those of moving bodies are left until a pair needs
+    /// them.
+    fn update_rows(&mut self, bodies: &Bodies, range: Range<usize>) {
+        if !self.needs.rows {
+            return;
+        }
+        let start = match self.settings.updates {
+            Updates::Eager => range.start,
+            Updates::Lazy => range.start.max(self.places.moving),
+        };
+        let eager = start.min(range.end)..range.end;
+        let posed = Posed {
+            frames: &self.models.frames,
+            bodies,
+            places: &self.places,
+            balls: if self.needs.balls { &self.balls } else { &[] },
+        };
+        let executor = self.threads.get().executor(self.tier);
+        self.rows.update(executor, posed, eager, self.stamp);
     }
 
     fn count_updates(&mut self) {
@@ -336,7 +357,7 @@ impl Culler {
     }
 
     /// Finds and tests pairs.
-    fn run(&mut self, bodies: &Bodies, output: Output<'_>) -> Totals {
+    fn run(&mut self, bodies: &Bodies, output: Output<'_>, without_rows: bool) -> Totals {
         if let Some(interest) = &self.settings.interest {
             let frame = |body: usize| &self.models.frames[self.fixed.shape[body] as usize];
             let centre = |body: usize| {
@@ -369,6 +390,7 @@ impl Culler {
             tables: &self.models.tables,
             interest: &self.interest,
             stamp: self.stamp,
+            without_rows,
         };
         let totals = strategy::cull(inputs, &mut self.rows, &mut self.scratch, output);
         self.count(&totals);

@@ -51,9 +51,12 @@ impl Culler {
         stays
     }
 
-    /// Places all volumes, and lets a new finder order and arrange them.
+    /// Places all volumes but the rows of bodies that move, which each frame makes anew, and lets a new finder order and arrange
+    /// them.
     pub(super) fn begin(&mut self, bodies: &Bodies) {
-        self.update_volumes(bodies, 0..self.places.len());
+        let (moving, all) = (self.places.moving, self.places.len());
+        self.update_first(bodies, 0..moving);
+        self.update_volumes(bodies, moving..all);
         self.reorder(bodies);
         self.arrange();
     }
@@ -78,7 +81,7 @@ impl Culler {
         self.places.reorder(&self.fixed, &mut self.order, by_place);
         if changed == Reorder::All {
             let (moving, all) = (self.places.moving, self.places.len());
-            self.update_volumes(bodies, 0..moving);
+            self.update_first(bodies, 0..moving);
             if moving < all {
                 let fixed = std::mem::take(&mut self.fixed);
                 self.update_volumes(&fixed, moving..all);

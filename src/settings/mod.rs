@@ -69,7 +69,8 @@ choices! {
 choices! {
     /// When or-DOP poses are updated.
     Updates, "update mode", {
-        /// Every dynamic body's, each frame.
+        /// Every dynamic body's, each frame: before any pair is tested, or, of many bodies in a batch, stretch by stretch with the pairs
+        /// that need them. Each counts as one update either way.
         Eager = "eager",
         /// Only those of the potentially colliding set.
         Lazy = "lazy",

@@ -56,6 +56,13 @@ pub fn prefetch<T>(element: &T) {
     let _ = element;
 }
 
+/// Asks for the cache lines in which an element begins and ends, which may be two.
+#[inline(always)]
+pub fn prefetch_ends<const N: usize>(element: &[f32; N]) {
+    element.first().map(prefetch);
+    element.last().map(prefetch);
+}
+
 /// A computation that is compiled once for every tier.
 pub trait Kernel {
     /// What it returns.

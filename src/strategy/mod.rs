@@ -4,7 +4,7 @@
 //! A strategy takes updated volumes and a pair finder and leaves the reported pairs. Strategies differ in false positives
 //! and time, never in misses: each reports every pair whose meshes meet, `none` excepted.
 
-use crate::bodies::Groups;
+use crate::bodies::{Groups, Places};
 use crate::broad_phase::{Arranged, PairFinder};
 use crate::counters::VolumeCounters;
 use crate::overlap::intervals::IntervalSlots;
@@ -30,6 +30,9 @@ pub(crate) use output::Output;
 /// Pairs that flow through the or-DOP test at once where no list is kept: few enough for the first-level cache, enough to
 /// make the clock's cost vanish.
 const BLOCK: usize = 256;
+
+/// Rows that the second-level cache holds.
+const FEW_ROWS: usize = 1 << 14;
 
 /// What the finder's slots are named by.
 ///
@@ -65,6 +68,8 @@ pub(crate) struct Inputs<'a> {
     pub interest: &'a [bool],
     /// Counts frames from 1.
     pub stamp: u32,
+    /// Whether the rows of this frame are still to be made ([`makes_rows`]).
+    pub without_rows: bool,
 }
 
 impl Inputs<'_> {
@@ -127,6 +132,16 @@ pub(crate) struct Totals {
     pub refining_seconds: f64,
     /// Wall time of making rows on demand.
     pub update_seconds: f64,
+}
+
+/// Whether a strategy makes the rows itself, when their pairs are listed, so that they are tested while the caches have them. Where
+/// some bodies don't move, or a list isn't kept, or caches hold all rows anyway, they are made before.
+pub(crate) fn makes_rows(settings: &CullSettings, places: &Places, output: &Output<'_>) -> bool {
+    settings.strategy.scheme().flow == Flow::Batch
+        && settings.updates == Updates::Eager
+        && !output.is_in_portions()
+        && places.moving == places.len()
+        && places.len() > FEW_ROWS
 }
 
 /// Culls one frame by the strategy of the settings.

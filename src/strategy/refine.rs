@@ -1,6 +1,7 @@
 //! The or-DOP test of listed pairs.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
 
 use super::output::{Outlet, Output};
@@ -9,8 +10,13 @@ use super::{Inputs, Totals};
 use crate::counters::VolumeCounters;
 use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
-use crate::simd::{MAX_WIDTH, Tier};
-use crate::update::OrDopRows;
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
+use crate::threads::Executor;
+use crate::update::{MOST_ROWS, OrDopRows, Posed};
+
+/// Pairs whose rows are made together, and how many of such stretches one thread looks at.
+const STRETCH: usize = 1024;
+const STRETCHES: usize = 16;
 
 /// The or-DOP test with the rows as they are: takes pairs of places, leaves pairs of bodies.
 #[derive(Clone, Copy)]
@@ -28,6 +34,7 @@ impl<'a> Refine<'a> {
             tier: inputs.executor.tier,
             columns: OrDopColumns {
                 rows: &rows.rows,
+                bits: u32::MAX,
                 tables: inputs.tables,
                 overlap: settings.strategy.scheme().overlap(settings.overlap),
             },
@@ -51,6 +58,48 @@ impl<'a> Refine<'a> {
         counters.hits += tested.hits;
         *seconds += start.elapsed().as_secs_f64();
     }
+
+    /// Tests a task's pairs, stretch after stretch, and makes the rows of each when it is its turn.
+    fn test_in_windows(&self, posed: Posed<'_>, [first, second]: [&[u32]; 2], task: &mut Task) {
+        let mut window = std::mem::take(&mut task.window);
+        window.clear();
+        for (first, second) in first.chunks(STRETCH).zip(second.chunks(STRETCH)) {
+            let start = Instant::now();
+            let wanted = places_of(self.tier, [first, second]);
+            window.cover(self.tier, posed, wanted);
+            task.update_seconds += start.elapsed().as_secs_f64();
+            let rows = window.rows();
+            let columns = OrDopColumns {
+                rows,
+                bits: rows.len() as u32 - 1,
+                ..self.columns
+            };
+            let here = Refine { columns, ..*self };
+            let pairs = [first, second];
+            here.test(pairs, &mut task.refining, &mut task.seconds, &mut task.out);
+        }
+        task.window = window;
+    }
+}
+
+/// The places in which these pairs are, and those between.
+fn places_of(tier: Tier, pairs: [&[u32]; 2]) -> Range<usize> {
+    struct Ends<'a>([&'a [u32]; 2]);
+    impl Kernel for Ends<'_> {
+        type Output = [u32; 2];
+        #[inline(always)]
+        fn run<L: Lanes>(self, _: L) -> [u32; 2] {
+            let (mut least, mut greatest) = (u32::MAX, 0);
+            for column in self.0 {
+                for &place in column {
+                    (least, greatest) = (least.min(place), greatest.max(place));
+                }
+            }
+            [least, greatest]
+        }
+    }
+    let [least, greatest] = dispatch(tier, Ends(pairs));
+    (least as usize).min(greatest as usize)..greatest as usize + 1
 }
 
 /// The or-DOP test that makes rows first where updates are lazy, and sums up what it took.
@@ -75,16 +124,52 @@ impl<'a> Refiner<'a> {
             return self.refine_range(list, 0..list.len(), out);
         };
         self.make_rows(list, 0..list.len());
+        let in_windows = self.inputs.without_rows && self.are_near(list);
+        if self.inputs.without_rows && !in_windows {
+            self.make_all_rows();
+        }
         let refine = Refine::new(self.inputs, self.rows);
         let work = |vectors: Range<usize>, task: &mut Task, _: &Outlet<'_, '_>| {
             let pairs = vectors.start * MAX_WIDTH..(vectors.end * MAX_WIDTH).min(list.len());
             let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
-            refine.test(pairs, &mut task.refining, &mut task.seconds, &mut task.out);
+            if in_windows {
+                refine.test_in_windows(self.inputs.posed, pairs, task);
+            } else {
+                refine.test(pairs, &mut task.refining, &mut task.seconds, &mut task.out);
+            }
         };
         let (pool, vectors) = (self.inputs.executor.pool, list.len().div_ceil(MAX_WIDTH));
         let done = split_work(pool, tasks, vectors, Output::List(out), work);
         self.totals.refining += done.refining;
         self.totals.refining_seconds += done.refining_seconds;
+        self.totals.update_seconds += done.update_seconds;
+    }
+
+    /// Whether the places of each stretch of pairs lie so near each other that a window holds their rows.
+    fn are_near(&self, list: &PairList) -> bool {
+        let (are_near, Executor { tier, pool }) = (AtomicBool::new(true), self.inputs.executor);
+        pool.ranges(list.len(), STRETCHES * STRETCH, |range| {
+            let pairs = [&list.first()[range.clone()], &list.second()[range]];
+            let mut stretches = pairs[0].chunks(STRETCH).zip(pairs[1].chunks(STRETCH));
+            let is_near = |(first, second)| places_of(tier, [first, second]).len() <= MOST_ROWS;
+            if are_near.load(Relaxed) && !stretches.all(is_near) {
+                are_near.store(false, Relaxed);
+            }
+        });
+        are_near.into_inner()
+    }
+
+    fn make_all_rows(&mut self) {
+        let start = Instant::now();
+        let Inputs {
+            executor,
+            posed,
+            stamp,
+            ..
+        } = self.inputs;
+        let all = 0..posed.places.len();
+        self.rows.update(executor, posed, all, stamp);
+        self.totals.update_seconds += start.elapsed().as_secs_f64();
     }
 
     /// Tests some pairs of a list on the calling thread and appends the survivors to `out`.
@@ -175,6 +260,7 @@ mod tests {
             tables: &SlabTables::new(DirectionSet::K18, [(&shape, &shape.ordop)]),
             interest: &[],
             stamp: 1,
+            without_rows: false,
         };
         let list: PairList = [[0, 1], [0, 2]].into_iter().collect();
         let mut out = PairList::default();
@@ -182,6 +268,14 @@ mod tests {
         refiner.refine(&list, None, &mut out);
         assert_eq!(out.sorted(), [[0, 1], [0, 2]]);
         refiner.totals
+    }
+
+    #[test]
+    fn the_places_of_pairs_go_from_the_least_to_the_greatest() {
+        for tier in Tier::available() {
+            assert_eq!(places_of(tier, [&[7, 9, 8], &[5, 30, 6]]), 5..31);
+            assert_eq!(places_of(tier, [&[7; 40], &[7; 40]]), 7..8);
+        }
     }
 
     #[test]

@@ -56,6 +56,7 @@ fn refine_blocks(
         first,
         refining,
         seconds,
+        ..
     } = task;
     let mut flush = |block: &mut PairList| {
         match interest {

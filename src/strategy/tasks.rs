@@ -7,6 +7,7 @@ use super::output::{Outlet, Output, Turns};
 use crate::counters::VolumeCounters;
 use crate::pairs::PairList;
 use crate::threads::Threads;
+use crate::update::RowWindow;
 
 /// Tasks per thread: a thread that is done early takes another.
 const TASKS_PER_THREAD: usize = 4;
@@ -22,10 +23,14 @@ pub(super) struct Task {
     pub selected: PairList,
     /// Those of them that survived.
     pub survivors: PairList,
+    /// Rows that are made where they are tested.
+    pub window: RowWindow,
     pub first: VolumeCounters,
     pub refining: VolumeCounters,
     /// Seconds in the refining test.
     pub seconds: f64,
+    /// Seconds in making rows.
+    pub update_seconds: f64,
 }
 
 impl Task {
@@ -55,7 +60,8 @@ pub(super) fn split_work(
     for task in tasks.iter_mut() {
         task.out.clear();
         task.block.clear();
-        (task.first, task.refining, task.seconds) = Default::default();
+        (task.first, task.refining) = Default::default();
+        (task.seconds, task.update_seconds) = (0.0, 0.0);
     }
     let range = |index: usize| index * units / count..(index + 1) * units / count;
     match output {
@@ -82,6 +88,7 @@ pub(super) fn split_work(
         totals.first += task.first;
         totals.refining += task.refining;
         totals.refining_seconds += task.seconds / threads as f64;
+        totals.update_seconds += task.update_seconds / threads as f64;
     }
     totals
 }

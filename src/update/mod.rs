@@ -10,22 +10,28 @@ mod lines;
 pub mod row;
 mod rows;
 mod wide;
+mod window;
 
 pub use frame::{Frames, ShapeFrame};
 pub use intervals::Intervals;
 pub use rows::{OrDopRows, Posed};
+pub use window::{MOST_ROWS, RowWindow};
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::bodies::contract::{balls_are_within_limit, is_within_limit};
 use crate::bodies::{Bodies, Places, read_ahead};
-use crate::simd::prefetch;
+use crate::simd::prefetch_ends;
 use crate::threads::Executor;
 
 /// How many places ahead a pose is prefetched: bodies that are neighbours in space lie anywhere in the user's columns, and a
 /// cache miss takes as long as some ten updates.
-const AHEAD: usize = 32;
+const AHEAD: usize = 64;
+
+/// Translations that are read ahead, up to so many bytes: of more, the second-level cache has lost the first when the last are read,
+/// and a third-level cache that is shared with others may have, too.
+const LONGEST: usize = 4 << 20;
 
 /// Bodies whose spheres one thread updates at a time: some ten microseconds.
 const SPHERES: usize = 4096;
@@ -43,14 +49,15 @@ pub fn update_spheres(
 ) -> bool {
     let Executor { tier, pool } = executor;
     let (first, is_sound) = (range.start, AtomicBool::new(true));
-    read_ahead(pool, &bodies.translation, range.len(), |t| t[0]);
+    let is_near = read_ahead(pool, &bodies.translation, range.len(), LONGEST, |t| t[0]);
+    let ahead = if is_near { &[] } else { &*places.body };
     pool.pieces(&mut spheres[range], SPHERES, |start, spheres| {
         let start = first + start;
         let (mut turned, mut sound) = (false, true);
         let who = places.body[start..].iter().zip(&places.shape[start..]);
         for (place, (sphere, (&body, &shape))) in (start..).zip(spheres.iter_mut().zip(who)) {
-            if let Some(&later) = places.body.get(place + AHEAD) {
-                prefetch(&bodies.translation[later as usize]);
+            if let Some(&later) = ahead.get(place + AHEAD) {
+                prefetch_ends(&bodies.translation[later as usize]);
             }
             let (body, frame) = (body as usize, &frames[shape as usize]);
             let t = bodies.translation[body];

@@ -12,14 +12,16 @@ use super::wide::Wide;
 use crate::bodies::Bodies;
 use crate::bodies::Places;
 use crate::rounding::pose::{axes_of, rotate_of, rotation_of};
-use crate::simd::{Kernel, Lanes, MAX_WIDTH, ROW, Tier, dispatch, prefetch, turn_rows};
+use crate::simd::{
+    Kernel, Lanes, MAX_WIDTH, ROW, Tier, dispatch, prefetch, prefetch_ends, turn_rows,
+};
 use crate::threads::Executor;
 
 /// Bodies whose rows one thread makes at a time: some microseconds.
 const ROWS: usize = 512;
 
 /// Bodies whose rows are made together.
-const BODIES: usize = MAX_WIDTH;
+pub(super) const BODIES: usize = MAX_WIDTH;
 
 /// or-DOP rows by place, each with the frame in which it was last made.
 #[derive(Clone, Debug, Default)]
@@ -107,10 +109,10 @@ impl OrDopRows {
 }
 
 /// Rows of consecutive places.
-struct InTurn<'a> {
-    posed: Posed<'a>,
-    first: usize,
-    rows: &'a mut [[f32; ROW]],
+pub(super) struct InTurn<'a> {
+    pub posed: Posed<'a>,
+    pub first: usize,
+    pub rows: &'a mut [[f32; ROW]],
 }
 
 impl Kernel for InTurn<'_> {
@@ -177,7 +179,7 @@ impl Posed<'_> {
         for &body in &self.places.body[place.min(end)..end.min(place + BODIES)] {
             prefetch(&self.bodies.rotation[body as usize]);
             if !self.balls_are_at_origins() {
-                prefetch(&self.bodies.translation[body as usize]);
+                prefetch_ends(&self.bodies.translation[body as usize]);
             }
         }
     }

@@ -10,6 +10,7 @@ mod plan;
 mod scenes;
 #[path = "../support/mod.rs"]
 mod support;
+mod windows;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

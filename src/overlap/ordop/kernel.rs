@@ -22,6 +22,9 @@ const ROWS_IN_CACHE: usize = 1 << 13;
 pub struct OrDopColumns<'a> {
     /// One row per body: Q, t, o, shape.
     pub rows: &'a [[f32; ROW]],
+    /// The bits of a body's number that are its row's: all ([`u32::MAX`]), or the lower ones where rows are a ring of a power of
+    /// two.
+    pub bits: u32,
     /// Each shape's slabs.
     pub tables: &'a SlabTables,
     /// The separating axes to try.
@@ -79,7 +82,7 @@ impl OrDopColumns<'_> {
 
     #[cfg_attr(not(unoptimised), inline(always))]
     fn test_one<L: Lanes, const K: usize>(&self, l: L, pair: [u32; 2]) -> bool {
-        let [a, b] = pair.map(|row| l.load_transposed(self.rows, &[row; MAX_WIDTH]));
+        let [a, b] = pair.map(|body| l.load_transposed(self.rows, &[body & self.bits; MAX_WIDTH]));
         let frames = Frames::new(l, a, b);
         let [a, b] = self.slabs::<L, K, false>(l, &frames);
         let apart = |mask: L::M| l.bits(mask) & 1 != 0;
@@ -159,8 +162,8 @@ impl OrDopColumns<'_> {
             }
             let frames = Frames::new(
                 l,
-                l.load_transposed(self.rows, &pairs.first[start..]),
-                l.load_transposed(self.rows, &pairs.second[start..]),
+                l.load_transposed(self.rows, &self.rows_of(&pairs.first[start..])),
+                l.load_transposed(self.rows, &self.rows_of(&pairs.second[start..])),
             );
             let [a, b] = self.slabs::<L, K, FEW>(l, &frames);
             let separated = l.bits(frames.by_normals_of_a::<K>(l, &a, &b));
@@ -199,10 +202,20 @@ impl OrDopColumns<'_> {
         }
     }
 
+    /// The numbers of the rows of the first bodies, a vector of them.
+    #[inline(always)]
+    fn rows_of(&self, bodies: &[u32]) -> [u32; MAX_WIDTH] {
+        let mut rows = [0; MAX_WIDTH];
+        for (row, body) in rows.iter_mut().zip(bodies) {
+            *row = body & self.bits;
+        }
+        rows
+    }
+
     #[inline(always)]
     fn prefetch_rows<'a>(&self, wanted: impl Iterator<Item = &'a u32>) {
-        for &row in wanted {
-            if let Some(row) = self.rows.get(row as usize) {
+        for &body in wanted {
+            if let Some(row) = self.rows.get((body & self.bits) as usize) {
                 prefetch(row);
             }
         }

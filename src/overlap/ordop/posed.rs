@@ -51,6 +51,7 @@ impl PosedOrDops {
     pub fn columns(&self, overlap: Overlap) -> OrDopColumns<'_> {
         OrDopColumns {
             rows: &self.rows.rows,
+            bits: u32::MAX,
             tables: &self.tables,
             overlap,
         }
