@@ -129,8 +129,10 @@ impl<'a> Refiner<'a> {
             self.make_all_rows();
         }
         let refine = Refine::new(self.inputs, self.rows);
-        let work = |vectors: Range<usize>, task: &mut Task, _: &Outlet<'_, '_>| {
-            let pairs = vectors.start * MAX_WIDTH..(vectors.end * MAX_WIDTH).min(list.len());
+        // Tasks begin where stretches do, which were looked at one by one.
+        let unit = if in_windows { STRETCH } else { MAX_WIDTH };
+        let work = |units: Range<usize>, task: &mut Task, _: &Outlet<'_, '_>| {
+            let pairs = units.start * unit..(units.end * unit).min(list.len());
             let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
             if in_windows {
                 refine.test_in_windows(self.inputs.posed, pairs, task);
@@ -138,8 +140,8 @@ impl<'a> Refiner<'a> {
                 refine.test(pairs, &mut task.refining, &mut task.seconds, &mut task.out);
             }
         };
-        let (pool, vectors) = (self.inputs.executor.pool, list.len().div_ceil(MAX_WIDTH));
-        let done = split_work(pool, tasks, vectors, Output::List(out), work);
+        let (pool, units) = (self.inputs.executor.pool, list.len().div_ceil(unit));
+        let done = split_work(pool, tasks, units, Output::List(out), work);
         self.totals.refining += done.refining;
         self.totals.refining_seconds += done.refining_seconds;
         self.totals.update_seconds += done.update_seconds;
