@@ -34,7 +34,6 @@ impl<'a> Refine<'a> {
             tier: inputs.executor.tier,
             columns: OrDopColumns {
                 rows: &rows.rows,
-                bits: u32::MAX,
                 tables: inputs.tables,
                 overlap: settings.strategy.scheme().overlap(settings.overlap),
             },
@@ -68,10 +67,8 @@ impl<'a> Refine<'a> {
             let wanted = places_of(self.tier, [first, second]);
             window.cover(self.tier, posed, wanted);
             task.update_seconds += start.elapsed().as_secs_f64();
-            let rows = window.rows();
             let columns = OrDopColumns {
-                rows,
-                bits: rows.len() as u32 - 1,
+                rows: window.rows(),
                 ..self.columns
             };
             let here = Refine { columns, ..*self };
@@ -82,7 +79,7 @@ impl<'a> Refine<'a> {
     }
 }
 
-/// The places in which these pairs are, and those between.
+/// The places in which some pairs are, one at least, and those between.
 fn places_of(tier: Tier, pairs: [&[u32]; 2]) -> Range<usize> {
     struct Ends<'a>([&'a [u32]; 2]);
     impl Kernel for Ends<'_> {
@@ -99,10 +96,10 @@ fn places_of(tier: Tier, pairs: [&[u32]; 2]) -> Range<usize> {
         }
     }
     let [least, greatest] = dispatch(tier, Ends(pairs));
-    (least as usize).min(greatest as usize)..greatest as usize + 1
+    least as usize..greatest as usize + 1
 }
 
-/// The or-DOP test that makes rows first where updates are lazy, and sums up what it took.
+/// The or-DOP test that makes rows first where they are lacking, and sums up what it took.
 pub(super) struct Refiner<'a> {
     inputs: Inputs<'a>,
     rows: &'a mut OrDopRows,
@@ -123,10 +120,9 @@ impl<'a> Refiner<'a> {
         let Some(tasks) = tasks else {
             return self.refine_range(list, 0..list.len(), out);
         };
-        self.make_rows(list, 0..list.len());
         let in_windows = self.inputs.without_rows && self.are_near(list);
-        if self.inputs.without_rows && !in_windows {
-            self.make_all_rows();
+        if !in_windows {
+            self.make_rows(list, 0..list.len());
         }
         let refine = Refine::new(self.inputs, self.rows);
         // Tasks begin where stretches do, which were looked at one by one.
@@ -161,19 +157,6 @@ impl<'a> Refiner<'a> {
         are_near.into_inner()
     }
 
-    fn make_all_rows(&mut self) {
-        let start = Instant::now();
-        let Inputs {
-            executor,
-            posed,
-            stamp,
-            ..
-        } = self.inputs;
-        let all = 0..posed.places.len();
-        self.rows.update(executor, posed, all, stamp);
-        self.totals.update_seconds += start.elapsed().as_secs_f64();
-    }
-
     /// Tests some pairs of a list on the calling thread and appends the survivors to `out`.
     pub fn refine_range(&mut self, list: &PairList, range: Range<usize>, out: &mut PairList) {
         self.make_rows(list, range.clone());
@@ -186,24 +169,29 @@ impl<'a> Refiner<'a> {
         Refine::new(self.inputs, self.rows).test(pairs, refining, refining_seconds, out);
     }
 
-    /// With lazy updates: makes the rows of some listed pairs that this frame lacks.
+    /// Makes the rows that this frame lacks: with lazy updates, those of some listed pairs, and else all.
     fn make_rows(&mut self, list: &PairList, range: Range<usize>) {
-        if !self.inputs.is_lazy() {
-            return;
-        }
-        let start = Instant::now();
         let Inputs {
             executor,
             posed,
             stamp,
+            without_rows,
             ..
         } = self.inputs;
-        for column in [list.first(), list.second()] {
-            let wanted = &column[range.clone()];
-            let made = self
-                .rows
-                .update_missing(executor.tier, posed, wanted, stamp);
-            self.totals.refining.updates += made;
+        let start = Instant::now();
+        if self.inputs.is_lazy() {
+            for column in [list.first(), list.second()] {
+                let wanted = &column[range.clone()];
+                let made = self
+                    .rows
+                    .update_missing(executor.tier, posed, wanted, stamp);
+                self.totals.refining.updates += made;
+            }
+        } else if without_rows {
+            self.rows
+                .update(executor, posed, 0..posed.places.len(), stamp);
+        } else {
+            return;
         }
         self.totals.update_seconds += start.elapsed().as_secs_f64();
     }

@@ -61,7 +61,7 @@ pub(super) fn split_work(
         task.out.clear();
         task.block.clear();
         (task.first, task.refining) = Default::default();
-        (task.seconds, task.update_seconds) = (0.0, 0.0);
+        (task.seconds, task.update_seconds) = Default::default();
     }
     let range = |index: usize| index * units / count..(index + 1) * units / count;
     match output {

@@ -10,7 +10,7 @@ use super::lines::Lines;
 use super::rows::{BODIES, InTurn, Posed};
 use crate::simd::{Tier, dispatch};
 
-/// The longest stretch whose rows are kept: 4 MB.
+/// The longest stretch that is covered; its ring takes 8 MB.
 pub const MOST_ROWS: usize = 1 << 16;
 
 /// The shortest ring.
@@ -36,6 +36,7 @@ impl RowWindow {
 
     /// Sees to it that the rows of these places are there. There are no more of them than [`MOST_ROWS`].
     pub fn cover(&mut self, tier: Tier, posed: Posed<'_>, wanted: Range<usize>) {
+        debug_assert!(wanted.len() <= MOST_ROWS, "{wanted:?}");
         let (start, all) = (wanted.start / BODIES * BODIES, posed.places.body.len());
         let needed = (wanted.end - start + TOGETHER).next_power_of_two();
         if needed > self.ring.len() {

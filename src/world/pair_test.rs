@@ -103,7 +103,6 @@ impl PairTest {
         }
         let columns = OrDopColumns {
             rows: &[a.unturned, b.frame.row(second, rotation, translation)],
-            bits: u32::MAX,
             tables: &self.tables,
             overlap: Overlap::TwoSided,
         };

@@ -96,7 +96,6 @@ pub fn decisions_agree<const FLUSH: bool>(tier: Tier) {
             let second: Vec<u32> = first.iter().map(|i| i + 1).collect();
             let columns = OrDopColumns {
                 rows: &rows,
-                bits: u32::MAX,
                 tables: &tables,
                 overlap,
             };

@@ -51,7 +51,6 @@ impl PosedOrDops {
     pub fn columns(&self, overlap: Overlap) -> OrDopColumns<'_> {
         OrDopColumns {
             rows: &self.rows.rows,
-            bits: u32::MAX,
             tables: &self.tables,
             overlap,
         }
