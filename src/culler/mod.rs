@@ -226,7 +226,7 @@ impl Culler {
         if !self.update_first(bodies, moving.clone()) {
             self.check_moved(bodies)?;
         }
-        if !without_rows {
+        if self.settings.updates == Updates::Eager && !without_rows {
             self.update_rows(bodies, moving);
         }
         self.count_updates();
@@ -274,14 +274,8 @@ impl Culler {
         self.needs.rows || self.needs.intervals.is_some()
     }
 
-    /// Updates the volumes in a range of places. Returns whether the poses were found within the contract.
-    fn update_volumes(&mut self, bodies: &Bodies, range: Range<usize>) -> bool {
-        let is_sound = self.update_first(bodies, range.clone());
-        self.update_rows(bodies, range);
-        is_sound
-    }
-
-    /// Updates all but the rows: what the first test takes.
+    /// Updates all but the rows in a range of places: what the first test takes. Returns whether the poses were found within the
+    /// contract.
     fn update_first(&mut self, bodies: &Bodies, range: Range<usize>) -> bool {
         let (frames, places) = (&self.models.frames, &self.places);
         let executor = self.threads.get().executor(self.tier);
@@ -303,17 +297,11 @@ impl Culler {
         is_sound
     }
 
-    /// Makes the rows in a range of places, if there are any; with lazy updates, those of moving bodies are left until a pair needs
-    /// them.
+    /// Makes the rows in a range of places, if the strategy takes any.
     fn update_rows(&mut self, bodies: &Bodies, range: Range<usize>) {
         if !self.needs.rows {
             return;
         }
-        let start = match self.settings.updates {
-            Updates::Eager => range.start,
-            Updates::Lazy => range.start.max(self.places.moving),
-        };
-        let eager = start.min(range.end)..range.end;
         let posed = Posed {
             frames: &self.models.frames,
             bodies,
@@ -321,7 +309,7 @@ impl Culler {
             balls: if self.needs.balls { &self.balls } else { &[] },
         };
         let executor = self.threads.get().executor(self.tier);
-        self.rows.update(executor, posed, eager, self.stamp);
+        self.rows.update(executor, posed, range, self.stamp);
     }
 
     fn count_updates(&mut self) {

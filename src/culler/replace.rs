@@ -18,10 +18,9 @@ impl Culler {
     pub(crate) fn exchange(&mut self, bodies: &Bodies, present: &[bool]) {
         let stays = self.take_places(bodies, present);
         let population = needs::population(self.scheme, &self.models, &self.places);
-        let (moving, all) = (self.places.moving, self.places.len());
         let finder = self.settings.pairs;
-        if self.finder.replace(finder, &population, &stays, moving) {
-            self.update_volumes(bodies, moving..all); // the others in the frame to come
+        if (self.finder).replace(finder, &population, &stays, self.places.moving) {
+            self.place_static(bodies); // the others in the frame to come
         } else {
             self.begin(bodies);
         }
@@ -55,10 +54,17 @@ impl Culler {
     /// them.
     pub(super) fn begin(&mut self, bodies: &Bodies) {
         let (moving, all) = (self.places.moving, self.places.len());
-        self.update_first(bodies, 0..moving);
-        self.update_volumes(bodies, moving..all);
+        self.update_first(bodies, 0..all);
+        self.update_rows(bodies, moving..all);
         self.reorder(bodies);
         self.arrange();
+    }
+
+    /// Places all volumes of bodies that don't move.
+    fn place_static(&mut self, bodies: &Bodies) {
+        let at_rest = self.places.moving..self.places.len();
+        self.update_first(bodies, at_rest.clone());
+        self.update_rows(bodies, at_rest);
     }
 
     /// Lets the finder put bodies in other places. What has moved is updated anyway, unless it is static.
@@ -84,7 +90,7 @@ impl Culler {
             self.update_first(bodies, 0..moving);
             if moving < all {
                 let fixed = std::mem::take(&mut self.fixed);
-                self.update_volumes(&fixed, moving..all);
+                self.place_static(&fixed);
                 self.fixed = fixed;
             }
         }
