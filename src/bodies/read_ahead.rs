@@ -6,10 +6,8 @@
 
 use std::hint::black_box;
 
+use crate::simd::CACHE_LINE;
 use crate::threads::Threads;
-
-/// Bytes that come with any one of them, on any processor that is known of.
-const LINE: usize = 64;
 
 /// Elements that one thread reads at a time.
 const PIECE: usize = 8192;
@@ -27,7 +25,7 @@ pub fn read_ahead<T: Sync>(
     if 2 * wanted < column.len() || size_of_val(column) > longest {
         return false;
     }
-    let stride = (LINE / size_of::<T>().max(1)).max(1);
+    let stride = (CACHE_LINE / size_of::<T>().max(1)).max(1);
     pool.ranges(column.len(), PIECE, |range| {
         let numbers = column[range].iter().step_by(stride);
         black_box(numbers.fold(0, |bits, element| bits ^ number(element).to_bits()));

@@ -6,7 +6,8 @@ use std::arch::x86_64::*;
 
 use self::transpose::{transpose, transpose_quads, turn_in_quarters, turn_quarters};
 use super::lanes::{
-    Lanes, Sealed, clamp_codes, double_operators, float_operators, last_code, quad_of,
+    Lanes, Sealed, clamp_codes, double_operators, ends_of_sixes, float_operators, last_code,
+    quad_of,
 };
 use super::{Kernel, ROW};
 
@@ -310,15 +311,9 @@ impl Lanes for Avx512 {
         let pick = &pick[..16];
         assert!(!sixes.is_empty());
         let last = sixes.len() as u32 - 1;
-        // SAFETY: 16 integers are there, every index is clamped to the last six, which has four floats from the first and from the
-        // third one on; the token proves AVX-512 F.
+        // SAFETY: 16 integers are there, every index is clamped to the last six; the token proves AVX-512 F.
         unsafe {
-            let (mut fronts, mut backs) =
-                ([sixes.as_ptr().cast(); 16], [sixes.as_ptr().cast(); 16]);
-            for (lane, index) in clamped(pick.as_ptr(), last).into_iter().enumerate() {
-                let six: *const f32 = sixes.as_ptr().add(index as usize).cast();
-                (fronts[lane], backs[lane]) = (six, six.add(2));
-            }
+            let [fronts, backs] = ends_of_sixes(sixes.as_ptr(), clamped(pick.as_ptr(), last));
             let ([x, y, z, a], [_, _, b, c]) = (transpose_quads(fronts), transpose_quads(backs));
             [x, y, z, a, b, c]
         }

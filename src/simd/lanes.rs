@@ -132,6 +132,40 @@ pub(super) fn entries<T: Copy, const N: usize>(table: &[T], index: [u32; N]) -> 
     index.map(|entry| table[(entry as usize).min(last)])
 }
 
+/// The first and the last four numbers of sixes, lane by lane, for [`Lanes::gather_sixes`].
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[inline(always)]
+pub(super) fn halves<'a>(sixes: &'a [[f32; 6]], pick: &[u32]) -> [[&'a [f32; 4]; 4]; 2] {
+    let (pick, last) = (&pick[..4], sixes.len() - 1);
+    let pairs = [0, 1, 2, 3].map(|lane: usize| {
+        let six = &sixes[(pick[lane] as usize).min(last)];
+        let ([front @ .., _, _], [_, _, back @ ..]) = (six, six);
+        [front, back]
+    });
+    [pairs.map(|[front, _]| front), pairs.map(|[_, back]| back)]
+}
+
+/// The same by indices that a vector has clamped: doing it one by one would cost a tenth of a frame of boxes.
+///
+/// # Safety
+/// Each index is less than the number of sixes at the pointer.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(super) unsafe fn ends_of_sixes<const N: usize>(
+    sixes: *const [f32; 6],
+    index: [u32; N],
+) -> [[*const f32; N]; 2] {
+    let mut ends = [[sixes.cast(); N]; 2];
+    for (lane, index) in index.into_iter().enumerate() {
+        // SAFETY: the caller vouches for the index, and four of six numbers follow the first and the third of them.
+        unsafe {
+            let six: *const f32 = sixes.add(index as usize).cast();
+            (ends[0][lane], ends[1][lane]) = (six, six.add(2));
+        }
+    }
+    ends
+}
+
 /// The greatest code that leads to a quad of a table with `len` quads, of which there is one at least.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]

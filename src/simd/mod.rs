@@ -43,6 +43,9 @@ pub const ROW: usize = 16;
 /// The number of each lane, in any tier.
 pub const LANES: [u32; MAX_WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
+/// Bytes that come into the caches with any one of them, on any processor that is known of.
+pub const CACHE_LINE: usize = 64;
+
 /// Asks for the cache line where `element` begins, so that it is near when it is read some hundred cycles later.
 #[inline(always)]
 pub fn prefetch<T>(element: &T) {

@@ -4,7 +4,7 @@
 
 use std::arch::aarch64::*;
 
-use super::lanes::{Lanes, Sealed, double_operators, entries, float_operators, pack_lanes};
+use super::lanes::{Lanes, Sealed, double_operators, entries, float_operators, halves, pack_lanes};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has NEON.
@@ -246,12 +246,7 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn gather_sixes(self, sixes: &[[f32; 6]], pick: &[u32]) -> [F4; 6] {
-        let (pick, last) = (&pick[..4], sixes.len() - 1);
-        let (mut fronts, mut backs) = ([[0.0; 4]; 4], [[0.0; 4]; 4]);
-        for (lane, &pick) in pick.iter().enumerate() {
-            let [x, y, z, a, b, c] = sixes[(pick as usize).min(last)];
-            (fronts[lane], backs[lane]) = ([x, y, z, a], [z, a, b, c]);
-        }
+        let [fronts, backs] = halves(sixes, pick).map(|half| half.map(|quad| *quad));
         let ([x, y, z, a], [_, _, b, c]) = (self.load_quads(&fronts), self.load_quads(&backs));
         [x, y, z, a, b, c]
     }

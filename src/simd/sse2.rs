@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::{Lanes, Sealed, double_operators, entries, float_operators, pack_lanes};
+use super::lanes::{Lanes, Sealed, double_operators, entries, float_operators, halves, pack_lanes};
 use super::{Kernel, ROW};
 
 /// Proof that the CPU has SSE2, which is part of x86-64 itself.
@@ -54,7 +54,13 @@ impl Sse2 {
 
     #[inline(always)]
     fn transposed(self, rows: [&[f32; 4]; 4]) -> [F4; 4] {
-        let [mut a, mut b, mut c, mut d] = rows.map(|row| self.load(row).0);
+        self.turned(rows.map(|row| self.load(row)))
+    }
+
+    /// A 4 × 4 transpose; its own reverse.
+    #[inline(always)]
+    fn turned(self, rows: [F4; 4]) -> [F4; 4] {
+        let [mut a, mut b, mut c, mut d] = rows.map(|row| row.0);
         // SAFETY: the token proves SSE2.
         unsafe { _MM_TRANSPOSE4_PS(&mut a, &mut b, &mut c, &mut d) };
         [F4(a), F4(b), F4(c), F4(d)]
@@ -244,23 +250,14 @@ impl Lanes for Sse2 {
     }
     #[inline(always)]
     fn store_quads(self, columns: [F4; 4], to: &mut [[f32; 4]]) {
-        let [mut a, mut b, mut c, mut d] = columns.map(|column| column.0);
-        // SAFETY: the token proves SSE2.
-        unsafe { _MM_TRANSPOSE4_PS(&mut a, &mut b, &mut c, &mut d) };
-        for (quad, to) in [a, b, c, d].into_iter().zip(&mut to[..4]) {
-            self.store(F4(quad), to);
+        for (quad, to) in self.turned(columns).into_iter().zip(&mut to[..4]) {
+            self.store(quad, to);
         }
     }
     #[inline(always)]
     fn gather_sixes(self, sixes: &[[f32; 6]], pick: &[u32]) -> [F4; 6] {
-        let (pick, last) = (&pick[..4], sixes.len() - 1);
-        let six = |lane: usize| {
-            let [x, y, z, a, b, c] = sixes[(pick[lane] as usize).min(last)];
-            [[x, y, z, a], [z, a, b, c]]
-        };
-        let [[one, i], [two, j], [three, k], [four, m]] = [six(0), six(1), six(2), six(3)];
-        let [x, y, z, a] = self.transposed([&one, &two, &three, &four]);
-        let [_, _, b, c] = self.transposed([&i, &j, &k, &m]);
+        let [fronts, backs] = halves(sixes, pick);
+        let ([x, y, z, a], [_, _, b, c]) = (self.transposed(fronts), self.transposed(backs));
         [x, y, z, a, b, c]
     }
     #[inline(always)]

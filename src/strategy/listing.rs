@@ -13,7 +13,7 @@ use crate::overlap::boxes::{Cubes, EndSlots};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
 use crate::settings::TestedVolume;
-use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
+use crate::simd::{CACHE_LINE, Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
 use crate::threads::{Executor, Threads};
 
 /// Slots of a run that are tested before their hits are listed.
@@ -26,7 +26,7 @@ const AHEAD: usize = 256;
 const FEW_NAMES: usize = 1 << 16;
 
 /// Names in a cache line.
-const LINE: usize = 16;
+const LINE: usize = CACHE_LINE / size_of::<u32>();
 
 /// The first volume test of a strategy.
 #[derive(Clone, Copy)]
