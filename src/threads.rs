@@ -148,6 +148,20 @@ impl Threads {
         });
     }
 
+    /// Calls `work` for pieces of two columns of one length at once.
+    pub fn pieces_of_two<T: Send>(
+        &self,
+        [one, other]: [&mut [T]; 2],
+        size: usize,
+        work: impl Fn(usize, [&mut [T]; 2]) + Sync,
+    ) {
+        let is_worth_waking = one.len() >= FEWEST_PIECES * size;
+        let pieces = one.chunks_mut(size).zip(other.chunks_mut(size)).enumerate();
+        self.share_out(is_worth_waking, pieces, |(index, (one, other))| {
+            work(index * size, [one, other])
+        });
+    }
+
     /// Calls `work` for consecutive ranges of 0..`len`, `size` long. Less than eight are the caller's own.
     pub fn ranges(&self, len: usize, size: usize, work: impl Fn(Range<usize>) + Sync) {
         let is_worth_waking = len >= FEWEST_PIECES * size;

@@ -31,6 +31,11 @@ impl Aabb {
         on(0) & on(1) & on(2)
     }
 
+    /// Half its sides.
+    pub(crate) fn half_sides(&self) -> [f32; 3] {
+        std::array::from_fn(|axis| 0.5 * self.max[axis] - 0.5 * self.min[axis])
+    }
+
     /// Checks that a box is one; `body` is its number.
     pub(crate) fn check(&self, body: usize) -> Result<(), ContractError> {
         let is_sound = |axis: usize| {

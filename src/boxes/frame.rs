@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 use super::cubes::{AHEAD, Make};
 use crate::bodies::contract::ContractError;
 use crate::bodies::{Aabb, Groups, Places, read_ahead};
-use crate::broad_phase::{Balls, PairFinder, Population, Reorder, Volume};
+use crate::broad_phase::{Balls, Boxes, EndSlots, PairFinder, Population, Reorder, Volume};
 use crate::counters::VolumeCounters;
-use crate::overlap::boxes::{Cubes, EndSlots};
+use crate::overlap::boxes::Cubes;
 use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
 use crate::simd::{Tier, dispatch};
@@ -125,14 +125,21 @@ impl Frames {
         let pool = self.threads.get();
         let executor = pool.executor(self.tier);
         let names = &self.places.body;
+        let are_long = !self.cubes_decide(gap);
+        let given = Some(Boxes {
+            all: boxes,
+            are_long,
+        });
         self.finder
-            .arrange(executor, &self.places, &self.cubes, names);
+            .arrange(executor, &self.places, &self.cubes, names, given);
         let slots = self.finder.slots(&self.cubes);
-        let test = if self.cubes_decide(gap) {
+        let test = if !are_long {
             let less = less_than_sure(gap);
             BoxTest::Cubes(Cubes { slots, boxes, less })
         } else {
-            self.ends.fill(pool, &slots.names[..names.len()], boxes);
+            let order = &slots.names[..names.len()];
+            self.ends
+                .fill(executor, order, boxes, self.finder.hands_out_runs());
             BoxTest::Ends(&self.ends)
         };
         let inputs = BoxInputs {

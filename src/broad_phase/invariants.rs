@@ -2,11 +2,11 @@
 //! each pair whose cubes meet once, unless both bodies are static.
 //!
 //! Cubes, since some first tests compare world-aligned volumes: there balls stand for the cubes about them. A list of
-//! neighbours knows whether they do.
+//! neighbours knows whether they do, and whether it was made by the boxes themselves.
 
 use std::ops::Range;
 
-use super::{Block, FirstTest, PairFinder, Volume};
+use super::{Block, Boxes, FirstTest, PairFinder, Volume};
 use crate::bodies::Places;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
@@ -18,7 +18,13 @@ const REPORTED: f64 = 1.0 + 4.0 * crate::rounding::U;
 
 impl PairFinder {
     /// Checks the candidates of a frame that has just been arranged, without allocating.
-    pub(super) fn check(&self, tier: Tier, places: &Places, balls: &[[f32; 4]]) {
+    pub(super) fn check(
+        &self,
+        tier: Tier,
+        places: &Places,
+        balls: &[[f32; 4]],
+        boxes: Option<Boxes<'_>>,
+    ) {
         let n = places.len();
         if n > MOST_BODIES {
             return;
@@ -36,6 +42,14 @@ impl PairFinder {
             return; // outside the contract
         }
         let seen = dispatch(tier, Record { finder: self });
+        let of_boxes = boxes.filter(|_| self.is_by_boxes());
+        let meet = |i, j| match of_boxes {
+            None => self.meet(ball(i), ball(j)),
+            Some(Boxes { all, .. }) => {
+                let [a, b] = [i, j].map(|slot| &all[slots.names[slot] as usize]);
+                a.meets(b)
+            }
+        };
         // Slots of moving bodies come first, as their places do.
         for i in 0..n {
             let fixed = seen.0[i] & u64::MAX.checked_shl(places.moving as u32).unwrap_or(0);
@@ -44,13 +58,17 @@ impl PairFinder {
                 "static slots are candidates: {i}"
             );
             for j in i + 1..n {
-                let may_lack = i >= places.moving || !self.meet(ball(i), ball(j));
+                let may_lack = i >= places.moving || !meet(i, j);
                 assert!(
                     may_lack || seen.has(i, j),
                     "slots {i} and {j} meet and are no candidates"
                 );
             }
         }
+    }
+
+    fn is_by_boxes(&self) -> bool {
+        matches!(self, Self::Neighbours(finder) if finder.is_by_boxes())
     }
 
     /// Whether the cubes about two balls meet, or the balls where these alone are reported.

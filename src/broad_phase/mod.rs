@@ -9,25 +9,29 @@ use std::ops::Range;
 
 use crate::bodies::Places;
 use crate::settings::Finder;
-use crate::simd::Lanes;
+use crate::simd::{LANES, Lanes};
 use crate::threads::Executor;
 
 mod all_pairs;
 mod auto;
 mod block;
 mod bounds;
+mod ends;
 mod grid;
 #[cfg(debug_assertions)]
 mod invariants;
 mod neighbours;
 mod slots;
 mod sweep;
+#[cfg(test)]
+pub mod whole_vectors;
 
 pub use all_pairs::AllPairs;
 pub use auto::Population;
 use block::{BLOCK_BODIES, Page, Pen};
 pub use block::{Block, MOST_CANDIDATES};
 pub use bounds::Bounds;
+pub use ends::{Boxes, EndSlots};
 pub use grid::{Cells, Grid, Layout};
 use neighbours::List;
 pub use neighbours::{Neighbours, Volume};
@@ -40,6 +44,36 @@ pub trait FirstTest {
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>);
     /// Scattered pairs of slots, but not the block's long runs.
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>);
+}
+
+/// A volume test of slots: candidates in the two forms that pair finders hand out, hits as a list.
+pub trait SlotTest {
+    /// Lists the slots of `run` that may touch slot `i` at the front of `hits`, which has room for the run and a vector
+    /// more. Returns their number.
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize;
+
+    /// Lists the codes of the block's pairs that may touch at the front of `hits`, which has room for the block and a
+    /// vector more. Returns their number.
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize;
+}
+
+impl<T: SlotTest> SlotTest for &T {
+    #[inline(always)]
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        T::run(self, l, i, run, hits)
+    }
+    #[inline(always)]
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
+        T::block(self, l, block, hits)
+    }
+}
+
+/// Writes the slots from `start` on whose bits are set; how many.
+#[inline(always)]
+pub fn list_slots<L: Lanes>(l: L, hit: u32, start: usize, hits: &mut [u32]) -> usize {
+    let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
+    l.compress(hit, slot, hits);
+    hit.count_ones() as usize
 }
 
 /// Bytes that a column has taken, used or not.
@@ -57,7 +91,7 @@ pub enum PairFinder {
     /// Sorted ends along an axis.
     Sweep(Sweep),
     /// Candidates that are kept.
-    Neighbours(Neighbours),
+    Neighbours(Box<Neighbours>),
 }
 
 /// Where a frame's candidates come from.
@@ -87,7 +121,7 @@ impl PairFinder {
             Finder::AllPairs => Self::AllPairs(AllPairs::default()),
             Finder::Grid => Self::Grid(Grid::default()),
             Finder::Sweep => Self::Sweep(Sweep::default()),
-            Finder::Neighbours => Self::Neighbours(Neighbours::new(population.volume)),
+            Finder::Neighbours => Self::Neighbours(Box::new(Neighbours::new(population.volume))),
             Finder::Auto => Self::new(population.finder(), population),
         }
     }
@@ -167,22 +201,25 @@ impl PairFinder {
     }
 
     /// Arranges the bodies for a frame. `balls` and `names` are in the order of places, and nothing that the first test
-    /// reports lies outside two cubes, about these balls, which meet.
+    /// reports lies outside two cubes, about these balls, which meet. `boxes` are those in such cubes, if they are what is reported.
     pub fn arrange(
         &mut self,
         executor: Executor<'_>,
         places: &Places,
         balls: &[[f32; 4]],
         names: &[u32],
+        boxes: Option<Boxes<'_>>,
     ) {
         match self {
             Self::AllPairs(finder) => finder.arrange(places, balls, names),
             Self::Grid(finder) => finder.arrange(executor, balls, names),
             Self::Sweep(finder) => finder.arrange(places, balls, names),
-            Self::Neighbours(finder) => finder.arrange(executor, places.moving, balls, names),
+            Self::Neighbours(finder) => {
+                finder.arrange(executor, places.moving, balls, names, boxes);
+            }
         }
         #[cfg(debug_assertions)]
-        self.check(executor.tier, places, balls);
+        self.check(executor.tier, places, balls, boxes);
     }
 
     /// The arranged bodies. `balls` are those that were arranged: where places have the order of slots, they are read as they stand.
@@ -230,6 +267,12 @@ impl PairFinder {
                 None => Search::Grid(finder.grid()),
             },
         }
+    }
+
+    /// Whether slots are handed out with runs of others in this frame, or scattered pairs alone.
+    #[must_use]
+    pub fn hands_out_runs(&self) -> bool {
+        !matches!(self.search(), Search::List(_))
     }
 
     /// Into how many parts the work is cut.
@@ -289,7 +332,7 @@ mod tests {
                 std::mem::swap(&mut places.body, &mut order);
             }
             let executor = pool.executor(Tier::SCALAR);
-            finder.arrange(executor, &places, &balls, &places.body);
+            finder.arrange(executor, &places, &balls, &places.body, None);
         }
         finder
     }

@@ -337,7 +337,7 @@ impl Culler {
         let pool = self.threads.get();
         let executor = pool.executor(self.tier);
         self.finder
-            .arrange(executor, &self.places, &self.balls, names);
+            .arrange(executor, &self.places, &self.balls, names, None);
         if let Some(intervals) = &self.intervals {
             let order = &self.finder.names()[..self.places.len()];
             self.interval_slots.fill(pool, order, &intervals.ends);

@@ -4,9 +4,8 @@
 
 use std::ops::Range;
 
-use super::SlotTest;
-use crate::broad_phase::Block;
-use crate::simd::{LANES, Lanes, MAX_WIDTH};
+use crate::broad_phase::{Block, SlotTest, list_slots};
+use crate::simd::{Lanes, MAX_WIDTH};
 use crate::threads::Threads;
 
 /// Bodies for whose columns waking another thread pays.
@@ -61,9 +60,7 @@ impl SlotTest for IntervalSlots {
                 }
             }
             if alive != 0 {
-                let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
-                l.compress(alive, slot, &mut hits[found..]);
-                found += alive.count_ones() as usize;
+                found += list_slots(l, alive, start, &mut hits[found..]);
             }
             start += L::WIDTH;
         }
@@ -97,8 +94,8 @@ impl SlotTest for IntervalSlots {
 
 #[cfg(test)]
 mod tests {
-    use super::super::whole_vectors::{SLOTS, check};
     use super::*;
+    use crate::broad_phase::whole_vectors::{SLOTS, check};
 
     #[test]
     fn slabs_that_fill_their_vectors_cost_no_vector_more() {

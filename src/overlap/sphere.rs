@@ -6,8 +6,7 @@
 
 use std::ops::Range;
 
-use super::SlotTest;
-use crate::broad_phase::{Arranged, Block};
+use crate::broad_phase::{Arranged, Block, SlotTest};
 use crate::rounding::sphere::apart;
 use crate::simd::{LANES, Lanes, MAX_WIDTH, quads_in_columns};
 
@@ -96,8 +95,8 @@ fn touching<L: Lanes>(l: L, one: [L::F; 4], other: [L::F; 4], count: usize) -> u
 
 #[cfg(test)]
 mod tests {
-    use super::super::whole_vectors::{SLOTS, check};
     use crate::broad_phase::Slots;
+    use crate::broad_phase::whole_vectors::{SLOTS, check};
 
     #[test]
     fn balls_that_fill_their_vectors_cost_no_vector_more() {

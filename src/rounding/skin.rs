@@ -42,13 +42,26 @@ impl Skin {
         let least = length.max(SKIN_FLOOR as f32);
         Self { share: 0.0, least }
     }
+
+    /// Of a ball.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(self, radius: f32) -> f32 {
+        (radius * self.share).max(self.least)
+    }
+
+    /// Of balls.
+    #[inline(always)]
+    fn of_lanes<L: Lanes>(self, l: L, radii: L::F) -> L::F {
+        l.max(radii * l.splat(self.share), l.splat(self.least))
+    }
 }
 
 /// Whether each ball (x, y, z, R) has drifted by less than its skin since it was `then`: the sum of squares of the
 /// coordinates' differences is below the square of what growth has left of the skin. NaN has drifted.
 #[inline(always)]
 pub fn stays<L: Lanes>(l: L, skin: Skin, now: [L::F; 4], then: [L::F; 4]) -> L::M {
-    let skin = l.max(then[3] * l.splat(skin.share), l.splat(skin.least));
+    let skin = skin.of_lanes(l, then[3]);
     let grown = l.max(now[3] - then[3], l.splat(0.0));
     let left = l.max(skin - grown, l.splat(0.0));
     let [dx, dy, dz] = [now[0] - then[0], now[1] - then[1], now[2] - then[2]];

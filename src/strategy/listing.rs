@@ -6,10 +6,11 @@ use super::output::{Outlet, Output};
 use super::tasks::{Task, split_work};
 use super::{Inputs, Scratch, SlotNames, Totals};
 use crate::bodies::Groups;
-use crate::broad_phase::{Arranged, Block, FirstTest, MOST_CANDIDATES, PairFinder};
+use crate::broad_phase::{
+    Arranged, Block, EndSlots, FirstTest, MOST_CANDIDATES, PairFinder, SlotTest,
+};
 use crate::counters::VolumeCounters;
-use crate::overlap::SlotTest;
-use crate::overlap::boxes::{Cubes, EndSlots};
+use crate::overlap::boxes::Cubes;
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
 use crate::settings::TestedVolume;

@@ -86,6 +86,28 @@ fn boxes_that_are_nearly_cubes_touch_or_miss_each_other_by_a_step() {
     }
 }
 
+/// The cubes about long boxes stay as they are where a short side grows, and lists of neighbours are followed meanwhile.
+#[test]
+fn long_boxes_that_grow_within_their_cubes_are_found() {
+    let random = &mut Random(8);
+    for by in [0.05_f32, 0.4, 3.0] {
+        let (mut ways, mut now) = (ways(), boxes(Kind::Needles, 300, random));
+        for frame in 0..24 {
+            let wanted = expected(&now, |_| true, |_| Groups::ALL);
+            for (way, culler) in &mut ways {
+                let found = culler.cull(&now).unwrap().sorted();
+                assert!(found == wanted, "{by}, frame {frame}, {way}");
+            }
+            for _ in 0..3 {
+                let (Aabb { min, max }, axis) = (&mut now[random.below(300)], random.below(3));
+                let widest = (0..3).map(|axis| max[axis] - min[axis]).fold(0.0, f32::max);
+                let grows = by.min(0.5 * (widest - (max[axis] - min[axis])));
+                (min[axis], max[axis]) = (min[axis] - grows, max[axis] + grows);
+            }
+        }
+    }
+}
+
 #[test]
 fn lists_are_the_same_in_every_tier_and_on_any_number_of_threads() {
     let random = &mut Random(2);

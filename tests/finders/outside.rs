@@ -75,7 +75,7 @@ fn no_finder_hangs_or_panics_on_numbers_outside_the_contract() {
                     }
                     let tier = Tier::available()[frame % Tier::available().len()];
                     let executor = Executor { tier, pool: &pool };
-                    found.arrange(executor, &places, &balls, &places.body);
+                    found.arrange(executor, &places, &balls, &places.body, None);
                     let candidates = dispatch(tier, Count(&found, 0));
                     found.observe(candidates);
                 }

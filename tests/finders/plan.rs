@@ -115,6 +115,7 @@ fn parts(scene: &Scene, finder: Finder) -> usize {
         &places,
         &balls(&places),
         &places.body,
+        None,
     );
     finder.parts()
 }

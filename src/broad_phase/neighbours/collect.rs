@@ -1,39 +1,30 @@
-//! From the grid's candidates to neighbours: the pairs whose grown balls touch.
+//! From the grid's candidates to neighbours: the pairs whose grown volumes touch.
 
 use std::ops::Range;
 
 use super::Volume;
 use super::list::Chunk;
-use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest, MOST_CANDIDATES, Slots};
+use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest, MOST_CANDIDATES, SlotTest, list_slots};
 use crate::rounding::skin::Reach;
 use crate::rounding::sphere;
 use crate::simd::{Lanes, MAX_WIDTH, quads_in_columns};
 
-/// The codes of sixteen slots of lane 0.
-const CODES: [u32; MAX_WIDTH] = {
-    let mut codes = [0; MAX_WIDTH];
-    let mut slot = 0;
-    while slot < MAX_WIDTH {
-        codes[slot] = (slot as u32) << 4;
-        slot += 1;
-    }
-    codes
-};
-
-/// Which pairs are neighbours.
+/// Balls, or the cubes that they stand for, grown by a skin.
 #[derive(Clone, Copy)]
-pub struct Pair {
+pub struct Grown<'a> {
+    /// In slot order.
+    pub balls: &'a [[f32; 4]],
     /// How the balls of seekers grow, and those of the bodies that they look for.
-    pub grown: [Reach; 2],
+    pub by: [Reach; 2],
     /// What balls stand for.
     pub volume: Volume,
 }
 
-impl Pair {
+impl Grown<'_> {
     /// Bits of the lanes below `count` whose grown balls, or cubes, touch.
     #[inline(always)]
     fn touching<L: Lanes>(self, l: L, one: [L::F; 4], other: [L::F; 4], count: usize) -> u32 {
-        let [mine, theirs] = self.grown;
+        let [mine, theirs] = self.by;
         let s = mine.of_lanes(l, one[3]) + theirs.of_lanes(l, other[3]);
         let [dx, dy, dz] = [other[0] - one[0], other[1] - one[1], other[2] - one[2]];
         let apart = match self.volume {
@@ -44,22 +35,50 @@ impl Pair {
     }
 }
 
+impl SlotTest for Grown<'_> {
+    #[inline(always)]
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        let me = self.balls[i].map(|number| l.splat(number));
+        let (mut start, mut found) = (run.start, 0);
+        while start < run.end {
+            let other = l.load_quads(&self.balls[start..]);
+            let hit = self.touching(l, me, other, run.end - start);
+            found += list_slots(l, hit, start, &mut hits[found..]);
+            start += L::WIDTH;
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
+        let ours = quads_in_columns(l, &self.balls[block.first()..]);
+        let count = block.codes().len();
+        let (mut start, mut found) = (0, 0);
+        while start < count {
+            let (code, [one, other]) = block.balls(l, start, &ours, self.balls);
+            let hit = self.touching(l, one, other, count - start);
+            l.compress(hit, code, &mut hits[found..]);
+            found += hit.count_ones() as usize;
+            start += L::WIDTH;
+        }
+        found
+    }
+}
+
 /// Takes the grid's candidates, and keeps the neighbours.
-pub struct Collect<'a> {
-    slots: &'a Slots,
-    pair: Pair,
+pub struct Collect<'a, T> {
+    test: T,
     chunk: &'a mut Chunk,
     /// How many are of any use.
     most: usize,
     hits: [u32; MOST_CANDIDATES + MAX_WIDTH],
 }
 
-impl<'a> Collect<'a> {
+impl<'a, T: SlotTest> Collect<'a, T> {
     #[inline(always)]
-    pub fn new(slots: &'a Slots, pair: Pair, chunk: &'a mut Chunk, most: usize) -> Self {
+    pub fn new(test: T, chunk: &'a mut Chunk, most: usize) -> Self {
         Self {
-            slots,
-            pair,
+            test,
             chunk,
             most,
             hits: [0; MOST_CANDIDATES + MAX_WIDTH],
@@ -74,7 +93,7 @@ impl<'a> Collect<'a> {
     }
 }
 
-impl FirstTest for Collect<'_> {
+impl<T: SlotTest> FirstTest for Collect<'_, T> {
     #[inline(always)]
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
         self.chunk.seen += run.len() as u64;
@@ -86,40 +105,26 @@ impl FirstTest for Collect<'_> {
                 i
             }
         };
-        let me = self.slots.balls[i].map(|number| l.splat(number));
-        let (mut start, mut found) = (run.start, 0);
+        let lane = (i - first) as u32;
+        let mut start = run.start;
         while start < run.end {
-            let other = l.load_quads(&self.slots.balls[start..]);
-            let hit = self.pair.touching(l, me, other, run.end - start);
-            let code = (start << 4 | (i - first)) as u32;
-            let code = l.add_u32(l.splat_u32(code), l.load_u32(&CODES));
-            l.compress(hit, code, &mut self.hits[found..]);
-            found += hit.count_ones() as usize;
-            start += L::WIDTH;
-            if found >= MOST_CANDIDATES - MAX_WIDTH {
-                self.keep(found);
-                found = 0;
+            let end = run.end.min(start + MOST_CANDIDATES);
+            let found = self.test.run(l, i, start..end, &mut self.hits);
+            for hit in &mut self.hits[..found] {
+                *hit = *hit << 4 | lane;
             }
+            self.keep(found);
+            start = end;
         }
-        self.keep(found);
     }
 
     #[inline(always)]
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>) {
-        let count = block.codes().len();
-        self.chunk.seen += count as u64;
+        self.chunk.seen += block.codes().len() as u64;
         if self.chunk.first() != Some(block.first()) {
             self.chunk.open(block.first());
         }
-        let ours = quads_in_columns(l, &self.slots.balls[block.first()..]);
-        let (mut start, mut found) = (0, 0);
-        while start < count {
-            let (code, [one, other]) = block.balls(l, start, &ours, &self.slots.balls);
-            let hit = self.pair.touching(l, one, other, count - start);
-            l.compress(hit, code, &mut self.hits[found..]);
-            found += hit.count_ones() as usize;
-            start += L::WIDTH;
-        }
+        let found = self.test.block(l, block, &mut self.hits);
         self.keep(found);
     }
 }
@@ -131,7 +136,7 @@ mod tests {
     use crate::simd::{Kernel, Tier, dispatch};
 
     /// Hands runs of slots to a list.
-    struct Runs<'a>(Collect<'a>, &'a [(usize, Range<usize>)]);
+    struct Runs<'a>(Collect<'a, Grown<'a>>, &'a [(usize, Range<usize>)]);
 
     impl Kernel for Runs<'_> {
         type Output = ();
@@ -170,10 +175,7 @@ mod tests {
         // One in sixteen is far away, so that hits don't come in whole vectors.
         let is_far = |slot: usize| slot % 16 == 7;
         let ball = |slot| [if is_far(slot) { 9.0 } else { 1.0 }, 1.0, 1.0, 1.0];
-        let slots = Slots {
-            balls: (0..len + MAX_WIDTH).map(ball).collect(),
-            ..Slots::default()
-        };
+        let balls: Vec<_> = (0..len + MAX_WIDTH).map(ball).collect();
         // Sixteen slots from the first one on share an entry; another before or behind them opens one.
         let runs = [
             (5, 6..len),
@@ -189,15 +191,16 @@ mod tests {
             .flat_map(|(i, run)| run.clone().map(|j| (*i, j)));
         let seen = all.clone().count() as u64;
         let expected: Vec<_> = all.filter(|&(_, j)| !is_far(j)).collect();
-        let pair = Pair {
-            grown: [Reach::NONE; 2],
+        let test = Grown {
+            balls: &balls,
+            by: [Reach::NONE; 2],
             volume: Volume::Ball,
         };
         for tier in Tier::available() {
             let mut chunk = Chunk::default();
             dispatch(
                 tier,
-                Runs(Collect::new(&slots, pair, &mut chunk, usize::MAX), &runs),
+                Runs(Collect::new(test, &mut chunk, usize::MAX), &runs),
             );
             assert_eq!((chunk.len(), chunk.seen), (expected.len(), seen));
             let mut read = Read(Vec::new());

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::Volume;
-use super::collect::{Collect, Pair};
-use crate::broad_phase::{Block, FirstTest, Grid, MOST_CANDIDATES, bytes};
+use super::collect::{Collect, Grown};
+use crate::broad_phase::{Block, EndSlots, FirstTest, Grid, MOST_CANDIDATES, SlotTest, bytes};
 use crate::rounding::skin::{Reach, Skin};
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch};
 use crate::threads::Executor;
@@ -17,6 +17,15 @@ const FEW_PAIRS: usize = 256;
 
 /// Room that a list is given, in lengths of its own.
 const ROOM: f64 = 1.5;
+
+/// What must touch, grown by the skin, for a pair to be listed.
+#[derive(Clone, Copy)]
+pub enum Near<'a> {
+    /// Balls, or what they stand for.
+    Balls(Volume),
+    /// Boxes, which have been grown.
+    Ends(&'a EndSlots),
+}
 
 /// The list of all parts.
 #[derive(Clone, Debug, Default)]
@@ -48,7 +57,7 @@ impl List {
         executor: Executor<'_>,
         grid: &Grid,
         (skin, spare): (Skin, f64),
-        volume: Volume,
+        near: Near<'_>,
     ) -> bool {
         self.parts = grid.parts();
         if self.chunks.len() < self.parts {
@@ -64,17 +73,37 @@ impl List {
             if listed.load(Ordering::Relaxed) > most {
                 return;
             }
-            let still = Skin::share(0.0);
-            let skin = |moves| if moves { skin } else { still };
-            let grown = grid.moves(part).map(|moves| Reach::with_skin(skin(moves)));
-            let make = Make {
-                grid,
-                part,
-                pair: Pair { grown, volume },
-                chunk,
-                most,
-            };
-            dispatch(executor.tier, make);
+            match near {
+                Near::Balls(volume) => {
+                    let still = Skin::share(0.0);
+                    let skin = |moves| if moves { skin } else { still };
+                    let by = grid.moves(part).map(|moves| Reach::with_skin(skin(moves)));
+                    let balls = &grid.slots().balls;
+                    let test = Grown { balls, by, volume };
+                    dispatch(
+                        executor.tier,
+                        Make {
+                            grid,
+                            part,
+                            test,
+                            chunk,
+                            most,
+                        },
+                    );
+                }
+                Near::Ends(test) => {
+                    dispatch(
+                        executor.tier,
+                        Make {
+                            grid,
+                            part,
+                            test,
+                            chunk,
+                            most,
+                        },
+                    );
+                }
+            }
             listed.fetch_add(chunk.len, Ordering::Relaxed);
         });
         self.len = listed.into_inner();
@@ -193,19 +222,19 @@ fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
     }
 }
 
-struct Make<'a> {
+struct Make<'a, T> {
     grid: &'a Grid,
     part: usize,
-    pair: Pair,
+    test: T,
     chunk: &'a mut Chunk,
     most: usize,
 }
 
-impl Kernel for Make<'_> {
+impl<T: SlotTest> Kernel for Make<'_, T> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
-        let mut collect = Collect::new(self.grid.slots(), self.pair, self.chunk, self.most);
+        let mut collect = Collect::new(self.test, self.chunk, self.most);
         self.grid.find(l, self.part..self.part + 1, &mut collect);
         self.chunk.close();
     }

@@ -9,6 +9,9 @@
 //! A skin is a share of each ball's radius, or the same length for all: where small bodies move as fast as wide ones, a share of
 //! theirs is used up by the first step, while pairs are made by the wide.
 //!
+//! The cubes about long boxes have many neighbours that the boxes don't have. Their lists are made by the boxes themselves, grown by a
+//! length, and serve until an end of a box leaves its grown one ([`EndSlots`]).
+//!
 //! Lists don't pay where bodies move by a good share of their radius a frame, or where each has many neighbours. By counts
 //! alone ([`policy`]) such frames are the grid's.
 
@@ -19,10 +22,12 @@ mod motion;
 mod policy;
 
 pub(super) use self::list::List;
-use self::motion::{Motion, typical_radius};
+use self::list::Near;
+use self::motion::{Motion, Sizes, typical_radius};
 use self::policy::{Ended, Policy};
-use super::{Grid, Reorder, Slots};
-use crate::rounding::skin::Reach;
+use super::{Boxes, EndSlots, Grid, Reorder, Slots};
+use crate::rounding::cube;
+use crate::rounding::skin::{Reach, Skin};
 use crate::threads::Executor;
 
 /// What a pair finder's balls stand for.
@@ -41,6 +46,9 @@ pub struct Neighbours {
     grid: Grid,
     volume: Volume,
     list: List,
+    /// The grown boxes that the list was made of, if it was made by boxes.
+    grown: EndSlots,
+    is_by_boxes: bool,
     state: State,
     policy: Policy,
 }
@@ -71,6 +79,12 @@ impl Neighbours {
     #[cfg(debug_assertions)]
     pub(super) fn volume(&self) -> Volume {
         self.volume
+    }
+
+    /// Whether there is a list, and it was made by boxes.
+    #[cfg(debug_assertions)]
+    pub(super) fn is_by_boxes(&self) -> bool {
+        self.is_by_boxes && self.list().is_some()
     }
 
     /// Looks for a better order of places: that of the slots after a list has been made, or what the grid says.
@@ -113,10 +127,16 @@ impl Neighbours {
         moving: usize,
         balls: &[[f32; 4]],
         names: &[u32],
+        boxes: Option<Boxes<'_>>,
     ) {
+        let long = boxes.filter(|boxes| boxes.are_long);
         if matches!(self.state, State::Ordered | State::Followed) {
             let (now, then) = (&balls[..moving], &self.grid.slots().balls[..moving]);
-            if drift::all_stay(executor, self.policy.skin(), now, then) {
+            let stay = match boxes.filter(|_| self.is_by_boxes) {
+                Some(boxes) => self.grown.hold(executor, &names[..moving], boxes.all),
+                None => drift::all_stay(executor, self.policy.skin(), now, then),
+            };
+            if stay {
                 if self.state == State::Ordered {
                     self.grid.slots_mut().names[..names.len()].copy_from_slice(names);
                     self.state = State::Followed;
@@ -124,16 +144,18 @@ impl Neighbours {
                 self.policy.followed();
                 return;
             }
-            let typical = typical_radius(balls);
+            let sizes = sizes(balls, names, long);
             self.policy.ended(&Ended {
                 pairs: self.list.len(),
                 candidates: self.list.seen(),
                 bodies: balls.len(),
-                motion: Motion::of(executor, now, then, typical),
-                typical,
+                motion: Motion::of(executor, now, then, sizes.typical),
+                sizes,
             });
         }
         self.state = State::Searching;
+        self.policy
+            .list(long.is_some(), || sizes(balls, names, long));
         let Some(skin) = self.policy.next() else {
             self.grid.set_reach(Reach::NONE);
             self.grid.arrange(executor, balls, names);
@@ -141,19 +163,39 @@ impl Neighbours {
         };
         self.grid.set_reach(Reach::with_skin(skin));
         self.grid.arrange(executor, balls, names);
-        let skin = (skin, self.policy.widest());
-        if !self.list.make(executor, &self.grid, skin, self.volume) {
+        if !self.make(executor, (skin, moving), long) {
             self.policy.overflowed();
             return;
         }
         self.state = State::Made;
         // The grid plans by the candidates that it would have handed out without a skin.
-        let seen = self.list.seen() as f64 / self.policy.wider();
+        let seen = self.list.seen() as f64 / self.policy.more_candidates();
         self.grid.observe(seen as u64);
     }
 
+    /// Makes the list of the grid that has just been arranged. False if it would be too long.
+    fn make(
+        &mut self,
+        executor: Executor<'_>,
+        (skin, moving): (Skin, usize),
+        long: Option<Boxes<'_>>,
+    ) -> bool {
+        self.is_by_boxes = long.is_some();
+        let near = match long {
+            None => Near::Balls(self.volume),
+            Some(Boxes { all, .. }) => {
+                let Slots { names, balls, .. } = self.grid.slots();
+                let (names, cubes) = (&names[..self.grid.bodies()], &balls[..moving]);
+                (self.grown).fill_grown(executor, names, all, (cubes, skin));
+                Near::Ends(&self.grown)
+            }
+        };
+        let skin = (skin, self.policy.widest());
+        self.list.make(executor, &self.grid, skin, near)
+    }
+
     pub(super) fn bytes(&self) -> usize {
-        self.grid.bytes() + self.list.bytes()
+        self.grid.bytes() + self.list.bytes() + self.grown.bytes()
     }
 
     /// Those of the frame in which they were arranged last.
@@ -184,6 +226,18 @@ impl Neighbours {
             self.grid.observe(candidates);
         }
     }
+}
+
+/// The sizes of balls, or of long boxes in them.
+fn sizes(balls: &[[f32; 4]], names: &[u32], long: Option<Boxes<'_>>) -> Sizes {
+    let of_balls = typical_radius(balls.len(), |place| [balls[place][3]; 3]);
+    let of_boxes = long.map(|Boxes { all, .. }| {
+        typical_radius(balls.len(), |place| {
+            let half_sides = all[names[place] as usize].half_sides();
+            half_sides.map(|half| half / cube::TIMES)
+        })
+    });
+    Sizes::new(of_boxes.unwrap_or(of_balls), of_balls)
 }
 
 #[cfg(test)]

@@ -48,24 +48,54 @@ impl Motion {
 }
 
 /// The radius r of bodies of one size that would be as hard to find: a skin of σr adds about as many pairs to a list of bodies
-/// of these sizes, all alike, as one of σ radii each. Pairs go by the cube of the sum of two radii, so that their growth by a
-/// length goes by its square: r = Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)².
+/// of these half sides, all alike, as one of σ radii each. Pairs go by the product, over the axes, of the sums of two half sides
+/// hᵢₖ + hⱼₖ, so that their growth by a length goes by products of two such sums: r = 3ΣΠₖ(hᵢₖ + hⱼₖ) / 2ΣΣₖΠₗ(hᵢₗ + hⱼₗ), l ≠ k,
+/// which is Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)² of balls.
 ///
 /// Zero, so that any drift is infinitely many of it and no skin goes by it, where it is more than [`MOST_OF_SMALLEST`] times the
-/// smallest radius: a skin of a giant's size would make all the small ones neighbours.
-pub fn typical_radius(balls: &[[f32; 4]]) -> f64 {
-    let (mut sums, mut asked, mut smallest) = ([0.0; 3], 0.0, f64::INFINITY);
-    for ball in balls.iter().step_by(balls.len().div_ceil(ASKED).max(1)) {
-        let r = f64::from(ball[3].max(LEAST));
-        sums = [sums[0] + r, sums[1] + r * r, sums[2] + r * r * r];
-        (asked, smallest) = (asked + 1.0, smallest.min(r));
+/// longest half side of the smallest body: a skin of a giant's size would make all the small ones neighbours.
+pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> f64 {
+    let (mut sums, mut asked, mut smallest) = ([0.0; 7], 0.0, f64::INFINITY);
+    for body in (0..bodies).step_by(bodies.div_ceil(ASKED).max(1)) {
+        let [x, y, z] = half_sides(body).map(|half| f64::from(half.max(LEAST)));
+        for (sum, product) in sums
+            .iter_mut()
+            .zip([x, y, z, y * z, z * x, x * y, x * y * z])
+        {
+            *sum += product;
+        }
+        (asked, smallest) = (asked + 1.0, smallest.min(x.max(y).max(z)));
     }
-    let [first, second, third] = sums.map(|sum| sum / f64::max(asked, 1.0));
-    let typical = (third + 3.0 * first * second) / (2.0 * (second + first * first));
+    let [x, y, z, yz, zx, xy, xyz] = sums.map(|sum| sum / f64::max(asked, 1.0));
+    // Means over all pairs, each as the products of what belongs to the one and to the other.
+    let product = 2.0 * (xyz + x * yz + y * zx + z * xy);
+    let of_two = 2.0 * ((yz + y * z) + (zx + z * x) + (xy + x * y));
+    let typical = 3.0 * product / (2.0 * of_two);
     if typical > MOST_OF_SMALLEST * smallest {
         0.0
     } else {
         typical
+    }
+}
+
+/// What is known of the sizes of bodies of which lists are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sizes {
+    /// The typical radius, of boxes where these are listed.
+    pub typical: f64,
+    /// The same in typical radii of the balls that the grid searches by: 1 but for boxes that are longer than wide.
+    pub of_balls: f64,
+}
+
+impl Sizes {
+    /// Of boxes, or of balls that are listed themselves.
+    pub fn new(typical: f64, of_balls: f64) -> Self {
+        let of_balls = if typical > 0.0 && of_balls > typical {
+            typical / of_balls
+        } else {
+            1.0
+        };
+        Self { typical, of_balls }
     }
 }
 
@@ -170,33 +200,56 @@ mod tests {
 
     #[test]
     fn the_typical_radius_is_that_of_equal_ones_and_leans_to_the_wide() {
-        let balls =
-            |radii: &[f32]| -> Vec<_> { radii.iter().map(|&r| [7.0, 8.0, 9.0, r]).collect() };
+        let typical = |radii: &[f32]| typical_radius(radii.len(), |body| [radii[body]; 3]);
         for n in [1, 2, 300, 10_000] {
-            let found = typical_radius(&balls(&vec![3.0; n]));
+            let found = typical(&vec![3.0; n]);
             assert!((found - 3.0).abs() < 1e-12, "{n}: {found}");
         }
         // All four sums of 1 and 3: 8, 64, 64 and 216 over twice 4, 16, 16 and 36.
-        let found = typical_radius(&balls(&[1.0, 3.0]));
+        let found = typical(&[1.0, 3.0]);
         assert!((found - 352.0 / 144.0).abs() < 1e-12, "{found}");
         // One in two is asked of more than 256.
         let every_other: Vec<f32> = (0..512)
             .map(|i| if i % 2 == 0 { 1.0 } else { 50.0 })
             .collect();
-        assert!((typical_radius(&balls(&every_other)) - 1.0).abs() < 1e-12);
-        assert!(typical_radius(&balls(&[0.0])) > 0.0);
+        assert!((typical(&every_other) - 1.0).abs() < 1e-12);
+        assert!(typical(&[0.0]) > 0.0);
+    }
+
+    /// What a skin adds to the pairs of boxes, beside what it adds to those of balls of the typical radius.
+    #[test]
+    fn the_typical_radius_of_long_boxes_brings_as_many_pairs() {
+        let sides = [
+            [0.125, 1.0, 8.0],
+            [8.0, 1.0, 0.125],
+            [1.0, 8.0, 0.125],
+            [3.0, 2.0, 1.0],
+        ];
+        let typical = typical_radius(4, |body| sides[body]);
+        let pairs = |skin: f64| -> f64 {
+            let product = |a: [f32; 3], b: [f32; 3]| -> f64 {
+                (0..3)
+                    .map(|k| f64::from(a[k] + b[k]) + 2.0 * skin)
+                    .product()
+            };
+            sides
+                .iter()
+                .flat_map(|&a| sides.map(|b| product(a, b)))
+                .sum()
+        };
+        let step = 1e-6;
+        let growth = (pairs(step) - pairs(-step)) / (2.0 * step) / pairs(0.0);
+        assert!((3.0 / typical / growth - 1.0).abs() < 1e-6, "{typical}");
     }
 
     #[test]
     fn sixteen_times_the_smallest_radius_is_typical_and_more_is_not() {
-        let balls = |wide: f32| -> Vec<_> {
-            let radius = |i: u32| if i == 0 { wide } else { 1.0 };
-            (0..256).map(|i| [0.0, 0.0, 0.0, radius(i)]).collect()
-        };
+        let typical =
+            |wide: f32| typical_radius(256, |body| [if body == 0 { wide } else { 1.0 }; 3]);
         // One of x among 255 of 1: sixteen at x = 39.82.
-        let found = typical_radius(&balls(39.8));
+        let found = typical(39.8);
         assert!((15.9..16.0).contains(&found), "{found}");
-        assert_eq!(typical_radius(&balls(39.9)), 0.0);
-        assert_eq!(typical_radius(&balls(0.01)), 0.0, "one speck");
+        assert_eq!(typical(39.9), 0.0);
+        assert_eq!(typical(0.01), 0.0, "one speck");
     }
 }

@@ -7,6 +7,8 @@ use crate::rounding::skin::Skin;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 use crate::threads::Threads;
 
+mod long;
+
 /// A finder with its bodies, the first of which move.
 struct Followed {
     finder: Neighbours,
@@ -65,6 +67,11 @@ impl Followed {
 
     /// One more frame.
     fn step(&mut self) {
+        self.step_with(None);
+    }
+
+    /// One more frame, of balls about these boxes.
+    fn step_with(&mut self, boxes: Option<Boxes<'_>>) {
         let pool = Threads::default();
         let executor = pool.executor(Tier::SCALAR);
         let in_places = |names: &[u32]| -> Vec<_> {
@@ -83,7 +90,7 @@ impl Followed {
         }
         let now = in_places(&self.names);
         self.finder
-            .arrange(executor, self.moving, &now, &self.names);
+            .arrange(executor, self.moving, &now, &self.names, boxes);
     }
 
     fn candidates(&self, of_list: bool) -> BTreeMap<[u32; 2], u32> {

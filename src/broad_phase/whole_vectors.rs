@@ -1,7 +1,6 @@
 //! A run or a block that fills its vectors costs no vector more.
 
-use super::SlotTest;
-use crate::broad_phase::Block;
+use super::{Block, SlotTest};
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 
 /// Slots of the test: whole vectors in every tier.

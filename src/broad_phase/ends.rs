@@ -1,0 +1,401 @@
+//! Long boxes, of which the cubes about them tell little: their ends in slot order, compared as they are, so that the answer is exact.
+//!
+//! A first volume test takes them, and so do lists of neighbours: there boxes are [`grown`] by a skin, and a list serves while each
+//! box is within its grown one. Boxes that meet then have grown ones that meet, whatever rounding has made of these.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+use super::{Block, SlotTest, bytes, list_slots};
+use crate::bodies::Aabb;
+use crate::rounding::cube::TIMES;
+use crate::rounding::skin::Skin;
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch, quads_in_columns};
+use crate::threads::{Executor, Threads};
+
+/// Boxes that one thread brings into slot order, or looks at, at a time.
+const PIECE: usize = 4096;
+
+/// Boxes of which a finder's balls are the cubes about them, an eighth in size.
+#[derive(Clone, Copy, Debug)]
+pub struct Boxes<'a> {
+    /// By name.
+    pub all: &'a [Aabb],
+    /// Whether cubes tell so little that lists of neighbours are made by the boxes themselves.
+    pub are_long: bool,
+}
+
+/// Ends of boxes in the finder's slot order, each padded by [`MAX_WIDTH`] finite entries: as quads for scattered candidates,
+/// whose fourth number is zero, and as columns for runs.
+#[derive(Clone, Debug, Default)]
+pub struct EndSlots {
+    lower: Vec<[f32; 4]>,
+    upper: Vec<[f32; 4]>,
+    /// Lower ends on each axis, then upper ones.
+    columns: [Vec<f32>; 6],
+}
+
+impl EndSlots {
+    /// Takes the boxes in the order of slots; `runs` says whether slots will be tested against runs of others.
+    pub fn fill(&mut self, executor: Executor<'_>, order: &[u32], boxes: &[Aabb], runs: bool) {
+        self.fill_quads(executor, order, boxes);
+        self.fill_columns(executor.pool, runs);
+    }
+
+    /// The same, those in the first slots each grown by a skin of the cube about it; the cubes of these are given.
+    pub fn fill_grown(
+        &mut self,
+        executor: Executor<'_>,
+        order: &[u32],
+        boxes: &[Aabb],
+        (cubes, skin): (&[[f32; 4]], Skin),
+    ) {
+        self.fill_quads(executor, order, boxes);
+        let growing = cubes.len();
+        let (lower, upper) = (&mut self.lower[..growing], &mut self.upper[..growing]);
+        let pool = executor.pool;
+        pool.pieces_of_two([lower, upper], PIECE, |start, [lower, upper]| {
+            for ((lower, upper), cube) in lower.iter_mut().zip(upper).zip(&cubes[start..]) {
+                let by = TIMES * skin.of(cube[3]);
+                let ([x, y, z, _], [to_x, to_y, to_z, _]) = (*lower, *upper);
+                let Aabb { min, max } = grown(Aabb::new([x, y, z], [to_x, to_y, to_z]), by);
+                lower[..3].copy_from_slice(&min);
+                upper[..3].copy_from_slice(&max);
+            }
+        });
+        self.fill_columns(pool, true);
+    }
+
+    fn fill_columns(&mut self, pool: &Threads, runs: bool) {
+        let sides = [&self.lower, &self.upper];
+        pool.each(&mut self.columns, |index, column| {
+            column.clear();
+            if runs {
+                column.extend(sides[index / 3].iter().map(|quad| quad[index % 3]));
+            }
+        });
+    }
+
+    fn fill_quads(&mut self, executor: Executor<'_>, order: &[u32], boxes: &[Aabb]) {
+        let [lower, upper] = [&mut self.lower, &mut self.upper].map(|quads| {
+            quads.resize(order.len() + MAX_WIDTH, [0.0; 4]);
+            &mut quads[..order.len()]
+        });
+        let boxes = bytemuck::cast_slice(boxes);
+        executor
+            .pool
+            .pieces_of_two([lower, upper], PIECE, |start, [lower, upper]| {
+                let names = &order[start..];
+                #[rustfmt::skip]
+                let fill = Fill { names, boxes, lower, upper };
+                dispatch(executor.tier, fill);
+            });
+    }
+
+    /// Whether each of the boxes with these names is within the one in the slot of its place.
+    pub fn hold(&self, executor: Executor<'_>, names: &[u32], boxes: &[Aabb]) -> bool {
+        let (tier, all) = (executor.tier, AtomicBool::new(true));
+        executor.pool.ranges(names.len(), PIECE, |range| {
+            if all.load(Relaxed) {
+                let (first, names) = (range.start, &names[range]);
+                let ends = self;
+                #[rustfmt::skip]
+                let within = Within { ends, first, names, boxes };
+                all.fetch_and(dispatch(tier, within), Relaxed);
+            }
+        });
+        all.into_inner()
+    }
+
+    /// Bytes that the columns have taken, used or not.
+    pub fn bytes(&self) -> usize {
+        let columns = self.columns.iter().map(bytes).sum::<usize>();
+        bytes(&self.lower) + bytes(&self.upper) + columns
+    }
+
+    /// The ends in the slots from `start` on, a vector of them.
+    #[inline(always)]
+    fn vector<L: Lanes>(&self, l: L, start: usize) -> [[L::F; 3]; 2] {
+        // Written out: closures would be compiled apart, without the tier's features.
+        let [x, y, z, to_x, to_y, to_z] = &self.columns;
+        let lower = [
+            l.load(&x[start..]),
+            l.load(&y[start..]),
+            l.load(&z[start..]),
+        ];
+        let upper = [
+            l.load(&to_x[start..]),
+            l.load(&to_y[start..]),
+            l.load(&to_z[start..]),
+        ];
+        [lower, upper]
+    }
+
+    /// The ends in a slot, in all lanes.
+    #[inline(always)]
+    fn splat<L: Lanes>(&self, l: L, slot: usize) -> [[L::F; 3]; 2] {
+        let ([x, y, z, _], [to_x, to_y, to_z, _]) = (self.lower[slot], self.upper[slot]);
+        [
+            [l.splat(x), l.splat(y), l.splat(z)],
+            [l.splat(to_x), l.splat(to_y), l.splat(to_z)],
+        ]
+    }
+}
+
+/// Bits of the lanes below `count` whose boxes, each as its lower and upper ends, meet.
+#[inline(always)]
+fn with_common_points<L: Lanes>(
+    l: L,
+    [lo, hi]: [[L::F; 3]; 2],
+    [other_lo, other_hi]: [[L::F; 3]; 2],
+    count: usize,
+) -> u32 {
+    let mut apart = l.gt(lo[0], other_hi[0]) | l.gt(other_lo[0], hi[0]);
+    for axis in 1..3 {
+        apart = apart | l.gt(lo[axis], other_hi[axis]) | l.gt(other_lo[axis], hi[axis]);
+    }
+    !l.bits(apart) & l.bits(l.first(count))
+}
+
+impl SlotTest for EndSlots {
+    #[inline(always)]
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        let one = self.splat(l, i);
+        let (mut start, mut found) = (run.start, 0);
+        while start < run.end {
+            let hit = with_common_points(l, one, self.vector(l, start), run.end - start);
+            found += list_slots(l, hit, start, &mut hits[found..]);
+            start += L::WIDTH;
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
+        let ours = [
+            quads_in_columns(l, &self.lower[block.first()..]),
+            quads_in_columns(l, &self.upper[block.first()..]),
+        ];
+        let count = block.codes().len();
+        let (mut start, mut found) = (0, 0);
+        while start < count {
+            let (code, [[x, y, z, _], lower]) = block.balls(l, start, &ours[0], &self.lower);
+            let (_, [[to_x, to_y, to_z, _], upper]) = block.balls(l, start, &ours[1], &self.upper);
+            let one = [[x, y, z], [to_x, to_y, to_z]];
+            let other = [
+                [lower[0], lower[1], lower[2]],
+                [upper[0], upper[1], upper[2]],
+            ];
+            let hit = with_common_points(l, one, other, count - start);
+            l.compress(hit, code, &mut hits[found..]);
+            found += hit.count_ones() as usize;
+            start += L::WIDTH;
+        }
+        found
+    }
+}
+
+/// The box grown by a length to all sides, rounded inward so that it is no larger than that, but no smaller than it was.
+pub(super) fn grown(Aabb { min, max }: Aabb, by: f32) -> Aabb {
+    // What is below the number nearest to a sum is no greater than the sum.
+    Aabb {
+        min: min.map(|end| end.min((end - by).next_up())),
+        max: max.map(|end| end.max((end + by).next_down())),
+    }
+}
+
+/// Brings boxes, each of which is six numbers, into the order of their names: lower and upper ends as quads.
+struct Fill<'a> {
+    names: &'a [u32],
+    boxes: &'a [[f32; 6]],
+    lower: &'a mut [[f32; 4]],
+    upper: &'a mut [[f32; 4]],
+}
+
+impl Kernel for Fill<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) {
+        let whole = self.lower.len() / L::WIDTH * L::WIDTH;
+        for start in (0..whole).step_by(L::WIDTH) {
+            let [x, y, z, to_x, to_y, to_z] = l.gather_sixes(self.boxes, &self.names[start..]);
+            let zero = l.splat(0.0);
+            l.store_quads([x, y, z, zero], &mut self.lower[start..]);
+            l.store_quads([to_x, to_y, to_z, zero], &mut self.upper[start..]);
+        }
+        for slot in whole..self.lower.len() {
+            let [x, y, z, to_x, to_y, to_z] = self.boxes[self.names[slot] as usize];
+            self.lower[slot] = [x, y, z, 0.0];
+            self.upper[slot] = [to_x, to_y, to_z, 0.0];
+        }
+    }
+}
+
+/// Whether boxes are within those in the slots from `first` on.
+struct Within<'a> {
+    ends: &'a EndSlots,
+    first: usize,
+    names: &'a [u32],
+    boxes: &'a [Aabb],
+}
+
+impl Kernel for Within<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> bool {
+        let numbers: &[[f32; 6]] = bytemuck::cast_slice(self.boxes);
+        for start in (0..self.names.len()).step_by(L::WIDTH) {
+            let left = &self.names[start..];
+            let mut padded = [left[0]; MAX_WIDTH];
+            let count = left.len().min(L::WIDTH);
+            padded[..count].copy_from_slice(&left[..count]);
+            let [x, y, z, to_x, to_y, to_z] = l.gather_sixes(numbers, &padded);
+            let [lower, upper] = self.ends.vector(l, self.first + start);
+            let outside = (l.gt(lower[0], x) | l.gt(lower[1], y) | l.gt(lower[2], z))
+                | (l.gt(to_x, upper[0]) | l.gt(to_y, upper[1]) | l.gt(to_z, upper[2]));
+            if l.bits(outside) & l.bits(l.first(count)) != 0 {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::whole_vectors::{SLOTS, check};
+    use super::*;
+    use crate::simd::Tier;
+
+    #[test]
+    fn boxes_that_fill_their_vectors_cost_no_vector_more() {
+        check(&EndSlots {
+            lower: vec![[1.0, 1.0, 1.0, 0.0]; SLOTS],
+            upper: vec![[2.0, 2.0, 2.0, 0.0]; SLOTS],
+            columns: [1.0, 1.0, 1.0, 2.0, 2.0, 2.0].map(|end| vec![end; SLOTS]),
+        });
+    }
+
+    #[test]
+    fn grown_boxes_hold_their_own_and_are_no_longer_than_they_may_be() {
+        let ends = [
+            0.0_f32,
+            1.0,
+            1e-30,
+            3.0e7,
+            1.0e9,
+            1e30,
+            f32::MAX,
+            f32::from_bits(1),
+        ];
+        for end in ends.into_iter().flat_map(|end| [end, -end]) {
+            for by in [1e-20, 0.3, 0.375, 5.0e3, 1e30, f32::INFINITY] {
+                let Aabb { min, max } = grown(Aabb::new([end; 3], [end; 3]), by);
+                assert!(min[0] <= end && end <= max[0], "{end}, {by}: {min:?}");
+                // Sums of f64 round to the nearest as well, so that they are no smaller than an f32 below the exact sum.
+                let [end, by] = [end, by].map(f64::from);
+                assert!(f64::from(max[0]) <= end + by, "{end}, {by}: {max:?}");
+                assert!(f64::from(min[0]) >= end - by, "{end}, {by}: {min:?}");
+            }
+        }
+        let cube = grown(Aabb::new([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]), 0.5);
+        let off = |found: [f32; 3], wanted: [f32; 3]| (0..3).map(move |k| found[k] - wanted[k]);
+        let mut offs = off(cube.min, [0.5, 1.5, 2.5]).chain(off(cube.max, [4.5, 5.5, 6.5]));
+        assert!(offs.all(|off| off.abs() < 1e-6), "{cube:?}");
+    }
+
+    #[test]
+    fn boxes_are_held_until_one_of_them_leaves_wherever_it_is_in_every_tier() {
+        let pool = Threads::default();
+        for count in [1, 15, 16, 17, 40, PIECE + 3] {
+            let mut boxes: Vec<Aabb> = (0..count)
+                .map(|i| Aabb::new([i as f32, -2.0, 3.0], [i as f32 + 1.0, 5.0, 4.0]))
+                .collect();
+            let order: Vec<u32> = (0..count as u32).rev().collect();
+            for tier in Tier::available() {
+                let (executor, mut ends) = (pool.executor(tier), EndSlots::default());
+                ends.fill(executor, &order, &boxes, true);
+                for moved in [0, count / 2, count - 1] {
+                    assert!(ends.hold(executor, &order, &boxes), "{tier}: {count}");
+                    let Aabb { min, max } = boxes[moved];
+                    for axis in 0..3 {
+                        boxes[moved].min[axis] = min[axis].next_down();
+                        assert!(!ends.hold(executor, &order, &boxes), "{tier}: {moved}");
+                        boxes[moved].min[axis] = min[axis].next_up();
+                        assert!(ends.hold(executor, &order, &boxes), "{tier}: {moved}");
+                        boxes[moved].max[axis] = max[axis].next_up();
+                        assert!(!ends.hold(executor, &order, &boxes), "{tier}: {moved}");
+                        boxes[moved] = Aabb { min, max };
+                    }
+                }
+                // Fewer are asked than there are.
+                boxes[0].max[1] += 1.0;
+                let others = &order[..count - 1];
+                assert!(ends.hold(executor, others, &boxes), "{tier}: {count}");
+                boxes[0].max[1] -= 1.0;
+            }
+        }
+    }
+
+    #[test]
+    fn moving_boxes_grow_and_others_do_not() {
+        let boxes = [1.0, 2.0, 3.0].map(|x| Aabb::new([x; 3], [x + 10.0; 3]));
+        let (pool, mut ends) = (Threads::default(), EndSlots::default());
+        let (cubes, skin) = ([[0.0, 0.0, 0.0, 0.5]; 2], Skin::share(0.125));
+        ends.fill_grown(
+            pool.executor(Tier::SCALAR),
+            &[2, 0, 1],
+            &boxes,
+            (&cubes, skin),
+        );
+        let slots = |ends: &EndSlots| [0, 1, 2].map(|slot| [ends.lower[slot], ends.upper[slot]]);
+        for (found, (name, grows)) in
+            slots(&ends)
+                .into_iter()
+                .zip([(2, true), (0, true), (1, false)])
+        {
+            let aabb: Aabb = boxes[name];
+            let Aabb { min, max } = if grows { grown(aabb, 0.5) } else { aabb };
+            assert_eq!(found.map(|quad| [quad[0], quad[1], quad[2]]), [min, max]);
+        }
+        let lowest = slots(&ends).map(|[lower, _]| lower[0]);
+        assert_eq!(ends.columns[0][..3], lowest);
+    }
+
+    #[test]
+    fn bytes_are_those_of_all_columns_used_or_not() {
+        let mut ends = EndSlots::default();
+        assert_eq!(ends.bytes(), 0);
+        (ends.lower, ends.upper) = (Vec::with_capacity(1), Vec::with_capacity(10));
+        ends.columns[5] = Vec::with_capacity(100);
+        assert_eq!(ends.bytes(), 16 + 160 + 400);
+    }
+
+    #[test]
+    fn ends_have_the_order_of_slots_and_a_vector_of_finite_ones_behind_it() {
+        let mut slots = EndSlots::default();
+        for bodies in [1, 3, 2] {
+            let boxes: Vec<_> = (0..bodies as u8)
+                .map(|i| Aabb::new([f32::from(i); 3], [f32::from(i) + 9.0; 3]))
+                .collect();
+            let order: Vec<u32> = (0..bodies as u32).rev().collect();
+            slots.fill(
+                Threads::default().executor(Tier::detect()),
+                &order,
+                &boxes,
+                true,
+            );
+            let padded = bodies + MAX_WIDTH;
+            assert_eq!([slots.lower.len(), slots.upper.len()], [padded; 2]);
+            for (index, column) in slots.columns.iter().enumerate() {
+                let ends = order.iter().map(|&name| {
+                    let Aabb { min, max } = boxes[name as usize];
+                    [min, max][index / 3][index % 3]
+                });
+                assert_eq!(column[..bodies], ends.collect::<Vec<_>>());
+                assert_eq!(column.len(), padded);
+                assert!(column[bodies..].iter().all(|end| end.is_finite()));
+            }
+        }
+    }
+}

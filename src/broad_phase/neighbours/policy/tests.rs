@@ -1,0 +1,240 @@
+use super::*;
+
+impl Policy {
+    /// That makes its first list with a skin of so many radii, all of this size.
+    pub(in super::super) fn of_typical(typical: f64) -> Self {
+        Self {
+            radii: Radii::Typical,
+            sizes: Sizes::new(typical, typical),
+            ..Self::default()
+        }
+    }
+}
+
+/// A list of a million bodies that ended.
+fn list(pairs: usize, candidates: u64, [own, typical]: [f64; 2]) -> Ended {
+    Ended {
+        pairs,
+        candidates,
+        bodies: 1_000_000,
+        motion: Motion { own, typical },
+        sizes: Sizes::new(2.0, 2.0),
+    }
+}
+
+/// What 2000 frames come to in which the fastest body moves by so many radii each, its own or typical ones, where a list
+/// without a skin has 0.75 pairs a body: lists made, frames that one served, and the policy by then.
+fn frames(speeds: [f64; 2]) -> (u32, u32, Policy) {
+    let (mut policy, mut since) = (Policy::default(), None);
+    let (mut made, mut served) = (0, 0);
+    for _ in 0..2000 {
+        if let Some(since) = &mut since {
+            *since += 1;
+            let drifts = speeds.map(|speed| speed * f64::from(*since));
+            let [own, typical] = drifts;
+            let drift = if policy.radii == Radii::Own {
+                own
+            } else {
+                typical
+            };
+            if drift < SKINS[policy.skin] {
+                policy.followed();
+                served += 1;
+                continue;
+            }
+            let pairs = 750_000.0 * policy.wider();
+            policy.ended(&list(pairs as usize, (6.0 * pairs) as u64, drifts));
+        }
+        since = policy.next().map(|_| 0);
+        if since.is_some() {
+            (made, served) = (made + 1, served + 1);
+        }
+    }
+    (made, served, policy)
+}
+
+#[test]
+fn slow_bodies_are_followed_and_fast_ones_searched_for() {
+    let mut before = 0;
+    for speed in [0.0, 0.001, 0.01, 0.03, 0.1] {
+        let (made, served, _) = frames([speed; 2]);
+        assert!(served >= 1990, "{speed}: {served}");
+        assert!(
+            f64::from(made) <= 2000.0 * speed / 0.06 + 2.0,
+            "{speed}: {made}"
+        );
+        assert!(made >= before, "{speed}: {made}, and {before} when slower");
+        before = made;
+    }
+    for speed in [1.0, 100.0] {
+        let (made, served, _) = frames([speed; 2]);
+        assert!(made < 20 && served == made, "{speed}: {made}, {served}");
+    }
+}
+
+#[test]
+fn skins_are_measured_by_the_radii_that_last_longer() {
+    for (speeds, radii) in [
+        ([0.4, 0.05], Radii::Typical),
+        ([5.0, 0.05], Radii::Typical),
+        ([0.05, 0.4], Radii::Own),
+        ([0.05, 0.0499], Radii::Own),
+    ] {
+        let (made, served, policy) = frames(speeds);
+        assert_eq!(policy.radii, radii, "{speeds:?}");
+        assert!(served >= 1990 && made < 500, "{speeds:?}: {served}, {made}");
+    }
+}
+
+#[test]
+fn a_skin_is_a_share_or_a_length_and_brings_its_cube_of_pairs() {
+    let of = |radii, skin| Policy {
+        radii,
+        skin,
+        sizes: Sizes::new(3.0, 3.0),
+        ..Policy::default()
+    };
+    assert_eq!(of(Radii::Own, 1).skin(), Skin::share(0.125));
+    assert_eq!(of(Radii::Typical, 1).skin(), Skin::length(0.375));
+    assert_eq!(Policy::default().skin(), Skin::share(0.25));
+    for radii in [Radii::Own, Radii::Typical] {
+        let policy = of(radii, 1);
+        assert_eq!(policy.wider(), 1.125 * 1.125 * 1.125);
+        let widest = 1.375f64 / 1.125;
+        assert!((policy.widest() - widest * widest * widest).abs() < 1e-12);
+    }
+}
+
+/// Within two skins a body has gone straight on; beyond, it has jumped, unless the list served no frame but its own.
+#[test]
+fn one_that_jumps_tells_nothing_of_the_others() {
+    let never = f64::INFINITY;
+    for (radii, served, drifts, speeds) in [
+        (Radii::Own, 4, [0.5, 3.0], [0.125, 0.75]),
+        (Radii::Own, 4, [0.51, 3.0], [0.25 / 3.5, never]),
+        (Radii::Typical, 4, [3.0, 0.5], [0.75, 0.125]),
+        (Radii::Typical, 2, [3.0, 0.51], [never, 0.25 / 1.5]),
+        (Radii::Own, 1, [9.0, 0.1], [9.0, 0.1]),
+        (Radii::Typical, 1, [0.1, 9.0], [0.1, 9.0]),
+    ] {
+        let policy = Policy {
+            radii,
+            served,
+            ..Policy::default()
+        };
+        let [own, typical] = drifts;
+        assert_eq!(policy.speeds(Motion { own, typical }), speeds);
+    }
+}
+
+#[test]
+fn a_list_that_was_too_long_is_tried_again_seldom() {
+    let mut policy = Policy::of_typical(1.0);
+    let made = (0..4000).filter(|_| {
+        let made = policy.next().is_some();
+        if made {
+            policy.overflowed();
+            assert_eq!((policy.radii, policy.skin), (Radii::Own, 0));
+        }
+        made
+    });
+    assert!((12..24).contains(&made.count()));
+}
+
+/// Of a million bodies whose list with this skin served so many frames, until one was so far from its place: the skin of the
+/// next one, up to so many pairs and with a pair more, each with so many candidates. No skin is the grid's frames.
+#[test]
+fn the_next_skin_is_the_cheapest_to_the_pair() {
+    const FAR: f64 = f64::INFINITY;
+    let own = |skin| Some((Radii::Own, skin));
+    let typical = |skin| Some((Radii::Typical, skin));
+    for (at, served, drifts, candidates, pairs, next) in [
+        (own(3), 2, [0.3, FAR], 6, 3_837_626, [own(4), None]),
+        (own(3), 3, [0.26, FAR], 4, 6_009_424, [own(5), own(2)]),
+        (own(0), 2, [0.1, FAR], 5, 18_812_129, [own(3), None]),
+        (own(3), 10, [0.27, FAR], 6, 2_195_551, [own(4), own(3)]),
+        (own(2), 5, [0.2, FAR], 0, 7_728_640, [own(1), None]),
+        (own(3), 2, [0.4, FAR], 3, 1_434_156, [own(3), None]),
+        (own(4), 2, [0.33, FAR], 1, 4_149_165, [own(5), None]),
+        (own(3), 3, [9.0, 0.1], 6, 7_692_074, [own(4), None]),
+        (
+            typical(5),
+            100,
+            [FAR, 0.376],
+            10,
+            2_458_240,
+            [typical(2), typical(1)],
+        ),
+        (
+            typical(1),
+            2,
+            [0.02, 0.251],
+            6,
+            1_661_698,
+            [typical(5), typical(3)],
+        ),
+        (
+            own(3),
+            1,
+            [0.4, 0.05],
+            6,
+            1_862_170,
+            [typical(5), typical(4)],
+        ),
+        (own(3), 3, [0.3, 0.25], 8, 658_971, [typical(5), own(4)]),
+        (own(3), 3, [0.3, 0.25], 8, 6_635_479, [own(4), typical(3)]),
+    ] {
+        let (radii, skin) = at.expect("a list has a skin");
+        for (more, next) in (0..).zip(next) {
+            let mut policy = Policy {
+                radii,
+                skin,
+                sizes: Sizes::new(1.0, 1.0),
+                by_boxes: false,
+                served,
+                wait: 0,
+                pause: PAUSE,
+            };
+            let pairs = pairs + more;
+            policy.ended(&list(pairs, candidates * pairs as u64, drifts));
+            let found = policy.next().map(|_| (policy.radii, policy.skin));
+            assert_eq!(found, next, "{at:?}, {served}: {pairs}");
+            assert_eq!(policy.sizes, Sizes::new(2.0, 2.0));
+        }
+    }
+}
+
+/// Sizes of boxes that are longer than wide, of cubes beside them, and where no length suits all.
+#[test]
+fn lists_of_long_boxes_have_a_length_for_a_skin_and_wider_ones() {
+    let [long, cubes, giant] = [(3.0, 24.0), (2.0, 2.0), (0.0, 5.0)].map(|(a, b)| Sizes::new(a, b));
+    let mut policy = Policy::default();
+    policy.list(false, || unreachable!("they are balls as before"));
+    policy.list(true, || long);
+    assert_eq!(
+        (policy.skin(), policy.skins().len()),
+        (Skin::length(0.75), 8)
+    );
+    assert!((policy.more_candidates() - (1.0f64 + 0.25 / 8.0).powi(3)).abs() < 1e-12);
+    policy.list(true, || unreachable!("they are boxes as before"));
+    // Slow ones with many candidates, of which the longest sides would make more.
+    (policy.served, policy.wait) = (2, 0);
+    let slow = list(3_000_000, 200_000_000, [0.01, 0.26]);
+    policy.ended(&Ended {
+        sizes: long,
+        ..slow
+    });
+    assert_eq!((policy.radii, SKINS[policy.skin]), (Radii::Typical, 0.75));
+    policy.overflowed();
+    assert_eq!((policy.radii, policy.skin), (Radii::Typical, 0));
+    policy.skin = 7;
+    policy.list(false, || cubes);
+    assert_eq!((policy.radii, SKINS[policy.skin]), (Radii::Typical, 0.375));
+    assert_eq!(policy.more_candidates(), policy.wider());
+    let mut policy = Policy::default();
+    policy.list(true, || giant);
+    assert_eq!(
+        (policy.skin(), policy.skins().len()),
+        (Skin::share(0.25), 6)
+    );
+}
