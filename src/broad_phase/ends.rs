@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::{Block, SlotTest, bytes, list_slots};
 use crate::bodies::Aabb;
-use crate::rounding::cube::TIMES;
+use crate::rounding::cube::SCALE;
 use crate::rounding::skin::Skin;
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch, quads_in_columns};
 use crate::threads::{Executor, Threads};
@@ -56,7 +56,7 @@ impl EndSlots {
         let pool = executor.pool;
         pool.pieces_of_two([lower, upper], PIECE, |start, [lower, upper]| {
             for ((lower, upper), cube) in lower.iter_mut().zip(upper).zip(&cubes[start..]) {
-                let by = TIMES * skin.of(cube[3]);
+                let by = SCALE * skin.of(cube[3]);
                 let ([x, y, z, _], [to_x, to_y, to_z, _]) = (*lower, *upper);
                 let Aabb { min, max } = grown(Aabb::new([x, y, z], [to_x, to_y, to_z]), by);
                 lower[..3].copy_from_slice(&min);

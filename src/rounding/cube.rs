@@ -20,11 +20,11 @@ pub const NARROWER: f32 = 1.0 - 1.0 / (1 << 20) as f32;
 /// The same for boxes without an extent.
 pub const FLOOR: f32 = 1e-30;
 
-/// How many times as large boxes are as what stands for them.
-pub const TIMES: f32 = 8.0;
+/// Boxes are so many times as large as the cubes that stand for them.
+pub const SCALE: f32 = 8.0;
 
 /// So much of each end makes the centre.
-const SIXTEENTH: f32 = 0.5 / TIMES;
+const SIXTEENTH: f32 = 0.5 / SCALE;
 
 /// What stands for boxes, one a lane.
 #[derive(Clone, Copy)]

@@ -73,37 +73,15 @@ impl List {
             if listed.load(Ordering::Relaxed) > most {
                 return;
             }
-            match near {
-                Near::Balls(volume) => {
-                    let still = Skin::share(0.0);
-                    let skin = |moves| if moves { skin } else { still };
-                    let by = grid.moves(part).map(|moves| Reach::with_skin(skin(moves)));
-                    let balls = &grid.slots().balls;
-                    let test = Grown { balls, by, volume };
-                    dispatch(
-                        executor.tier,
-                        Make {
-                            grid,
-                            part,
-                            test,
-                            chunk,
-                            most,
-                        },
-                    );
-                }
-                Near::Ends(test) => {
-                    dispatch(
-                        executor.tier,
-                        Make {
-                            grid,
-                            part,
-                            test,
-                            chunk,
-                            most,
-                        },
-                    );
-                }
-            }
+            let make = Make {
+                grid,
+                part,
+                near,
+                skin,
+                chunk,
+                most,
+            };
+            dispatch(executor.tier, make);
             listed.fetch_add(chunk.len, Ordering::Relaxed);
         });
         self.len = listed.into_inner();
@@ -222,19 +200,36 @@ fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
     }
 }
 
-struct Make<'a, T> {
+struct Make<'a> {
     grid: &'a Grid,
     part: usize,
-    test: T,
+    near: Near<'a>,
+    skin: Skin,
     chunk: &'a mut Chunk,
     most: usize,
 }
 
-impl<T: SlotTest> Kernel for Make<'_, T> {
+impl Kernel for Make<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
-        let mut collect = Collect::new(self.test, self.chunk, self.most);
+        match self.near {
+            Near::Balls(volume) => {
+                let still = Skin::share(0.0);
+                let moves = self.grid.moves(self.part);
+                let by = moves.map(|moves| Reach::with_skin(if moves { self.skin } else { still }));
+                let balls = &self.grid.slots().balls;
+                self.collect(l, Grown { balls, by, volume });
+            }
+            Near::Ends(ends) => self.collect(l, ends),
+        }
+    }
+}
+
+impl Make<'_> {
+    #[inline(always)]
+    fn collect<L: Lanes>(self, l: L, test: impl SlotTest) {
+        let mut collect = Collect::new(test, self.chunk, self.most);
         self.grid.find(l, self.part..self.part + 1, &mut collect);
         self.chunk.close();
     }

@@ -234,7 +234,7 @@ fn sizes(balls: &[[f32; 4]], names: &[u32], long: Option<Boxes<'_>>) -> Sizes {
     let of_boxes = long.map(|Boxes { all, .. }| {
         typical_radius(balls.len(), |place| {
             let half_sides = all[names[place] as usize].half_sides();
-            half_sides.map(|half| half / cube::TIMES)
+            half_sides.map(|half| half / cube::SCALE)
         })
     });
     Sizes::new(of_boxes.unwrap_or(of_balls), of_balls)

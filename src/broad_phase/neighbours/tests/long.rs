@@ -5,7 +5,7 @@ use crate::bodies::Aabb;
 use crate::broad_phase::Boxes;
 use crate::broad_phase::ends::grown;
 use crate::broad_phase::neighbours::{Neighbours, State, Volume};
-use crate::rounding::cube::{Cube, TIMES};
+use crate::rounding::cube::{Cube, SCALE};
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
 /// The cube about a box, as a ball.
@@ -72,7 +72,7 @@ impl Needles {
         let skin = self.bodies.finder.policy.skin();
         let each = self.boxes.iter().zip(&self.bodies.balls).enumerate();
         each.map(|(name, (&aabb, cube))| match name < self.bodies.moving {
-            true => grown(aabb, TIMES * skin.of(cube[3])),
+            true => grown(aabb, SCALE * skin.of(cube[3])),
             false => aabb,
         })
         .collect()
