@@ -2,9 +2,9 @@
 
 use super::Followed;
 use crate::bodies::Aabb;
-use crate::broad_phase::Boxes;
 use crate::broad_phase::ends::grown;
 use crate::broad_phase::neighbours::{Neighbours, State, Volume};
+use crate::broad_phase::{Boxes, EndSlots};
 use crate::rounding::cube::{Cube, SCALE};
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
@@ -98,6 +98,20 @@ fn a_list_of_long_boxes_holds_the_pairs_whose_grown_ones_meet_and_each_once() {
     assert!(listed.values().all(|&times| times == 1));
     assert!(listed.into_keys().eq(wanted.iter().copied()));
     assert!(wanted.len() > 600, "{}", wanted.len());
+}
+
+#[test]
+fn bytes_are_those_of_the_grid_the_list_and_the_grown_boxes() {
+    let mut needles = Needles::within(40.0);
+    for _ in 0..2 {
+        needles.step();
+    }
+    let finder = &mut needles.bodies.finder;
+    let grown = finder.grown.bytes();
+    assert!(grown >= 620 * 2 * (16 + 12), "{grown}");
+    let all = finder.bytes();
+    finder.grown = EndSlots::default();
+    assert_eq!(all, finder.bytes() + grown);
 }
 
 /// One of the ends of a box.
