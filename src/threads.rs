@@ -8,6 +8,7 @@
 
 use std::ops::Range;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -170,6 +171,22 @@ impl Threads {
         self.share_out(is_worth_waking, ranges, work);
     }
 
+    /// Whether `holds` of all such ranges; those that come after one of which it doesn't aren't asked.
+    pub fn all(
+        &self,
+        len: usize,
+        size: usize,
+        holds: impl Fn(Range<usize>) -> bool + Sync,
+    ) -> bool {
+        let all = AtomicBool::new(true);
+        self.ranges(len, size, |range| {
+            if all.load(Relaxed) && !holds(range) {
+                all.store(false, Relaxed);
+            }
+        });
+        all.into_inner()
+    }
+
     /// Calls `work` for each item, on all threads if these are worth waking.
     fn share_out<T>(
         &self,
@@ -267,6 +284,22 @@ mod tests {
                 assert!(seen.into_iter().flatten().eq(0..len), "{len} by {size}");
             }
         }
+    }
+
+    #[test]
+    fn all_ranges_hold_unless_one_does_not_wherever_it_is() {
+        for threads in [1, 3] {
+            let threads = Threads::new(threads).unwrap();
+            let all_but = |bad| threads.all(79, 8, |range| !range.contains(&bad));
+            assert!(all_but(79));
+            assert!((0..79).all(|bad| !all_but(bad)));
+        }
+        let (alone, asked) = (Threads::default(), Mutex::new(Vec::new()));
+        alone.all(79, 8, |range| {
+            asked.lock().unwrap().push(range.start);
+            range.start < 16
+        });
+        assert_eq!(*asked.lock().unwrap(), [0, 8, 16], "the others are spared");
     }
 
     #[test]

@@ -133,14 +133,14 @@ impl Frames {
         self.finder
             .arrange(executor, &self.places, &self.cubes, names, given);
         let slots = self.finder.slots(&self.cubes);
-        let test = if !are_long {
-            let less = less_than_sure(gap);
-            BoxTest::Cubes(Cubes { slots, boxes, less })
-        } else {
+        let test = if are_long {
             let order = &slots.names[..names.len()];
             self.ends
                 .fill(executor, order, boxes, self.finder.hands_out_runs());
             BoxTest::Ends(&self.ends)
+        } else {
+            let less = less_than_sure(gap);
+            BoxTest::Cubes(Cubes { slots, boxes, less })
         };
         let inputs = BoxInputs {
             executor,

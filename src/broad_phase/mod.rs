@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::bodies::Places;
 use crate::settings::Finder;
-use crate::simd::{LANES, Lanes};
+use crate::simd::Lanes;
 use crate::threads::Executor;
 
 mod all_pairs;
@@ -21,6 +21,7 @@ mod grid;
 #[cfg(debug_assertions)]
 mod invariants;
 mod neighbours;
+mod slot_test;
 mod slots;
 mod sweep;
 #[cfg(test)]
@@ -35,6 +36,7 @@ pub use ends::{Boxes, EndSlots};
 pub use grid::{Cells, Grid, Layout};
 use neighbours::List;
 pub use neighbours::{Neighbours, Volume};
+pub use slot_test::{BallTest, SlotTest, list_slots};
 pub use slots::{Arranged, Balls, Slots};
 pub use sweep::Sweep;
 
@@ -44,36 +46,6 @@ pub trait FirstTest {
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>);
     /// Scattered pairs of slots, but not the block's long runs.
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>);
-}
-
-/// A volume test of slots: candidates in the two forms that pair finders hand out, hits as a list.
-pub trait SlotTest {
-    /// Lists the slots of `run` that may touch slot `i` at the front of `hits`, which has room for the run and a vector
-    /// more. Returns their number.
-    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize;
-
-    /// Lists the codes of the block's pairs that may touch at the front of `hits`, which has room for the block and a
-    /// vector more. Returns their number.
-    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize;
-}
-
-impl<T: SlotTest> SlotTest for &T {
-    #[inline(always)]
-    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
-        T::run(self, l, i, run, hits)
-    }
-    #[inline(always)]
-    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
-        T::block(self, l, block, hits)
-    }
-}
-
-/// Writes the slots from `start` on whose bits are set; how many.
-#[inline(always)]
-pub fn list_slots<L: Lanes>(l: L, hit: u32, start: usize, hits: &mut [u32]) -> usize {
-    let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
-    l.compress(hit, slot, hits);
-    hit.count_ones() as usize
 }
 
 /// Bytes that a column has taken, used or not.

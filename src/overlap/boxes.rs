@@ -5,12 +5,10 @@
 //! a box answers nearly all pairs, and the few others are looked up. Of long boxes the cubes know nothing; their ends stand in
 //! slots as two quads, and are compared straight away ([`EndSlots`](crate::broad_phase::EndSlots)).
 
-use std::ops::Range;
-
 use crate::bodies::Aabb;
-use crate::broad_phase::{Arranged, Block, SlotTest, list_slots};
+use crate::broad_phase::{Arranged, BallTest};
 use crate::rounding::cube::sure;
-use crate::simd::{Lanes, quads_in_columns};
+use crate::simd::Lanes;
 
 /// Boxes by their cubes, which the finder has in its slots.
 #[derive(Clone, Copy, Debug)]
@@ -24,14 +22,27 @@ pub struct Cubes<'a> {
 }
 
 impl Cubes<'_> {
-    /// Bits of the lanes below `count` whose boxes meet; `slots` says whose they are.
+    /// The definition, out of the way of what is asked for every vector.
+    #[cold]
+    fn boxes_meet(&self, pair: [usize; 2]) -> bool {
+        let [a, b] = pair.map(|slot| &self.boxes[self.slots.names[slot] as usize]);
+        a.meets(b)
+    }
+}
+
+impl BallTest for Cubes<'_> {
     #[inline(always)]
-    fn meeting<L: Lanes>(
+    fn slots(&self) -> Arranged<'_> {
+        self.slots
+    }
+
+    #[inline(always)]
+    fn touching<L: Lanes>(
         &self,
         l: L,
         [one, other]: [[L::F; 4]; 2],
         count: usize,
-        slots: impl Fn(usize) -> (usize, usize),
+        pair: impl Fn(usize) -> [usize; 2],
     ) -> u32 {
         let x = l.abs(other[0] - one[0]);
         let y = l.abs(other[1] - one[1]);
@@ -42,67 +53,11 @@ impl Cubes<'_> {
         while open != 0 {
             let lane = open.trailing_zeros();
             open &= open - 1;
-            if !self.boxes_meet(slots(lane as usize)) {
+            if !self.boxes_meet(pair(lane as usize)) {
                 hit &= !(1 << lane);
             }
         }
         hit
-    }
-
-    /// The definition, out of the way of what is asked for every vector.
-    #[cold]
-    fn boxes_meet(&self, (i, j): (usize, usize)) -> bool {
-        let [a, b] = [i, j].map(|slot| &self.boxes[self.slots.names[slot] as usize]);
-        a.meets(b)
-    }
-
-    /// The cubes in the slots from `start` on, a vector of them, as columns.
-    #[inline(always)]
-    fn vector<L: Lanes>(&self, l: L, start: usize) -> [L::F; 4] {
-        let [x, y, z, half] = self.slots.columns;
-        if x.is_empty() {
-            l.load_quads(&self.slots.balls[start..])
-        } else {
-            [
-                l.load(&x[start..]),
-                l.load(&y[start..]),
-                l.load(&z[start..]),
-                l.load(&half[start..]),
-            ]
-        }
-    }
-}
-
-impl SlotTest for Cubes<'_> {
-    #[inline(always)]
-    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
-        let one = self.slots.ball(i).map(|number| l.splat(number));
-        let (mut start, mut found) = (run.start, 0);
-        while start < run.end {
-            let cubes = [one, self.vector(l, start)];
-            let hit = self.meeting(l, cubes, run.end - start, |lane| (i, start + lane));
-            found += list_slots(l, hit, start, &mut hits[found..]);
-            start += L::WIDTH;
-        }
-        found
-    }
-
-    #[inline(always)]
-    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
-        let ours = quads_in_columns(l, &self.slots.balls[block.first()..]);
-        let (first, codes) = (block.first(), block.codes());
-        let (mut start, mut found) = (0, 0);
-        while start < codes.len() {
-            let (code, cubes) = block.balls(l, start, &ours, self.slots.balls);
-            let hit = self.meeting(l, cubes, codes.len() - start, |lane| {
-                let code = codes[start + lane];
-                (first + (code & 15) as usize, (code >> 4) as usize)
-            });
-            l.compress(hit, code, &mut hits[found..]);
-            found += hit.count_ones() as usize;
-            start += L::WIDTH;
-        }
-        found
     }
 }
 

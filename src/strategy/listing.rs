@@ -12,6 +12,7 @@ use crate::broad_phase::{
 use crate::counters::VolumeCounters;
 use crate::overlap::boxes::Cubes;
 use crate::overlap::intervals::IntervalSlots;
+use crate::overlap::sphere::Spheres;
 use crate::pairs::PairList;
 use crate::settings::TestedVolume;
 use crate::simd::{CACHE_LINE, Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
@@ -206,7 +207,7 @@ impl Kernel for List<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> VolumeCounters {
         match self.listing.first {
-            First::Spheres(slots) => self.with(l, &slots),
+            First::Spheres(slots) => self.with(l, &Spheres(slots)),
             First::Intervals(intervals) => self.with(l, intervals),
             First::PassAll => self.with(l, &PassAll),
             First::Boxes(BoxTest::Cubes(cubes)) => self.with(l, &cubes),

@@ -1,7 +1,6 @@
 //! The or-DOP test of listed pairs.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
 
 use super::output::{Outlet, Output};
@@ -145,16 +144,13 @@ impl<'a> Refiner<'a> {
 
     /// Whether the places of each stretch of pairs lie so near each other that a window holds their rows.
     fn are_near(&self, list: &PairList) -> bool {
-        let (are_near, Executor { tier, pool }) = (AtomicBool::new(true), self.inputs.executor);
-        pool.ranges(list.len(), STRETCHES * STRETCH, |range| {
-            let pairs = [&list.first()[range.clone()], &list.second()[range]];
-            let mut stretches = pairs[0].chunks(STRETCH).zip(pairs[1].chunks(STRETCH));
-            let is_near = |(first, second)| places_of(tier, [first, second]).len() <= MOST_ROWS;
-            if are_near.load(Relaxed) && !stretches.all(is_near) {
-                are_near.store(false, Relaxed);
-            }
-        });
-        are_near.into_inner()
+        let Executor { tier, pool } = self.inputs.executor;
+        pool.all(list.len(), STRETCHES * STRETCH, |range| {
+            let [first, second] =
+                [list.first(), list.second()].map(|column| &column[range.clone()]);
+            let mut stretches = first.chunks(STRETCH).zip(second.chunks(STRETCH));
+            stretches.all(|(first, second)| places_of(tier, [first, second]).len() <= MOST_ROWS)
+        })
     }
 
     /// Tests some pairs of a list on the calling thread and appends the survivors to `out`.

@@ -4,26 +4,38 @@ use std::ops::Range;
 
 use super::Volume;
 use super::list::Chunk;
-use crate::broad_phase::{BLOCK_BODIES, Block, FirstTest, MOST_CANDIDATES, SlotTest, list_slots};
+use crate::broad_phase::{
+    Arranged, BLOCK_BODIES, BallTest, Block, FirstTest, MOST_CANDIDATES, SlotTest,
+};
 use crate::rounding::skin::Reach;
 use crate::rounding::sphere;
-use crate::simd::{Lanes, MAX_WIDTH, quads_in_columns};
+use crate::simd::{Lanes, MAX_WIDTH};
 
 /// Balls, or the cubes that they stand for, grown by a skin.
 #[derive(Clone, Copy)]
 pub struct Grown<'a> {
-    /// In slot order.
-    pub balls: &'a [[f32; 4]],
+    /// The balls as they are.
+    pub slots: Arranged<'a>,
     /// How the balls of seekers grow, and those of the bodies that they look for.
     pub by: [Reach; 2],
     /// What balls stand for.
     pub volume: Volume,
 }
 
-impl Grown<'_> {
-    /// Bits of the lanes below `count` whose grown balls, or cubes, touch.
+impl BallTest for Grown<'_> {
     #[inline(always)]
-    fn touching<L: Lanes>(self, l: L, one: [L::F; 4], other: [L::F; 4], count: usize) -> u32 {
+    fn slots(&self) -> Arranged<'_> {
+        self.slots
+    }
+
+    #[inline(always)]
+    fn touching<L: Lanes>(
+        &self,
+        l: L,
+        [one, other]: [[L::F; 4]; 2],
+        count: usize,
+        _: impl Fn(usize) -> [usize; 2],
+    ) -> u32 {
         let [mine, theirs] = self.by;
         let s = mine.of_lanes(l, one[3]) + theirs.of_lanes(l, other[3]);
         let [dx, dy, dz] = [other[0] - one[0], other[1] - one[1], other[2] - one[2]];
@@ -35,39 +47,9 @@ impl Grown<'_> {
     }
 }
 
-impl SlotTest for Grown<'_> {
-    #[inline(always)]
-    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
-        let me = self.balls[i].map(|number| l.splat(number));
-        let (mut start, mut found) = (run.start, 0);
-        while start < run.end {
-            let other = l.load_quads(&self.balls[start..]);
-            let hit = self.touching(l, me, other, run.end - start);
-            found += list_slots(l, hit, start, &mut hits[found..]);
-            start += L::WIDTH;
-        }
-        found
-    }
-
-    #[inline(always)]
-    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
-        let ours = quads_in_columns(l, &self.balls[block.first()..]);
-        let count = block.codes().len();
-        let (mut start, mut found) = (0, 0);
-        while start < count {
-            let (code, [one, other]) = block.balls(l, start, &ours, self.balls);
-            let hit = self.touching(l, one, other, count - start);
-            l.compress(hit, code, &mut hits[found..]);
-            found += hit.count_ones() as usize;
-            start += L::WIDTH;
-        }
-        found
-    }
-}
-
 /// Takes the grid's candidates, and keeps the neighbours.
 pub struct Collect<'a, T> {
-    test: T,
+    test: &'a T,
     chunk: &'a mut Chunk,
     /// How many are of any use.
     most: usize,
@@ -76,7 +58,7 @@ pub struct Collect<'a, T> {
 
 impl<'a, T: SlotTest> Collect<'a, T> {
     #[inline(always)]
-    pub fn new(test: T, chunk: &'a mut Chunk, most: usize) -> Self {
+    pub fn new(test: &'a T, chunk: &'a mut Chunk, most: usize) -> Self {
         Self {
             test,
             chunk,
@@ -133,12 +115,13 @@ impl<T: SlotTest> FirstTest for Collect<'_, T> {
 mod tests {
     use super::super::list::List;
     use super::*;
+    use crate::broad_phase::Slots;
     use crate::simd::{Kernel, Tier, dispatch};
 
     /// Hands runs of slots to a list.
-    struct Runs<'a>(Collect<'a, Grown<'a>>, &'a [(usize, Range<usize>)]);
+    struct Runs<'a, 's>(Collect<'a, Grown<'s>>, &'a [(usize, Range<usize>)]);
 
-    impl Kernel for Runs<'_> {
+    impl Kernel for Runs<'_, '_> {
         type Output = ();
         fn run<L: Lanes>(mut self, l: L) {
             for (i, run) in self.1 {
@@ -175,7 +158,10 @@ mod tests {
         // One in sixteen is far away, so that hits don't come in whole vectors.
         let is_far = |slot: usize| slot % 16 == 7;
         let ball = |slot| [if is_far(slot) { 9.0 } else { 1.0 }, 1.0, 1.0, 1.0];
-        let balls: Vec<_> = (0..len + MAX_WIDTH).map(ball).collect();
+        let slots = Slots {
+            balls: (0..len + MAX_WIDTH).map(ball).collect(),
+            ..Slots::default()
+        };
         // Sixteen slots from the first one on share an entry; another before or behind them opens one.
         let runs = [
             (5, 6..len),
@@ -192,7 +178,7 @@ mod tests {
         let seen = all.clone().count() as u64;
         let expected: Vec<_> = all.filter(|&(_, j)| !is_far(j)).collect();
         let test = Grown {
-            balls: &balls,
+            slots: slots.arranged(),
             by: [Reach::NONE; 2],
             volume: Volume::Ball,
         };
@@ -200,7 +186,7 @@ mod tests {
             let mut chunk = Chunk::default();
             dispatch(
                 tier,
-                Runs(Collect::new(test, &mut chunk, usize::MAX), &runs),
+                Runs(Collect::new(&test, &mut chunk, usize::MAX), &runs),
             );
             assert_eq!((chunk.len(), chunk.seen), (expected.len(), seen));
             let mut read = Read(Vec::new());

@@ -1,7 +1,5 @@
 //! Whether every ball has stayed within its skin.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use crate::broad_phase::BLOCK_BODIES;
 use crate::rounding::skin::{Skin, stays};
 use crate::simd::{Kernel, Lanes, dispatch};
@@ -12,17 +10,11 @@ pub const PIECE: usize = 4096;
 
 /// Whether none has drifted by its skin since `then`.
 pub fn all_stay(executor: Executor<'_>, skin: Skin, now: &[[f32; 4]], then: &[[f32; 4]]) -> bool {
-    let (tier, drifted) = (executor.tier, AtomicBool::new(false));
-    executor.pool.ranges(now.len(), PIECE, |range| {
-        if drifted.load(Ordering::Relaxed) {
-            return;
-        }
+    let Executor { tier, pool } = executor;
+    pool.all(now.len(), PIECE, |range| {
         let (now, then) = (&now[range.clone()], &then[range]);
-        if !dispatch(tier, Measure { skin, now, then }) {
-            drifted.store(true, Ordering::Relaxed);
-        }
-    });
-    !drifted.into_inner()
+        dispatch(tier, Measure { skin, now, then })
+    })
 }
 
 struct Measure<'a> {

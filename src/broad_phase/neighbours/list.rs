@@ -218,8 +218,8 @@ impl Kernel for Make<'_> {
                 let still = Skin::share(0.0);
                 let moves = self.grid.moves(self.part);
                 let by = moves.map(|moves| Reach::with_skin(if moves { self.skin } else { still }));
-                let balls = &self.grid.slots().balls;
-                self.collect(l, Grown { balls, by, volume });
+                let slots = self.grid.slots().arranged();
+                self.collect(l, &Grown { slots, by, volume });
             }
             Near::Ends(ends) => self.collect(l, ends),
         }
@@ -228,7 +228,7 @@ impl Kernel for Make<'_> {
 
 impl Make<'_> {
     #[inline(always)]
-    fn collect<L: Lanes>(self, l: L, test: impl SlotTest) {
+    fn collect<L: Lanes>(self, l: L, test: &impl SlotTest) {
         let mut collect = Collect::new(test, self.chunk, self.most);
         self.grid.find(l, self.part..self.part + 1, &mut collect);
         self.chunk.close();

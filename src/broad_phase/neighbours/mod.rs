@@ -48,7 +48,6 @@ pub struct Neighbours {
     list: List,
     /// The grown boxes that the list was made of, if it was made by boxes.
     grown: EndSlots,
-    is_by_boxes: bool,
     state: State,
     policy: Policy,
 }
@@ -84,7 +83,7 @@ impl Neighbours {
     /// Whether there is a list, and it was made by boxes.
     #[cfg(debug_assertions)]
     pub(super) fn is_by_boxes(&self) -> bool {
-        self.is_by_boxes && self.list().is_some()
+        self.policy.is_by_boxes() && self.list().is_some()
     }
 
     /// Looks for a better order of places: that of the slots after a list has been made, or what the grid says.
@@ -132,7 +131,7 @@ impl Neighbours {
         let long = boxes.filter(|boxes| boxes.are_long);
         if matches!(self.state, State::Ordered | State::Followed) {
             let (now, then) = (&balls[..moving], &self.grid.slots().balls[..moving]);
-            let stay = match boxes.filter(|_| self.is_by_boxes) {
+            let stay = match boxes.filter(|_| self.policy.is_by_boxes()) {
                 Some(boxes) => self.grown.hold(executor, &names[..moving], boxes.all),
                 None => drift::all_stay(executor, self.policy.skin(), now, then),
             };
@@ -155,7 +154,7 @@ impl Neighbours {
         }
         self.state = State::Searching;
         self.policy
-            .list(long.is_some(), || sizes(balls, names, long));
+            .turn_to(long.is_some(), || sizes(balls, names, long));
         let Some(skin) = self.policy.next() else {
             self.grid.set_reach(Reach::NONE);
             self.grid.arrange(executor, balls, names);
@@ -180,7 +179,6 @@ impl Neighbours {
         (skin, moving): (Skin, usize),
         long: Option<Boxes<'_>>,
     ) -> bool {
-        self.is_by_boxes = long.is_some();
         let near = match long {
             None => Near::Balls(self.volume),
             Some(Boxes { all, .. }) => {

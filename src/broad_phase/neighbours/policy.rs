@@ -14,7 +14,7 @@ const SKINS: [f64; 8] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.5, 0.75];
 
 /// How many times the candidates a skin may bring at most, what 0.375 radii bring: beyond, the frame that makes a list takes more than 1.3
 /// of the grid's. The balls about long boxes grow little by what is wide for the boxes.
-const MOST_CANDIDATES: f64 = 2.6;
+const GREATEST_GROWTH: f64 = 2.6;
 
 /// The first one, before anything is known of the motion.
 const FIRST: usize = 3;
@@ -56,8 +56,8 @@ pub struct Policy {
     skin: usize,
     /// Of the bodies of the list at hand.
     sizes: Sizes,
-    /// Whether it is one of long boxes.
-    by_boxes: bool,
+    /// Whether lists are made of long boxes.
+    is_by_boxes: bool,
     /// Frames that the present list has served.
     served: u32,
     /// Frames of the grid to come.
@@ -72,7 +72,7 @@ impl Default for Policy {
             radii: Radii::Own,
             skin: FIRST,
             sizes: Sizes::new(0.0, 0.0),
-            by_boxes: false,
+            is_by_boxes: false,
             served: 0,
             // The first frame places bodies and isn't searched.
             wait: 1,
@@ -123,30 +123,39 @@ impl Policy {
 
     /// The skins to choose from.
     fn skins(&self) -> &'static [f64] {
-        let few = |&skin: &f64| self.candidates(skin) <= MOST_CANDIDATES;
+        let few = |&skin: &f64| self.candidates(skin) <= GREATEST_GROWTH;
         &SKINS[..SKINS.partition_point(few)]
     }
 
+    fn widest_skin(&self) -> usize {
+        self.skins().len() - 1
+    }
+
+    /// Whether lists are made of long boxes.
+    pub fn is_by_boxes(&self) -> bool {
+        self.is_by_boxes
+    }
+
     /// From now on, lists are made of balls, or of long boxes.
-    pub fn list(&mut self, by_boxes: bool, sizes: impl Fn() -> Sizes) {
-        if by_boxes == self.by_boxes {
+    pub fn turn_to(&mut self, by_boxes: bool, sizes: impl Fn() -> Sizes) {
+        if by_boxes == self.is_by_boxes {
             return;
         }
-        (self.by_boxes, self.sizes) = (by_boxes, sizes());
+        (self.is_by_boxes, self.sizes) = (by_boxes, sizes());
         if self.knows_a_length() {
             (self.radii, self.skin) = (Radii::Typical, FIRST);
         }
-        self.skin = self.skin.min(self.skins().len() - 1);
+        self.skin = self.skin.min(self.widest_skin());
     }
 
     /// Whether the skin of long boxes is one length for all, which the longest side of each is no measure of.
     fn knows_a_length(&self) -> bool {
-        self.by_boxes && self.sizes.typical > 0.0
+        self.is_by_boxes && self.sizes.typical > 0.0
     }
 
     /// How many times the pairs of the list at hand one with the widest skin has.
     pub fn widest(&self) -> f64 {
-        wider(self.skins()[self.skins().len() - 1]) / self.wider()
+        wider(SKINS[self.widest_skin()]) / self.wider()
     }
 
     /// The skin of a list to be made in this frame, if it is to be made.
@@ -196,7 +205,7 @@ impl Policy {
             self.pause = PAUSE;
         } else {
             // Of a list that served one frame alone the widest skin tells most.
-            self.skin = self.skins().len() - 1;
+            self.skin = self.widest_skin();
             self.give_up();
         }
     }

@@ -190,7 +190,7 @@ fn the_next_skin_is_the_cheapest_to_the_pair() {
                 radii,
                 skin,
                 sizes: Sizes::new(1.0, 1.0),
-                by_boxes: false,
+                is_by_boxes: false,
                 served,
                 wait: 0,
                 pause: PAUSE,
@@ -209,14 +209,14 @@ fn the_next_skin_is_the_cheapest_to_the_pair() {
 fn lists_of_long_boxes_have_a_length_for_a_skin_and_wider_ones() {
     let [long, cubes, giant] = [(3.0, 24.0), (2.0, 2.0), (0.0, 5.0)].map(|(a, b)| Sizes::new(a, b));
     let mut policy = Policy::default();
-    policy.list(false, || unreachable!("they are balls as before"));
-    policy.list(true, || long);
+    policy.turn_to(false, || unreachable!("they are balls as before"));
+    policy.turn_to(true, || long);
     assert_eq!(
         (policy.skin(), policy.skins().len()),
         (Skin::length(0.75), 8)
     );
     assert!((policy.more_candidates() - (1.0f64 + 0.25 / 8.0).powi(3)).abs() < 1e-12);
-    policy.list(true, || unreachable!("they are boxes as before"));
+    policy.turn_to(true, || unreachable!("they are boxes as before"));
     // Slow ones with many candidates, of which the longest sides would make more.
     (policy.served, policy.wait) = (2, 0);
     let slow = list(3_000_000, 200_000_000, [0.01, 0.26]);
@@ -228,11 +228,11 @@ fn lists_of_long_boxes_have_a_length_for_a_skin_and_wider_ones() {
     policy.overflowed();
     assert_eq!((policy.radii, policy.skin), (Radii::Typical, 0));
     policy.skin = 7;
-    policy.list(false, || cubes);
+    policy.turn_to(false, || cubes);
     assert_eq!((policy.radii, SKINS[policy.skin]), (Radii::Typical, 0.375));
     assert_eq!(policy.more_candidates(), policy.wider());
     let mut policy = Policy::default();
-    policy.list(true, || giant);
+    policy.turn_to(true, || giant);
     assert_eq!(
         (policy.skin(), policy.skins().len()),
         (Skin::share(0.25), 6)

@@ -86,7 +86,7 @@ fn a_list_of_long_boxes_holds_the_pairs_whose_grown_ones_meet_and_each_once() {
         needles.step();
     }
     assert_eq!(needles.state(), State::Made);
-    assert!(needles.bodies.finder.is_by_boxes);
+    assert!(needles.bodies.finder.policy.is_by_boxes());
     let (listed, grown) = (needles.bodies.candidates(true), needles.grown());
     let moving = needles.bodies.moving;
     let meets = |a: usize, b: usize| a < moving && grown[a].meets(&grown[b]);
@@ -171,7 +171,7 @@ fn lists_are_made_by_boxes_in_frames_of_long_ones_alone() {
             needles.step();
         }
         let finder = &needles.bodies.finder;
-        let found = (finder.state, finder.is_by_boxes);
+        let found = (finder.state, finder.policy.is_by_boxes());
         assert_eq!(found, (State::Followed, by_boxes), "{are_long}, {jumps}");
     }
 }

@@ -1,0 +1,99 @@
+//! Volume tests of slots: candidates in the two forms that pair finders hand out, hits as a list.
+
+use std::ops::Range;
+
+use super::{Arranged, Block};
+use crate::simd::{LANES, Lanes, MAX_WIDTH, quads_in_columns};
+
+/// A volume test of slots.
+pub trait SlotTest {
+    /// Lists the slots of `run` that may touch slot `i` at the front of `hits`, which has room for the run and a vector
+    /// more. Returns their number.
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize;
+
+    /// Lists the codes of the block's pairs that may touch at the front of `hits`, which has room for the block and a
+    /// vector more. Returns their number.
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize;
+}
+
+/// Writes the slots from `start` on whose bits are set; how many.
+///
+/// No branch upon them: it would be foreseen badly, and cost the more the more pairs touch.
+#[inline(always)]
+pub fn list_slots<L: Lanes>(l: L, hit: u32, start: usize, hits: &mut [u32]) -> usize {
+    let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
+    l.compress(hit, slot, hits);
+    hit.count_ones() as usize
+}
+
+/// A volume test of the finder's own balls, a vector of pairs at a time.
+pub trait BallTest {
+    /// The balls.
+    fn slots(&self) -> Arranged<'_>;
+
+    /// Bits of the lanes below `count` whose two balls, or what they stand for, may touch; `pair` says in which slots a lane's
+    /// balls are.
+    fn touching<L: Lanes>(
+        &self,
+        l: L,
+        balls: [[L::F; 4]; 2],
+        count: usize,
+        pair: impl Fn(usize) -> [usize; 2],
+    ) -> u32;
+}
+
+impl<T: BallTest> SlotTest for T {
+    #[inline(always)]
+    fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
+        let Arranged {
+            balls,
+            columns: [x, y, z, r],
+            ..
+        } = self.slots();
+        let one = self.slots().ball(i).map(|number| l.splat(number));
+        let (mut start, mut found) = (run.start, 0);
+        if x.is_empty() {
+            while start < run.end {
+                let pairs = [one, l.load_quads(&balls[start..])];
+                let hit = self.touching(l, pairs, run.end - start, |lane| [i, start + lane]);
+                found += list_slots(l, hit, start, &mut hits[found..found + MAX_WIDTH]);
+                start += L::WIDTH;
+            }
+            return found;
+        }
+        // Equally long, they need one check of bounds a vector.
+        let [y, z, r] = [y, z, r].map(|column| &column[..x.len()]);
+        while start < run.end {
+            let vector = start..start + L::WIDTH;
+            let other = [
+                l.load(&x[vector.clone()]),
+                l.load(&y[vector.clone()]),
+                l.load(&z[vector.clone()]),
+                l.load(&r[vector]),
+            ];
+            let hit = self.touching(l, [one, other], run.end - start, |lane| [i, start + lane]);
+            found += list_slots(l, hit, start, &mut hits[found..found + MAX_WIDTH]);
+            start += L::WIDTH;
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
+        let balls = self.slots().balls;
+        let ours = quads_in_columns(l, &balls[block.first()..]);
+        let (first, codes) = (block.first(), block.codes());
+        let (mut start, mut found) = (0, 0);
+        while start < codes.len() {
+            let (code, pairs) = block.balls(l, start, &ours, balls);
+            let hit = self.touching(l, pairs, codes.len() - start, |lane| {
+                let code = codes[start + lane];
+                [first + (code & 15) as usize, (code >> 4) as usize]
+            });
+            l.compress(hit, code, &mut hits[found..]);
+            found += hit.count_ones() as usize;
+            start += L::WIDTH;
+        }
+        found
+    }
+}
