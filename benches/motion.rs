@@ -11,6 +11,7 @@ use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::lab::measure::contestant::Contestant;
 use sdop::lab::measure::turns::{Regime, Turns};
+use sdop::lab::percentiles::Percentiles;
 use sdop::settings::{Finder, Strategy};
 
 /// Turns of a row at most, and bodies times frames.
@@ -90,15 +91,12 @@ fn compare(bodies: usize, most: f32, strategy: Strategy) {
             }
         });
     }
-    let statistics = |entrant: &mut Entrant| {
-        entrant.seconds.sort_by(f64::total_cmp);
-        let a_body = 1e9 / bodies as f64;
-        let frames = entrant.seconds.len() as f64;
-        let at = |share: f64| entrant.seconds[((frames - 1.0) * share) as usize] * a_body;
-        let mean = entrant.seconds.iter().sum::<f64>() / frames * a_body;
-        [mean, at(0.5), at(0.99), at(1.0)]
+    let statistics = |entrant: &Entrant| {
+        let mean = entrant.seconds.iter().sum::<f64>() / entrant.seconds.len() as f64;
+        let Percentiles { p50, p99, most } = Percentiles::of(entrant.seconds.clone());
+        [mean, p50, p99, most].map(|seconds| seconds * 1e9 / bodies as f64)
     };
-    let times: Vec<[f64; 4]> = entrants.iter_mut().map(statistics).collect();
+    let times: Vec<[f64; 4]> = entrants.iter().map(statistics).collect();
     let grid = entrants
         .iter()
         .position(|entrant| entrant.finder == Finder::Grid);

@@ -28,6 +28,7 @@ const ROOMS: &[&str] = &[
     "boxes",
     // The laboratory.
     "lab/number",
+    "lab/percentiles",
     "lab/random",
     "lab/hash",
     "lab/mpi",

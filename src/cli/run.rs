@@ -7,6 +7,7 @@ use sdop::Tier;
 use sdop::counters::{Counters, Seconds};
 use sdop::lab::domain::{BorderSeconds, RankLine};
 use sdop::lab::effects::EffectReport;
+use sdop::lab::percentiles::Percentiles;
 use sdop::lab::record::{FrameLine, Header, Recorder};
 use sdop::lab::scene::Scene;
 use sdop::lab::simulate::{Simulation, Summary};
@@ -71,6 +72,7 @@ struct Report<'a> {
     threads: usize,
     counters: Map<String, Value>,
     seconds: Terms,
+    frame_seconds: Percentiles,
     effects: Vec<EffectLine>,
     volumes_sha256: &'a str,
     pairs_sha256: Option<&'a str>,
@@ -185,6 +187,7 @@ fn report<'a>(
             culling: summary.seconds,
             border: shared.map(|(border, _)| border),
         },
+        frame_seconds: summary.frame_seconds,
         effects: summary.effects.iter().map(effect_line).collect(),
         volumes_sha256: &summary.volumes_sha256,
         pairs_sha256: summary.pairs_sha256.as_deref(),
@@ -265,6 +268,12 @@ fn write_text(
         report.threads
     )?;
     writeln!(out, "{}", stages(&report.seconds, report.frames))?;
+    let Percentiles { p50, p99, most } = report.frame_seconds;
+    let [p50, p99, most] = [p50, p99, most].map(|seconds| 1e3 * seconds);
+    writeln!(
+        out,
+        "culling a frame, ms: p50 {p50:.3}, p99 {p99:.3}, most {most:.3}"
+    )?;
     writeln!(out, "{}", volumes(scene.cull.strategy, &summary.counters))?;
     let Counters {
         reported, untested, ..

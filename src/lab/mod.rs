@@ -9,6 +9,7 @@ pub mod judge;
 pub mod measure;
 pub mod mpi;
 pub mod number;
+pub mod percentiles;
 pub mod random;
 pub mod record;
 pub mod report;

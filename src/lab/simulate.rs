@@ -15,6 +15,7 @@ use crate::culler::{CullError, Culler};
 use crate::lab::effects::{EffectError, EffectReport, Effects};
 use crate::lab::hash::volumes_sha256;
 use crate::lab::hash::{PairsDigest, PairsHash};
+use crate::lab::percentiles::Percentiles;
 use crate::lab::scene::Scene;
 use crate::pairs::PairList;
 use crate::settings::Finder;
@@ -115,6 +116,8 @@ pub struct Frame<'a> {
     pub pairs: &'a PairList,
     /// What this frame's culling counted.
     pub counters: Counters,
+    /// What it took; without construction and effects.
+    pub seconds: Seconds,
 }
 
 /// What a finished run says of itself. Counters and hashes are equal on every CPU, tier and thread count.
@@ -124,6 +127,8 @@ pub struct Summary {
     pub counters: Counters,
     /// Sums over frames, with construction (shapes and culler) and effects.
     pub seconds: Seconds,
+    /// Of single frames' culling.
+    pub frame_seconds: Percentiles,
     /// Every effect, listed or not.
     pub effects: Vec<EffectReport>,
     /// The pair finder at work: the one asked for, or what `auto` picked.
@@ -195,13 +200,14 @@ impl<'a> Simulation<'a> {
         let Some(bodies) = self.trajectory.advance()? else {
             return Ok(None);
         };
-        let before = *self.culler.counters();
+        let (counted, took) = (*self.culler.counters(), *self.culler.seconds());
         self.culler.cull(bodies)?;
         Ok(Some(Frame {
             number,
             pairs: self.culler.pairs(),
             bodies,
-            counters: self.culler.counters().since(&before),
+            counters: self.culler.counters().since(&counted),
+            seconds: self.culler.seconds().since(&took),
         }))
     }
 
@@ -231,7 +237,9 @@ impl<'a> Simulation<'a> {
         mut observe: impl FnMut(&Frame<'_>) -> Result<(), E>,
     ) -> Result<Summary, E> {
         let (mut hash, mut digest) = (PairsHash::default(), PairsDigest::default());
+        let mut frames = Vec::new();
         while let Some(frame) = self.next_frame()? {
+            frames.push(frame.seconds.total);
             hash.frame(frame.number, &frame.pairs.sorted());
             digest.add(frame.number, frame.pairs.iter());
             observe(&frame)?;
@@ -240,6 +248,7 @@ impl<'a> Simulation<'a> {
         Ok(Summary {
             counters: *self.counters(),
             seconds: self.seconds(),
+            frame_seconds: Percentiles::of(frames),
             effects: self.trajectory.reports().to_vec(),
             finder: self.culler.finder(),
             volumes_sha256: volumes_sha256(&self.scene.shapes),

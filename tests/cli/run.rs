@@ -27,7 +27,7 @@ fn json_is_the_documented_object() {
     #[rustfmt::skip]
     assert_eq!(keys(&report), [
         "scene", "seed", "bodies", "frames", "strategy", "pairs", "finder", "k", "axes", "overlap", "updates", "interest", "budget",
-        "simd", "threads", "counters", "seconds", "effects", "volumes_sha256", "pairs_sha256",
+        "simd", "threads", "counters", "seconds", "frame_seconds", "effects", "volumes_sha256", "pairs_sha256",
         "pairs_digest",
     ]);
     #[rustfmt::skip]
@@ -44,6 +44,7 @@ fn json_is_the_documented_object() {
         "total",
     ];
     assert_eq!(keys(&report["seconds"]), stages);
+    assert_eq!(keys(&report["frame_seconds"]), ["p50", "p99", "most"]);
     assert_eq!(keys(&report["effects"][0]), ["name", "steps", "seconds"]);
     assert_eq!(report["scene"], "paper-50");
     assert_eq!(report["frames"], 20);

@@ -8,6 +8,7 @@ use super::rank::Rank;
 use crate::counters::{Counters, Seconds};
 use crate::lab::effects::EffectReport;
 use crate::lab::hash::{PairsDigest, PairsHash, volumes_sha256};
+use crate::lab::percentiles::Percentiles;
 use crate::lab::simulate::Summary;
 use crate::settings::{TestedVolume, Updates};
 
@@ -72,7 +73,7 @@ pub struct RankSeconds {
 pub struct DomainSummary {
     /// As of one process. Counters are sums over ranks: updates are those of owned bodies, tests and hits count what every rank
     /// tested, so a pair of ghosts more than once; `reported` counts each pair once. Seconds are the largest of
-    /// any rank, term by term. The finder is rank 0's.
+    /// any rank, term by term, those of single frames too. The finder is rank 0's.
     pub whole: Summary,
     /// What borders cost, the largest of any rank, term by term.
     pub border: BorderSeconds,
@@ -92,6 +93,7 @@ pub fn run<N: Network>(
     let gathers = rank.scene.share().all <= GATHERED;
     let (mut hash, mut digest) = (PairsHash::default(), PairsDigest::default());
     let mut reported = 0;
+    let (mut frames, mut took) = (Vec::new(), 0.0);
     while let Some(frame) = rank.next_frame()? {
         let number = frame.number;
         digest.add(number, frame.pairs.iter().copied());
@@ -101,6 +103,9 @@ pub fn run<N: Network>(
             hash.frame(number, &sorted);
         }
         observe(number);
+        let so_far = rank.culler.seconds().total;
+        frames.push(so_far - took);
+        took = so_far;
     }
     network.sum(&mut digest.0);
     let scene = &rank.scene;
@@ -116,30 +121,14 @@ pub fn run<N: Network>(
         effects: effects.iter().map(|effect| effect.seconds).sum(),
         ..culling
     };
-    let [
-        construct,
-        effects_seconds,
-        update,
-        pair_finding,
-        ordop,
-        total,
-    ] = largest(
-        network,
-        [
-            seconds.construct,
-            seconds.effects,
-            seconds.update,
-            seconds.pair_finding,
-            seconds.ordop,
-            seconds.total,
-        ],
-    );
     let BorderSeconds {
         ghosts,
         migration,
         waiting,
     } = rank.work.seconds;
     let [ghosts, migration, waiting] = largest(network, [ghosts, migration, waiting]);
+    let Percentiles { p50, p99, most } = Percentiles::of(frames);
+    let [p50, p99, most] = largest(network, [p50, p99, most]);
     Ok(DomainSummary {
         border: BorderSeconds {
             ghosts,
@@ -149,14 +138,8 @@ pub fn run<N: Network>(
         ranks: lines,
         whole: Summary {
             counters,
-            seconds: Seconds {
-                construct,
-                effects: effects_seconds,
-                update,
-                pair_finding,
-                ordop,
-                total,
-            },
+            seconds: largest_seconds(network, seconds),
+            frame_seconds: Percentiles { p50, p99, most },
             effects,
             finder: rank.culler.finder(),
             volumes_sha256: volumes_sha256(&scene.shapes),
@@ -234,6 +217,28 @@ fn largest<const N: usize>(network: &impl Network, seconds: [f64; N]) -> [f64; N
     let mut bits = seconds.map(|x| x.max(0.0).to_bits());
     network.max(&mut bits);
     bits.map(f64::from_bits)
+}
+
+/// The largest of any rank, term by term. Collective.
+fn largest_seconds(network: &impl Network, seconds: Seconds) -> Seconds {
+    let Seconds {
+        construct,
+        effects,
+        update,
+        pair_finding,
+        ordop,
+        total,
+    } = seconds;
+    let terms = [construct, effects, update, pair_finding, ordop, total];
+    let [construct, effects, update, pair_finding, ordop, total] = largest(network, terms);
+    Seconds {
+        construct,
+        effects,
+        update,
+        pair_finding,
+        ordop,
+        total,
+    }
 }
 
 /// Every rank's line. Collective.

@@ -217,7 +217,7 @@ const fn stages(finder: &'static str, threads: &'static str) -> [&'static str; 1
         "--strategy",
         "s-dop-batch",
         "--frames",
-        "20",
+        "100",
         "--threads",
         threads,
         "--format",

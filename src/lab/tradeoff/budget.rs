@@ -16,6 +16,7 @@ use super::variant::Variant;
 use crate::culler::Culler;
 use crate::lab::cost::pass::{Culled, Simulated, pass};
 use crate::lab::measure::turns::{Regime, median};
+use crate::lab::percentiles::Percentiles;
 use crate::lab::scene::Scene;
 use crate::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
 use crate::simd::Tier;
@@ -202,11 +203,9 @@ pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>,
         let pass = pass(scene, &variants, tier, &mut frames, None, &mut ())?;
         Ok(pass.culled)
     };
-    let spent = |culled: &Culled| {
+    let spent = |culled: &Culled| -> Vec<f64> {
         let warm = culled.times.of(Regime::Warm).iter();
-        let mut spent: Vec<f64> = warm.map(|s| 1e6 * (s.finding + s.refining)).collect();
-        spent.sort_by(f64::total_cmp);
-        spent
+        warm.map(|s| 1e6 * (s.finding + s.refining)).collect()
     };
     let whole = median(
         culled(&[Budget::Tests(u64::MAX)])?
@@ -217,14 +216,16 @@ pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>,
     let microseconds = SHARES.map(|share| (share * whole).round() as u64);
     let row = |(microseconds, culled): (u64, Culled)| {
         let times = spent(&culled);
-        let last = times.len().checked_sub(1)? as f64;
-        let at = |quantile: f64| times[(last * quantile).round() as usize];
+        if times.is_empty() {
+            return None;
+        }
+        let Percentiles { p50, p99, .. } = Percentiles::of(times);
         let counters = culled.counts.culler;
         Some(ClockRow {
             microseconds,
             refined: counters.ordop.tests as f64 / counters.sphere.hits.max(1) as f64,
-            p50: at(0.5) - microseconds as f64,
-            p99: at(0.99) - microseconds as f64,
+            p50: p50 - microseconds as f64,
+            p99: p99 - microseconds as f64,
         })
     };
     let culled = culled(&microseconds.map(Budget::Microseconds))?;

@@ -1,0 +1,54 @@
+//! How single frames' times are spread: a mean hides the frame that a viewer sees stutter.
+
+use serde::Serialize;
+
+/// Of single frames' seconds: what half of them don't exceed, what 99 in 100 don't, and the most. All zero without frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Percentiles {
+    /// The median frame, the earlier of the two middle ones.
+    pub p50: f64,
+    /// 99 in 100 frames take no longer.
+    pub p99: f64,
+    /// The longest frame.
+    pub most: f64,
+}
+
+impl Percentiles {
+    /// By nearest rank: each is one of the values.
+    #[must_use]
+    pub fn of(mut values: Vec<f64>) -> Self {
+        values.sort_by(f64::total_cmp);
+        // The first of which at least so many in a hundred are no greater.
+        let at = |hundredths: usize| {
+            let rank = (values.len() * hundredths).div_ceil(100);
+            values.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
+        };
+        Self {
+            p50: at(50),
+            p99: at(99),
+            most: at(100),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_is_the_least_value_that_so_many_do_not_exceed() {
+        for (values, [p50, p99, most]) in [
+            (0, [0.0; 3]),
+            (1, [1.0; 3]),
+            (2, [1.0, 2.0, 2.0]),
+            (5, [3.0, 5.0, 5.0]),
+            (100, [50.0, 99.0, 100.0]),
+            (101, [51.0, 100.0, 101.0]),
+            (200, [100.0, 198.0, 200.0]),
+        ] {
+            let falling = (1..=values).rev().map(f64::from).collect();
+            let found = Percentiles::of(falling);
+            assert_eq!([found.p50, found.p99, found.most], [p50, p99, most]);
+        }
+    }
+}
