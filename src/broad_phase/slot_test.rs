@@ -31,31 +31,51 @@ pub trait BallTest {
     /// The balls.
     fn slots(&self) -> Arranged<'_>;
 
-    /// Bits of the lanes below `count` whose two balls, or what they stand for, may touch; `pair` says in which slots a lane's
-    /// balls are.
+    /// Whether two balls, or what they stand for, surely lie apart, lane by lane: `between` is the way from one centre to the
+    /// other, `radii` are the two radii.
+    fn apart<L: Lanes>(&self, l: L, between: [L::F; 3], radii: [L::F; 2]) -> L::M;
+
+    /// Of the lanes `near`, which [`apart`](Self::apart) hasn't parted, those that may touch; `pair` says in which slots a lane's
+    /// balls are. All of them, unless a test knows more than its balls tell.
+    #[inline(always)]
     fn touching<L: Lanes>(
         &self,
-        l: L,
-        balls: [[L::F; 4]; 2],
-        count: usize,
-        pair: impl Fn(usize) -> [usize; 2],
-    ) -> u32;
+        _: L,
+        _between: [L::F; 3],
+        _radii: [L::F; 2],
+        near: u32,
+        _pair: impl Fn(usize) -> [usize; 2],
+    ) -> u32 {
+        near
+    }
+}
+
+/// Bits of the lanes below `count` whose two balls, or what they stand for, may touch.
+#[inline(always)]
+fn hits_of<L: Lanes>(
+    test: &impl BallTest,
+    l: L,
+    [one, other]: [[L::F; 4]; 2],
+    count: usize,
+    pair: impl Fn(usize) -> [usize; 2],
+) -> u32 {
+    let between = [other[0] - one[0], other[1] - one[1], other[2] - one[2]];
+    let radii = [one[3], other[3]];
+    let near = !l.bits(test.apart(l, between, radii)) & l.bits(l.first(count));
+    test.touching(l, between, radii, near, pair)
 }
 
 impl<T: BallTest> SlotTest for T {
     #[inline(always)]
     fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
-        let Arranged {
-            balls,
-            columns: [x, y, z, r],
-            ..
-        } = self.slots();
-        let one = self.slots().ball(i).map(|number| l.splat(number));
+        let slots = self.slots();
+        let (balls, [x, y, z, r]) = (slots.balls, slots.columns);
+        let one = slots.ball(i).map(|number| l.splat(number));
         let (mut start, mut found) = (run.start, 0);
         if x.is_empty() {
             while start < run.end {
                 let pairs = [one, l.load_quads(&balls[start..])];
-                let hit = self.touching(l, pairs, run.end - start, |lane| [i, start + lane]);
+                let hit = hits_of(self, l, pairs, run.end - start, |lane| [i, start + lane]);
                 found += list_slots(l, hit, start, &mut hits[found..found + MAX_WIDTH]);
                 start += L::WIDTH;
             }
@@ -71,7 +91,9 @@ impl<T: BallTest> SlotTest for T {
                 l.load(&z[vector.clone()]),
                 l.load(&r[vector]),
             ];
-            let hit = self.touching(l, [one, other], run.end - start, |lane| [i, start + lane]);
+            let hit = hits_of(self, l, [one, other], run.end - start, |lane| {
+                [i, start + lane]
+            });
             found += list_slots(l, hit, start, &mut hits[found..found + MAX_WIDTH]);
             start += L::WIDTH;
         }
@@ -86,7 +108,7 @@ impl<T: BallTest> SlotTest for T {
         let (mut start, mut found) = (0, 0);
         while start < codes.len() {
             let (code, pairs) = block.balls(l, start, &ours, balls);
-            let hit = self.touching(l, pairs, codes.len() - start, |lane| {
+            let hit = hits_of(self, l, pairs, codes.len() - start, |lane| {
                 let code = codes[start + lane];
                 [first + (code & 15) as usize, (code >> 4) as usize]
             });

@@ -26,7 +26,8 @@ use super::scene_args::{MachineArgs, SceneArgs};
 
 /// Simulate and cull one scene
 ///
-/// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of each stage, what single frames take, and hashes.
+/// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of each stage, what single frames
+/// take, and hashes.
 /// Counters and hashes depend on scene, seed and flags alone, not on the CPU or threads; with --budget-us they depend on the clock.
 /// Under mpirun, ranks share the scene and report the same pairs; built with the feature `mpi`.
 #[derive(clap::Args)]

@@ -7,7 +7,7 @@
 
 use crate::bodies::Aabb;
 use crate::broad_phase::{Arranged, BallTest};
-use crate::rounding::cube::sure;
+use crate::rounding::cube;
 use crate::simd::Lanes;
 
 /// Boxes by their cubes, which the finder has in its slots.
@@ -22,7 +22,7 @@ pub struct Cubes<'a> {
 }
 
 impl Cubes<'_> {
-    /// The definition, out of the way of what is asked for every vector.
+    /// Whether two boxes meet, by their ends: exact. Few pairs need it, so that it stays out of the vector loop.
     #[cold]
     fn boxes_meet(&self, pair: [usize; 2]) -> bool {
         let [a, b] = pair.map(|slot| &self.boxes[self.slots.names[slot] as usize]);
@@ -37,27 +37,29 @@ impl BallTest for Cubes<'_> {
     }
 
     #[inline(always)]
+    fn apart<L: Lanes>(&self, l: L, between: [L::F; 3], [mine, theirs]: [L::F; 2]) -> L::M {
+        cube::apart(l, between, mine + theirs)
+    }
+
+    #[inline(always)]
     fn touching<L: Lanes>(
         &self,
         l: L,
-        [one, other]: [[L::F; 4]; 2],
-        count: usize,
+        between: [L::F; 3],
+        [mine, theirs]: [L::F; 2],
+        near: u32,
         pair: impl Fn(usize) -> [usize; 2],
     ) -> u32 {
-        let x = l.abs(other[0] - one[0]);
-        let y = l.abs(other[1] - one[1]);
-        let z = l.abs(other[2] - one[2]);
-        let (far, reach) = (l.max(l.max(x, y), z), one[3] + other[3]);
-        let mut hit = !l.bits(l.gt(far, reach)) & l.bits(l.first(count));
-        let mut open = hit & l.bits(l.gt(far, sure(l, reach, self.less)));
+        let sure = cube::sure(l, mine + theirs, self.less);
+        let (mut hits, mut open) = (near, near & l.bits(cube::apart(l, between, sure)));
         while open != 0 {
             let lane = open.trailing_zeros();
             open &= open - 1;
             if !self.boxes_meet(pair(lane as usize)) {
-                hit &= !(1 << lane);
+                hits &= !(1 << lane);
             }
         }
-        hit
+        hits
     }
 }
 

@@ -5,7 +5,7 @@
 //! [`inflate_radius`]: crate::rounding::sphere::inflate_radius
 
 use crate::broad_phase::{Arranged, BallTest};
-use crate::rounding::sphere::apart;
+use crate::rounding::sphere;
 use crate::simd::Lanes;
 
 /// The finder's balls as they are.
@@ -19,16 +19,8 @@ impl BallTest for Spheres<'_> {
     }
 
     #[inline(always)]
-    fn touching<L: Lanes>(
-        &self,
-        l: L,
-        [one, other]: [[L::F; 4]; 2],
-        count: usize,
-        _: impl Fn(usize) -> [usize; 2],
-    ) -> u32 {
-        let (dx, dy, dz) = (other[0] - one[0], other[1] - one[1], other[2] - one[2]);
-        let s = other[3] + one[3];
-        !l.bits(apart(l, [dx, dy, dz], s)) & l.bits(l.first(count))
+    fn apart<L: Lanes>(&self, l: L, between: [L::F; 3], [mine, theirs]: [L::F; 2]) -> L::M {
+        sphere::apart(l, between, mine + theirs)
     }
 }
 

@@ -66,6 +66,12 @@ impl<L: Lanes> Cube<L> {
     }
 }
 
+/// Whether two centres are farther apart than `distance` along some axis: d > distance, rounded nowhere but in `between`.
+#[inline(always)]
+pub fn apart<L: Lanes>(l: L, [x, y, z]: [L::F; 3], distance: L::F) -> L::M {
+    l.gt(l.max(l.max(l.abs(x), l.abs(y)), l.abs(z)), distance)
+}
+
 /// By how much two boxes must be nearer than their cubes, to meet for sure, where no H − h is greater than `gap`: 2δ and more.
 #[must_use]
 pub fn less_than_sure(gap: f32) -> f32 {
@@ -143,10 +149,9 @@ mod tests {
             let [(one, gap, _), (other, other_gap, _)] =
                 [About(self.0).run(l), About(self.1).run(l)];
             let less = less_than_sure(gap.max(other_gap));
-            let far = (0..3).map(|axis| (one[axis] - other[axis]).abs());
-            let far = l.splat(far.fold(0.0, f32::max));
+            let between = [0, 1, 2].map(|axis| l.splat(one[axis]) - l.splat(other[axis]));
             let reach = l.splat(one[3]) + l.splat(other[3]);
-            let beyond = |distance| l.bits(l.gt(far, distance)) & 1 == 1;
+            let beyond = |distance| l.bits(apart(l, between, distance)) & 1 == 1;
             match (beyond(reach), beyond(sure(l, reach, less))) {
                 (true, _) => Some(false),
                 (false, true) => None,

@@ -8,7 +8,7 @@ use crate::broad_phase::{
     Arranged, BLOCK_BODIES, BallTest, Block, FirstTest, MOST_CANDIDATES, SlotTest,
 };
 use crate::rounding::skin::Reach;
-use crate::rounding::sphere;
+use crate::rounding::{cube, sphere};
 use crate::simd::{Lanes, MAX_WIDTH};
 
 /// Balls, or the cubes that they stand for, grown by a skin.
@@ -29,21 +29,12 @@ impl BallTest for Grown<'_> {
     }
 
     #[inline(always)]
-    fn touching<L: Lanes>(
-        &self,
-        l: L,
-        [one, other]: [[L::F; 4]; 2],
-        count: usize,
-        _: impl Fn(usize) -> [usize; 2],
-    ) -> u32 {
-        let [mine, theirs] = self.by;
-        let s = mine.of_lanes(l, one[3]) + theirs.of_lanes(l, other[3]);
-        let [dx, dy, dz] = [other[0] - one[0], other[1] - one[1], other[2] - one[2]];
-        let apart = match self.volume {
-            Volume::Ball => sphere::apart(l, [dx, dy, dz], s),
-            Volume::Cube => l.gt(l.max(l.max(l.abs(dx), l.abs(dy)), l.abs(dz)), s),
-        };
-        !l.bits(apart) & l.bits(l.first(count))
+    fn apart<L: Lanes>(&self, l: L, between: [L::F; 3], [mine, theirs]: [L::F; 2]) -> L::M {
+        let s = self.by[0].of_lanes(l, mine) + self.by[1].of_lanes(l, theirs);
+        match self.volume {
+            Volume::Ball => sphere::apart(l, between, s),
+            Volume::Cube => cube::apart(l, between, s),
+        }
     }
 }
 

@@ -10,6 +10,7 @@ use super::network::Network;
 use super::run::BorderSeconds;
 use crate::bodies::Bodies;
 use crate::bodies::contract::{ContractError, check_poses};
+use crate::counters::Seconds;
 use crate::culler::{CullError, Culler};
 use crate::lab::effects::Effects;
 use crate::lab::scene::Scene;
@@ -60,6 +61,8 @@ pub struct RankFrame<'a> {
     pub number: u32,
     /// The pairs that this rank reports, by the bodies' numbers in the scene, in the finder's order.
     pub pairs: &'a [[u32; 2]],
+    /// What this rank's culling of it took; without effects and borders.
+    pub seconds: Seconds,
 }
 
 impl<'a, N: Network> Rank<'a, N> {
@@ -161,7 +164,9 @@ impl<'a, N: Network> Rank<'a, N> {
         } else {
             self.renew();
         }
+        let before = *self.culler.seconds();
         let culled = self.cull();
+        let seconds = self.culler.seconds().since(&before);
         let start = Instant::now();
         agree(self.network, culled, 0)?;
         self.work.seconds.waiting += start.elapsed().as_secs_f64();
@@ -169,8 +174,11 @@ impl<'a, N: Network> Rank<'a, N> {
         let start = Instant::now();
         self.select();
         self.work.seconds.ghosts += start.elapsed().as_secs_f64();
-        let pairs = &self.pairs;
-        Ok(RankFrame { number, pairs })
+        Ok(RankFrame {
+            number,
+            pairs: &self.pairs,
+            seconds,
+        })
     }
 
     fn step(&mut self) -> Result<(), DomainError> {

@@ -93,9 +93,10 @@ pub fn run<N: Network>(
     let gathers = rank.scene.share().all <= GATHERED;
     let (mut hash, mut digest) = (PairsHash::default(), PairsDigest::default());
     let mut reported = 0;
-    let (mut frames, mut took) = (Vec::new(), 0.0);
+    let mut frames = Vec::new();
     while let Some(frame) = rank.next_frame()? {
         let number = frame.number;
+        frames.push(frame.seconds.total);
         digest.add(number, frame.pairs.iter().copied());
         reported += frame.pairs.len() as u64;
         if gathers {
@@ -103,9 +104,6 @@ pub fn run<N: Network>(
             hash.frame(number, &sorted);
         }
         observe(number);
-        let so_far = rank.culler.seconds().total;
-        frames.push(so_far - took);
-        took = so_far;
     }
     network.sum(&mut digest.0);
     let scene = &rank.scene;
@@ -116,30 +114,43 @@ pub fn run<N: Network>(
     let lines = lines(&rank);
     let mut effects = rank.effects.reports().to_vec();
     combine_effects(network, &mut effects);
-    let seconds = Seconds {
+    let mut seconds = Seconds {
         construct: scene.construct_seconds + culling.construct,
         effects: effects.iter().map(|effect| effect.seconds).sum(),
         ..culling
     };
-    let BorderSeconds {
-        ghosts,
-        migration,
-        waiting,
-    } = rank.work.seconds;
-    let [ghosts, migration, waiting] = largest(network, [ghosts, migration, waiting]);
-    let Percentiles { p50, p99, most } = Percentiles::of(frames);
-    let [p50, p99, most] = largest(network, [p50, p99, most]);
-    Ok(DomainSummary {
-        border: BorderSeconds {
+    take_largest(network, {
+        let Seconds {
+            construct,
+            effects,
+            update,
+            pair_finding,
+            ordop,
+            total,
+        } = &mut seconds;
+        [construct, effects, update, pair_finding, ordop, total]
+    });
+    let mut border = rank.work.seconds;
+    take_largest(network, {
+        let BorderSeconds {
             ghosts,
             migration,
             waiting,
-        },
+        } = &mut border;
+        [ghosts, migration, waiting]
+    });
+    let mut frame_seconds = Percentiles::of(frames);
+    take_largest(network, {
+        let Percentiles { p50, p99, most } = &mut frame_seconds;
+        [p50, p99, most]
+    });
+    Ok(DomainSummary {
+        border,
         ranks: lines,
         whole: Summary {
             counters,
-            seconds: largest_seconds(network, seconds),
-            frame_seconds: Percentiles { p50, p99, most },
+            seconds,
+            frame_seconds,
             effects,
             finder: rank.culler.finder(),
             volumes_sha256: volumes_sha256(&scene.shapes),
@@ -207,37 +218,17 @@ fn combine_effects(network: &impl Network, effects: &mut [EffectReport]) {
         let mut sums = [effect.visited, effect.changed];
         network.sum(&mut sums);
         [effect.visited, effect.changed] = sums;
-        [effect.seconds] = largest(network, [effect.seconds]);
+        take_largest(network, [&mut effect.seconds]);
     }
 }
 
-/// The largest of any rank, number by number; none is negative.
-fn largest<const N: usize>(network: &impl Network, seconds: [f64; N]) -> [f64; N] {
+/// Makes each the largest of any rank; none is negative. Collective.
+fn take_largest<const N: usize>(network: &impl Network, mut seconds: [&mut f64; N]) {
     // The bits of numbers that are not negative have their order. Sums of differences may end a little below 0.
-    let mut bits = seconds.map(|x| x.max(0.0).to_bits());
+    let mut bits = seconds.each_ref().map(|x| x.max(0.0).to_bits());
     network.max(&mut bits);
-    bits.map(f64::from_bits)
-}
-
-/// The largest of any rank, term by term. Collective.
-fn largest_seconds(network: &impl Network, seconds: Seconds) -> Seconds {
-    let Seconds {
-        construct,
-        effects,
-        update,
-        pair_finding,
-        ordop,
-        total,
-    } = seconds;
-    let terms = [construct, effects, update, pair_finding, ordop, total];
-    let [construct, effects, update, pair_finding, ordop, total] = largest(network, terms);
-    Seconds {
-        construct,
-        effects,
-        update,
-        pair_finding,
-        ordop,
-        total,
+    for (x, largest) in seconds.iter_mut().zip(bits) {
+        **x = f64::from_bits(largest);
     }
 }
 
