@@ -134,14 +134,13 @@ pub(crate) struct Totals {
     pub update_seconds: f64,
 }
 
-/// Whether a strategy makes the rows itself, when their pairs are listed, so that they are tested while the caches have them. Where
-/// some bodies don't move, or a list isn't kept, or caches hold all rows anyway, they are made before.
+/// Whether a strategy makes the rows of bodies that move itself, when their pairs are listed, so that they are tested while the
+/// caches have them. Where a list isn't kept, or caches hold all rows anyway, they are made before.
 pub(crate) fn makes_rows(settings: &CullSettings, places: &Places, output: &Output<'_>) -> bool {
     settings.strategy.scheme().flow == Flow::Batch
         && settings.updates == Updates::Eager
         && !output.is_in_portions()
-        && places.moving == places.len()
-        && places.len() > FEW_ROWS
+        && places.moving > FEW_ROWS
 }
 
 /// Culls one frame by the strategy of the settings.

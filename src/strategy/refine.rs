@@ -11,7 +11,7 @@ use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 use crate::threads::Executor;
-use crate::update::{MOST_ROWS, OrDopRows, Posed};
+use crate::update::{MOST_ROWS, OrDopRows, Posed, RowsByNumber};
 
 /// Pairs whose rows are made together, and how many of such stretches one thread looks at.
 const STRETCH: usize = 1024;
@@ -32,7 +32,7 @@ impl<'a> Refine<'a> {
         Self {
             tier: inputs.executor.tier,
             columns: OrDopColumns {
-                rows: &rows.rows,
+                rows: RowsByNumber::all(&rows.rows),
                 tables: inputs.tables,
                 overlap: settings.strategy.scheme().overlap(settings.overlap),
             },
@@ -59,15 +59,16 @@ impl<'a> Refine<'a> {
 
     /// Tests a task's pairs, stretch after stretch, and makes the rows of each when it is its turn.
     fn test_in_windows(&self, posed: Posed<'_>, [first, second]: [&[u32]; 2], task: &mut Task) {
+        let moving = posed.places.moving;
         let mut window = std::mem::take(&mut task.window);
         window.clear();
         for (first, second) in first.chunks(STRETCH).zip(second.chunks(STRETCH)) {
             let start = Instant::now();
-            let wanted = places_of(self.tier, [first, second]);
-            window.cover(self.tier, posed, wanted);
+            let wanted = places_of(self.tier, moving, [first, second]);
+            window.cover(self.tier, posed, &self.columns.rows, wanted);
             task.update_seconds += start.elapsed().as_secs_f64();
             let columns = OrDopColumns {
-                rows: window.rows(),
+                rows: window.rows(moving),
                 ..self.columns
             };
             let here = Refine { columns, ..*self };
@@ -78,24 +79,37 @@ impl<'a> Refine<'a> {
     }
 }
 
-/// The places in which some pairs are, one at least, and those between.
-fn places_of(tier: Tier, pairs: [&[u32]; 2]) -> Range<usize> {
-    struct Ends<'a>([&'a [u32]; 2]);
+/// The places in which some pairs are, and those between: of bodies that move, which have the first places, and of the others.
+fn places_of(tier: Tier, moving: usize, pairs: [&[u32]; 2]) -> [Range<usize>; 2] {
+    /// The least place and the one behind the greatest.
+    struct Ends<'a>(u32, [&'a [u32]; 2]);
     impl Kernel for Ends<'_> {
-        type Output = [u32; 2];
+        type Output = [[u32; 2]; 2];
         #[inline(always)]
-        fn run<L: Lanes>(self, _: L) -> [u32; 2] {
-            let (mut least, mut greatest) = (u32::MAX, 0);
-            for column in self.0 {
+        fn run<L: Lanes>(self, _: L) -> [[u32; 2]; 2] {
+            let [mut moving, mut still] = [[u32::MAX, 0]; 2];
+            for column in self.1 {
                 for &place in column {
-                    (least, greatest) = (least.min(place), greatest.max(place));
+                    let moves = place < self.0;
+                    let [first, second] = if moves {
+                        [place, u32::MAX]
+                    } else {
+                        [u32::MAX, place]
+                    };
+                    let [end, second_end] = if moves {
+                        [place + 1, 0]
+                    } else {
+                        [0, place + 1]
+                    };
+                    moving = [moving[0].min(first), moving[1].max(end)];
+                    still = [still[0].min(second), still[1].max(second_end)];
                 }
             }
-            [least, greatest]
+            [moving, still]
         }
     }
-    let [least, greatest] = dispatch(tier, Ends(pairs));
-    least as usize..greatest as usize + 1
+    dispatch(tier, Ends(moving as u32, pairs))
+        .map(|[least, end]| least.min(end) as usize..end as usize)
 }
 
 /// The or-DOP test that makes rows first where they are lacking, and sums up what it took.
@@ -145,11 +159,15 @@ impl<'a> Refiner<'a> {
     /// Whether the places of each stretch of pairs lie so near each other that a window holds their rows.
     fn are_near(&self, list: &PairList) -> bool {
         let Executor { tier, pool } = self.inputs.executor;
+        let moving = self.inputs.posed.places.moving;
         pool.all(list.len(), STRETCHES * STRETCH, |range| {
             let [first, second] =
                 [list.first(), list.second()].map(|column| &column[range.clone()]);
             let mut stretches = first.chunks(STRETCH).zip(second.chunks(STRETCH));
-            stretches.all(|(first, second)| places_of(tier, [first, second]).len() <= MOST_ROWS)
+            stretches.all(|(first, second)| {
+                let places = places_of(tier, moving, [first, second]);
+                places.iter().all(|places| places.len() <= MOST_ROWS)
+            })
         })
     }
 
@@ -185,7 +203,7 @@ impl<'a> Refiner<'a> {
             }
         } else if without_rows {
             self.rows
-                .update(executor, posed, 0..posed.places.len(), stamp);
+                .update(executor, posed, 0..posed.places.moving, stamp);
         } else {
             return;
         }
@@ -259,8 +277,13 @@ mod tests {
     #[test]
     fn the_places_of_pairs_go_from_the_least_to_the_greatest() {
         for tier in Tier::available() {
-            assert_eq!(places_of(tier, [&[7, 9, 8], &[5, 30, 6]]), 5..31);
-            assert_eq!(places_of(tier, [&[7; 40], &[7; 40]]), 7..8);
+            let pairs: [&[u32]; 2] = [&[7, 9, 8], &[5, 30, 6]];
+            assert_eq!(places_of(tier, 40, pairs), [5..31, 0..0]);
+            assert_eq!(places_of(tier, 31, pairs), [5..31, 0..0]);
+            assert_eq!(places_of(tier, 30, pairs), [5..10, 30..31]);
+            assert_eq!(places_of(tier, 8, pairs), [5..8, 8..31]);
+            assert_eq!(places_of(tier, 0, pairs), [0..0, 5..31]);
+            assert_eq!(places_of(tier, 8, [&[7; 40], &[7; 40]]), [7..8, 0..0]);
         }
     }
 

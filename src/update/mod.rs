@@ -7,6 +7,7 @@ mod eight;
 mod frame;
 mod intervals;
 mod lines;
+mod lookup;
 pub mod row;
 mod rows;
 mod wide;
@@ -14,6 +15,7 @@ mod window;
 
 pub use frame::{Frames, ShapeFrame};
 pub use intervals::Intervals;
+pub use lookup::RowsByNumber;
 pub use rows::{OrDopRows, Posed};
 pub use window::{MOST_ROWS, RowWindow};
 

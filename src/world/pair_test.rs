@@ -9,7 +9,7 @@ use crate::bodies::contract::{ContractError, check_pose, check_shape};
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
 use crate::settings::Overlap;
 use crate::simd::ROW;
-use crate::update::ShapeFrame;
+use crate::update::{RowsByNumber, ShapeFrame};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
 /// The or-DOPs of shapes, as they are and grown by margins.
@@ -101,8 +101,9 @@ impl PairTest {
         if check_pose(0, &rotation, &translation.map(f64::from)).is_err() {
             return true;
         }
+        let rows = [a.unturned, b.frame.row(second, rotation, translation)];
         let columns = OrDopColumns {
-            rows: &[a.unturned, b.frame.row(second, rotation, translation)],
+            rows: RowsByNumber::all(&rows),
             tables: &self.tables,
             overlap: Overlap::TwoSided,
         };

@@ -3,10 +3,16 @@
 
 use super::*;
 
-/// Many enough for a batch to make rows by itself, all of them moving.
-fn many(name: &'static str, radii: &[f32], bodies: usize, side: f32) -> Scene {
+/// Bodies of which those move that say so: enough for a batch to make rows by itself.
+fn many(
+    name: &'static str,
+    radii: &[f32],
+    bodies: usize,
+    side: f32,
+    moves: fn(usize) -> bool,
+) -> Scene {
     let mut scene = Scene::new(name, radii, bodies, |_, rng| uniform(rng, side));
-    scene.bodies.dynamic.fill(true);
+    scene.bodies.dynamic = (0..bodies).map(moves).collect();
     scene
 }
 
@@ -27,14 +33,22 @@ fn batches_equal_sequences(scene: &Scene, finders: &[Finder], tiers: &[Tier]) {
 
 #[test]
 fn near_places_share_windows_in_every_tier() {
-    let scene = many("many", &[1.0, 0.8], 20_000, 72.0);
     let finders = [Finder::Neighbours, Finder::Grid, Finder::Sweep];
+    let radii = [1.0, 0.8];
+    let scene = many("some static", &radii, 20_000, 72.0, |body| body % 7 != 3);
     batches_equal_sequences(&scene, &finders, &Tier::available());
+    let scene = many("all moving", &radii, 20_000, 72.0, |_| true);
+    batches_equal_sequences(&scene, &finders, &[Tier::detect()]);
 }
 
-/// Wide bodies and small ones have slots of their own, so that those of a pair lie farther apart than a window is long.
+/// Wide bodies and small ones have slots of their own, so that those of a pair lie farther apart than a window is long: those that
+/// move, or those that don't.
 #[test]
 fn pairs_whose_places_are_far_apart_are_tested_by_rows_that_are_all_made() {
-    let scene = many("wide and small", &[0.3, 0.3, 0.3, 0.3, 4.0], 90_000, 110.0);
-    batches_equal_sequences(&scene, &[Finder::Neighbours], &[Tier::detect()]);
+    let radii = [0.3, 0.3, 0.3, 0.3, 4.0];
+    let moving = many("all moving", &radii, 90_000, 110.0, |_| true);
+    let still = many("most static", &radii, 120_000, 120.0, |body| body % 7 == 3);
+    for scene in [moving, still] {
+        batches_equal_sequences(&scene, &[Finder::Neighbours], &[Tier::detect()]);
+    }
 }

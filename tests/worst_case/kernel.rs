@@ -12,6 +12,7 @@ use sdop::pairs::PairList;
 use sdop::rounding::pose::{rotate, rotation, world_axes};
 use sdop::settings::Overlap;
 use sdop::simd::{Kernel, Lanes, ROW, Tier, dispatch};
+use sdop::update::RowsByNumber;
 use sdop::update::row::{O, Q, S, SHAPE, T};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
@@ -95,7 +96,7 @@ pub fn decisions_agree<const FLUSH: bool>(tier: Tier) {
             let first: Vec<u32> = (0..2 * count as u32).map(|pair| 2 * pair).collect();
             let second: Vec<u32> = first.iter().map(|i| i + 1).collect();
             let columns = OrDopColumns {
-                rows: &rows,
+                rows: RowsByNumber::all(&rows),
                 tables: &tables,
                 overlap,
             };

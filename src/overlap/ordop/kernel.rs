@@ -5,7 +5,8 @@ use super::slabs::Slabs;
 use super::table::SlabTables;
 use crate::pairs::PairList;
 use crate::settings::Overlap;
-use crate::simd::{Kernel, Lanes, MAX_WIDTH, ROW, Tier, dispatch, prefetch};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
+use crate::update::RowsByNumber;
 use crate::volume::DirectionSet;
 
 /// Pairs that go through the first bodies' normals before the rest: their survivors' frames fit the first-level cache.
@@ -20,8 +21,8 @@ const ROWS_IN_CACHE: usize = 1 << 13;
 /// The or-DOPs of all bodies as the pair test reads them.
 #[derive(Clone, Copy)]
 pub struct OrDopColumns<'a> {
-    /// Q, t, o, shape: one row per body, or a ring of a power of two of rows, where a body's has the number of its lower bits.
-    pub rows: &'a [[f32; ROW]],
+    /// Q, t, o, shape: a row a body.
+    pub rows: RowsByNumber<'a>,
     /// Each shape's slabs.
     pub tables: &'a SlabTables,
     /// The separating axes to try.
@@ -80,7 +81,7 @@ impl OrDopColumns<'_> {
     #[cfg_attr(not(unoptimised), inline(always))]
     fn test_one<L: Lanes, const K: usize>(&self, l: L, pair: [u32; 2]) -> bool {
         let [a, b] =
-            pair.map(|body| l.load_transposed(self.rows, &[body & self.bits(); MAX_WIDTH]));
+            pair.map(|body| l.load_transposed(&self.rows, &[self.rows.find(body); MAX_WIDTH]));
         let frames = Frames::new(l, a, b);
         let [a, b] = self.slabs::<L, K, false>(l, &frames);
         let apart = |mask: L::M| l.bits(mask) & 1 != 0;
@@ -151,18 +152,17 @@ impl OrDopColumns<'_> {
         alive: &mut Alive,
     ) {
         alive.pairs.len = 0;
-        let bits = self.bits();
         let mut start = 0;
         while start < pairs.len {
             if self.rows.len() > ROWS_IN_CACHE {
                 for column in later {
-                    self.prefetch_rows(column.iter().skip(start).take(L::WIDTH), bits);
+                    self.prefetch_rows(column.iter().skip(start).take(L::WIDTH));
                 }
             }
             let frames = Frames::new(
                 l,
-                l.load_transposed(self.rows, &rows_of(&pairs.first[start..], bits)),
-                l.load_transposed(self.rows, &rows_of(&pairs.second[start..], bits)),
+                l.load_transposed(&self.rows, &self.rows_of(&pairs.first[start..])),
+                l.load_transposed(&self.rows, &self.rows_of(&pairs.second[start..])),
             );
             let [a, b] = self.slabs::<L, K, FEW>(l, &frames);
             let separated = l.bits(frames.by_normals_of_a::<K>(l, &a, &b));
@@ -201,16 +201,20 @@ impl OrDopColumns<'_> {
         }
     }
 
-    /// The bits of a body's number that its row's has: where each body has a row, no number has more.
+    /// Where the rows of the first bodies stand, a vector of them.
     #[inline(always)]
-    fn bits(&self) -> u32 {
-        self.rows.len().next_power_of_two() as u32 - 1
+    fn rows_of(&self, bodies: &[u32]) -> [u32; MAX_WIDTH] {
+        let mut rows = [0; MAX_WIDTH];
+        for (row, &body) in rows.iter_mut().zip(bodies) {
+            *row = self.rows.find(body);
+        }
+        rows
     }
 
     #[inline(always)]
-    fn prefetch_rows<'a>(&self, wanted: impl Iterator<Item = &'a u32>, bits: u32) {
+    fn prefetch_rows<'a>(&self, wanted: impl Iterator<Item = &'a u32>) {
         for &body in wanted {
-            if let Some(row) = self.rows.get((body & bits) as usize) {
+            if let Some(row) = self.rows.get(self.rows.find(body) as usize) {
                 prefetch(row);
             }
         }
@@ -227,16 +231,6 @@ impl OrDopColumns<'_> {
             Slabs::load::<K, FEW>(l, self.tables, frames.shapes[1]),
         ]
     }
-}
-
-/// The numbers of the rows of the first bodies, a vector of them.
-#[inline(always)]
-fn rows_of(bodies: &[u32], bits: u32) -> [u32; MAX_WIDTH] {
-    let mut rows = [0; MAX_WIDTH];
-    for (row, body) in rows.iter_mut().zip(bodies) {
-        *row = body & bits;
-    }
-    rows
 }
 
 /// A block of pairs, padded by a vector of the first one.

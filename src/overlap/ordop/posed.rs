@@ -7,7 +7,7 @@ use crate::bodies::Places;
 use crate::settings::Overlap;
 use crate::simd::Tier;
 use crate::threads::Threads;
-use crate::update::{Frames, OrDopRows, Posed, ShapeFrame};
+use crate::update::{Frames, OrDopRows, Posed, RowsByNumber, ShapeFrame};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
 /// Rows and tables of bodies in the order of their columns, so that pairs of rows are pairs of bodies.
@@ -50,7 +50,7 @@ impl PosedOrDops {
     #[must_use]
     pub fn columns(&self, overlap: Overlap) -> OrDopColumns<'_> {
         OrDopColumns {
-            rows: &self.rows.rows,
+            rows: RowsByNumber::all(&self.rows.rows),
             tables: &self.tables,
             overlap,
         }
