@@ -227,8 +227,8 @@ mod tests {
     use crate::update::{Posed, ShapeFrame};
     use crate::volume::{Shape, ShapeSpec};
 
-    /// What refining both pairs of three boxes in one place takes, with such updates.
-    fn refined(updates: Updates) -> Totals {
+    /// Hands over a refiner of three boxes in one place that move, with such updates.
+    fn refiner<T>(updates: Updates, run: impl FnOnce(Refiner<'_>) -> T) -> T {
         let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
         let shape = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
         let mut bodies = Bodies::default();
@@ -266,12 +266,36 @@ mod tests {
             stamp: 1,
             without_rows: false,
         };
-        let list: PairList = [[0, 1], [0, 2]].into_iter().collect();
-        let mut out = PairList::default();
-        let mut refiner = Refiner::new(inputs, &mut rows);
-        refiner.refine(&list, None, &mut out);
-        assert_eq!(out.sorted(), [[0, 1], [0, 2]]);
-        refiner.totals
+        run(Refiner::new(inputs, &mut rows))
+    }
+
+    /// What refining two pairs of them takes.
+    fn refined(updates: Updates) -> Totals {
+        refiner(updates, |mut refiner| {
+            let list: PairList = [[0, 1], [0, 2]].into_iter().collect();
+            let mut out = PairList::default();
+            refiner.refine(&list, None, &mut out);
+            assert_eq!(out.sorted(), [[0, 1], [0, 2]]);
+            refiner.totals
+        })
+    }
+
+    #[test]
+    fn pairs_are_near_whose_places_a_window_holds_stretch_by_stretch() {
+        // The first three places are those that move.
+        let is_near = |pairs: &[[u32; 2]]| {
+            let list: PairList = pairs.iter().copied().collect();
+            refiner(Updates::Eager, |refiner| refiner.are_near(&list))
+        };
+        let most = MOST_ROWS as u32;
+        let mut pairs: Vec<_> = (0..40 * STRETCH as u32)
+            .map(|pair| [pair % 3, 3 + 10 * pair])
+            .collect();
+        assert!(is_near(&pairs));
+        pairs[20 * STRETCH + 7][0] = pairs[20 * STRETCH][1] + most - 1;
+        assert!(is_near(&pairs));
+        pairs[20 * STRETCH + 7][0] += 1;
+        assert!(!is_near(&pairs));
     }
 
     #[test]

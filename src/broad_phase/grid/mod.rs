@@ -34,6 +34,9 @@ const PLAN_GROWTH: u64 = 2;
 /// Slots in one part of the work.
 const PART: usize = 1024;
 
+/// Parts are ordered by shares of their levels, in steps of such a power of two.
+const SHARE_BITS: u32 = 24;
+
 /// Bodies that seek those of another level in one part of the work, by cells or all against all.
 const SEEKERS_BY_CELLS: usize = 256;
 const SEEKERS_OF_ALL: usize = 16;
@@ -179,7 +182,7 @@ impl Grid {
         self.cut();
     }
 
-    /// Cuts the work into parts.
+    /// Cuts the work into parts, in the order of space.
     fn cut(&mut self) {
         self.parts.clear();
         for (index, level) in self.levels[..self.moving_levels].iter().enumerate() {
@@ -210,6 +213,12 @@ impl Grid {
                 push_parts(&mut self.parts, across, size);
             }
         }
+        // All levels have their slots in the same order of space: side by side, what one part reads serves the next.
+        let levels = &self.levels;
+        self.parts.sort_by_key(|part| {
+            let all = &levels[part.seeker].range;
+            (((part.slots.start - all.start) as u64) << SHARE_BITS) / all.len() as u64
+        });
     }
 
     pub(super) fn bytes(&self) -> usize {
