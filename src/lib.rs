@@ -68,65 +68,45 @@
 //! |---|---|
 //! | none | all of the above |
 //! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
-//! | `lab` | scenes, effects, the exact judge, measurements and studies |
-//! | `cli` (default) | the command line; implies `lab` |
-//! | `mpi` | one program on many ranks under `mpirun`; links the system's MPI |
-//! | `internals` | the inner rooms as modules, for tests and benches: no promise is made about them |
+//! | `serde` | settings, choices and counters as serde's data |
+//!
+//! The crate `sdop-judge` judges any culler against the exact reference. `sdop-bench` has scenes, measurements, studies and
+//! the program `sdop`.
 
 pub mod bodies;
 pub mod boxes;
-mod choice;
 pub mod counters;
 pub mod culler;
-#[cfg(feature = "readers")]
-pub mod files;
-#[cfg(feature = "lab")]
-pub mod lab;
 pub mod mesh;
 pub mod pairs;
 pub mod settings;
-mod strategy;
 pub mod volume;
 pub mod world;
 
-// Inner rooms, which tests and benches enter from outside. What they alone need is unused without them.
-#[cfg(feature = "internals")]
+mod strategy;
+
+// Inner rooms, which the judge, tests and benches enter from outside: no promise is made about them.
+#[doc(hidden)]
 pub mod broad_phase;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod broad_phase;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod choice;
+#[cfg(feature = "readers")]
+pub mod files;
+#[doc(hidden)]
 pub mod overlap;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod overlap;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod rounding;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod rounding;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod simd;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod simd;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod threads;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod threads;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod update;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod update;
 
 pub use bodies::contract::ContractError;
 pub use bodies::{Aabb, Bodies, Groups};
 pub use boxes::{BoxCuller, BoxWorld};
 pub use culler::{CullError, Culler, CullerBuilder};
-#[cfg(feature = "lab")]
-pub use lab::judge::{self, judge};
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
 pub use pairs::PairList;
 pub use settings::{
@@ -139,6 +119,6 @@ pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
 pub use world::{Body, BodyId, Events, World, WorldError};
 
 /// The README's example compiles and runs.
-#[cfg(all(doctest, feature = "lab"))]
+#[cfg(all(doctest, feature = "readers"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -7,8 +7,8 @@
 
 use std::path::Path;
 
-use sdop::lab::scene::{Scene, SceneFile};
-use sdop::lab::simulate::{self, SimulationError};
+use sdop_bench::scene::{Scene, SceneFile};
+use sdop_bench::simulate::{self, SimulationError};
 use sdop::settings::{Budget, Overlap, Strategy, Updates};
 use sdop::simd::Tier;
 use sdop::volume::DirectionSet;

@@ -3,8 +3,8 @@
 mod common;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use sdop::lab::cost::calibrate::construct;
-use sdop::lab::measure::counts::Volume;
+use sdop_bench::cost::calibrate::construct;
+use sdop_bench::measure::counts::Volume;
 
 fn constructions(criterion: &mut Criterion) {
     let scene = common::scene("paper-500");

@@ -3,7 +3,7 @@
 mod common;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use sdop::lab::reproduce::STRATEGIES;
+use sdop_bench::reproduce::STRATEGIES;
 
 fn frames(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("cull");

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sdop::lab::verify::borders::{Borders, bar};
+use sdop_judge::ours::borders::{Borders, bar};
 use sdop::simd::Tier;
 
 /// Scenes when the command line names no number.

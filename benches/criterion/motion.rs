@@ -9,9 +9,9 @@ mod common;
 use common::swarm::{Kind, Swarm};
 use sdop::bodies::Bodies;
 use sdop::culler::Culler;
-use sdop::lab::measure::contestant::Contestant;
-use sdop::lab::measure::turns::{Regime, Turns};
-use sdop::lab::percentiles::Percentiles;
+use sdop_judge::contestant::Contestant;
+use sdop_bench::measure::turns::{Regime, Turns};
+use sdop_bench::percentiles::Percentiles;
 use sdop::settings::{Finder, Strategy};
 
 /// Turns of a row at most, and bodies times frames.

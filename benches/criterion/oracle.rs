@@ -6,8 +6,8 @@ mod common;
 use std::hint::black_box;
 use std::time::Instant;
 
-use sdop::lab::measure::turns::median;
-use sdop::lab::verify::Shapes;
+use sdop_bench::measure::turns::median;
+use sdop_judge::ours::Shapes;
 use sdop_reference::Pose;
 use sdop_reference::exact::view::View;
 use sdop_reference::exact::{Path, judge, mesh::Mesh};

@@ -6,7 +6,7 @@ mod common;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use sdop::culler::Culler;
-use sdop::lab::scene::Scene;
+use sdop_bench::scene::Scene;
 use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
 use sdop::settings::{CullSettings, Overlap, Strategy};

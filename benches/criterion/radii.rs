@@ -7,7 +7,7 @@ mod common;
 
 use common::swarm::{Kind, Swarm};
 use sdop::culler::Culler;
-use sdop::lab::measure::turns::median;
+use sdop_bench::measure::turns::median;
 use sdop::settings::Finder;
 
 /// Turns that everyone has.

@@ -12,8 +12,8 @@ use std::time::Instant;
 
 use sdop::counters::{Counters, Seconds};
 use sdop::culler::Culler;
-use sdop::lab::measure::turns::median;
-use sdop::lab::scene::Scene;
+use sdop_bench::measure::turns::median;
+use sdop_bench::scene::Scene;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::simd::{Kernel, Lanes, Tier, dispatch};
 

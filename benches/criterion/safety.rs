@@ -6,9 +6,9 @@
 mod common;
 
 use sdop::bodies::Bodies;
-use sdop::lab::measure::culling::Culling;
-use sdop::lab::measure::turns::{Quartiles, Regime, Turns, median, turn_frames};
-use sdop::lab::tradeoff::safety::{STRATEGIES, without_margins};
+use sdop_bench::measure::culling::Culling;
+use sdop_bench::measure::turns::{Quartiles, Regime, Turns, median, turn_frames};
+use sdop_bench::tradeoff::safety::{STRATEGIES, without_margins};
 use sdop::settings::CullSettings;
 use sdop::simd::Tier;
 

@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 
 use criterion::Criterion;
 use sdop::culler::Culler;
-use sdop::lab::measure::turns::median;
-use sdop::lab::verify::{Shapes, judged};
+use sdop_bench::measure::turns::median;
+use sdop_judge::ours::{Shapes, judged};
 use sdop::simd::Tier;
 use sdop_reference as reference;
 

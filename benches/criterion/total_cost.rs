@@ -9,13 +9,13 @@ mod common;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
-use sdop::lab::cost::calibrate::{Calibration, Effort};
-use sdop::lab::cost::pass::{Pass, Simulated, pass};
-use sdop::lab::cost::study::possible;
-use sdop::lab::cost::table::{cost, prices};
-use sdop::lab::measure::turns::Regime;
-use sdop::lab::measure::variant::Variant;
-use sdop::lab::scene::SceneFile;
+use sdop_bench::cost::calibrate::{Calibration, Effort};
+use sdop_bench::cost::pass::{Pass, Simulated, pass};
+use sdop_bench::cost::study::possible;
+use sdop_bench::cost::table::{cost, prices};
+use sdop_bench::measure::turns::Regime;
+use sdop_bench::measure::variant::Variant;
+use sdop_bench::scene::SceneFile;
 use sdop::simd::Tier;
 
 /// What is predicted; calibration scenes have other numbers of bodies and other boxes.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use sha2::{Digest, Sha256};
 
-use crate::volume::Shape;
+use sdop::volume::Shape;
 
 /// SHA-256, in hexadecimal, of each shape's ball (c, r), basis (three columns), lo and hi, as little-endian f32 in order.
 #[must_use]

@@ -1,17 +1,17 @@
 //! `sdop`: parse the arguments, call the command, turn what it says into an exit code.
 
-mod cli;
+mod commands;
 
 use std::process::ExitCode;
 
 use clap::Parser as _;
-use sdop::lab::mpi;
+use sdop_bench::mpi;
 
 /// 0 when all is well, 1 when a check failed, 2 on bad input.
 fn main() -> ExitCode {
-    cli::report_errors_whole();
+    commands::report_errors_whole();
     let ending = mpi::Ending;
-    let cli = match cli::Cli::try_parse() {
+    let cli = match commands::Cli::try_parse() {
         Ok(cli) => cli,
         Err(told) => {
             // Nobody may be listening: that is no reason to panic.
@@ -21,21 +21,21 @@ fn main() -> ExitCode {
         }
     };
     if let Err(report) = cli.refuse() {
-        ending.alike(|| cli::complain(&report));
+        ending.alike(|| commands::complain(&report));
         return ExitCode::from(BAD_INPUT);
     }
     match cli.run() {
         Ok(outcome) => {
             ending.well();
             ExitCode::from(match outcome {
-                cli::Outcome::Passed => 0,
-                cli::Outcome::Failed => 1,
+                commands::Outcome::Passed => 0,
+                commands::Outcome::Failed => 1,
                 #[cfg(feature = "mpi")]
-                cli::Outcome::Told => BAD_INPUT,
+                commands::Outcome::Told => BAD_INPUT,
             })
         }
         Err(report) => {
-            cli::complain(&report);
+            commands::complain(&report);
             ending.badly(BAD_INPUT.into());
             ExitCode::from(BAD_INPUT)
         }

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::de::{Error, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use crate::rounding::LIMIT;
+use sdop::rounding::LIMIT;
 
 /// A finite number of size at most 2⁶⁰.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]

@@ -7,7 +7,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::lab::number::Interval;
+use crate::number::Interval;
 
 /// A stream of draws. Streams of one seed are independent: what one draws leaves the others as they are.
 #[derive(Clone, Debug)]

@@ -1,25 +1,25 @@
 //! A scene's run: the listed effects move the bodies, the culler culls them, frame after frame.
 //!
 //! F frames are F culls and F − 1 steps: the first frame is the scene as placed. The trajectory doesn't depend on how it is
-//! culled, so that runs which differ in [`CullSettings`](crate::settings::CullSettings) alone see the same poses.
+//! culled, so that runs which differ in [`CullSettings`](sdop::settings::CullSettings) alone see the same poses.
 
 use std::time::Instant;
 
 use miette::Diagnostic;
 use thiserror::Error;
 
-use crate::bodies::Bodies;
-use crate::bodies::contract::ContractError;
-use crate::counters::{Counters, Seconds};
-use crate::culler::{CullError, Culler};
-use crate::lab::effects::{EffectError, EffectReport, Effects};
-use crate::lab::hash::volumes_sha256;
-use crate::lab::hash::{PairsDigest, PairsHash};
-use crate::lab::percentiles::Percentiles;
-use crate::lab::scene::Scene;
-use crate::pairs::PairList;
-use crate::settings::Finder;
-use crate::simd::Tier;
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::ContractError;
+use sdop::counters::{Counters, Seconds};
+use sdop::culler::{CullError, Culler};
+use crate::effects::{EffectError, EffectReport, Effects};
+use crate::hash::volumes_sha256;
+use crate::hash::{PairsDigest, PairsHash};
+use crate::percentiles::Percentiles;
+use crate::scene::Scene;
+use sdop::pairs::PairList;
+use sdop::settings::Finder;
+use sdop::simd::Tier;
 
 /// The poses of a scene, frame after frame: the first is the scene as placed, every other one a step of its effects.
 ///

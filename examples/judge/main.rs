@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::process::ExitCode;
 
 use sdop::Bodies;
-use sdop::judge::{Claim, Contestant, JudgeError, Scene, judge};
+use sdop_judge::judge::{Claim, Contestant, JudgeError, Scene, judge};
 use sdop::rounding::pose::{rotation, transform};
 
 struct Grid {

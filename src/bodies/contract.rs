@@ -30,8 +30,10 @@ pub struct ContractError {
 
 impl ContractError {
     /// The same, with the body's number in a set in which this one's bodies begin at `first`.
-    #[cfg(feature = "lab")]
-    pub(crate) fn numbered(self, first: usize) -> Self {
+    #[cfg(feature = "internals")]
+    #[doc(hidden)]
+    #[must_use]
+    pub fn numbered(self, first: usize) -> Self {
         let body = self.body + first;
         Self { body, ..self }
     }
@@ -321,7 +323,7 @@ mod tests {
         }
     }
 
-    #[cfg(feature = "lab")]
+    #[cfg(feature = "internals")]
     #[test]
     fn a_body_of_a_share_is_told_by_its_number_in_the_whole() {
         let own = ContractError {

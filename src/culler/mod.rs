@@ -164,8 +164,9 @@ impl Culler {
     }
 
     /// A body's ball centre, and how far from it the body can matter to any pair ([`border`](crate::rounding::border)).
-    #[cfg(feature = "lab")]
-    pub(crate) fn reach(&self, shape: u32, q: [f32; 4], t: [f32; 3]) -> ([f32; 3], f32) {
+    #[cfg(feature = "internals")]
+    #[doc(hidden)]
+    pub fn reach(&self, shape: u32, q: [f32; 4], t: [f32; 3]) -> ([f32; 3], f32) {
         use crate::rounding::border::{reach, reach_of_box};
         let frame = &self.models.frames[shape as usize];
         let [x, y, z, inflated] = frame.sphere(q, t);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sdop::lab::report::{Experiment, Store};
+use sdop_bench::report::{Experiment, Store};
 
 use super::{command, sdop, text};
 

@@ -3,7 +3,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
-use sdop::lab::verify::draw::rotation;
+use sdop_judge::ours::draw::rotation;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{DirectionSet, Shape, ShapeSpec};
 

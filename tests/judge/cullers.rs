@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use sdop::bodies::Bodies;
 use sdop::boxes::BoxBody;
 use sdop::culler::Culler;
-use sdop::judge::{Contestant, PairTest, Scene, WorldBox};
+use sdop_judge::judge::{Contestant, PairTest, Scene, WorldBox};
 use sdop::rounding::pose::{rotation, transform};
 use sdop::settings::Strategy;
 use sdop::volume::Shape;

@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use sdop::judge::answer::Trouble;
-use sdop::judge::{Claim, Outcome, Scene, Verdict, judge, run::judge_pair_test};
+use sdop_judge::answer::Trouble;
+use sdop_judge::judge::{Claim, Outcome, Scene, Verdict, judge, run::judge_pair_test};
 use sdop::settings::Strategy;
 
 use crate::cullers::{All, Balls, Boxes, BoxesOfAWorld, Flaw, NarrowBalls, Ours};

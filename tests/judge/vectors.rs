@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use sdop::judge::{Claim, vectors};
+use sdop_judge::judge::{Claim, vectors};
 use serde_json::Value;
 
 fn directory() -> &'static Path {

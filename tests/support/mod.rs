@@ -9,7 +9,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
-use sdop::lab::verify::draw::rotation;
+use sdop_judge::ours::draw::rotation;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 

@@ -3,7 +3,7 @@
 use dashu_int::IBig;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sdop::lab::verify::ways::variants;
+use sdop_judge::ours::ways::variants;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, OrDop, Shape, ShapeSpec};
 

@@ -12,9 +12,9 @@ use criterion::{BenchmarkGroup, BenchmarkId, Throughput, measurement::WallTime};
 use sdop::bodies::Bodies;
 use sdop::counters::{Counters, Seconds};
 use sdop::culler::Culler;
-use sdop::lab::cost::calibrate;
-use sdop::lab::scene::{Scene, SceneFile};
-use sdop::lab::simulate::Trajectory;
+use sdop_bench::cost::calibrate;
+use sdop_bench::scene::{Scene, SceneFile};
+use sdop_bench::simulate::Trajectory;
 use sdop::settings::{CullSettings, Strategy, TestedVolume};
 
 /// Frames that a bench goes round in.

@@ -6,7 +6,7 @@ use broccoli::aabb::ManySwappable;
 use broccoli::axgeom::Rect;
 use broccoli::{Tree, rect};
 
-use sdop::lab::measure::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::Frame;
 use crate::entry::{Entry, Setup, Work};

@@ -5,7 +5,7 @@ use bvh::bounding_hierarchy::BHShape;
 use bvh::bvh::{Bvh, rayon_executor};
 use nalgebra::Point3;
 
-use sdop::lab::measure::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::{Frame, lower, upper};
 use crate::entry::{Entry, Setup, Work};

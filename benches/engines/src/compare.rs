@@ -8,7 +8,7 @@
 use std::time::Instant;
 
 use miette::miette;
-use sdop::lab::measure::turns::{Quartiles, median};
+use sdop_bench::measure::turns::{Quartiles, median};
 use serde::Serialize;
 
 use crate::boxes::Frame;

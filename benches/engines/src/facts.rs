@@ -6,7 +6,7 @@ use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
 use sdop::Tier;
-use sdop::lab::measure::machine::Machine;
+use sdop_bench::measure::machine::Machine;
 use serde::Serialize;
 
 /// The flag that compiles the same engines in.

@@ -6,7 +6,7 @@ use std::ffi::c_void;
 
 use miette::miette;
 
-use sdop::lab::measure::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::{Frame, Slabs};
 use crate::entry::{Engine, Setup};

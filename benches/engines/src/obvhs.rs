@@ -4,7 +4,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-use sdop::lab::measure::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::{Frame, Slabs, lower, upper};
 use crate::entry::{Entry, Setup, Work};

@@ -4,7 +4,7 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
-use sdop::lab::measure::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::{Frame, Slabs, lower, upper};
 use crate::entry::{Entry, Setup, Work};

@@ -19,7 +19,7 @@ use physx_sys::{
     phys_PxCreateBroadPhase, phys_PxGetBroadPhaseDynamicFilterGroup, physx_create_foundation,
 };
 
-use sdop::lab::measure::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::{Frame, Slabs};
 use crate::changes::Changes;

@@ -11,7 +11,7 @@ use rapier3d::geometry::{
 };
 use rapier3d::math::Vector;
 
-use sdop::lab::measure::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::{Frame, lower, upper};
 use crate::changes::Changes;

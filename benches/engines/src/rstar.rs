@@ -5,7 +5,7 @@
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
-use sdop::lab::measure::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::{Frame, lower, upper};
 use crate::entry::{Entry, Setup, Work};

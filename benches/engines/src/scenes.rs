@@ -7,8 +7,8 @@ use std::path::Path;
 
 use clap::ValueEnum;
 use sdop::bodies::Bodies;
-use sdop::lab::effects::Effects;
-use sdop::lab::scene::{Scene, SceneFile};
+use sdop_bench::effects::Effects;
+use sdop_bench::scene::{Scene, SceneFile};
 use sdop::mesh::ProceduralShape;
 use serde::Serialize;
 

@@ -1,6 +1,6 @@
 //! Engines on the same frames in turns: the one loop that times them.
 
-use sdop::lab::measure::turns::Turns;
+use sdop_bench::measure::turns::Turns;
 
 use crate::boxes::Frame;
 use crate::entry::Engine;

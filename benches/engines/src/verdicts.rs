@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use miette::{IntoDiagnostic as _, miette};
-use sdop::judge::process::Program;
-use sdop::judge::wire::{Wire, ndjson};
-use sdop::judge::{Case, Claim, Options, Outcome, Verdict, examine};
-use sdop::lab::scene::{Scene, SceneFile};
+use sdop_judge::process::Program;
+use sdop_judge::wire::{Wire, ndjson};
+use sdop_judge::judge::{Case, Claim, Options, Outcome, Verdict, examine};
+use sdop_bench::scene::{Scene, SceneFile};
 use serde::Serialize;
 
 use crate::boxes::{Frame, Slabs};
@@ -126,7 +126,7 @@ fn reach(case: &Case) -> f32 {
 }
 
 /// A frame of a case as engines take it.
-fn frame(given: &sdop::judge::Frame, scene: &Scene) -> Frame {
+fn frame(given: &sdop_judge::Frame, scene: &Scene) -> Frame {
     let slabs = |ends: &[f32; 6]| -> Slabs { [0, 1, 2].map(|axis| [ends[axis], ends[axis + 3]]) };
     let mut frame = Frame::default();
     frame.fill(&given.bodies, &scene.shapes);

@@ -1,7 +1,7 @@
 //! `sdop advise`: which volume and k to use for a scene.
 
 use miette::miette;
-use sdop::lab::tradeoff::advise::{Advice, Candidate, FRAMES, advise};
+use sdop_bench::tradeoff::advise::{Advice, Candidate, FRAMES, advise};
 
 use super::Outcome;
 use super::output::{Format, emit, rows};

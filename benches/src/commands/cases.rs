@@ -4,11 +4,11 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic as _, miette};
-use sdop::judge::Claim;
-use sdop::judge::broadmark::{self, RecordingError};
-use sdop::judge::catalogue::select;
-use sdop::judge::vectors;
-use sdop::judge::wire::Wire;
+use sdop_judge::Claim;
+use sdop_judge::broadmark::{self, RecordingError};
+use sdop_judge::catalogue::select;
+use sdop_judge::vectors;
+use sdop_judge::wire::Wire;
 
 use super::output::{print, progress};
 use super::{Outcome, files, one_of};

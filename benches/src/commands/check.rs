@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop::judge::answer::{Answer, Stop};
-use sdop::judge::run::examine_given;
-use sdop::judge::wire::{Said, Wire};
-use sdop::judge::{Case, Claim, Options, Subject};
+use sdop_judge::answer::{Answer, Stop};
+use sdop_judge::run::examine_given;
+use sdop_judge::wire::{Said, Wire};
+use sdop_judge::judge::{Case, Claim, Options, Subject};
 
 use super::files::ReadArgs;
 use super::judge::{ReportFormat, emit_verdict, read_case};
@@ -120,7 +120,7 @@ pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop>
     for line in lines {
         if answers.len() == frames {
             let line = String::from_utf8_lossy(&line[..line.len().min(80)]).into_owned();
-            return Err(sdop::judge::answer::Trouble::TooMany { frames, line }.into());
+            return Err(sdop_judge::answer::Trouble::TooMany { frames, line }.into());
         }
         match wire.decode(answers.len(), line)? {
             Said::Answer(answer) => answers.push(answer),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use miette::{IntoDiagnostic as _, WrapErr as _};
-use sdop::lab::report::{Change, Code, Comparison, compare};
+use sdop_bench::report::{Change, Code, Comparison, compare};
 use tempfile::TempDir;
 
 use super::Outcome;

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use comfy_table::Table;
 use miette::miette;
-use sdop::lab::cost::calibrate::{self, Effort};
-use sdop::lab::cost::predict::Terms;
-use sdop::lab::cost::study::{Plan, Report, possible, study};
-use sdop::lab::cost::table::{Compared, Cost};
-use sdop::lab::measure::turns::Regime;
-use sdop::lab::reproduce::Estimate;
+use sdop_bench::cost::calibrate::{self, Effort};
+use sdop_bench::cost::predict::Terms;
+use sdop_bench::cost::study::{Plan, Report, possible, study};
+use sdop_bench::cost::table::{Compared, Cost};
+use sdop_bench::measure::turns::Regime;
+use sdop_bench::reproduce::Estimate;
 use serde::Serialize;
 
 use super::files::write;

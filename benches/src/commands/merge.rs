@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sdop::lab::sweep::{Units, merge};
+use sdop_bench::sweep::{Units, merge};
 
 use super::output::Format;
 use super::{Outcome, reproduce, tradeoff, verify};

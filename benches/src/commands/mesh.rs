@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use sdop::lab::tightness::Size;
+use sdop_bench::tightness::Size;
 use sdop::mesh::decimate::decimate;
 use sdop::mesh::topology::Topology;
 use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};

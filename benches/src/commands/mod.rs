@@ -37,6 +37,7 @@ use miette::MietteHandlerOpts;
 /// Collision culling by sphere-encapsulated or-DOPs (S-DOP): verified, vectorised, measured.
 #[derive(Parser)]
 #[command(
+    name = "sdop",
     version,
     after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input."
 )]

@@ -1,7 +1,7 @@
 //! A volume's prices as a row of a table.
 
-use sdop::lab::cost::table::PriceRow;
-use sdop::lab::reproduce::Estimate;
+use sdop_bench::cost::table::PriceRow;
+use sdop_bench::reproduce::Estimate;
 
 /// The columns, each with its unit.
 pub const COLUMNS: [&str; 9] = [

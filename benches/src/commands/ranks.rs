@@ -1,6 +1,6 @@
 //! Started by `mpirun`: which commands take many ranks, and what the others say.
 
-use sdop::lab::mpi;
+use sdop_bench::mpi;
 
 /// Refuses a start as one of many ranks by a program or a command that would do all of the work in each of them.
 ///

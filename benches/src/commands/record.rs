@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop::lab::measure::machine::Machine;
-use sdop::lab::mpi;
-use sdop::lab::report::{Code, Experiment, FILE, Load, Manifest, Step, experiments};
+use sdop_bench::measure::machine::Machine;
+use sdop_bench::mpi;
+use sdop_bench::report::{Code, Experiment, FILE, Load, Manifest, Step, experiments};
 
 use super::Outcome;
 use super::files::{COMMAND, write};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop::lab::report::{Code, Quantities, Store, pages};
+use sdop_bench::report::{Code, Quantities, Store, pages};
 
 use super::Outcome;
 use super::files::write;

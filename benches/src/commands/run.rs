@@ -5,14 +5,14 @@ use std::path::PathBuf;
 
 use sdop::Tier;
 use sdop::counters::{Counters, Seconds};
-use sdop::lab::domain::{BorderSeconds, RankLine};
-use sdop::lab::effects::EffectReport;
-use sdop::lab::percentiles::Percentiles;
-use sdop::lab::record::{FrameLine, Header, Recorder};
-use sdop::lab::scene::Scene;
-use sdop::lab::simulate::{Simulation, Summary};
-use sdop::lab::tradeoff::TradeoffError;
-use sdop::lab::tradeoff::truth::Judge;
+use sdop_bench::domain::{BorderSeconds, RankLine};
+use sdop_bench::effects::EffectReport;
+use sdop_bench::percentiles::Percentiles;
+use sdop_judge::record::{FrameLine, Header, Recorder};
+use sdop_bench::scene::Scene;
+use sdop_bench::simulate::{Simulation, Summary};
+use sdop_bench::tradeoff::TradeoffError;
+use sdop_bench::tradeoff::truth::Judge;
 use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -107,13 +107,13 @@ struct EffectLine {
 /// A bad scene, settings that it can't have, a body that leaves the contract, a recording that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     #[cfg(feature = "mpi")]
-    if sdop::lab::mpi::launched() > 1 {
+    if sdop_bench::mpi::launched() > 1 {
         return Ok(ranks::run(args));
     }
     let scene = args.scene.build()?;
     let tier = args.machine.tier();
     let mut recorder = match &args.record {
-        Some(path) => Some(Recorder::create(path, &Header::of(&scene))?),
+        Some(path) => Some(Recorder::create(path, &sdop_bench::record::header(&scene))?),
         None => None,
     };
     let judge = if args.truth {
@@ -126,7 +126,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let simulation = Simulation::with_threads(&scene, tier, threads)?;
     let summary = simulation.run(|frame| -> miette::Result<()> {
         if let Some(recorder) = &mut recorder {
-            let mut line = FrameLine::of(frame, scene.cull.strategy);
+            let mut line = sdop_bench::record::frame_line(frame, scene.cull.strategy);
             if let Some(judge) = &judge {
                 line.meets = Some(judge.meetings(frame.bodies).map_err(TradeoffError::from)?);
             }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use miette::Diagnostic as _;
 use sdop::Tier;
-use sdop::lab::scene::{Scene, SceneFile};
+use sdop_bench::scene::{Scene, SceneFile};
 use sdop::settings::{
     Axes, Budget, CullSettings, Finder, Interest, Order, Overlap, Strategy, Updates,
 };

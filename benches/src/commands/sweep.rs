@@ -5,10 +5,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
-use sdop::lab::mpi;
+use sdop_bench::mpi;
 #[cfg(feature = "mpi")]
-use sdop::lab::mpi::Ranks;
-use sdop::lab::sweep::{Event, Header, InOrder, Journal, Shard, Sweep, Units, here, write_shard};
+use sdop_bench::mpi::Ranks;
+use sdop_bench::sweep::{Event, Header, InOrder, Journal, Shard, Sweep, Units, here, write_shard};
 
 use super::files::command;
 use super::output::{print, progress};
@@ -46,7 +46,7 @@ impl Finished {
     pub fn clear(self) -> miette::Result<()> {
         #[cfg(feature = "mpi")]
         if mpi::launched() > 1 {
-            sdop::lab::sweep::ranks::dismiss(Ranks::start());
+            sdop_bench::sweep::ranks::dismiss(Ranks::start());
         }
         match self.journal {
             Some(journal) => Ok(journal.remove()?),
@@ -69,7 +69,7 @@ pub fn enter(args: &SweepArgs) -> miette::Result<()> {
         );
         let ranks = Ranks::start();
         if ranks.rank > 0 {
-            return sdop::lab::sweep::ranks::await_go(ranks);
+            return sdop_bench::sweep::ranks::await_go(ranks);
         }
     }
     let _ = args;
@@ -112,7 +112,7 @@ impl SweepArgs {
     ) -> miette::Result<Option<Finished>> {
         #[cfg(feature = "mpi")]
         if mpi::launched() > 1 && Ranks::start().rank > 0 {
-            sdop::lab::sweep::ranks::serve(Ranks::start(), work)?;
+            sdop_bench::sweep::ranks::serve(Ranks::start(), work)?;
             return Ok(None);
         }
         let header = Header {
@@ -229,7 +229,7 @@ impl SweepArgs {
         #[cfg(feature = "mpi")]
         if mpi::launched() > 1 {
             let ranks = Ranks::start();
-            return sdop::lab::sweep::ranks::coordinate(ranks, work, units, self.share_cores, on);
+            return sdop_bench::sweep::ranks::coordinate(ranks, work, units, self.share_cores, on);
         }
         here(work, units, on)
     }

@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 
 use etcetera::BaseStrategy as _;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop::lab::measure::conditions::Conditions;
-use sdop::lab::measure::machine::Machine;
-use sdop::lab::sweep::Merged;
-pub use sdop::lab::tradeoff::units::NAME;
-use sdop::lab::tradeoff::units::{Comparison, Settings};
-use sdop::lab::tradeoff::{Findings, Plan, Tradeoff};
+use sdop_bench::measure::conditions::Conditions;
+use sdop_bench::measure::machine::Machine;
+use sdop_bench::sweep::Merged;
+pub use sdop_bench::tradeoff::units::NAME;
+use sdop_bench::tradeoff::units::{Comparison, Settings};
+use sdop_bench::tradeoff::{Findings, Plan, Tradeoff};
 use serde::{Deserialize, Serialize};
 
 use super::Outcome;

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use miette::{IntoDiagnostic as _, Report, WrapErr as _, miette};
 use sdop::files::Whole;
-use sdop::lab::view::{Culled, Page, Show, decide_truth};
+use sdop_bench::view::{Culled, Page, Show, decide_truth};
 use sdop::settings::{CullSettings, Strategy};
 
 use super::Outcome;

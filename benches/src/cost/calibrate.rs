@@ -9,21 +9,21 @@ use std::time::Instant;
 
 use super::explain::{self, Observed, Split};
 use super::predict::Prices;
-use crate::bodies::Bodies;
-use crate::lab::effects::Velocities;
-use crate::lab::measure::contestant::Contestant;
-use crate::lab::measure::counts::{Counts, Volume};
-use crate::lab::measure::culling::Culling;
-use crate::lab::measure::turns::{Regime, Times, Turns, median, next_turn};
-use crate::lab::measure::variant::Variant;
-use crate::lab::measure::waiting::Waiting;
-use crate::lab::number::Interval;
-use crate::lab::random::Stream;
-use crate::lab::scene::Scene;
-use crate::lab::simulate::{SimulationError, Trajectory};
-use crate::settings::{Axes, Budget, CullSettings, Interest};
-use crate::simd::Tier;
-use crate::volume::{Ball, Shape};
+use sdop::bodies::Bodies;
+use crate::effects::Velocities;
+use sdop_judge::contestant::Contestant;
+use crate::measure::counts::{Counts, Volume};
+use crate::measure::culling::Culling;
+use crate::measure::turns::{Regime, Times, Turns, median, next_turn};
+use crate::measure::variant::Variant;
+use crate::measure::waiting::Waiting;
+use crate::number::Interval;
+use crate::random::Stream;
+use crate::scene::Scene;
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::settings::{Axes, Budget, CullSettings, Interest};
+use sdop::simd::Tier;
+use sdop::volume::{Ball, Shape};
 
 /// Bodies of the calibration scenes, as parts of the scene's number. Near it, though none within a tenth of it: a price isn't
 /// the same at any number of bodies (loops end where the CPU foresees it, or don't), and its curve is straight nearby.

@@ -8,17 +8,17 @@
 use super::VolumeCosts;
 use super::fit::{self, Measurement};
 use super::predict::{Price, Prices};
-use crate::bodies::Bodies;
-use crate::lab::hull_test::HullTest;
-use crate::lab::measure::counts::{Counts, Volume};
-use crate::lab::measure::culling::Stages;
-use crate::lab::measure::turns::time;
-use crate::lab::measure::variant::Variant;
-use crate::lab::random::Stream;
-use crate::overlap::ordop::PosedOrDops;
-use crate::pairs::PairList;
-use crate::simd::Tier;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use crate::hull_test::HullTest;
+use crate::measure::counts::{Counts, Volume};
+use crate::measure::culling::Stages;
+use crate::measure::turns::time;
+use crate::measure::variant::Variant;
+use crate::random::Stream;
+use sdop::overlap::ordop::PosedOrDops;
+use sdop::pairs::PairList;
+use sdop::simd::Tier;
+use sdop::volume::Shape;
 
 /// Where the draws of lists with a known share of hits start.
 const SEED: u64 = 0xca11_b8a7_e001_0000;

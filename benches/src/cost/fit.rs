@@ -7,7 +7,7 @@
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 
-use crate::lab::measure::turns::median;
+use crate::measure::turns::median;
 
 /// Rows this many times the median residual off are left out.
 const OUTLYING: f64 = 4.0;

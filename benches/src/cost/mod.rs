@@ -1,6 +1,6 @@
 //! What culling costs: the paper's formula (equation 1) T = Nu·Cu + Nv·Cv + Co.
 //!
-//! Nu and Nv are [counted](crate::lab::measure::counts); Cu, Cv and Co are [calibrated](calibrate) in the same
+//! Nu and Nv are [counted](crate::measure::counts); Cu, Cv and Co are [calibrated](calibrate) in the same
 //! [`pass`](mod@pass) as the frames that they predict, on other scenes.
 
 pub mod calibrate;
@@ -13,7 +13,7 @@ pub mod table;
 
 use serde::{Deserialize, Serialize};
 
-use crate::counters::VolumeCounters;
+use sdop::counters::VolumeCounters;
 
 /// The prices of one volume, in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

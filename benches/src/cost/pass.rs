@@ -3,16 +3,16 @@
 
 use super::calibrate::{Calibration, build};
 use super::predict::Prices;
-use crate::bodies::Bodies;
-use crate::lab::measure::counts::Counts;
-use crate::lab::measure::culling::Culling;
-use crate::lab::measure::estimate::Estimate;
-use crate::lab::measure::turns::{Regime, Times, Turns, median, next_turn, turn_frames};
-use crate::lab::measure::variant::Variant;
-use crate::lab::scene::Scene;
-use crate::lab::simulate::{SimulationError, Trajectory};
-use crate::simd::Tier;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use crate::measure::counts::Counts;
+use crate::measure::culling::Culling;
+use crate::measure::estimate::Estimate;
+use crate::measure::turns::{Regime, Times, Turns, median, next_turn, turn_frames};
+use crate::measure::variant::Variant;
+use crate::scene::Scene;
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::simd::Tier;
+use sdop::volume::Shape;
 
 /// What one variant did in a run.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]

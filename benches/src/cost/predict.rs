@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::VolumeCosts;
-use crate::lab::measure::counts::{Counts, Volume};
+use crate::measure::counts::{Counts, Volume};
 
 /// Prices of one volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -117,7 +117,7 @@ impl Prices {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::counters::{Counters, VolumeCounters};
+    use sdop::counters::{Counters, VolumeCounters};
 
     #[test]
     fn s_dop_pays_for_both_volumes_and_finds_pairs_once() {

@@ -7,14 +7,14 @@ use thiserror::Error;
 use super::calibrate::{Calibration, Effort};
 use super::pass::{Pass, Simulated, pass};
 use super::table::{self, Cost, PriceRow};
-use crate::lab::measure::conditions::Conditions;
-use crate::lab::measure::machine::Machine;
-use crate::lab::measure::turns::Regime;
-use crate::lab::measure::variant::Variant;
-use crate::lab::scene::{Scene, SceneError, SceneFile};
-use crate::lab::simulate::SimulationError;
-use crate::settings::{CullSettings, Strategy};
-use crate::simd::Tier;
+use crate::measure::conditions::Conditions;
+use crate::measure::machine::Machine;
+use crate::measure::turns::Regime;
+use crate::measure::variant::Variant;
+use crate::scene::{Scene, SceneError, SceneFile};
+use crate::simulate::SimulationError;
+use sdop::settings::{CullSettings, Strategy};
+use sdop::simd::Tier;
 
 /// How much is measured.
 #[derive(Clone, Debug)]

@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::VolumeCosts;
 use super::pass::Pass;
 use super::predict::{Prices, Terms};
-use crate::lab::measure::counts::Volume;
-use crate::lab::measure::estimate::Estimate;
-use crate::lab::measure::turns::{Quartiles, Regime};
-use crate::lab::measure::variant::Variant;
-use crate::settings::Strategy;
+use crate::measure::counts::Volume;
+use crate::measure::estimate::Estimate;
+use crate::measure::turns::{Quartiles, Regime};
+use crate::measure::variant::Variant;
+use sdop::settings::Strategy;
 
 /// A number as predicted and as measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -288,7 +288,7 @@ fn select(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::domain::local::on_ranks;
+    use crate::domain::local::on_ranks;
 
     /// Points of a lattice with many equal coordinates, and some far away.
     fn points() -> Vec<[f32; 3]> {

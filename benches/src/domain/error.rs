@@ -4,7 +4,7 @@ use miette::Diagnostic;
 use thiserror::Error;
 
 use super::network::{Network, tell_all};
-use crate::lab::simulate::SimulationError;
+use crate::simulate::SimulationError;
 
 /// Why a scene can't be run, or run on, on many ranks.
 #[derive(Debug, Error, Diagnostic)]

@@ -3,7 +3,7 @@
 use super::cut::Cuts;
 use super::held::{Held, Record, read_poses, write_pose};
 use super::network::Network;
-use crate::rounding::border::may_meet;
+use sdop::rounding::border::may_meet;
 
 /// A body's ball centre and its reach, by place.
 pub(super) type Balls = [([f32; 3], f32)];

@@ -1,8 +1,8 @@
 //! One world on many ranks, each a process that holds a part of the bodies: what outgrows one machine.
 //!
 //! Space is cut into a cell a rank (`cut`); a rank owns the bodies whose ball's centre lies in its cell, knows the ghosts that
-//! its own may meet (`ghosts`, by the reach of [`rounding::border`](crate::rounding::border)), and culls both with the
-//! library's [`Culler`](crate::Culler). A pair is reported by the owner of the body that reaches less far, of two alike by
+//! its own may meet (`ghosts`, by the reach of [`rounding::border`](sdop::rounding::border)), and culls both with the
+//! library's [`Culler`](sdop::Culler). A pair is reported by the owner of the body that reaches less far, of two alike by
 //! that of the lower number: numbers that both ranks have to the bit. Every verdict is a function of the two bodies
 //! alone, the lower number first, so all ranks together report the pairs of one process, whatever their number.
 //!

@@ -6,7 +6,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::CommunicatorCollectives as _;
 
 use super::network::Network;
-use crate::lab::mpi::Ranks;
+use crate::mpi::Ranks;
 
 /// Bytes of one call: MPI counts them in an i32.
 const MOST: usize = 1 << 30;

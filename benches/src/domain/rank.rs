@@ -8,16 +8,16 @@ use super::ghosts::{Balls, Plan};
 use super::held::Held;
 use super::network::Network;
 use super::run::BorderSeconds;
-use crate::bodies::Bodies;
-use crate::bodies::contract::{ContractError, check_poses};
-use crate::counters::Seconds;
-use crate::culler::{CullError, Culler};
-use crate::lab::effects::Effects;
-use crate::lab::scene::Scene;
-use crate::lab::simulate::SimulationError;
-use crate::rounding::border;
-use crate::settings::{CullSettings, Interest};
-use crate::simd::Tier;
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::{ContractError, check_poses};
+use sdop::counters::Seconds;
+use sdop::culler::{CullError, Culler};
+use crate::effects::Effects;
+use crate::scene::Scene;
+use crate::simulate::SimulationError;
+use sdop::rounding::border;
+use sdop::settings::{CullSettings, Interest};
+use sdop::simd::Tier;
 
 /// A rank with what it holds of a scene.
 pub struct Rank<'a, N> {
@@ -66,7 +66,7 @@ pub struct RankFrame<'a> {
 }
 
 impl<'a, N: Network> Rank<'a, N> {
-    /// Prepares a rank for its share of the scene, as [`SceneFile::build_share`](crate::lab::scene::SceneFile::build_share)
+    /// Prepares a rank for its share of the scene, as [`SceneFile::build_share`](crate::scene::SceneFile::build_share)
     /// has made it. Collective.
     ///
     /// # Errors

@@ -7,9 +7,9 @@ use super::ghosts::{Border, Plan};
 use super::held::Record;
 use super::network::Network;
 use super::rank::Rank;
-use crate::lab::effects::runs;
-use crate::rounding::border;
-use crate::settings::{Interest, ViewCone};
+use crate::effects::runs;
+use sdop::rounding::border;
+use sdop::settings::{Interest, ViewCone};
 
 /// A skin of this share of the mean reach: a renewal costs a rank what some frames of all its bodies do, and a wider skin adds
 /// ghosts at its borders alone. Wider still pays in worlds of millions a rank, and not in small or crowded ones.

@@ -7,9 +7,9 @@ use serde::Deserialize;
 
 use super::Start;
 use super::{Effect, Made, Velocities};
-use crate::bodies::Bodies;
-use crate::lab::number::{Interval, Share};
-use crate::lab::random::Stream;
+use sdop::bodies::Bodies;
+use crate::number::{Interval, Share};
+use crate::random::Stream;
 
 /// `brownian = { share = 0.01, speed = [min, max] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

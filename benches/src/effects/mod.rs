@@ -22,10 +22,10 @@ use miette::Diagnostic;
 use thiserror::Error;
 use toml::Spanned;
 
-use crate::bodies::Bodies;
-use crate::bodies::contract::{ContractError, check_poses};
-use crate::rounding::pose;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::{ContractError, check_poses};
+use sdop::rounding::pose;
+use sdop::volume::Shape;
 
 /// What effects begin from: the initial state of a scene.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer};
 
 use super::Start;
 use super::{Effect, Made, Velocities};
-use crate::bodies::Bodies;
+use sdop::bodies::Bodies;
 
 /// `true`: there is nothing to set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

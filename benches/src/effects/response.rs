@@ -10,8 +10,8 @@ use std::ops::Range;
 
 use super::{Effect, Made, Velocities};
 use super::{Start, world_centre};
-use crate::bodies::Bodies;
-use crate::choice::choices;
+use sdop::bodies::Bodies;
+use sdop::choice::choices;
 
 choices! {
     /// How bodies respond to contact.

@@ -7,8 +7,8 @@ use serde::Deserialize;
 
 use super::Start;
 use super::{Effect, Made, Velocities};
-use crate::bodies::Bodies;
-use crate::lab::number::Interval;
+use sdop::bodies::Bodies;
+use crate::number::Interval;
 
 /// `spin = { rate = [min, max] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

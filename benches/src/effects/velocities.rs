@@ -1,8 +1,8 @@
 //! How fast bodies move: what effects keep between two frames. Culling asks only where bodies are.
 
-use crate::bodies::contract::{ContractError, check_column, check_vectors};
+use sdop::bodies::contract::{ContractError, check_column, check_vectors};
 
-/// Velocities as columns; index i is body i, as in [`Bodies`](crate::bodies::Bodies).
+/// Velocities as columns; index i is body i, as in [`Bodies`](sdop::bodies::Bodies).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Velocities {
     /// Linear velocity, world frame, length units a second.

@@ -9,8 +9,8 @@ use std::ops::Range;
 use super::Start;
 use super::world_centre;
 use super::{Effect, Made, Velocities};
-use crate::bodies::Bodies;
-use crate::choice::choices;
+use sdop::bodies::Bodies;
+use sdop::choice::choices;
 
 choices! {
     /// How a wall turns a body's velocity.

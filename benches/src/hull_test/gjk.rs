@@ -8,9 +8,9 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::bodies::Bodies;
-use crate::rounding::pose::rotation;
-use crate::volume::{Hull, Shape};
+use sdop::bodies::Bodies;
+use sdop::rounding::pose::rotation;
+use sdop::volume::{Hull, Shape};
 
 /// Margin of the certificate relative to the sizes involved: some hundred times what the f64 steps can err by.
 const MARGIN: f64 = 1.0 / (1_u64 << 42) as f64;

@@ -4,10 +4,10 @@ mod gjk;
 
 pub use gjk::{HullGraph, PosedHull, may_touch};
 
-use crate::bodies::Bodies;
-use crate::counters::VolumeCounters;
-use crate::pairs::PairList;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::counters::VolumeCounters;
+use sdop::pairs::PairList;
+use sdop::volume::Shape;
 
 /// The hull test of listed pairs.
 #[derive(Debug)]

@@ -1,8 +1,8 @@
 //! What a run counts, volume by volume: the Nu and Nv of the formula.
 
-use crate::choice::choices;
-use crate::counters::{Counters, VolumeCounters};
-use crate::settings::{Strategy, TestedVolume};
+use sdop::choice::choices;
+use sdop::counters::{Counters, VolumeCounters};
+use sdop::settings::{Strategy, TestedVolume};
 
 choices! {
     /// What is updated, tested and has prices.

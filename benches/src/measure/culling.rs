@@ -2,16 +2,16 @@
 
 use std::time::Instant;
 
-use super::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 use super::counts::Counts;
 use super::waiting::Waiting;
-use crate::bodies::Bodies;
-use crate::counters::{Counters, VolumeCounters};
-use crate::culler::{CullError, Culler};
-use crate::lab::hull_test::HullTest;
-use crate::settings::CullSettings;
-use crate::simd::Tier;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::counters::{Counters, VolumeCounters};
+use sdop::culler::{CullError, Culler};
+use crate::hull_test::HullTest;
+use sdop::settings::CullSettings;
+use sdop::simd::Tier;
+use sdop::volume::Shape;
 
 /// Seconds of one frame, stage by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]

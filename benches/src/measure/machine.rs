@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::simd::Tier;
+use sdop::simd::Tier;
 
 /// What a measurement says of its machine.
 #[derive(Clone, Debug, Serialize, Deserialize)]

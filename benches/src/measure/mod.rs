@@ -1,7 +1,6 @@
 //! Measuring: contestants in turns, the machine they ran on, and estimates with their uncertainty.
 
 pub mod conditions;
-pub mod contestant;
 pub mod counts;
 pub mod culling;
 pub mod estimate;

@@ -2,11 +2,11 @@
 
 use super::counts::Volume;
 use super::culling::Culling;
-use crate::culler::CullError;
-use crate::lab::scene::Scene;
-use crate::settings::{CullSettings, Strategy};
-use crate::simd::Tier;
-use crate::volume::Shape;
+use sdop::culler::CullError;
+use crate::scene::Scene;
+use sdop::settings::{CullSettings, Strategy};
+use sdop::simd::Tier;
+use sdop::volume::Shape;
 
 /// One way to cull.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]

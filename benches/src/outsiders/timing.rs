@@ -7,18 +7,18 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::answer::{Answer, Stop};
-use super::case::{Case, Frame};
-use super::claim::Claim;
-use super::score::{Outcome, judge_answers};
-use super::subject::Subject;
-use crate::bodies::contract::ContractError;
-use crate::culler::{CullError, Culler};
-use crate::lab::effects::EffectError;
-use crate::lab::scene::Scene;
-use crate::lab::verify::judged::InvalidInput;
-use crate::settings::Strategy;
-use crate::volume::Shape;
+use sdop_judge::answer::{Answer, Stop};
+use sdop_judge::case::{Case, Frame};
+use sdop_judge::claim::Claim;
+use sdop_judge::score::{Outcome, judge_answers};
+use sdop_judge::subject::Subject;
+use sdop::bodies::contract::ContractError;
+use sdop::culler::{CullError, Culler};
+use crate::effects::EffectError;
+use crate::scene::Scene;
+use sdop_judge::ours::judged::InvalidInput;
+use sdop::settings::Strategy;
+use sdop::volume::Shape;
 
 /// Why nothing was timed.
 #[derive(Debug, thiserror::Error)]

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use super::columns::{Kind, interval, kinds};
 use super::manifest::{Manifest, ManifestError};
 use super::table::{Table, TableError};
-use crate::lab::measure::estimate::Estimate;
+use crate::measure::estimate::Estimate;
 
 /// A count, or a whole row, that two records don't share.
 #[derive(Clone, Debug, PartialEq, Serialize)]

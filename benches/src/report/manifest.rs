@@ -8,8 +8,8 @@ use sha2::{Digest as _, Sha256};
 
 use super::clock::today;
 use super::provenance::{Code, Load, caches};
-use crate::lab::hash::hex;
-use crate::lab::measure::machine::Machine;
+use crate::hash::hex;
+use crate::measure::machine::Machine;
 
 /// The manifest's name in every record.
 pub const FILE: &str = "record.json";

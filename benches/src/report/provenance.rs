@@ -68,7 +68,7 @@ impl Code {
             if let Some(above) = target.parent() {
                 std::fs::create_dir_all(above)?;
             }
-            crate::files::write(&target, output.stdout)?;
+            sdop::files::write(&target, output.stdout)?;
         }
         Ok(())
     }

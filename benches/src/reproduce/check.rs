@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Estimate;
-use crate::choice::choices;
+use sdop::choice::choices;
 
 choices! {
     /// What the numbers say.

@@ -8,7 +8,7 @@ use super::immediate::{Handing, Immediacy};
 use super::rates::{ELSEWHERE, ratio};
 use super::readings::{Reading, TABLE_1_STRATEGIES};
 use super::{Estimate, paper_name};
-use crate::settings::Strategy;
+use sdop::settings::Strategy;
 
 use Strategy::{
     None as Control, OrDop, SDopBatch as All, SDopObjectOfInterest as Ooi, SDopSequential as Seq,

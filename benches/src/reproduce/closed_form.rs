@@ -41,7 +41,7 @@ pub fn relative_reach(side: f64, radius: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::random::Stream;
+    use crate::random::Stream;
 
     #[test]
     fn probability_is_that_of_drawn_points() {

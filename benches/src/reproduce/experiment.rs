@@ -10,20 +10,20 @@ use super::immediate::Immediacy;
 use super::sensitivity::Interpretation;
 use super::survival::Survival;
 use super::units::Experiments;
-use crate::choice::choices;
-use crate::counters::{Counters, Seconds};
-use crate::lab::cost::calibrate::{Calibration, Effort};
-use crate::lab::cost::pass::{Culled, Observer, Pass, Simulated, pass};
-use crate::lab::cost::table::{self, Cost};
-use crate::lab::hash::PairsHash;
-use crate::lab::measure::contestant::Contestant;
-use crate::lab::measure::culling::Culling;
-use crate::lab::measure::turns::Regime;
-use crate::lab::measure::variant::Variant;
-use crate::lab::scene::{Scene, SceneError};
-use crate::lab::simulate::SimulationError;
-use crate::settings::Strategy;
-use crate::simd::Tier;
+use sdop::choice::choices;
+use sdop::counters::{Counters, Seconds};
+use crate::cost::calibrate::{Calibration, Effort};
+use crate::cost::pass::{Culled, Observer, Pass, Simulated, pass};
+use crate::cost::table::{self, Cost};
+use crate::hash::PairsHash;
+use sdop_judge::contestant::Contestant;
+use crate::measure::culling::Culling;
+use crate::measure::turns::Regime;
+use crate::measure::variant::Variant;
+use crate::scene::{Scene, SceneError};
+use crate::simulate::SimulationError;
+use sdop::settings::Strategy;
+use sdop::simd::Tier;
 
 /// The paper's strategies, in the order of frame rates that it claims.
 pub const STRATEGIES: [Strategy; 6] = [

@@ -5,18 +5,18 @@
 //! pair, after sixteen, or at the end; nothing else differs.
 
 use super::experiment::PaperScene;
-use crate::bodies::Bodies;
-use crate::choice::choices;
-use crate::lab::measure::contestant::Contestant;
-use crate::lab::measure::turns::{Regime, Turns, median, next_turn};
-use crate::lab::scene::Scene;
-use crate::lab::simulate::{SimulationError, Trajectory};
-use crate::overlap::ordop::PosedOrDops;
-use crate::pairs::PairList;
-use crate::settings::Overlap;
-use crate::simd::Tier;
-use crate::update::ShapeFrame;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::choice::choices;
+use sdop_judge::contestant::Contestant;
+use crate::measure::turns::{Regime, Turns, median, next_turn};
+use crate::scene::Scene;
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::overlap::ordop::PosedOrDops;
+use sdop::pairs::PairList;
+use sdop::settings::Overlap;
+use sdop::simd::Tier;
+use sdop::update::ShapeFrame;
+use sdop::volume::Shape;
 
 /// Frames of each measurement.
 const FRAMES: u32 = 24;

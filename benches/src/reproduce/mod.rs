@@ -19,11 +19,11 @@ pub mod study;
 mod survival;
 pub mod units;
 
-pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};
+pub use crate::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};
 pub use experiment::{PaperScene, Plan, ReproduceError, Results, Run, STRATEGIES, run_scene};
 pub use survival::Survival;
 
-use crate::settings::Strategy;
+use sdop::settings::Strategy;
 
 /// What the paper calls a strategy in its tables and figures.
 #[must_use]

@@ -1,8 +1,8 @@
 //! The paper's own numbers, to stand beside ours, and what they imply about each other.
 
-use crate::settings::Strategy;
+use sdop::settings::Strategy;
 
-use crate::lab::measure::estimate::chi_squared_p;
+use crate::measure::estimate::chi_squared_p;
 
 /// Numbers of objects in Table 1. The paper's text says 350 in the third place.
 pub const TABLE_1_BODIES: [usize; 4] = [50, 150, 300, 500];

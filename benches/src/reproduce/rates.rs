@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::Estimate;
 use super::experiment::{Results, STRATEGIES};
-use crate::settings::Strategy;
+use sdop::settings::Strategy;
 
 /// Per-frame costs F of everything else, in seconds.
 pub const ELSEWHERE: [f64; 2] = [0.0, 16.7e-3];

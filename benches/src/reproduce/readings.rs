@@ -7,9 +7,9 @@ use serde::Serialize;
 
 use super::experiment::Results;
 use super::{Estimate, paper};
-use crate::choice::choices;
-use crate::counters::Counters;
-use crate::settings::{Flow, Strategy};
+use sdop::choice::choices;
+use sdop::counters::Counters;
+use sdop::settings::{Flow, Strategy};
 
 choices! {
     /// What counts as a test.
@@ -132,7 +132,7 @@ pub fn table(results: &Results) -> Vec<Cell> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::counters::VolumeCounters;
+    use sdop::counters::VolumeCounters;
 
     #[test]
     fn readings_count_what_they_say() {

@@ -12,18 +12,18 @@ use toml::Spanned;
 
 use super::experiment::{Plan, ReproduceError};
 use super::paper::{TABLE_1, TABLE_1_BODIES};
-use crate::choice::choices;
-use crate::counters::Counters;
-use crate::lab::effects::walls;
-use crate::lab::measure::contestant::Contestant;
-use crate::lab::measure::culling::Culling;
-use crate::lab::measure::variant::Variant;
-use crate::lab::number::Positive;
-use crate::lab::scene::file::Placement;
-use crate::lab::scene::{Scene, SceneFile};
-use crate::lab::simulate::{SimulationError, Trajectory};
-use crate::settings::{Axes, CullSettings, DirectionSet, Overlap, Strategy};
-use crate::simd::Tier;
+use sdop::choice::choices;
+use sdop::counters::Counters;
+use crate::effects::walls;
+use sdop_judge::contestant::Contestant;
+use crate::measure::culling::Culling;
+use crate::measure::variant::Variant;
+use crate::number::Positive;
+use crate::scene::file::Placement;
+use crate::scene::{Scene, SceneFile};
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::settings::{Axes, CullSettings, DirectionSet, Overlap, Strategy};
+use sdop::simd::Tier;
 
 /// Frames after which counts are looked at.
 const LENGTHS: [u32; 4] = [1, 10, 60, 400];

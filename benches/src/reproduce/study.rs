@@ -5,7 +5,7 @@ use super::closed_form::{inverse, probability, relative_reach};
 use super::experiment::Results;
 use super::readings::Reading;
 use super::{Estimate, paper};
-use crate::settings::{Overlap, Strategy};
+use sdop::settings::{Overlap, Strategy};
 
 use Strategy::{OrDop, SDopBatch as All, SDopSequential as Seq, Sphere};
 

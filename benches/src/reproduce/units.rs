@@ -13,13 +13,13 @@ use super::experiment::{
 use super::immediate::{self, Immediacy};
 use super::sensitivity::{self, Counted};
 use super::survival::Survival;
-use crate::lab::cost::calibrate::{Calibration, Effort};
-use crate::lab::cost::pass::Pass;
-use crate::lab::hash::volumes_sha256;
-use crate::lab::measure::machine::Machine;
-use crate::lab::measure::variant::Variant;
-use crate::lab::scene::{Scene, SceneFile};
-use crate::lab::sweep::{Header, Sweep, digest};
+use crate::cost::calibrate::{Calibration, Effort};
+use crate::cost::pass::Pass;
+use crate::hash::volumes_sha256;
+use crate::measure::machine::Machine;
+use crate::measure::variant::Variant;
+use crate::scene::{Scene, SceneFile};
+use crate::sweep::{Header, Sweep, digest};
 
 /// What its files are called.
 pub const NAME: &str = "reproduce";

@@ -7,10 +7,10 @@ use std::path::Path;
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use thiserror::Error;
 
-use crate::bodies::contract::ContractError;
-use crate::choice::suggest;
-use crate::files;
-use crate::settings::SettingsError;
+use sdop::bodies::contract::ContractError;
+use sdop::choice::suggest;
+use sdop::files;
+use sdop::settings::SettingsError;
 
 /// Why a scene could not be made.
 #[derive(Debug, Error, Diagnostic)]

@@ -9,12 +9,12 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
 use super::error::{SceneError, Source};
-use crate::choice::choices;
-use crate::files;
-use crate::lab::effects::EffectsSpec;
-use crate::lab::number::{Interval, Positive, Real};
-use crate::settings::CullSettings;
-use crate::volume::Origin;
+use sdop::choice::choices;
+use sdop::files;
+use crate::effects::EffectsSpec;
+use crate::number::{Interval, Positive, Real};
+use sdop::settings::CullSettings;
+use sdop::volume::Origin;
 
 /// A scene file, read but not yet built. Seed, frames and culling may be changed before [`SceneFile::build`].
 #[derive(Clone, Debug)]

@@ -7,8 +7,8 @@ use toml::Spanned;
 use super::error::SceneError;
 use super::file::{GroupSpec, Placement, SceneFile, Seeding};
 use super::library::Form;
-use crate::lab::random::Stream;
-use crate::volume::Origin;
+use crate::random::Stream;
+use sdop::volume::Origin;
 
 /// The most bodies that a process holds of a scene: a hundred bytes each, in several copies, fit into memory.
 const MOST_BODIES: usize = 1 << 24;

@@ -9,11 +9,11 @@ use toml::Spanned;
 
 use super::error::{SceneError, Source};
 use super::file::SceneFile;
-use crate::choice::suggest;
-use crate::lab::number::Real;
-use crate::mesh::{ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError};
-use crate::settings::CullSettings;
-use crate::volume::{Origin, Shape, ShapeSpec};
+use sdop::choice::suggest;
+use crate::number::Real;
+use sdop::mesh::{ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError};
+use sdop::settings::CullSettings;
+use sdop::volume::{Origin, Shape, ShapeSpec};
 
 /// The sizes of a procedural shape, as the scene file has them.
 pub(super) type Sizes = BTreeMap<Spanned<String>, Spanned<Real>>;

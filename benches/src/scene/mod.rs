@@ -17,10 +17,10 @@ pub use error::SceneError;
 pub use file::SceneFile;
 pub use share::Share;
 
-use crate::bodies::Bodies;
-use crate::lab::effects::{EffectError, Effects, EffectsSpec, Start, Velocities};
-use crate::settings::CullSettings;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use crate::effects::{EffectError, Effects, EffectsSpec, Start, Velocities};
+use sdop::settings::CullSettings;
+use sdop::volume::Shape;
 
 /// A scene ready to run.
 #[derive(Clone, Debug)]

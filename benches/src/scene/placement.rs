@@ -1,8 +1,8 @@
 //! Where seeded bodies start: uniform in the box, in clusters, or in a slice across it.
 
 use super::file::Placement;
-use crate::lab::number::Positive;
-use crate::lab::random::Stream;
+use crate::number::Positive;
+use crate::random::Stream;
 
 /// Places the sphere centres of one group.
 pub(super) struct Placer {

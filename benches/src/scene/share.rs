@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::bodies::Bodies;
-use crate::lab::effects::runs;
+use sdop::bodies::Bodies;
+use crate::effects::runs;
 
 /// A run of a scene's bodies, by their numbers in the whole scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use sha2::{Digest as _, Sha256};
 
 use super::Shard;
-use crate::lab::hash::hex;
+use crate::hash::hex;
 
 /// The form of a header and the lines behind it.
 const FORM: &str = "sdop units 1";

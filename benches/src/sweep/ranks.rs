@@ -15,7 +15,7 @@ use rayon::ThreadPoolBuilder;
 
 use super::queue::{Move, Queue};
 use super::{Event, Header, Sweep, attempt};
-use crate::lab::mpi::Ranks;
+use crate::mpi::Ranks;
 
 /// Rank 0 has its work ready: begin.
 const GO: Tag = 1;

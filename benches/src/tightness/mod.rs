@@ -6,7 +6,7 @@ pub use polytope::mean_world_aligned_volume;
 
 use serde::{Deserialize, Serialize};
 
-use crate::volume::{Axes, DirectionSet, Hull, OrDop, Shape};
+use sdop::volume::{Axes, DirectionSet, Hull, OrDop, Shape};
 
 /// Random rotations over which the volumes that are re-fitted each frame are averaged.
 const TURNS: u32 = 64;

@@ -10,7 +10,7 @@ use rand_chacha::{
     rand_core::{Rng, SeedableRng},
 };
 
-use crate::volume::{Basis, DirectionSet, OrDop};
+use sdop::volume::{Basis, DirectionSet, OrDop};
 
 /// normal·u ≤ end.
 struct HalfSpace {

@@ -8,10 +8,10 @@ use super::TradeoffError;
 use super::decide::choose_measured;
 use super::density::{lines, variants};
 use super::pays::{Line, Stretch, envelope};
-use crate::lab::measure::conditions::Conditions;
-use crate::lab::measure::estimate::Estimate;
-use crate::lab::scene::SceneFile;
-use crate::simd::Tier;
+use crate::measure::conditions::Conditions;
+use crate::measure::estimate::Estimate;
+use crate::scene::SceneFile;
+use sdop::simd::Tier;
 
 /// The most frames of the scene that are looked at: enough to see its pairs, few enough for a minute.
 pub const FRAMES: u32 = 200;

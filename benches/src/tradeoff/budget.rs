@@ -13,13 +13,13 @@ use super::counts::{share, shared};
 use super::interest::spread;
 use super::truth::{Judge, Sample};
 use super::variant::Variant;
-use crate::culler::Culler;
-use crate::lab::cost::pass::{Culled, Simulated, pass};
-use crate::lab::measure::turns::{Regime, median};
-use crate::lab::percentiles::Percentiles;
-use crate::lab::scene::Scene;
-use crate::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
-use crate::simd::Tier;
+use sdop::culler::Culler;
+use crate::cost::pass::{Culled, Simulated, pass};
+use crate::measure::turns::{Regime, median};
+use crate::percentiles::Percentiles;
+use crate::scene::Scene;
+use sdop::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
+use sdop::simd::Tier;
 
 /// Budgets as shares of what refining everything takes.
 const SHARES: [f64; 7] = [0.0, 0.125, 0.25, 0.5, 0.75, 1.0, 1.25];

@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::truth::{Sample, Truth};
 use super::variant::Variant;
-use crate::counters::{Counters, VolumeCounters};
-use crate::culler::CullError;
-use crate::lab::hash::PairsHash;
-use crate::lab::measure::contestant::Contestant;
-use crate::lab::scene::Scene;
-use crate::simd::Tier;
+use sdop::counters::{Counters, VolumeCounters};
+use sdop::culler::CullError;
+use crate::hash::PairsHash;
+use sdop_judge::contestant::Contestant;
+use crate::scene::Scene;
+use sdop::simd::Tier;
 
 /// What a variant counted on the sample frames of one seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,7 +37,7 @@ pub struct Quality {
     /// True pairs / reported pairs; 1 where nothing is reported.
     pub precision: f64,
     /// Reported pairs / true pairs, infinite where nothing is true.
-    #[serde(deserialize_with = "crate::lab::measure::estimate::or_infinite")]
+    #[serde(deserialize_with = "crate::measure::estimate::or_infinite")]
     pub per_true: f64,
     /// True pairs found / true pairs; 1 where nothing is true.
     pub recall: f64,

@@ -11,12 +11,12 @@ use super::pays::{Line, OrDopKind, Stretch, break_even, envelope};
 use super::timing::{PASSES, measure};
 use super::truth::{Sample, samples};
 use super::variant::{Variant, s_dops};
-use crate::lab::cost::pass::{Pass, Simulated, pass};
-use crate::lab::measure::turns::{Regime, Times, median};
-use crate::lab::number::Positive;
-use crate::lab::scene::{Scene, SceneError, SceneFile};
-use crate::settings::{CullSettings, Overlap, Strategy};
-use crate::simd::Tier;
+use crate::cost::pass::{Pass, Simulated, pass};
+use crate::measure::turns::{Regime, Times, median};
+use crate::number::Positive;
+use crate::scene::{Scene, SceneError, SceneFile};
+use sdop::settings::{CullSettings, Overlap, Strategy};
+use sdop::simd::Tier;
 
 /// Densities as multiples of the scene's.
 pub(super) const FACTORS: [f32; 7] = [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0];

@@ -2,9 +2,9 @@
 //! precise than the one before it.
 
 use super::result::VariantResult;
-use crate::lab::measure::estimate::Estimate;
-use crate::lab::reproduce::check::{Check, Claim};
-use crate::settings::{Overlap, Strategy};
+use crate::measure::estimate::Estimate;
+use crate::reproduce::check::{Check, Claim};
+use sdop::settings::{Overlap, Strategy};
 
 /// The figure's order: a volume alone, without another before it.
 const ORDER: [Strategy; 5] = [

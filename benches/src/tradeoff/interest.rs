@@ -7,11 +7,11 @@ use super::timing::measure;
 use super::truth::{Sample, Truth};
 use super::variant::Variant;
 use super::{Estimate, TradeoffError};
-use crate::lab::cost::pass::medians;
-use crate::lab::measure::turns::Regime;
-use crate::lab::scene::Scene;
-use crate::settings::{CullSettings, Interest, Strategy, Updates};
-use crate::simd::Tier;
+use crate::cost::pass::medians;
+use crate::measure::turns::Regime;
+use crate::scene::Scene;
+use sdop::settings::{CullSettings, Interest, Strategy, Updates};
+use sdop::simd::Tier;
 
 /// Parts of the bodies that are of interest; the first is one body.
 const SHARES: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0];

@@ -23,7 +23,7 @@ pub mod units;
 pub mod variant;
 pub mod vary;
 
-pub use crate::lab::measure::estimate::{CONFIDENCE, Estimate};
+pub use crate::measure::estimate::{CONFIDENCE, Estimate};
 pub use result::{Tradeoff, VariantResult};
 pub use study::{Findings, Plan};
 
@@ -32,9 +32,9 @@ use std::path::PathBuf;
 use miette::Diagnostic;
 use thiserror::Error;
 
-use crate::culler::CullError;
-use crate::lab::scene::SceneError;
-use crate::lab::simulate::SimulationError;
+use sdop::culler::CullError;
+use crate::scene::SceneError;
+use crate::simulate::SimulationError;
 
 /// Why there is no answer.
 #[derive(Debug, Error, Diagnostic)]
@@ -57,11 +57,11 @@ pub enum TradeoffError {
     /// A shape can't be made.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Form(#[from] crate::mesh::shapes::ShapeError),
+    Form(#[from] sdop::mesh::shapes::ShapeError),
     /// A shape can't be bounded.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Volume(#[from] crate::volume::VolumeError),
+    Volume(#[from] sdop::volume::VolumeError),
     /// The truth can't be kept.
     #[error("cannot write {}", file.display())]
     #[diagnostic(help("choose a writable directory with --cache"))]

@@ -7,11 +7,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::truth::NarrowPhase;
-use crate::choice::choices;
-use crate::lab::measure::counts::Volume;
-use crate::lab::measure::estimate::Estimate;
-use crate::lab::measure::variant::Variant;
-use crate::settings::{Axes, Overlap};
+use sdop::choice::choices;
+use crate::measure::counts::Volume;
+use crate::measure::estimate::Estimate;
+use crate::measure::variant::Variant;
+use sdop::settings::{Axes, Overlap};
 
 /// One variant's cost a frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

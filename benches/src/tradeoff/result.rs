@@ -12,10 +12,10 @@ use super::safety::SafetyRow;
 use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
 use super::vary::Variation;
-use crate::lab::cost::table::{Cost, PriceRow};
-use crate::lab::measure::conditions::Conditions;
-use crate::lab::measure::counts::Volume;
-use crate::settings::{Axes, Overlap, Strategy};
+use crate::cost::table::{Cost, PriceRow};
+use crate::measure::conditions::Conditions;
+use crate::measure::counts::Volume;
+use sdop::settings::{Axes, Overlap, Strategy};
 
 /// One variant's result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -9,19 +9,19 @@ use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::truth::windows;
-use crate::bodies::Bodies;
-use crate::choice::choices;
-use crate::lab::measure::contestant::Contestant;
-use crate::lab::measure::culling::Culling;
-use crate::lab::measure::turns::{Quartiles, Regime, Turns, turn_frames};
-use crate::lab::scene::Scene;
-use crate::lab::verify::judged::{Shapes, overlap};
-use crate::rounding::pose::norm;
-use crate::rounding::slab::{SLAB_FLOOR, SLAB_MARGIN};
-use crate::rounding::sphere::inflate_radius;
-use crate::settings::{CullSettings, Strategy, Updates};
-use crate::simd::Tier;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::choice::choices;
+use sdop_judge::contestant::Contestant;
+use crate::measure::culling::Culling;
+use crate::measure::turns::{Quartiles, Regime, Turns, turn_frames};
+use crate::scene::Scene;
+use sdop_judge::ours::judged::{Shapes, overlap};
+use sdop::rounding::pose::norm;
+use sdop::rounding::slab::{SLAB_FLOOR, SLAB_MARGIN};
+use sdop::rounding::sphere::inflate_radius;
+use sdop::settings::{CullSettings, Strategy, Updates};
+use sdop::simd::Tier;
+use sdop::volume::Shape;
 
 choices! {
     /// How the same predicate is computed.

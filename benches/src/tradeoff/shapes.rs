@@ -8,18 +8,18 @@ use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::truth::Judge;
-use crate::bodies::Bodies;
-use crate::lab::hull_test::{HullGraph, PosedHull, may_touch};
-use crate::lab::measure::estimate::Estimate;
-use crate::lab::random::Stream;
-use crate::lab::tightness::Size;
-use crate::mesh::shapes::ProceduralShape;
-use crate::overlap::ordop::PosedOrDops;
-use crate::pairs::PairList;
-use crate::rounding::pose::{rotate, rotation};
-use crate::settings::{Axes, DirectionSet, Overlap};
-use crate::simd::Tier;
-use crate::volume::{Hull, OrDop, Shape, ShapeSpec};
+use sdop::bodies::Bodies;
+use crate::hull_test::{HullGraph, PosedHull, may_touch};
+use crate::measure::estimate::Estimate;
+use crate::random::Stream;
+use crate::tightness::Size;
+use sdop::mesh::shapes::ProceduralShape;
+use sdop::overlap::ordop::PosedOrDops;
+use sdop::pairs::PairList;
+use sdop::rounding::pose::{rotate, rotation};
+use sdop::settings::{Axes, DirectionSet, Overlap};
+use sdop::simd::Tier;
+use sdop::volume::{Hull, OrDop, Shape, ShapeSpec};
 
 /// Where the draws start; scenes count their seeds from 1.
 const SEED: u64 = 0x5a3e_7000_0000_0000;

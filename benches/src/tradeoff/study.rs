@@ -16,12 +16,12 @@ use super::truth::NarrowPhase;
 use super::units::{Compared, Counts, Found, Settings};
 use super::variant::Variant;
 use super::vary::Variation;
-use crate::lab::cost::pass::Pass;
-use crate::lab::cost::table;
-use crate::lab::measure::conditions::Conditions;
-use crate::lab::measure::counts::Volume;
-use crate::lab::measure::turns::Regime;
-use crate::simd::Tier;
+use crate::cost::pass::Pass;
+use crate::cost::table;
+use crate::measure::conditions::Conditions;
+use crate::measure::counts::Volume;
+use crate::measure::turns::Regime;
+use sdop::simd::Tier;
 
 /// How much is done.
 #[derive(Clone, Debug)]

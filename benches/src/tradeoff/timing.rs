@@ -1,16 +1,16 @@
 //! Time: the formula's prices for each variant, and its seconds per frame measured beside all others.
 //!
 //! Each sample frame with those that follow it is a turn. Turns of the judged scene take turns with those of its
-//! calibration ([`pass`](crate::lab::cost::pass)): the same protocol as everywhere.
+//! calibration ([`pass`](crate::cost::pass)): the same protocol as everywhere.
 
 use super::truth::windows;
-use crate::bodies::Bodies;
-use crate::lab::cost::pass::{Frames, Pass, pass};
-use crate::lab::measure::turns::turn_frames;
-use crate::lab::measure::variant::Variant;
-use crate::lab::scene::Scene;
-use crate::lab::simulate::SimulationError;
-use crate::simd::Tier;
+use sdop::bodies::Bodies;
+use crate::cost::pass::{Frames, Pass, pass};
+use crate::measure::turns::turn_frames;
+use crate::measure::variant::Variant;
+use crate::scene::Scene;
+use crate::simulate::SimulationError;
+use sdop::simd::Tier;
 
 /// The fewest passes behind a number, each apart in time.
 pub const PASSES: usize = 3;

@@ -16,14 +16,14 @@ use sha2::{Digest, Sha256};
 
 use super::TradeoffError;
 use super::variant::Variant;
-use crate::bodies::Bodies;
-use crate::culler::Culler;
-use crate::files;
-use crate::lab::hash::{PairsHash, hex};
-use crate::lab::scene::Scene;
-use crate::lab::simulate::{SimulationError, Trajectory};
-use crate::simd::Tier;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
+use sdop::files;
+use crate::hash::{PairsHash, hex};
+use crate::scene::Scene;
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::simd::Tier;
+use sdop::volume::Shape;
 
 /// First word of a cache file; the number changes with its layout.
 const HEADER: &str = "sdop-truth-1";
@@ -330,7 +330,7 @@ fn hash(samples: &[Sample], truth: &Truth) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::random::Stream;
+    use crate::random::Stream;
 
     #[test]
     fn the_sweep_lists_what_all_pairs_would() {

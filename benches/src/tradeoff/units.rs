@@ -20,12 +20,12 @@ use super::truth::{Judge, NarrowPhase, Sample, samples};
 use super::variant::{self, Variant};
 use super::vary::{self, Change, Variation};
 use super::{Estimate, TradeoffError};
-use crate::lab::cost::calibrate::{Calibration, Effort};
-use crate::lab::cost::pass::{Pass, pass};
-use crate::lab::measure::machine::Machine;
-use crate::lab::scene::{Scene, SceneFile};
-use crate::lab::sweep::{Header, Sweep, digest};
-use crate::volume::Shape;
+use crate::cost::calibrate::{Calibration, Effort};
+use crate::cost::pass::{Pass, pass};
+use crate::measure::machine::Machine;
+use crate::scene::{Scene, SceneFile};
+use crate::sweep::{Header, Sweep, digest};
+use sdop::volume::Shape;
 
 /// What its files are called.
 pub const NAME: &str = "tradeoff";

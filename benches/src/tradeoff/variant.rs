@@ -2,14 +2,14 @@
 
 use glam::Vec3;
 
-use crate::lab::measure::counts::Volume;
-pub use crate::lab::measure::variant::Variant;
-use crate::lab::scene::Scene;
-use crate::lab::tightness::mean_world_aligned_volume;
-use crate::settings::{
+use crate::measure::counts::Volume;
+pub use crate::measure::variant::Variant;
+use crate::scene::Scene;
+use crate::tightness::mean_world_aligned_volume;
+use sdop::settings::{
     Axes, Budget, CullSettings, DirectionSet, Interest, Overlap, Strategy, Updates,
 };
-use crate::volume::{Hull, Shape};
+use sdop::volume::{Hull, Shape};
 
 /// Random rotations over which a world-aligned volume is averaged.
 const TURNS: u32 = 64;
@@ -135,7 +135,7 @@ fn strategies(scene: &Scene, hits: u64) -> Vec<Variant> {
             format!("s-dop time-critical, {budget} tests"),
             CullSettings {
                 budget: Some(Budget::Tests(budget)),
-                order: crate::settings::Order::LargestOverlap,
+                order: sdop::settings::Order::LargestOverlap,
                 ..with(Strategy::SDopTimeCritical, Updates::Eager)
             },
         ),

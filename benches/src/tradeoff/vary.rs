@@ -14,15 +14,15 @@ use super::decide::{CHECKS, choose_measured};
 use super::density::{self, built_if_possible, variants};
 use super::pays::Line;
 use super::truth::{Judge, NarrowPhase};
-use crate::choice::choices;
-use crate::lab::number::{Interval, Positive};
-use crate::lab::scene::{Scene, SceneFile};
-use crate::lab::simulate::{SimulationError, Trajectory};
-use crate::mesh::decimate::decimate;
-use crate::mesh::{ProceduralShape, TriangleMesh};
-use crate::settings::Finder;
-use crate::simd::Tier;
-use crate::volume::{Origin, Shape, ShapeSpec};
+use sdop::choice::choices;
+use crate::number::{Interval, Positive};
+use crate::scene::{Scene, SceneFile};
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::mesh::decimate::decimate;
+use sdop::mesh::{ProceduralShape, TriangleMesh};
+use sdop::settings::Finder;
+use sdop::simd::Tier;
+use sdop::volume::{Origin, Shape, ShapeSpec};
 
 choices! {
     /// What of a scene is changed.
@@ -318,7 +318,7 @@ fn other_shapes(scene: &mut Scene, mix: Mix) -> Result<(), TradeoffError> {
 }
 
 /// A shape as large as another, built as the scene's settings say.
-fn spec(cull: &crate::settings::CullSettings, like: &Shape) -> ShapeSpec {
+fn spec(cull: &sdop::settings::CullSettings, like: &Shape) -> ShapeSpec {
     ShapeSpec {
         origin: Origin::Ball,
         radius: Some(like.ball.radius),

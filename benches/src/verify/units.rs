@@ -8,18 +8,18 @@ use miette::{IntoDiagnostic as _, miette};
 use sdop_reference::exact::Tally;
 use serde::{Deserialize, Serialize};
 
-use super::answers::Predicate;
-use super::boxes::BoxCell;
-use super::compare::Count;
-use super::hard::{FILES, Group};
-use super::matrix::Cell;
-use super::rounds::{Judged, Ledger, Source, boxes, group, round};
+use sdop_judge::ours::answers::Predicate;
+use sdop_judge::ours::boxes::BoxCell;
+use sdop_judge::ours::compare::Count;
+use sdop_judge::ours::hard::{FILES, Group};
+use sdop_judge::ours::matrix::Cell;
+use sdop_judge::ours::rounds::{Judged, Ledger, Source, boxes, group, round};
 use super::scenes::{block, blocks, frames_of};
-use super::ways::{Rotation, variants};
-use crate::lab::scene::Scene;
-use crate::lab::sweep::{Header, Sweep, digest};
-use crate::settings::{Axes, DirectionSet, Overlap, Strategy};
-use crate::simd::Tier;
+use sdop_judge::ours::ways::{Rotation, variants};
+use crate::scene::Scene;
+use crate::sweep::{Header, Sweep, digest};
+use sdop::settings::{Axes, DirectionSet, Overlap, Strategy};
+use sdop::simd::Tier;
 
 /// What its files are called.
 pub const NAME: &str = "verify";

@@ -1,7 +1,7 @@
 //! The meshes to draw: each shape in levels of detail, for bodies near and far.
 
-use crate::mesh::{TriangleMesh, decimate::decimate};
-use crate::volume::{Hull, Shape};
+use sdop::mesh::{TriangleMesh, decimate::decimate};
+use sdop::volume::{Hull, Shape};
 
 /// Triangles of the levels, at most. A software renderer draws about 60,000 triangles in the time of a frame.
 const LEVELS: [usize; 4] = [3000, 500, 120, 40];

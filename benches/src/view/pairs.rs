@@ -1,7 +1,7 @@
 //! Every pair of interest of every frame, with what is known of it.
 
 use super::{Culled, Show};
-use crate::culler::CullError;
+use sdop::culler::CullError;
 
 /// The spheres of the pair overlap.
 const SPHERES: u8 = 1;

@@ -4,16 +4,17 @@ use std::path::Path;
 
 use miette::Diagnostic as _;
 
-use crate::bodies::Bodies;
-use crate::culler::{CullError, Culler};
-use crate::lab::judge::{Case, Claim, truth::Truth};
-use crate::lab::measure::counts::Volume;
-use crate::lab::record::{FrameLine, Header, Reader, RecordError, VolumeLine};
-use crate::lab::scene::Scene;
-use crate::lab::simulate::{Simulation, SimulationError};
-use crate::settings::{CullSettings, Strategy};
-use crate::simd::Tier;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::culler::{CullError, Culler};
+use sdop_judge::{Case, Claim, truth::Truth};
+use crate::measure::counts::Volume;
+use crate::record;
+use sdop_judge::record::{FrameLine, Header, Reader, RecordError, VolumeLine};
+use crate::scene::Scene;
+use crate::simulate::{Simulation, SimulationError};
+use sdop::settings::{CullSettings, Strategy};
+use sdop::simd::Tier;
+use sdop::volume::Shape;
 
 /// A run in memory.
 #[derive(Clone, Debug)]
@@ -105,12 +106,12 @@ impl Show {
         let mut frames = Vec::new();
         let mut simulation = Simulation::new(scene, tier)?;
         while let Some(frame) = simulation.next_frame()? {
-            frames.push(FrameLine::of(&frame, scene.cull.strategy));
+            frames.push(record::frame_line(&frame, scene.cull.strategy));
             done();
         }
         Ok(Self {
             source: file_name(source),
-            header: Header::of(scene),
+            header: record::header(scene),
             shapes: scene.shapes.clone(),
             bodies: scene.bodies.clone(),
             frames,
@@ -249,7 +250,7 @@ impl Show {
             frame.pose(&mut bodies);
             let before = *culler.counters();
             pairs.push(culler.cull(&bodies)?.sorted());
-            counters.push(VolumeLine::of(
+            counters.push(record::volume_lines(
                 settings.strategy,
                 &culler.counters().since(&before),
             ));
@@ -301,7 +302,7 @@ impl Show {
     pub(super) fn spheres(&self) -> Result<Culled, CullError> {
         let settings = CullSettings {
             strategy: Strategy::Sphere,
-            pairs: crate::settings::Finder::Auto,
+            pairs: sdop::settings::Finder::Auto,
             ..CullSettings::default()
         };
         self.cull(&settings, Tier::detect())

@@ -1,16 +1,16 @@
 //! T = Nu·Cu + F + Nv·Cv, frame by frame: a run's counters at prices calibrated for its shapes.
 
 use super::{Culled, Show};
-use crate::lab::cost::calibrate::{Calibration, Effort};
-use crate::lab::cost::predict::Prices;
-use crate::lab::effects::{EffectsSpec, Velocities};
-use crate::lab::measure::counts::{Counts, Volume};
-use crate::lab::measure::variant::Variant;
-use crate::lab::record::VolumeLine;
-use crate::lab::scene::Scene;
-use crate::lab::simulate::SimulationError;
-use crate::settings::{CullSettings, Strategy};
-use crate::simd::Tier;
+use crate::cost::calibrate::{Calibration, Effort};
+use crate::cost::predict::Prices;
+use crate::effects::{EffectsSpec, Velocities};
+use crate::measure::counts::{Counts, Volume};
+use crate::measure::variant::Variant;
+use sdop_judge::record::VolumeLine;
+use crate::scene::Scene;
+use crate::simulate::SimulationError;
+use sdop::settings::{CullSettings, Strategy};
+use sdop::simd::Tier;
 
 /// Enough for a picture: one pass, in a fraction of a second for hundreds of bodies.
 const EFFORT: Effort = Effort {

@@ -6,7 +6,7 @@
 use super::case::{Case, Frame};
 use super::catalogue::{CatalogueError, of_boxes};
 use super::claim::Claim;
-use crate::lab::measure::contestant::WorldBox;
+use crate::contestant::WorldBox;
 
 const HEAD: usize = 304;
 const NAME: usize = 128;

@@ -1,11 +1,11 @@
 //! A case: shapes, and a few frames of bodies with the boxes that belong to them.
 
 use super::claim::Claim;
-use crate::bodies::Bodies;
-use crate::lab::measure::contestant::WorldBox;
-use crate::rounding::pose::{COORDINATE_ERROR, rotation, transform};
-use crate::rounding::{down, up};
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use crate::contestant::WorldBox;
+use sdop::rounding::pose::{COORDINATE_ERROR, rotation, transform};
+use sdop::rounding::{down, up};
+use sdop::volume::Shape;
 
 /// One frame.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! What a culler claims never to miss.
 
-use crate::choice::choices;
+use sdop::choice::choices;
 
 choices! {
     /// One predicate each, decided exactly: a pair of which it holds, at least one body dynamic, has to be reported.

@@ -1,6 +1,6 @@
 //! A culler under measurement or judgement, ours or anyone's: bodies in, pairs out.
 
-use crate::bodies::Bodies;
+use sdop::bodies::Bodies;
 
 /// A box on the world axes: the lower corner x, y, z, then the upper one.
 pub type WorldBox = [f32; 6];

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use sdop::bodies::Bodies;
-//! use sdop::judge::{Claim, Contestant, Scene, judge};
+//! use crate::judge::{Claim, Contestant, Scene, judge};
 //!
 //! /// Reports every pair: slow, and it misses none.
 //! struct Everything(usize);
@@ -24,7 +24,7 @@
 //! let trial = judge(|scene: &Scene| Everything(scene.bodies.len())).claims(Claim::Mesh).cases("exact/*");
 //! assert!(trial.run()?.passed());
 //! assert!(!trial.extra_limit(0.0).run()?.passed(), "but it culls nothing");
-//! # Ok::<(), sdop::judge::JudgeError>(())
+//! # Ok::<(), crate::JudgeError>(())
 //! ```
 
 pub mod answer;
@@ -32,21 +32,23 @@ pub mod broadmark;
 pub mod case;
 pub mod catalogue;
 pub mod claim;
+pub mod contestant;
+pub mod ours;
 pub mod process;
+pub mod record;
 pub mod report;
 pub mod run;
 pub mod score;
 pub mod shrink;
 pub mod stamp;
 pub mod subject;
-pub mod timing;
 pub mod truth;
 pub mod vectors;
 pub mod verdict;
 pub mod wire;
 pub mod witness;
 
-pub use crate::lab::measure::contestant::{Contestant, WorldBox};
+pub use crate::contestant::{Contestant, WorldBox};
 pub use case::{Case, Frame};
 pub use claim::Claim;
 pub use run::{Judge, JudgeError, Options, examine, judge, judge_pair_test};

@@ -7,9 +7,9 @@ use super::score::Outcome;
 use super::shrink::Smallest;
 use super::verdict::Verdict;
 use super::wire::ndjson;
-use crate::bodies::Bodies;
-use crate::mesh::{MeshFormat, TriangleMesh, write_bytes};
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::mesh::{MeshFormat, TriangleMesh, write_bytes};
+use sdop::volume::Shape;
 
 /// A file's name and what is in it.
 pub type Named = (String, Vec<u8>);

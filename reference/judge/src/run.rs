@@ -13,8 +13,8 @@ use super::score::{Judged, Outcome, judge_case};
 use super::shrink::shrink;
 use super::subject::{Made, PairTest, Pairwise, Scene, Subject};
 use super::verdict::{CaseVerdict, Verdict};
-use crate::lab::measure::contestant::Contestant;
-use crate::lab::verify::judged::InvalidInput;
+use crate::contestant::Contestant;
+use crate::ours::judged::InvalidInput;
 
 /// Why nothing could be judged.
 #[derive(Debug, thiserror::Error)]

@@ -7,8 +7,8 @@ use super::case::{Case, Frame};
 use super::claim::Claim;
 use super::subject::Subject;
 use super::truth::{Truth, boxes_meet};
-use crate::lab::measure::contestant::WorldBox;
-use crate::lab::verify::judged::InvalidInput;
+use crate::contestant::WorldBox;
+use crate::ours::judged::InvalidInput;
 
 /// Pairs counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]

@@ -11,8 +11,8 @@ use super::claim::Claim;
 use super::score::{Miss, judge_answers};
 use super::subject::Subject;
 use super::witness::Witness;
-use crate::mesh::TriangleMesh;
-use crate::volume::{Origin, Shape, ShapeSpec};
+use sdop::mesh::TriangleMesh;
+use sdop::volume::{Origin, Shape, ShapeSpec};
 
 /// A small case that shows a missed pair.
 #[derive(Clone, Debug)]

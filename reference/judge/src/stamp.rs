@@ -24,7 +24,7 @@ macro_rules! groups {
                 $(
                     #[test]
                     fn $test() {
-                        $crate::judge::judge($d make)
+                        $crate::judge($d make)
                             .claims($d claim)
                             .cases(concat!($group, "/*"))
                             .assert_if_any();
@@ -103,7 +103,7 @@ groups! {
 #[cfg(test)]
 mod tests {
     use super::STAMPED;
-    use crate::lab::judge::catalogue::groups;
+    use crate::catalogue::groups;
 
     #[test]
     fn every_group_has_its_test() {

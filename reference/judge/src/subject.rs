@@ -5,9 +5,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::answer::{Answer, Stop, Trouble};
 use super::case::Case;
 use super::claim::Claim;
-use crate::bodies::Bodies;
-use crate::lab::measure::contestant::{Contestant, WorldBox};
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use crate::contestant::{Contestant, WorldBox};
+use sdop::volume::Shape;
 
 /// What a culler is made for: the first frame of a case.
 #[derive(Clone, Copy, Debug)]

@@ -6,9 +6,9 @@ use sdop_reference::exact::{meeting, ordop, sphere};
 
 use super::case::Frame;
 use super::claim::Claim;
-use crate::lab::measure::contestant::WorldBox;
-use crate::lab::verify::judged::{InvalidInput, slabs};
-use crate::volume::{Hull, Shape};
+use crate::contestant::WorldBox;
+use crate::ours::judged::{InvalidInput, slabs};
+use sdop::volume::{Hull, Shape};
 
 /// Judges pairs of one claim.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::case::Frame;
 use super::claim::Claim;
 use super::truth::Truth;
-use crate::volume::Shape;
+use sdop::volume::Shape;
 
 /// A certificate.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -2,7 +2,7 @@
 
 use sdop::BoxCuller;
 
-use sdop::lab::measure::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::Frame;
 use crate::entry::Setup;

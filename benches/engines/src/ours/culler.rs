@@ -3,7 +3,7 @@
 use sdop::culler::Culler;
 use sdop::settings::Strategy;
 
-use sdop::lab::measure::contestant::Contestant;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::Frame;
 use crate::entry::Setup;

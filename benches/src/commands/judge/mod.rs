@@ -10,12 +10,12 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::files::MAX_BYTES;
-use sdop::judge::broadmark;
-use sdop::judge::process::Program;
-use sdop::judge::report::{STEM, counter_example};
-use sdop::judge::run::examine_given;
-use sdop::judge::wire::{Wire, ndjson};
-use sdop::judge::{Claim, Options, Verdict, examine};
+use sdop_judge::broadmark;
+use sdop_judge::process::Program;
+use sdop_judge::report::{STEM, counter_example};
+use sdop_judge::run::examine_given;
+use sdop_judge::wire::{Wire, ndjson};
+use sdop_judge::judge::{Claim, Options, Verdict, examine};
 
 use super::output::{print as say, progress};
 use super::{Outcome, files, one_of};

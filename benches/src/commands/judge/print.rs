@@ -2,12 +2,12 @@
 
 use clap::ValueEnum;
 use miette::miette;
-use sdop::judge::Verdict;
-use sdop::judge::report::junit;
-use sdop::judge::verdict::GroupVerdict;
+use sdop_judge::Verdict;
+use sdop_judge::report::junit;
+use sdop_judge::verdict::GroupVerdict;
 use serde::Serialize;
 
-use crate::cli::output::{self, Format, print, rows};
+use crate::commands::output::{self, Format, print, rows};
 
 /// How a verdict is printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -49,7 +49,7 @@ struct Whole<'a> {
     #[serde(flatten)]
     verdict: &'a Verdict,
     #[serde(skip_serializing_if = "Option::is_none")]
-    witness: Option<&'a sdop::judge::witness::Witness>,
+    witness: Option<&'a sdop_judge::witness::Witness>,
 }
 
 /// Prints a verdict.

@@ -8,10 +8,10 @@ use std::process::{Command, Stdio};
 
 use clap::Parser as _;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop::lab::measure::machine::Machine;
-use sdop::lab::mpi;
-use sdop::lab::report::{Experiment, Manifest, Step};
-use sdop::lab::sweep::{Units, code};
+use sdop_bench::measure::machine::Machine;
+use sdop_bench::mpi;
+use sdop_bench::report::{Experiment, Manifest, Step};
+use sdop_bench::sweep::{Units, code};
 
 use super::super::Cli;
 use super::{Args, beside, chosen, command_line, complete, finish, prepare, steps};

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop::lab::report::{Experiment, Step};
+use sdop_bench::report::{Experiment, Step};
 
 /// What a step's command says, when it ends well.
 pub(super) fn output(

@@ -3,22 +3,22 @@
 //! Of those, `counts` has what is equal on every machine, and its hash stands in the summary; `times` has what is not.
 
 use miette::IntoDiagnostic as _;
-use sdop::lab::cost::table::{self, Cost, PriceRow};
-use sdop::lab::measure::conditions::Conditions;
-use sdop::lab::measure::machine::Machine;
-use sdop::lab::measure::turns::Regime;
-use sdop::lab::reproduce::check::{Claim, Verdict};
-use sdop::lab::reproduce::closed_form::{probability, relative_reach};
-use sdop::lab::reproduce::rates::{self, Rate};
-use sdop::lab::reproduce::readings::{self, Cell};
-use sdop::lab::reproduce::sensitivity::Interpretation;
-use sdop::lab::reproduce::{Estimate, PaperScene, Results, Run, claims, study};
+use sdop_bench::cost::table::{self, Cost, PriceRow};
+use sdop_bench::measure::conditions::Conditions;
+use sdop_bench::measure::machine::Machine;
+use sdop_bench::measure::turns::Regime;
+use sdop_bench::reproduce::check::{Claim, Verdict};
+use sdop_bench::reproduce::closed_form::{probability, relative_reach};
+use sdop_bench::reproduce::rates::{self, Rate};
+use sdop_bench::reproduce::readings::{self, Cell};
+use sdop_bench::reproduce::sensitivity::Interpretation;
+use sdop_bench::reproduce::{Estimate, PaperScene, Results, Run, claims, study};
 use sdop::settings::Strategy;
 use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::cli::output::csv_text;
+use crate::commands::output::csv_text;
 
 /// Everything that is written.
 #[derive(Serialize)]
@@ -139,7 +139,7 @@ impl Tables {
     /// All tables of the results.
     pub fn new(results: &Results, machine: &Machine, command: String, before: Conditions) -> Self {
         let counts: Vec<CountRow> = results.runs.iter().map(count_row).collect();
-        let survival = |row: &sdop::lab::reproduce::Survival| SurvivalRow {
+        let survival = |row: &sdop_bench::reproduce::Survival| SurvivalRow {
             k: row.k.k(),
             overlap: row.overlap.name(),
             percent: Estimate::of(&row.shares).scaled(100.0),

@@ -4,12 +4,12 @@
 
 use miette::IntoDiagnostic as _;
 use sdop::bodies::Bodies;
-use sdop::lab::domain::{DomainError, DomainSummary, MpiNetwork, Network as _, Rank};
-use sdop::lab::effects::Velocities;
-use sdop::lab::hash::volumes_sha256;
-use sdop::lab::mpi::Ranks;
-use sdop::lab::scene::Scene;
-use sdop::lab::sweep::{code, digest};
+use sdop_bench::domain::{DomainError, DomainSummary, MpiNetwork, Network as _, Rank};
+use sdop_bench::effects::Velocities;
+use sdop_bench::hash::volumes_sha256;
+use sdop_bench::mpi::Ranks;
+use sdop_bench::scene::Scene;
+use sdop_bench::sweep::{code, digest};
 
 use super::super::output::progress;
 use super::super::{Outcome, complain};
@@ -60,7 +60,7 @@ fn frames(args: &Args, network: &MpiNetwork, scene: Scene) -> Option<(Scene, Dom
     let bar = (network.rank() == 0).then(|| progress(about.frames.into(), &about.name));
     let rank = Rank::new(network, scene, args.machine.tier(), args.threads.into());
     let ran = rank
-        .and_then(|rank| sdop::lab::domain::run(rank, |_| bar.iter().for_each(|bar| bar.inc(1))));
+        .and_then(|rank| sdop_bench::domain::run(rank, |_| bar.iter().for_each(|bar| bar.inc(1))));
     bar.iter().for_each(|bar| bar.finish_and_clear());
     let summary = ran.map_err(|error| match error {
         DomainError::Elsewhere { .. } => None,

@@ -7,10 +7,10 @@ use std::ops::Range;
 use miette::miette;
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use sdop::lab::tradeoff::pays::Standing;
-use sdop::lab::tradeoff::{Tradeoff, VariantResult};
+use sdop_bench::tradeoff::pays::Standing;
+use sdop_bench::tradeoff::{Tradeoff, VariantResult};
 
-use crate::cli::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};
+use crate::commands::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};
 
 const SIZE: (u32, u32) = (960, 600);
 const FONT: &str = "sans-serif";

@@ -1,16 +1,16 @@
 //! The result as tables: what a terminal shows, and what the page quotes.
 
 use comfy_table::Table;
-use sdop::lab::cost::predict::Terms;
-use sdop::lab::cost::table::Compared;
-use sdop::lab::measure::turns::median;
-use sdop::lab::tradeoff::decide::{CHECKS, Decision};
-use sdop::lab::tradeoff::pays::{Line, Standing};
-use sdop::lab::tradeoff::shapes::ShapeSurvival;
-use sdop::lab::tradeoff::{Estimate, Tradeoff, VariantResult};
+use sdop_bench::cost::predict::Terms;
+use sdop_bench::cost::table::Compared;
+use sdop_bench::measure::turns::median;
+use sdop_bench::tradeoff::decide::{CHECKS, Decision};
+use sdop_bench::tradeoff::pays::{Line, Standing};
+use sdop_bench::tradeoff::shapes::ShapeSurvival;
+use sdop_bench::tradeoff::{Estimate, Tradeoff, VariantResult};
 use sdop::settings::{Axes, Overlap};
 
-use crate::cli::output::{rows, table};
+use crate::commands::output::{rows, table};
 
 /// For people: the recommendation, then a short table.
 pub fn brief(result: &Tradeoff) -> String {
@@ -363,7 +363,7 @@ pub fn survivors(
     overlap: Overlap,
 ) -> Option<&Estimate> {
     let fits =
-        |s: &&sdop::lab::tradeoff::shapes::Survival| (s.k, s.axes, s.overlap) == (k, axes, overlap);
+        |s: &&sdop_bench::tradeoff::shapes::Survival| (s.k, s.axes, s.overlap) == (k, axes, overlap);
     shape.ordops.iter().find(fits).map(|s| &s.share)
 }
 

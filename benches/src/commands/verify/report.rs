@@ -3,14 +3,14 @@
 
 mod coverage;
 
-use sdop::lab::verify::Predicate;
-use sdop::lab::verify::boxes::BoxLedger;
-use sdop::lab::verify::matrix::Matrix;
-use sdop::lab::verify::rounds::{Judged, Ledger};
-use sdop::lab::verify::ways::Rotation;
+use sdop_judge::ours::Predicate;
+use sdop_judge::ours::boxes::BoxLedger;
+use sdop_judge::ours::matrix::Matrix;
+use sdop_judge::ours::rounds::{Judged, Ledger};
+use sdop_judge::ours::ways::Rotation;
 use serde::Serialize;
 
-use crate::cli::output::table;
+use crate::commands::output::table;
 use coverage::Coverage;
 
 /// The result of `sdop verify`.
@@ -168,7 +168,7 @@ impl Report {
     }
 }
 
-fn strategy((row, count): (&Judged, &sdop::lab::verify::Count)) -> StrategyReport {
+fn strategy((row, count): (&Judged, &sdop_judge::ours::Count)) -> StrategyReport {
     let rate = |part: u64, of: u64| (of > 0).then(|| 1e6 * part as f64 / of as f64);
     // What a budget leaves untested is no rounding margin.
     let budgeted = row.strategy.scheme().has_budget();

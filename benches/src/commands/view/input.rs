@@ -6,17 +6,17 @@ use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::Tier;
-use sdop::judge::answer::{Answer, Stop, sorted};
-use sdop::judge::wire::{Wire, ndjson::Read};
-use sdop::judge::{Case, Claim};
-use sdop::lab::record::RecordError;
-use sdop::lab::verify::hard::Group;
-use sdop::lab::view::Show;
+use sdop_judge::answer::{Answer, Stop, sorted};
+use sdop_judge::wire::{Wire, ndjson::Read};
+use sdop_judge::judge::{Case, Claim};
+use sdop_judge::record::RecordError;
+use sdop_judge::ours::hard::Group;
+use sdop_bench::view::Show;
 
-use crate::cli::check::{said, text};
-use crate::cli::judge::read_case;
-use crate::cli::output::progress;
-use crate::cli::scene_args::SceneArgs;
+use crate::commands::check::{said, text};
+use crate::commands::judge::read_case;
+use crate::commands::output::progress;
+use crate::commands::scene_args::SceneArgs;
 
 /// What was found.
 pub enum Input {

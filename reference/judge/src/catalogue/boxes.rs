@@ -3,11 +3,11 @@
 use rand::{Rng, RngExt};
 
 use super::{CatalogueError, Drawn};
-use crate::bodies::Bodies;
-use crate::lab::judge::case::Frame;
-use crate::lab::measure::contestant::WorldBox;
-use crate::lab::verify::forms::Form;
-use crate::volume::{Axes, DirectionSet, Shape};
+use sdop::bodies::Bodies;
+use crate::case::Frame;
+use crate::contestant::WorldBox;
+use crate::ours::forms::Form;
+use sdop::volume::{Axes, DirectionSet, Shape};
 
 /// What the boxes are like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

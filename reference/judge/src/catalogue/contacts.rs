@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use rand::{Rng, RngExt};
 
 use super::Drawn;
-use crate::lab::judge::case::Frame;
-use crate::lab::verify::contact::Kind;
-use crate::lab::verify::draw::{ContactSpec, Turn, probe};
-use crate::lab::verify::forms::{self, Form, FormError};
-use crate::volume::{Axes, DirectionSet};
+use crate::case::Frame;
+use crate::ours::contact::Kind;
+use crate::ours::draw::{ContactSpec, Turn, probe};
+use crate::ours::forms::{self, Form, FormError};
+use sdop::volume::{Axes, DirectionSet};
 
 /// Small forms, flat ones among them.
 pub fn forms(rng: &mut impl Rng, count: usize) -> Vec<Form> {

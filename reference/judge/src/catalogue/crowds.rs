@@ -4,12 +4,12 @@ use rand::{Rng, RngExt};
 
 use super::Drawn;
 use super::contacts::forms;
-use crate::bodies::Bodies;
-use crate::lab::judge::case::Frame;
-use crate::lab::verify::draw::{crowd as uniform, rotation};
-use crate::lab::verify::forms::{self, Form, FormError};
-use crate::lab::verify::judged::Shapes;
-use crate::volume::{Axes, DirectionSet, Shape};
+use sdop::bodies::Bodies;
+use crate::case::Frame;
+use crate::ours::draw::{crowd as uniform, rotation};
+use crate::ours::forms::{self, Form, FormError};
+use crate::ours::judged::Shapes;
+use sdop::volume::{Axes, DirectionSet, Shape};
 
 /// What happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

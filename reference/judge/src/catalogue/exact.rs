@@ -4,10 +4,10 @@ use glam::Vec3;
 use rand::{Rng, RngExt};
 
 use super::{CatalogueError, Drawn};
-use crate::bodies::Bodies;
-use crate::lab::judge::case::Frame;
-use crate::mesh::TriangleMesh;
-use crate::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
+use sdop::bodies::Bodies;
+use crate::case::Frame;
+use sdop::mesh::TriangleMesh;
+use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 /// What touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,12 +14,12 @@ use rand_chacha::ChaCha8Rng;
 
 use super::case::{Case, Frame, matches};
 use super::claim::Claim;
-use crate::lab::verify::contact::Kind;
-use crate::lab::verify::draw::Turn;
-use crate::lab::verify::forms::FormError;
-use crate::lab::verify::hard::{self, GroupError, Recipe};
-use crate::mesh::MeshError;
-use crate::volume::{Axes, DirectionSet, Shape, VolumeError};
+use crate::ours::contact::Kind;
+use crate::ours::draw::Turn;
+use crate::ours::forms::FormError;
+use crate::ours::hard::{self, GroupError, Recipe};
+use sdop::mesh::MeshError;
+use sdop::volume::{Axes, DirectionSet, Shape, VolumeError};
 
 pub use boxes::of_boxes;
 pub use crowds::picked;

@@ -6,10 +6,10 @@ use reference::exact::world::Extents;
 use reference::exact::{Decision, Tally, meeting, ordop, sphere, world};
 
 use super::judged::{self, InvalidInput, Shapes};
-use crate::bodies::Bodies;
-use crate::rounding::{U, up};
-use crate::settings::{CullSettings, Interest, Overlap, Strategy};
-use crate::volume::DirectionSet;
+use sdop::bodies::Bodies;
+use sdop::rounding::{U, up};
+use sdop::settings::{CullSettings, Interest, Overlap, Strategy};
+use sdop::volume::DirectionSet;
 
 /// A question about a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@
 
 use proptest::prelude::*;
 
-use crate::lab::verify::contact::{Contact, Kind, Placed};
+use crate::ours::contact::{Contact, Kind, Placed};
 
 /// A quaternion: any direction with a norm of 0.1 to 2, small integers, or a tiny or huge norm.
 pub fn rotation() -> impl Strategy<Value = [f32; 4]> {

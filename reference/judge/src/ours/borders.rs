@@ -7,14 +7,14 @@
 //! quotient's. All that is chosen comes from one function, "a number below n": a random generator searches, a fuzzer is
 //! guided.
 
-use crate::bodies::Bodies;
-use crate::broad_phase::{Bounds, Cells, Layout};
-use crate::culler::{CullError, Culler};
-use crate::mesh::TriangleMesh;
-use crate::rounding::{sphere::inflate_radius, widen};
-use crate::settings::{CullSettings, Finder, Strategy};
-use crate::simd::Tier;
-use crate::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec, VolumeError};
+use sdop::bodies::Bodies;
+use sdop::broad_phase::{Bounds, Cells, Layout};
+use sdop::culler::{CullError, Culler};
+use sdop::mesh::TriangleMesh;
+use sdop::rounding::{sphere::inflate_radius, widen};
+use sdop::settings::{CullSettings, Finder, Strategy};
+use sdop::simd::Tier;
+use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec, VolumeError};
 
 /// Chooses a number below the given one, which is at least 1.
 pub type Choose<'a> = &'a mut dyn FnMut(u32) -> u32;

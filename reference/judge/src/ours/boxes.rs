@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 
 use super::compare::difference;
 use super::ways::{Mode, Rotation};
-use crate::bodies::Aabb;
-use crate::boxes::BoxCuller;
-use crate::culler::CullError;
-use crate::settings::{Finder, Updates};
+use sdop::bodies::Aabb;
+use sdop::boxes::BoxCuller;
+use sdop::culler::CullError;
+use sdop::settings::{Finder, Updates};
 
 /// Sides of boxes, in halves of a unit: cubes, of any aspect, of many sizes, without a length on an axis or two.
 const SIDES: [&[[f32; 3]]; 4] = [

@@ -2,10 +2,10 @@
 
 use super::answers::{Answers, Predicate};
 use super::ways::Mode;
-use crate::bodies::Bodies;
-use crate::culler::{CullError, Culler};
-use crate::settings::{Budget, CullSettings, Interest, Strategy};
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::culler::{CullError, Culler};
+use sdop::settings::{Budget, CullSettings, Interest, Strategy};
+use sdop::volume::Shape;
 
 /// What a comparison counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

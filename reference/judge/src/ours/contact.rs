@@ -9,7 +9,7 @@ use glam::{DMat3, DVec3};
 use sdop_reference as reference;
 
 use super::judged::Shapes;
-use crate::rounding::U;
+use sdop::rounding::U;
 use reference::overlap::ordop::Turned;
 
 /// What touches.
@@ -94,7 +94,7 @@ impl Contact {
         let t = from + delta + n * (self.gap * U * reach);
         let t = t.as_vec3().to_array();
         t.iter()
-            .all(|x| x.abs() <= crate::rounding::LIMIT)
+            .all(|x| x.abs() <= sdop::rounding::LIMIT)
             .then_some(t)
     }
 
@@ -164,7 +164,7 @@ fn support(points: &[[f64; 3]], n: DVec3) -> Option<DVec3> {
 
 /// One body about its own origin, turned.
 struct Side<'a> {
-    built: &'a crate::volume::Shape,
+    built: &'a sdop::volume::Shape,
     judged: &'a reference::Shape,
     pose: reference::Pose,
     matrix: DMat3,

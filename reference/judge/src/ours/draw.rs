@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::contact::{Contact, Kind, Placed};
 use super::judged::Shapes;
-use crate::bodies::Bodies;
-use crate::rounding::pose;
+use sdop::bodies::Bodies;
+use sdop::rounding::pose;
 
 /// How the second body's orientation relates to the first's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]

@@ -7,8 +7,8 @@ use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
 use super::judged::Shapes;
-use crate::mesh::{ProceduralShape, TriangleMesh};
-use crate::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
+use sdop::mesh::{ProceduralShape, TriangleMesh};
+use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 /// A form and how it becomes a shape.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]

@@ -2,12 +2,12 @@
 
 use sdop_reference as reference;
 
-use crate::bodies::Bodies;
-use crate::rounding::pose::norm;
-use crate::rounding::slab::{SLAB_FLOOR, SLAB_MARGIN};
-use crate::rounding::{U, down, exp2, up};
-use crate::settings::Overlap;
-use crate::volume::{DirectionSet, Hull, OrDop, Shape};
+use sdop::bodies::Bodies;
+use sdop::rounding::pose::norm;
+use sdop::rounding::slab::{SLAB_FLOOR, SLAB_MARGIN};
+use sdop::rounding::{U, down, exp2, up};
+use sdop::settings::Overlap;
+use sdop::volume::{DirectionSet, Hull, OrDop, Shape};
 
 /// What the reference refuses to judge.
 pub use reference::InvalidInput;
@@ -20,7 +20,7 @@ pub struct Shapes {
     /// The same numbers for the reference, with each shape's oriented box.
     pub judged: Vec<reference::Shape>,
     /// The same shapes, as much wider as the rounding margins may make a report: balls by r·15u + 2⁻⁶⁸ (the bound that
-    /// [`inflate_radius`](crate::rounding::sphere::inflate_radius) states), slabs by twice their margin.
+    /// [`inflate_radius`](sdop::rounding::sphere::inflate_radius) states), slabs by twice their margin.
     pub widened: Vec<reference::Shape>,
 }
 

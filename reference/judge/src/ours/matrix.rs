@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use super::ways::{Mode, Rotation, variants, ways};
-use crate::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
-use crate::volume::{Axes, DirectionSet};
+use sdop::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
+use sdop::volume::{Axes, DirectionSet};
 
 /// One cell. A strategy without an overlap test has one cell instead of one a test: the others can't exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -141,7 +141,7 @@ pub struct Filled {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simd::Tier;
+    use sdop::simd::Tier;
 
     #[test]
     fn an_empty_cell_is_named() {

@@ -2,7 +2,7 @@
 //!
 //! [`answers`] are the reference's, pair by pair; [`compare()`] holds a culler's list against them. What is judged comes
 //! from seeds ([`draw`]: random crowds, and contacts put together on purpose), from the corpus of [`hard`] cases, and
-//! from scenes. Given [`boxes`] are held against their definition. When a pair is missed, [`shrink`] makes the smallest scene that shows it.
+//! from scenes. Given [`boxes`] are held against their definition.
 
 pub mod answers;
 #[cfg(feature = "proptest")]
@@ -18,9 +18,6 @@ pub mod judged;
 pub mod matrix;
 pub mod naive;
 pub mod rounds;
-pub mod scenes;
-pub mod shrink;
-pub mod units;
 pub mod ways;
 
 pub use answers::{Answers, Predicate};

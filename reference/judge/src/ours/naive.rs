@@ -9,8 +9,8 @@ use reference::exact::mesh::Mesh;
 
 use super::answers::{Answers, Predicate};
 use super::judged::{InvalidInput, Shapes};
-use crate::bodies::Bodies;
-use crate::settings::Overlap;
+use sdop::bodies::Bodies;
+use sdop::settings::Overlap;
 
 type Vector = [f32; 3];
 

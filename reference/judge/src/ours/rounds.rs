@@ -17,12 +17,12 @@ use super::hard::{Group, GroupError};
 use super::judged::{InvalidInput, Shapes};
 use super::matrix::Matrix;
 use super::ways::{Mode, Rotation, rows};
-use crate::bodies::Bodies;
-use crate::culler::CullError;
-use crate::mesh::ProceduralShape;
-use crate::settings::{CullSettings, Finder, Overlap, Strategy};
-use crate::simd::Tier;
-use crate::volume::{Axes, DirectionSet, Shape};
+use sdop::bodies::Bodies;
+use sdop::culler::CullError;
+use sdop::mesh::ProceduralShape;
+use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
+use sdop::simd::Tier;
+use sdop::volume::{Axes, DirectionSet, Shape};
 
 /// Why a round can't be run.
 #[derive(Debug, thiserror::Error)]

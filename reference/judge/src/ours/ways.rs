@@ -10,9 +10,9 @@ use rand::SeedableRng as _;
 use rand::seq::SliceRandom as _;
 use rand_chacha::ChaCha8Rng;
 
-use crate::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
-use crate::simd::Tier;
-use crate::volume::{Axes, DirectionSet};
+use sdop::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
+use sdop::simd::Tier;
+use sdop::volume::{Axes, DirectionSet};
 
 /// Every or-DOP that a shape can have.
 pub fn variants() -> impl Iterator<Item = (DirectionSet, Axes)> {

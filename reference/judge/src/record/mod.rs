@@ -33,10 +33,10 @@ pub use writer::Recorder;
 
 use serde::{Deserialize, Serialize};
 
-use crate::bodies::Bodies;
-use crate::counters::VolumeCounters;
-use crate::settings::CullSettings;
-use crate::volume::{Ball, Basis, DirectionSet, OrDop, Shape};
+use sdop::bodies::Bodies;
+use sdop::counters::VolumeCounters;
+use sdop::settings::CullSettings;
+use sdop::volume::{Ball, Basis, DirectionSet, OrDop, Shape};
 
 /// What every record's first line says.
 pub const FORMAT: &str = "sdop-record";

@@ -7,10 +7,10 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::{BodyLine, FORMAT, FrameLine, Header, RecordError, ShapeLine, VERSION};
-use crate::bodies::Bodies;
-use crate::bodies::contract::{ContractError, check_bodies, check_poses};
-use crate::files::{MAX_BYTES, read_line};
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::{ContractError, check_bodies, check_poses};
+use sdop::files::{MAX_BYTES, read_line};
+use sdop::volume::Shape;
 
 /// A record being read.
 #[derive(Debug)]

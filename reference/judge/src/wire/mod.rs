@@ -8,7 +8,7 @@ pub mod text;
 use super::answer::{Answer, Trouble};
 use super::case::Case;
 use super::claim::Claim;
-use crate::choice::choices;
+use sdop::choice::choices;
 
 choices! {
     /// How cases are written for a program.

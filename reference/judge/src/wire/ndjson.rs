@@ -9,15 +9,15 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{Said, malformed};
-use crate::bodies::Bodies;
-use crate::bodies::contract::check_bodies;
-use crate::files::read_line;
-use crate::lab::judge::answer::{Answer, Trouble};
-use crate::lab::judge::case::{Case, Frame};
-use crate::lab::judge::claim::Claim;
-use crate::lab::measure::contestant::WorldBox;
-use crate::lab::record::{BodyLine, FORMAT, FrameLine, Header, ShapeLine, VERSION};
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::check_bodies;
+use sdop::files::read_line;
+use crate::answer::{Answer, Trouble};
+use crate::case::{Case, Frame};
+use crate::claim::Claim;
+use crate::contestant::WorldBox;
+use crate::record::{BodyLine, FORMAT, FrameLine, Header, ShapeLine, VERSION};
+use sdop::volume::Shape;
 
 /// A record's first line with what a case has on top.
 #[derive(Serialize, Deserialize)]
@@ -55,7 +55,7 @@ struct CaseFrame {
 }
 
 /// A whole case for one claim; with the pairs that were reported of each frame, where there are any.
-pub(in crate::lab::judge) fn encode(
+pub(in crate) fn encode(
     case: &Case,
     claim: Claim,
     reported: &[Vec<[u32; 2]>],

@@ -4,11 +4,11 @@
 use std::fmt::Write as _;
 
 use super::{Said, malformed};
-use crate::bodies::Bodies;
-use crate::lab::judge::answer::{Answer, Trouble};
-use crate::lab::judge::case::{Case, Frame};
-use crate::lab::judge::claim::Claim;
-use crate::volume::Shape;
+use sdop::bodies::Bodies;
+use crate::answer::{Answer, Trouble};
+use crate::case::{Case, Frame};
+use crate::claim::Claim;
+use sdop::volume::Shape;
 
 /// A whole case for one claim. Formatting into a String cannot fail.
 pub(super) fn encode(case: &Case, claim: Claim) -> String {

@@ -3,12 +3,12 @@
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
-use sdop::lab::cost::table::Cost;
-use sdop::lab::reproduce::paper_name;
+use sdop_bench::cost::table::Cost;
+use sdop_bench::reproduce::paper_name;
 
 use super::style::{PARTS, anchored, ends, label, legend, quiet, text, titled};
 use super::{Area, Drawn};
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Tables;
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 

@@ -4,12 +4,12 @@ use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
-use sdop::lab::reproduce::paper_name;
-use sdop::lab::reproduce::rates::{ELSEWHERE, Rate};
+use sdop_bench::reproduce::paper_name;
+use sdop_bench::reproduce::rates::{ELSEWHERE, Rate};
 
 use super::style::{anchored, colour, ends, label, quiet, text, titled};
 use super::{Area, Drawn};
-use crate::cli::reproduce::rows::{Tables, distinct};
+use crate::commands::reproduce::rows::{Tables, distinct};
 
 /// One panel a scene and F.
 pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {

@@ -12,7 +12,7 @@ use std::path::Path;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use sdop::lab::cost::table::Cost;
+use sdop_bench::cost::table::Cost;
 
 use super::rows::Tables;
 

@@ -3,12 +3,12 @@
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
-use sdop::lab::reproduce::readings::{Cell, Reading};
+use sdop_bench::reproduce::readings::{Cell, Reading};
 use sdop::settings::Strategy;
 
 use super::style::{ends, quiet};
 use super::{Area, Drawn, Failure};
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Tables;
 
 /// A chart of percentages over N.
 type Chart<'a, 'b, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, Y>>;

@@ -3,13 +3,13 @@
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
-use sdop::lab::cost::table::Cost;
-use sdop::lab::reproduce::paper_name;
+use sdop_bench::cost::table::Cost;
+use sdop_bench::reproduce::paper_name;
 
 use super::style::{anchored, colour, ends, label, legend, quiet, titled};
 use super::{Area, Drawn};
-use crate::cli::palette::GREY;
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::palette::GREY;
+use crate::commands::reproduce::rows::Tables;
 
 /// One group a scene, one mark a strategy.
 pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {

@@ -6,8 +6,8 @@ use sdop::settings::Strategy;
 use super::percent::{cells, chart, marks, right};
 use super::style::{colour, legend, titled};
 use super::{Area, Drawn};
-use crate::cli::palette::GREY;
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::palette::GREY;
+use crate::commands::reproduce::rows::Tables;
 
 /// The percentages shown.
 const RANGE: [f64; 2] = [0.7, 1.3];

@@ -5,13 +5,13 @@ use plotters::coord::CoordTranslate;
 use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use sdop::lab::cost::predict::Terms;
-use sdop::lab::measure::counts::Volume;
-use sdop::lab::reproduce::Estimate;
+use sdop_bench::cost::predict::Terms;
+use sdop_bench::measure::counts::Volume;
+use sdop_bench::reproduce::Estimate;
 use sdop::settings::Strategy;
 
 use super::Area;
-use crate::cli::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};
+use crate::commands::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};
 
 /// A strategy's colour in every figure.
 pub fn colour(strategy: Strategy) -> RGBColor {

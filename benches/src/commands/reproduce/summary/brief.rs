@@ -2,13 +2,13 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::lab::cost::table::Cost;
-use sdop::lab::reproduce::paper_name;
-use sdop::lab::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
+use sdop_bench::cost::table::Cost;
+use sdop_bench::reproduce::paper_name;
+use sdop_bench::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
 
 use super::text::{interval, number};
-use crate::cli::output::table;
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::output::table;
+use crate::commands::reproduce::rows::Tables;
 
 /// Table 1, times and verdicts; `place` is where the rest was written.
 pub fn brief(tables: &Tables, seconds: f64, place: &str) -> String {

@@ -2,8 +2,8 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::lab::reproduce::Estimate;
-use sdop::lab::reproduce::check::{Check, Claim, Verdict};
+use sdop_bench::reproduce::Estimate;
+use sdop_bench::reproduce::check::{Check, Claim, Verdict};
 
 use super::text::{header, interval};
 

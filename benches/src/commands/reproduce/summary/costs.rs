@@ -2,14 +2,14 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::lab::cost::predict::Terms;
-use sdop::lab::cost::table::{Compared, Cost};
-use sdop::lab::measure::turns::Regime;
-use sdop::lab::reproduce::paper_name;
+use sdop_bench::cost::predict::Terms;
+use sdop_bench::cost::table::{Compared, Cost};
+use sdop_bench::measure::turns::Regime;
+use sdop_bench::reproduce::paper_name;
 
 use super::text::{header, interval, number};
-use crate::cli::prices;
-use crate::cli::reproduce::rows::{ScenePrice, Tables};
+use crate::commands::prices;
+use crate::commands::reproduce::rows::{ScenePrice, Tables};
 
 pub fn section(out: &mut String, tables: &Tables) -> Result {
     writeln!(out, "## T = Co + Nu·Cu + F + Nv·Cv\n")?;

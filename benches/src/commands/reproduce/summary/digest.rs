@@ -2,14 +2,14 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::lab::cost::table::Cost;
-use sdop::lab::reproduce::check::{Claim, Verdict};
-use sdop::lab::reproduce::paper_name;
-use sdop::lab::reproduce::rates::{ELSEWHERE, Rate};
+use sdop_bench::cost::table::Cost;
+use sdop_bench::reproduce::check::{Claim, Verdict};
+use sdop_bench::reproduce::paper_name;
+use sdop_bench::reproduce::rates::{ELSEWHERE, Rate};
 
 use super::table_1;
 use super::text::number;
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Tables;
 
 pub fn section(out: &mut String, tables: &Tables) -> Result {
     writeln!(out, "## In short\n")?;

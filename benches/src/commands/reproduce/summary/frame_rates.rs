@@ -2,11 +2,11 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::lab::reproduce::paper_name;
-use sdop::lab::reproduce::rates::ELSEWHERE;
+use sdop_bench::reproduce::paper_name;
+use sdop_bench::reproduce::rates::ELSEWHERE;
 
 use super::text::{header, interval};
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Tables;
 
 pub fn section(out: &mut String, tables: &Tables) -> Result {
     writeln!(out, "## Figs 12 and 13: frame rates\n")?;

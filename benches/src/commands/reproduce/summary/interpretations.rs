@@ -2,14 +2,14 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::lab::reproduce::paper::{TABLE_1, TABLE_1_BODIES};
-use sdop::lab::reproduce::paper_name;
-use sdop::lab::reproduce::sensitivity::{Bounce, Interpretation, Start};
+use sdop_bench::reproduce::paper::{TABLE_1, TABLE_1_BODIES};
+use sdop_bench::reproduce::paper_name;
+use sdop_bench::reproduce::sensitivity::{Bounce, Interpretation, Start};
 use sdop::settings::{Axes, Overlap};
 use sdop::volume::DirectionSet;
 
 use super::text::{header, number};
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Tables;
 
 pub fn section(out: &mut String, tables: &Tables) -> Result {
     let all = &tables.interpretations;

@@ -2,12 +2,12 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::lab::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
-use sdop::lab::reproduce::{paper, paper_name};
+use sdop_bench::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
+use sdop_bench::reproduce::{paper, paper_name};
 use sdop::settings::Strategy;
 
 use super::text::{header, interval};
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Tables;
 
 /// A row reproduces when every mean is this near to the paper's number.
 const NEAR: f64 = 0.15;

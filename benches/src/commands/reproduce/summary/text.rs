@@ -2,7 +2,7 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::lab::reproduce::Estimate;
+use sdop_bench::reproduce::Estimate;
 
 /// Mean ± half-width: two significant digits of the half-width, but no more than six of the mean.
 pub fn interval(estimate: &Estimate) -> String {

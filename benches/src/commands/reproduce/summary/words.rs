@@ -2,12 +2,12 @@
 
 use std::fmt::{Result, Write as _};
 
-use sdop::lab::reproduce::check::{Claim, Verdict};
-use sdop::lab::reproduce::paper_name;
+use sdop_bench::reproduce::check::{Claim, Verdict};
+use sdop_bench::reproduce::paper_name;
 use sdop::settings::Strategy;
 
 use super::table_1;
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Tables;
 
 /// One paragraph before any table. What it says of rows and claims is computed.
 pub fn section(out: &mut String, tables: &Tables) -> Result {

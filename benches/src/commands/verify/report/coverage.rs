@@ -1,13 +1,13 @@
 //! The matrix of what was judged, in two projections: thousands of cells are too many to read, and a tier, a mode or a
 //! finder that was left out shows in one of them.
 
-use sdop::lab::verify::boxes::{BoxCell, BoxLedger};
-use sdop::lab::verify::matrix::{Cell, Filled, Matrix};
-use sdop::lab::verify::ways::Rotation;
+use sdop_judge::ours::boxes::{BoxCell, BoxLedger};
+use sdop_judge::ours::matrix::{Cell, Filled, Matrix};
+use sdop_judge::ours::ways::Rotation;
 use sdop::settings::Strategy;
 use serde::Serialize;
 
-use crate::cli::output::table;
+use crate::commands::output::table;
 
 /// How full the matrix is.
 #[derive(Default, Serialize)]

@@ -16,7 +16,7 @@ use super::forms::{Form, FormError};
 use super::judged::InvalidInput;
 use super::naive::Misses;
 use super::ways::variants;
-use crate::volume::{Axes, DirectionSet};
+use sdop::volume::{Axes, DirectionSet};
 
 mod readme;
 pub mod recipe;
@@ -24,45 +24,8 @@ pub mod recipe;
 pub use readme::page;
 pub use recipe::{Cases, Recipe};
 
-macro_rules! corpus {
-    ($($name:literal),+ $(,)?) => {
-        /// The text of each group's file, by name.
-        pub const FILES: &[(&str, &str)] =
-            &[$(($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/hard_cases/", $name, ".toml")))),+];
-    };
-}
-
-corpus! {
-    "ball-centres-off-origin",
-    "coincident",
-    "concentric-stacks",
-    "contained",
-    "cell-boundaries",
-    "coplanar-and-edges",
-    "counts",
-    "duplicates",
-    "equal-and-quarter-turns",
-    "far-from-origin",
-    "flat-and-points",
-    "giant-among-tiny",
-    "huge",
-    "near-parallel-edges",
-    "needles-and-plates",
-    "on-a-line",
-    "on-a-plane",
-    "one-cell",
-    "one-ulp-turns",
-    "quaternion-norms",
-    "quaternion-signs",
-    "shared-vertices",
-    "subnormal",
-    "teleports",
-    "touch-by-quadruples",
-    "touch-within-an-ulp",
-    "unequal-sizes",
-    "vertex-on-face",
-    "finder-borders",
-}
+/// The text of each group's file, by name.
+pub use sdop_data::HARD_CASES as FILES;
 
 /// One group of hard cases.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]

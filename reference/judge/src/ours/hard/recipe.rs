@@ -4,13 +4,13 @@ use glam::DVec3;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
-use crate::bodies::Bodies;
-use crate::lab::verify::borders::{Borders, bar_within};
-use crate::lab::verify::contact::Placed;
-use crate::lab::verify::draw::{ContactSpec, add, probe};
-use crate::lab::verify::forms::{self, Form, FormError};
-use crate::lab::verify::judged::Shapes;
-use crate::volume::{Axes, DirectionSet};
+use sdop::bodies::Bodies;
+use crate::ours::borders::{Borders, bar_within};
+use crate::ours::contact::Placed;
+use crate::ours::draw::{ContactSpec, add, probe};
+use crate::ours::forms::{self, Form, FormError};
+use crate::ours::judged::Shapes;
+use sdop::volume::{Axes, DirectionSet};
 
 /// How bodies are arranged.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -237,8 +237,8 @@ fn quadruples(mut shapes: Shapes, nudged: bool, rng: &mut impl Rng) -> Cases {
 fn set_radius(shapes: &mut Shapes, shape: usize, radius: f32) {
     shapes.built[shape].ball.radius = radius;
     shapes.judged[shape].ball.radius = radius;
-    let wider = f64::from(radius) * (1.0 + 15.0 * crate::rounding::U);
-    shapes.widened[shape].ball.radius = crate::rounding::up(wider);
+    let wider = f64::from(radius) * (1.0 + 15.0 * sdop::rounding::U);
+    shapes.widened[shape].ball.radius = sdop::rounding::up(wider);
 }
 
 /// A scene on the borders between cells.

@@ -1,14 +1,14 @@
 //! The paper's Fig. 14, the percentages of Table 1, with the paper's own as hollow marks.
 
 use plotters::prelude::*;
-use sdop::lab::reproduce::paper_name;
-use sdop::lab::reproduce::readings::TABLE_1_STRATEGIES;
+use sdop_bench::reproduce::paper_name;
+use sdop_bench::reproduce::readings::TABLE_1_STRATEGIES;
 
 use super::percent::{cells, chart, marks, point};
 use super::style::{colour, legend, titled};
 use super::{Area, Drawn};
-use crate::cli::palette::GREY;
-use crate::cli::reproduce::rows::Tables;
+use crate::commands::palette::GREY;
+use crate::commands::reproduce::rows::Tables;
 
 /// The percentages shown.
 const RANGE: [f64; 2] = [0.3, 100.0];

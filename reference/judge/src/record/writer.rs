@@ -5,18 +5,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{
-    BodyLine, EffectLine, FORMAT, FrameLine, Header, MINOR, RecordError, ShapeLine, VERSION,
-    VolumeLine,
-};
-use crate::bodies::Bodies;
-use crate::counters::Counters;
-use crate::files::Whole;
-use crate::lab::measure::counts::{Counts, Volume};
-use crate::lab::scene::Scene;
-use crate::lab::simulate::Frame;
-use crate::settings::Strategy;
-use crate::volume::Shape;
+use super::{BodyLine, FORMAT, FrameLine, Header, MINOR, RecordError, ShapeLine, VERSION};
+use sdop::bodies::Bodies;
+use sdop::files::Whole;
+use sdop::volume::Shape;
 
 impl Header {
     /// The first line for these bodies, with what every record has.
@@ -37,23 +29,6 @@ impl Header {
             bodies: BodyLine::all(bodies),
         }
     }
-
-    /// The first line of a scene's record.
-    #[must_use]
-    pub fn of(scene: &Scene) -> Self {
-        let effects = scene.effects.lists().into_iter();
-        let effects = effects.map(|(name, on)| EffectLine {
-            name: name.to_owned(),
-            on,
-        });
-        Self {
-            dt: Some(scene.dt),
-            side: scene.side,
-            effects: Some(effects.collect()),
-            cull: Some(scene.cull.clone()),
-            ..Self::new(&scene.name, scene.seed, &scene.shapes, &scene.bodies)
-        }
-    }
 }
 
 impl BodyLine {
@@ -65,36 +40,6 @@ impl BodyLine {
             fixed: !dynamic,
         };
         bodies.shape.iter().zip(&bodies.dynamic).map(line).collect()
-    }
-}
-
-impl FrameLine {
-    /// The line of a culled frame.
-    #[must_use]
-    pub fn of(frame: &Frame<'_>, strategy: Strategy) -> Self {
-        Self {
-            frame: frame.number,
-            poses: Self::poses(frame.bodies),
-            pairs: frame.pairs.sorted(),
-            counters: Some(VolumeLine::of(strategy, &frame.counters)),
-            meets: None,
-        }
-    }
-}
-
-impl VolumeLine {
-    /// A strategy's counters, in the order of its tests.
-    #[must_use]
-    pub fn of(strategy: Strategy, counters: &Counters) -> Vec<Self> {
-        let counts = Counts {
-            culler: *counters,
-            ..Counts::default()
-        };
-        let line = |volume: Volume| Self {
-            volume: volume.to_string(),
-            counters: counts.of(volume),
-        };
-        Volume::of(strategy).into_iter().map(line).collect()
     }
 }
 
