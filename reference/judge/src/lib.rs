@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use sdop::bodies::Bodies;
-//! use crate::judge::{Claim, Contestant, Scene, judge};
+//! use sdop_judge::{Claim, Contestant, Scene, judge};
 //!
 //! /// Reports every pair: slow, and it misses none.
 //! struct Everything(usize);
@@ -24,7 +24,7 @@
 //! let trial = judge(|scene: &Scene| Everything(scene.bodies.len())).claims(Claim::Mesh).cases("exact/*");
 //! assert!(trial.run()?.passed());
 //! assert!(!trial.extra_limit(0.0).run()?.passed(), "but it culls nothing");
-//! # Ok::<(), crate::JudgeError>(())
+//! # Ok::<(), sdop_judge::JudgeError>(())
 //! ```
 
 pub mod answer;
