@@ -1,6 +1,7 @@
 //! `sdop report`: renders every page's numbers from the records, or checks that they are what the records say.
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
@@ -11,8 +12,9 @@ use super::files::write;
 use super::output::{print, rows};
 
 /// Pages whose numbers come from records.
-const PAGES: [&str; 16] = [
+const PAGES: [&str; 17] = [
     "README.md",
+    "paper/results.md",
     "ARCHITECTURE.md",
     "benches/README.md",
     "benches/peers/BIAS.md",
@@ -65,9 +67,13 @@ const WHOLE: [(&str, &str); 10] = [
 /// Macros that pages share.
 const MACROS: &str = "paper/quantities.jinja";
 
+/// One template for each block that a page may carry, named after it.
+const TEMPLATES: &str = "paper/templates";
+
 /// Render the numbers of README and the other pages from data/record
 ///
-/// A page quotes a record between markers, <!--= EXPRESSION -->3.14<!--/-->, in Typst /*= EXPRESSION */3.14/**/. Every record's digests are
+/// A page quotes a record between markers, <!--= EXPRESSION -->3.14<!--/-->, in Typst /*= EXPRESSION */3.14/**/. Whole blocks stand
+/// between <!-- BEGIN NAME --> and <!-- END NAME -->, from the template paper/templates/NAME.md. Every record's digests are
 /// checked first, so a digit changed by hand is found wherever it stands, in a page or in a record. A number must look the same on
 /// every page. A record that is older than the code it measures must have its commit named on the pages that quote it.
 /// data/record/quoted.toml names the machine whose records are quoted.
@@ -114,6 +120,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     let quantities = Arc::new(Quantities::default());
     let macros = std::fs::read_to_string(args.root.join(MACROS)).unwrap_or_default();
+    let templates = templates(&args.root)?;
     let now = Code::here(&args.root);
     let pages: Vec<&str> = PAGES
         .into_iter()
@@ -124,6 +131,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         let sources = pages::Sources {
             store: Arc::new(Store::new(&records)?),
             macros: macros.clone(),
+            templates: templates.clone(),
             quantities: quantities.clone(),
         };
         problems.extend(one_page(args, page, &sources, now.as_ref())?);
@@ -149,6 +157,23 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let table = rows(&["problem"], &problems, |problem| vec![problem.clone()]);
     print(&table.to_string())?;
     Ok(Outcome::Failed)
+}
+
+/// The templates of blocks, by name. A repository may have none.
+fn templates(root: &Path) -> miette::Result<BTreeMap<String, String>> {
+    let Ok(entries) = root.join(TEMPLATES).read_dir() else {
+        return Ok(BTreeMap::new());
+    };
+    let mut found = BTreeMap::new();
+    for entry in entries {
+        let path = entry.into_diagnostic()?.path();
+        let text = std::fs::read_to_string(&path)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot read {}", path.display()))?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        found.insert(name.into_owned(), text);
+    }
+    Ok(found)
 }
 
 /// The numbers that stand on more than one page.

@@ -6,6 +6,9 @@
 //! the next: `<!--: NAME = EXPRESSION -->` names a value for the rest of the page. Macros that pages share are in one file, `q` in
 //! expressions.
 //!
+//! A page that people read as source carries whole blocks instead, between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a
+//! line of its own. What stands between them is what the template `paper/templates/NAME.md` gives.
+//!
 //! | function or filter | gives |
 //! |---|---|
 //! | `csv("experiment/file.csv")` | rows, objects of cells; a column `a.b` is `row.a.b` |
@@ -17,6 +20,7 @@
 //!
 //! `experiment` is that of the machine that `data/record/quoted.toml` names, `machine/experiment` that of any.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use miette::Diagnostic;
@@ -56,6 +60,8 @@ pub struct Sources {
     pub store: Arc<Store>,
     /// Macros that pages share, a template.
     pub macros: String,
+    /// The template of each block that a page may carry, by its name.
+    pub templates: BTreeMap<String, String>,
     /// Where recorded numbers stand.
     pub quantities: Arc<Quantities>,
 }
@@ -86,8 +92,9 @@ pub fn render(page: &str, text: &str, sources: &Sources) -> Result<String, PageE
         line: error.line().unwrap_or(0),
         problem: said(&error),
     })?;
+    let text = &blocks(page, text, &environment, &sources.templates)?;
     let mut out = String::with_capacity(text.len());
-    let mut rest = text;
+    let mut rest = text.as_str();
     while let Some((start, marker)) = markers.next(rest) {
         let line = 1 + text[..text.len() - rest.len() + start]
             .matches('\n')
@@ -131,6 +138,46 @@ pub fn render(page: &str, text: &str, sources: &Sources) -> Result<String, PageE
     }
     out.push_str(rest);
     Ok(out)
+}
+
+/// The page with its blocks rendered.
+fn blocks(
+    page: &str,
+    text: &str,
+    environment: &Environment<'_>,
+    templates: &BTreeMap<String, String>,
+) -> Result<String, PageError> {
+    let mut out = String::with_capacity(text.len());
+    let mut lines = text.split_inclusive('\n').enumerate();
+    while let Some((index, line)) = lines.next() {
+        out.push_str(line);
+        let Some(name) = marked(line, "BEGIN") else {
+            continue;
+        };
+        let failed = |problem: String| PageError {
+            page: page.to_owned(),
+            line: index + 1,
+            problem,
+        };
+        let template = templates
+            .get(name)
+            .ok_or_else(|| failed(format!("no template `paper/templates/{name}.md`")))?;
+        let value = evaluate(environment, template).map_err(|error| failed(said(&error)))?;
+        out.push_str(value.trim_matches('\n'));
+        out.push('\n');
+        let (_, end) = lines
+            .find(|(_, line)| marked(line, "END") == Some(name) || marked(line, "BEGIN").is_some())
+            .filter(|(_, line)| marked(line, "END").is_some())
+            .ok_or_else(|| failed(format!("`BEGIN {name}` without `END {name}`")))?;
+        out.push_str(end);
+    }
+    Ok(out)
+}
+
+/// The name in a line that is `<!-- WORD NAME -->`.
+fn marked<'l>(line: &'l str, word: &str) -> Option<&'l str> {
+    let inside = line.trim().strip_prefix("<!-- ")?.strip_suffix(" -->")?;
+    inside.strip_prefix(word)?.strip_prefix(' ')
 }
 
 impl Markers {
@@ -320,6 +367,9 @@ mod tests {
     use super::super::{FILE, Manifest};
     use super::*;
 
+    const TIMES: &str =
+        "{% for row in csv(\"box/kernels/t.csv\") %}\n- {{ q.us(row) }}\n{% endfor %}\n";
+
     fn sources() -> (tempfile::TempDir, Sources) {
         let root = tempfile::tempdir().unwrap();
         let record = root.path().join("box/kernels");
@@ -335,6 +385,7 @@ mod tests {
         let sources = Sources {
             store: Arc::new(Store::new(root.path()).unwrap()),
             macros: "{% macro us(row) %}{{ row.us.mean | fixed(1) }} µs{% endmacro %}".to_owned(),
+            templates: BTreeMap::from([("times".to_owned(), TIMES.to_owned())]),
             quantities: Arc::default(),
         };
         (root, sources)
@@ -384,6 +435,34 @@ mod tests {
             rendered.ends_with("| scalar | 301 |\n| avx2 | 62.1 |\n<!--/-->"),
             "{rendered}"
         );
+    }
+
+    #[test]
+    fn blocks_are_rendered_from_templates() {
+        let (_root, sources) = sources();
+        let page =
+            |between: &str| format!("a\n<!-- BEGIN times -->\n{between}<!-- END times -->\nb\n");
+        let whole = page("- 300.9 µs\n- 62.1 µs\n");
+        for between in ["", "old\n\nlines\n", "- 300.9 µs\n- 62.1 µs\n"] {
+            assert_eq!(render("page.md", &page(between), &sources).unwrap(), whole);
+        }
+        for (text, problem) in [
+            (
+                "x\n<!-- BEGIN nothing -->\n<!-- END nothing -->",
+                "no template",
+            ),
+            ("x\n<!-- BEGIN times -->\n", "without `END times`"),
+            (
+                "x\n<!-- BEGIN times -->\n<!-- BEGIN times -->\n<!-- END times -->",
+                "without `END times`",
+            ),
+        ] {
+            let error = render("page.md", text, &sources).unwrap_err().to_string();
+            assert!(
+                error.starts_with("page.md:2: ") && error.contains(problem),
+                "{error}"
+            );
+        }
     }
 
     #[test]
