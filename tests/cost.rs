@@ -7,18 +7,18 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use sdop::counters::pair_count;
+use sdop::settings::Strategy;
+use sdop::simd::Tier;
 use sdop_bench::cost::calibrate::{Calibration, Effort, scenes};
 use sdop_bench::cost::pass::{Observer, Simulated, pass};
 use sdop_bench::cost::predict::Terms;
 use sdop_bench::cost::table::cost;
-use sdop_judge::contestant::Contestant;
 use sdop_bench::measure::counts::{Counts, Volume};
 use sdop_bench::measure::culling::Culling;
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::measure::variant::Variant;
 use sdop_bench::scene::{Scene, SceneFile};
-use sdop::settings::Strategy;
-use sdop::simd::Tier;
+use sdop_judge::contestant::Contestant;
 
 /// All but the time-critical one, which tests as much as its budget says.
 static STRATEGIES: LazyLock<Vec<Strategy>> = LazyLock::new(|| {

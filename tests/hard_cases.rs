@@ -6,6 +6,10 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use rayon::prelude::*;
+use sdop::mesh::ReadOptions;
+use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
+use sdop::simd::Tier;
+use sdop::volume::{Axes, DirectionSet};
 use sdop_judge::ours::compare::{culler, settings};
 use sdop_judge::ours::hard::{
     Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name,
@@ -13,10 +17,6 @@ use sdop_judge::ours::hard::{
 use sdop_judge::ours::rounds::{Ledger, Run, group};
 use sdop_judge::ours::ways::{Mode, Rotation, variants, ways};
 use sdop_judge::ours::{Answers, Predicate};
-use sdop::mesh::ReadOptions;
-use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
-use sdop::simd::Tier;
-use sdop::volume::{Axes, DirectionSet};
 
 type Variant = (DirectionSet, Axes);
 

@@ -7,13 +7,13 @@
 
 use std::f64::consts::PI;
 
-use sdop_bench::random::Stream;
-use sdop_bench::tradeoff::Estimate;
-use sdop_bench::tradeoff::shapes::{Crowd, share};
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Axes, DirectionSet, Overlap};
 use sdop::simd::Tier;
 use sdop::volume::{OrDop, Shape, ShapeSpec};
+use sdop_bench::random::Stream;
+use sdop_bench::tradeoff::Estimate;
+use sdop_bench::tradeoff::shapes::{Crowd, share};
 
 const PAIRS: u32 = 40_000;
 const BATCHES: u64 = 8;

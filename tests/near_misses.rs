@@ -10,6 +10,9 @@ use proptest::test_runner::{FileFailurePersistence, TestRunner};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
+use sdop::settings::Strategy;
+use sdop::simd::Tier;
+use sdop::volume::{Axes, DirectionSet};
 use sdop_judge::ours::arbitrary;
 use sdop_judge::ours::contact::{Contact, Placed};
 use sdop_judge::ours::draw::add;
@@ -17,9 +20,6 @@ use sdop_judge::ours::forms::{self, Form};
 use sdop_judge::ours::rounds::{Ledger, Run};
 use sdop_judge::ours::ways::{Mode, Rotation, variants, ways};
 use sdop_judge::ours::{Answers, Predicate, Shapes, compare};
-use sdop::settings::Strategy;
-use sdop::simd::Tier;
-use sdop::volume::{Axes, DirectionSet};
 
 /// Forms and sizes that the draws choose from: round and flat, long and short, centred and not.
 static SHAPES: LazyLock<Vec<((DirectionSet, Axes), Shapes)>> = LazyLock::new(|| {

@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use miette::Diagnostic as _;
-use sdop_judge::record::{FrameLine, Header, Reader, RecordError, Recorder};
+use sdop::simd::Tier;
 use sdop_bench::scene::SceneFile;
 use sdop_bench::simulate::Simulation;
-use sdop::simd::Tier;
+use sdop_judge::record::{FrameLine, Reader, RecordError, Recorder};
 
 const SCENE: &str = r#"
 name = "small"

@@ -4,8 +4,9 @@
 
 use std::path::{Path, PathBuf};
 
+use sdop::settings::{Axes, Overlap, Strategy};
+use sdop::simd::Tier;
 use sdop_bench::cost::calibrate::Effort;
-use sdop_judge::contestant::Contestant;
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::measure::variant::Variant;
 use sdop_bench::reproduce::check::Verdict;
@@ -19,8 +20,7 @@ use sdop_bench::reproduce::{
 };
 use sdop_bench::scene::SceneFile;
 use sdop_bench::sweep::Sweep as _;
-use sdop::settings::{Axes, Overlap, Strategy};
-use sdop::simd::Tier;
+use sdop_judge::contestant::Contestant;
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes")

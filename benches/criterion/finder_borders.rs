@@ -8,8 +8,8 @@ use std::process::ExitCode;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sdop_judge::ours::borders::{Borders, bar};
 use sdop::simd::Tier;
+use sdop_judge::ours::borders::{Borders, bar};
 
 /// Scenes when the command line names no number.
 const SCENES: u64 = 1_000_000;

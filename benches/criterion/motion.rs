@@ -9,10 +9,10 @@ mod common;
 use common::swarm::{Kind, Swarm};
 use sdop::bodies::Bodies;
 use sdop::culler::Culler;
-use sdop_judge::contestant::Contestant;
+use sdop::settings::{Finder, Strategy};
 use sdop_bench::measure::turns::{Regime, Turns};
 use sdop_bench::percentiles::Percentiles;
-use sdop::settings::{Finder, Strategy};
+use sdop_judge::contestant::Contestant;
 
 /// Turns of a row at most, and bodies times frames.
 const TURNS: usize = 60;

@@ -6,12 +6,12 @@ mod common;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use sdop::culler::Culler;
-use sdop_bench::scene::Scene;
 use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
 use sdop::settings::{CullSettings, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
+use sdop_bench::scene::Scene;
 
 fn pairs(scene: &Scene, strategy: Strategy) -> PairList {
     let settings = CullSettings {

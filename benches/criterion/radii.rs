@@ -7,8 +7,8 @@ mod common;
 
 use common::swarm::{Kind, Swarm};
 use sdop::culler::Culler;
-use sdop_bench::measure::turns::median;
 use sdop::settings::Finder;
+use sdop_bench::measure::turns::median;
 
 /// Turns that everyone has.
 const ROUNDS: usize = 15;

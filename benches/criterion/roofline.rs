@@ -12,10 +12,10 @@ use std::time::Instant;
 
 use sdop::counters::{Counters, Seconds};
 use sdop::culler::Culler;
-use sdop_bench::measure::turns::median;
-use sdop_bench::scene::Scene;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::simd::{Kernel, Lanes, Tier, dispatch};
+use sdop_bench::measure::turns::median;
+use sdop_bench::scene::Scene;
 
 /// Samples of every measurement.
 const SAMPLES: usize = 15;

@@ -6,11 +6,11 @@
 mod common;
 
 use sdop::bodies::Bodies;
+use sdop::settings::CullSettings;
+use sdop::simd::Tier;
 use sdop_bench::measure::culling::Culling;
 use sdop_bench::measure::turns::{Quartiles, Regime, Turns, median, turn_frames};
 use sdop_bench::tradeoff::safety::{STRATEGIES, without_margins};
-use sdop::settings::CullSettings;
-use sdop::simd::Tier;
 
 /// Rounds over all frames.
 const ROUNDS: usize = 101;

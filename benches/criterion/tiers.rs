@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 
 use criterion::Criterion;
 use sdop::culler::Culler;
+use sdop::simd::Tier;
 use sdop_bench::measure::turns::median;
 use sdop_judge::ours::{Shapes, judged};
-use sdop::simd::Tier;
 use sdop_reference as reference;
 
 /// Seconds an iteration, sample by sample.

@@ -9,6 +9,7 @@ mod common;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
+use sdop::simd::Tier;
 use sdop_bench::cost::calibrate::{Calibration, Effort};
 use sdop_bench::cost::pass::{Pass, Simulated, pass};
 use sdop_bench::cost::study::possible;
@@ -16,7 +17,6 @@ use sdop_bench::cost::table::{cost, prices};
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::measure::variant::Variant;
 use sdop_bench::scene::SceneFile;
-use sdop::simd::Tier;
 
 /// What is predicted; calibration scenes have other numbers of bodies and other boxes.
 const SCENES: [&str; 3] = ["paper-300", "paper-500", "crowded-500"];

@@ -3,21 +3,21 @@
 //! One search per thread from seeds of its own; the table is what `paper/proofs/README.md` and `src/rounding` quote.
 //! Fails when a bound is exceeded, or when a search finds less than the short one of the tests must.
 
-#[path = "../tests/worst_case/bounds.rs"]
+#[path = "../../tests/worst_case/bounds.rs"]
 mod bounds;
-#[path = "../tests/worst_case/climb.rs"]
+#[path = "../../tests/worst_case/climb.rs"]
 mod climb;
-#[path = "../tests/worst_case/exact.rs"]
+#[path = "../../tests/worst_case/exact.rs"]
 mod exact;
-#[path = "../tests/worst_case/machine.rs"]
+#[path = "../../tests/worst_case/machine.rs"]
 mod machine;
-#[path = "../tests/worst_case/ordop.rs"]
+#[path = "../../tests/worst_case/ordop.rs"]
 mod ordop;
-#[path = "../tests/worst_case/poses.rs"]
+#[path = "../../tests/worst_case/poses.rs"]
 mod poses;
-#[path = "../tests/worst_case/slabs.rs"]
+#[path = "../../tests/worst_case/slabs.rs"]
 mod slabs;
-#[path = "../tests/worst_case/spheres.rs"]
+#[path = "../../tests/worst_case/spheres.rs"]
 mod spheres;
 
 use std::process::ExitCode;

@@ -7,8 +7,8 @@ use std::collections::HashMap;
 use std::process::ExitCode;
 
 use sdop::Bodies;
-use sdop_judge::judge::{Claim, Contestant, JudgeError, Scene, judge};
 use sdop::rounding::pose::{rotation, transform};
+use sdop_judge::{Claim, Contestant, JudgeError, Scene, judge};
 
 struct Grid {
     /// Centre in the body frame and radius of each shape's ball.

@@ -159,7 +159,8 @@ impl Culler {
     }
 
     /// From now on, these bodies are of interest.
-    pub(crate) fn set_interest(&mut self, interest: Interest) {
+    #[doc(hidden)]
+    pub fn set_interest(&mut self, interest: Interest) {
         self.settings.interest = Some(interest);
     }
 

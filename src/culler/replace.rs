@@ -27,7 +27,8 @@ impl Culler {
     }
 
     /// Replaces the set of bodies by those that are `present`, of which nothing is known.
-    pub(crate) fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
+    #[doc(hidden)]
+    pub fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         self.take_places(bodies, present);
         let population = needs::population(self.scheme, &self.models, &self.places);
         self.finder = PairFinder::new(self.settings.pairs, &population);

@@ -21,7 +21,7 @@ pub mod slab;
 pub mod sphere;
 
 /// 2ᵉ for a normal exponent.
-pub(crate) const fn exp2(e: i32) -> f64 {
+pub const fn exp2(e: i32) -> f64 {
     assert!(-1022 <= e && e <= 1023);
     f64::from_bits(((1023 + e) as u64) << 52)
 }

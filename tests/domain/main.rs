@@ -13,14 +13,14 @@ use std::path::Path;
 
 use sdop::Culler;
 use sdop::bodies::Bodies;
+use sdop::settings::CullSettings;
+use sdop::simd::Tier;
+use sdop::volume::Shape;
 use sdop_bench::domain::local::on_ranks;
 use sdop_bench::domain::{DomainError, DomainSummary, Network as _, Rank, RankLine, run};
 use sdop_bench::effects::{EffectsSpec, Velocities};
 use sdop_bench::scene::{Scene, SceneFile, Share};
 use sdop_bench::simulate::SimulationError;
-use sdop::settings::CullSettings;
-use sdop::simd::Tier;
-use sdop::volume::Shape;
 
 /// One, halves, an odd number, and eight about a corner.
 const RANKS: [usize; 4] = [1, 2, 3, 8];

@@ -1,7 +1,7 @@
 //! Whole scenes: the digest, the hash and what must add up, over ranks, strategies and finders.
 
-use sdop_bench::scene::Scene;
 use sdop::settings::{Finder, Interest, Strategy, Updates};
+use sdop_bench::scene::Scene;
 
 use crate::{RANKS, alone, build, ghosts, on, parse};
 

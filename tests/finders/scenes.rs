@@ -3,9 +3,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
-use sdop_judge::ours::draw::rotation;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{DirectionSet, Shape, ShapeSpec};
+use sdop_judge::ours::draw::rotation;
 
 use crate::support::{self, shapes};
 

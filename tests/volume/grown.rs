@@ -3,9 +3,9 @@
 use dashu_int::IBig;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sdop_judge::ours::ways::variants;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, OrDop, Shape, ShapeSpec};
+use sdop_judge::ours::ways::variants;
 
 use super::exact::{dot, integer, point};
 

@@ -2,10 +2,11 @@
 
 use glam::{DQuat, Vec3};
 use sdop::{
-    lab::hash::volumes_sha256,
     mesh::TriangleMesh,
     volume::{Axes, DirectionSet, Hull, Origin, Shape, ShapeSpec},
 };
+use sdop_bench::hash::volumes_sha256;
+use sdop_bench::tightness::PolytopeVolume as _;
 
 use crate::meshes::{box_corners, mesh, rotated};
 

@@ -1,11 +1,11 @@
 //! The shipped meshes: contained exactly, the same volumes on every CPU, and as tight as recorded.
 
 use sdop::{
-    lab::hash::volumes_sha256,
-    lab::tightness::mean_world_aligned_volume,
     mesh::{ReadOptions, read},
     volume::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, Shape, ShapeSpec},
 };
+use sdop_bench::hash::volumes_sha256;
+use sdop_bench::tightness::{PolytopeVolume as _, mean_world_aligned_volume};
 
 use crate::{
     exact::{ball_contains, slabs_contain},

@@ -12,10 +12,10 @@ use criterion::{BenchmarkGroup, BenchmarkId, Throughput, measurement::WallTime};
 use sdop::bodies::Bodies;
 use sdop::counters::{Counters, Seconds};
 use sdop::culler::Culler;
+use sdop::settings::{CullSettings, Strategy, TestedVolume};
 use sdop_bench::cost::calibrate;
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::simulate::Trajectory;
-use sdop::settings::{CullSettings, Strategy, TestedVolume};
 
 /// Frames that a bench goes round in.
 pub const FRAMES: usize = 32;
@@ -31,7 +31,7 @@ pub fn one_volume() -> impl Iterator<Item = (Strategy, TestedVolume)> {
 
 /// A scene file of `data/scenes`.
 pub fn scene_file(name: &str) -> SceneFile {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
         .join("data/scenes")
         .join(name);
     SceneFile::read(&path.with_extension("toml")).unwrap()

@@ -13,8 +13,8 @@ use miette::miette;
 use sdop::threads::Threads;
 use serde::Serialize;
 
-use sdop_judge::contestant::Contestant;
 use sdop_bench::measure::turns::median;
+use sdop_judge::contestant::Contestant;
 
 use crate::boxes::Frame;
 use crate::compare::median_ratio;

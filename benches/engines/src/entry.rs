@@ -2,9 +2,9 @@
 //!
 //! A new engine is a file with a `Contestant` of [`Frame`]s and its [`Entry`], and a line in `roster.rs`.
 
+use sdop_bench::scene::Scene;
 use sdop_judge::Claim;
 use sdop_judge::contestant::Contestant;
-use sdop_bench::scene::Scene;
 
 use crate::boxes::Frame;
 

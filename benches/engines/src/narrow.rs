@@ -13,12 +13,12 @@ use parry3d::query::intersection_test;
 use parry3d::shape::{ConvexPolyhedron, Shape as Solid, TriMesh};
 use sdop::bodies::Bodies;
 use sdop::culler::Culler;
-use sdop_bench::hull_test::{HullGraph, PosedHull, may_touch};
-use sdop_judge::contestant::Contestant;
-use sdop_bench::scene::{Scene, SceneFile};
-use sdop_bench::tradeoff::truth::samples;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::Shape;
+use sdop_bench::hull_test::{HullGraph, PosedHull, may_touch};
+use sdop_bench::scene::{Scene, SceneFile};
+use sdop_bench::tradeoff::truth::samples;
+use sdop_judge::contestant::Contestant;
 use sdop_reference::exact::{meeting, mesh::Mesh};
 use serde::Serialize;
 

@@ -7,9 +7,9 @@ use std::path::Path;
 
 use clap::ValueEnum;
 use sdop::bodies::Bodies;
+use sdop::mesh::ProceduralShape;
 use sdop_bench::effects::Effects;
 use sdop_bench::scene::{Scene, SceneFile};
-use sdop::mesh::ProceduralShape;
 use serde::Serialize;
 
 use crate::boxes::{Frame, ORDERS};

@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use miette::{IntoDiagnostic as _, miette};
+use sdop_bench::scene::{Scene, SceneFile};
 use sdop_judge::process::Program;
 use sdop_judge::wire::{Wire, ndjson};
-use sdop_judge::judge::{Case, Claim, Options, Outcome, Verdict, examine};
-use sdop_bench::scene::{Scene, SceneFile};
+use sdop_judge::{Case, Claim, Options, Outcome, Verdict, examine};
 use serde::Serialize;
 
 use crate::boxes::{Frame, Slabs};

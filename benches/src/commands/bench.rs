@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use miette::IntoDiagnostic as _;
-use sdop_judge::process::Program;
-use sdop_judge::timing::{ContestantTiming, compare, frames};
-use sdop_judge::wire::Wire;
-use sdop_judge::judge::{Claim, Outcome as CaseOutcome};
+use sdop_bench::outsiders::timing::{ContestantTiming, compare, frames};
 use sdop_bench::scene::SceneFile;
+use sdop_judge::process::Program;
+use sdop_judge::wire::Wire;
+use sdop_judge::{Claim, Outcome as CaseOutcome};
 
 use super::output::{Format, emit, rows};
 use super::{Outcome, one_of};

@@ -6,7 +6,7 @@ use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_judge::answer::{Answer, Stop};
 use sdop_judge::run::examine_given;
 use sdop_judge::wire::{Said, Wire};
-use sdop_judge::judge::{Case, Claim, Options, Subject};
+use sdop_judge::{Case, Claim, Options, Subject};
 
 use super::files::ReadArgs;
 use super::judge::{ReportFormat, emit_verdict, read_case};

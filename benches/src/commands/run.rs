@@ -5,15 +5,15 @@ use std::path::PathBuf;
 
 use sdop::Tier;
 use sdop::counters::{Counters, Seconds};
+use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
 use sdop_bench::domain::{BorderSeconds, RankLine};
 use sdop_bench::effects::EffectReport;
 use sdop_bench::percentiles::Percentiles;
-use sdop_judge::record::{FrameLine, Header, Recorder};
 use sdop_bench::scene::Scene;
 use sdop_bench::simulate::{Simulation, Summary};
 use sdop_bench::tradeoff::TradeoffError;
 use sdop_bench::tradeoff::truth::Judge;
-use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
+use sdop_judge::record::Recorder;
 use serde::Serialize;
 use serde_json::{Map, Value};
 

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use miette::Diagnostic as _;
 use sdop::Tier;
-use sdop_bench::scene::{Scene, SceneFile};
 use sdop::settings::{
     Axes, Budget, CullSettings, Finder, Interest, Order, Overlap, Strategy, Updates,
 };
 use sdop::volume::DirectionSet;
+use sdop_bench::scene::{Scene, SceneFile};
 
 use super::files::ReadArgs;
 use super::one_of;

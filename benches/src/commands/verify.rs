@@ -11,11 +11,11 @@ use miette::{IntoDiagnostic as _, WrapErr as _};
 use sdop::Tier;
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::sweep::Merged;
-use sdop_judge::ours::hard::{FILES, Group, page};
-use sdop_judge::ours::rounds::{Failure, Ledger};
 use sdop_bench::verify::shrink::Smallest;
 pub use sdop_bench::verify::units::NAME;
 use sdop_bench::verify::units::{Origin, Settings, Verification};
+use sdop_judge::ours::hard::{FILES, Group, page};
+use sdop_judge::ours::rounds::{Failure, Ledger};
 
 use super::Outcome;
 use super::files::{self, ReadArgs};

@@ -8,8 +8,8 @@ use std::process::{Command, Stdio};
 
 use miette::{IntoDiagnostic as _, Report, WrapErr as _, miette};
 use sdop::files::Whole;
-use sdop_bench::view::{Culled, Page, Show, decide_truth};
 use sdop::settings::{CullSettings, Strategy};
+use sdop_bench::view::{Culled, Page, Show, decide_truth};
 
 use super::Outcome;
 use super::output::{print, progress};

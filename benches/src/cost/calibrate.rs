@@ -9,9 +9,7 @@ use std::time::Instant;
 
 use super::explain::{self, Observed, Split};
 use super::predict::Prices;
-use sdop::bodies::Bodies;
 use crate::effects::Velocities;
-use sdop_judge::contestant::Contestant;
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::culling::Culling;
 use crate::measure::turns::{Regime, Times, Turns, median, next_turn};
@@ -21,9 +19,11 @@ use crate::number::Interval;
 use crate::random::Stream;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
+use sdop::bodies::Bodies;
 use sdop::settings::{Axes, Budget, CullSettings, Interest};
 use sdop::simd::Tier;
 use sdop::volume::{Ball, Shape};
+use sdop_judge::contestant::Contestant;
 
 /// Bodies of the calibration scenes, as parts of the scene's number. Near it, though none within a tenth of it: a price isn't
 /// the same at any number of bodies (loops end where the CPU foresees it, or don't), and its curve is straight nearby.

@@ -8,13 +8,13 @@
 use super::VolumeCosts;
 use super::fit::{self, Measurement};
 use super::predict::{Price, Prices};
-use sdop::bodies::Bodies;
 use crate::hull_test::HullTest;
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::culling::Stages;
 use crate::measure::turns::time;
 use crate::measure::variant::Variant;
 use crate::random::Stream;
+use sdop::bodies::Bodies;
 use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
 use sdop::simd::Tier;

@@ -3,7 +3,6 @@
 
 use super::calibrate::{Calibration, build};
 use super::predict::Prices;
-use sdop::bodies::Bodies;
 use crate::measure::counts::Counts;
 use crate::measure::culling::Culling;
 use crate::measure::estimate::Estimate;
@@ -11,6 +10,7 @@ use crate::measure::turns::{Regime, Times, Turns, median, next_turn, turn_frames
 use crate::measure::variant::Variant;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
+use sdop::bodies::Bodies;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 

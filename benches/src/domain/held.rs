@@ -1,8 +1,8 @@
 //! The bodies that a rank holds: those that it owns and its ghosts, copies of what others own, in the order of their numbers
 //! in the scene. That order is what makes a pair's test the same on every rank: the lower number is always the first.
 
-use sdop::bodies::Bodies;
 use crate::effects::Velocities;
+use sdop::bodies::Bodies;
 
 /// Bodies as columns of one length, by ascending number.
 #[derive(Debug, Default)]

@@ -5,11 +5,11 @@ use serde::Serialize;
 use super::error::DomainError;
 use super::network::{Network, tell_first};
 use super::rank::Rank;
-use sdop::counters::{Counters, Seconds};
 use crate::effects::EffectReport;
 use crate::hash::{PairsDigest, PairsHash, volumes_sha256};
 use crate::percentiles::Percentiles;
 use crate::simulate::Summary;
+use sdop::counters::{Counters, Seconds};
 use sdop::settings::{TestedVolume, Updates};
 
 /// Up to so many bodies, rank 0 gathers all pairs for `pairs_sha256`, which needs them sorted; beyond, there is the digest

@@ -7,9 +7,9 @@ use serde::Deserialize;
 
 use super::Start;
 use super::{Effect, Made, Velocities};
-use sdop::bodies::Bodies;
 use crate::number::{Interval, Share};
 use crate::random::Stream;
+use sdop::bodies::Bodies;
 
 /// `brownian = { share = 0.01, speed = [min, max] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

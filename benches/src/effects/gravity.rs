@@ -8,8 +8,8 @@ use serde::Deserialize;
 
 use super::Start;
 use super::{Effect, Made, Velocities};
-use sdop::bodies::Bodies;
 use crate::number::{Positive, Real, vector};
+use sdop::bodies::Bodies;
 
 /// `gravity = { acceleration = [0, 0, -9.81] }`, for a turning one with `period` in seconds and an `axis`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

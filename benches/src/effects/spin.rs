@@ -7,8 +7,8 @@ use serde::Deserialize;
 
 use super::Start;
 use super::{Effect, Made, Velocities};
-use sdop::bodies::Bodies;
 use crate::number::Interval;
+use sdop::bodies::Bodies;
 
 /// `spin = { rate = [min, max] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

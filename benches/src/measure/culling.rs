@@ -2,16 +2,16 @@
 
 use std::time::Instant;
 
-use sdop_judge::contestant::Contestant;
 use super::counts::Counts;
 use super::waiting::Waiting;
+use crate::hull_test::HullTest;
 use sdop::bodies::Bodies;
 use sdop::counters::{Counters, VolumeCounters};
 use sdop::culler::{CullError, Culler};
-use crate::hull_test::HullTest;
 use sdop::settings::CullSettings;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
+use sdop_judge::contestant::Contestant;
 
 /// Seconds of one frame, stage by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]

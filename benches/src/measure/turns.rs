@@ -13,13 +13,13 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use sdop_judge::contestant::Contestant;
 use super::culling::{Culling, Stages};
 use super::waiting::Waiting;
-use sdop::bodies::Bodies;
-use sdop::choice::choices;
 use crate::random::Stream;
 use crate::simulate::{SimulationError, Trajectory};
+use sdop::bodies::Bodies;
+use sdop::choice::choices;
+use sdop_judge::contestant::Contestant;
 
 /// Where the draws of the order of turns start.
 const SEED: u64 = 0x5a3e_7100_0000_0000;

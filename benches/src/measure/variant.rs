@@ -2,8 +2,8 @@
 
 use super::counts::Volume;
 use super::culling::Culling;
-use sdop::culler::CullError;
 use crate::scene::Scene;
+use sdop::culler::CullError;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::Shape;

@@ -7,18 +7,18 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use crate::effects::EffectError;
+use crate::scene::Scene;
+use sdop::bodies::contract::ContractError;
+use sdop::culler::{CullError, Culler};
+use sdop::settings::Strategy;
+use sdop::volume::Shape;
 use sdop_judge::answer::{Answer, Stop};
 use sdop_judge::case::{Case, Frame};
 use sdop_judge::claim::Claim;
+use sdop_judge::ours::judged::InvalidInput;
 use sdop_judge::score::{Outcome, judge_answers};
 use sdop_judge::subject::Subject;
-use sdop::bodies::contract::ContractError;
-use sdop::culler::{CullError, Culler};
-use crate::effects::EffectError;
-use crate::scene::Scene;
-use sdop_judge::ours::judged::InvalidInput;
-use sdop::settings::Strategy;
-use sdop::volume::Shape;
 
 /// Why nothing was timed.
 #[derive(Debug, thiserror::Error)]

@@ -10,20 +10,20 @@ use super::immediate::Immediacy;
 use super::sensitivity::Interpretation;
 use super::survival::Survival;
 use super::units::Experiments;
-use sdop::choice::choices;
-use sdop::counters::{Counters, Seconds};
 use crate::cost::calibrate::{Calibration, Effort};
 use crate::cost::pass::{Culled, Observer, Pass, Simulated, pass};
 use crate::cost::table::{self, Cost};
 use crate::hash::PairsHash;
-use sdop_judge::contestant::Contestant;
 use crate::measure::culling::Culling;
 use crate::measure::turns::Regime;
 use crate::measure::variant::Variant;
 use crate::scene::{Scene, SceneError};
 use crate::simulate::SimulationError;
+use sdop::choice::choices;
+use sdop::counters::{Counters, Seconds};
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
+use sdop_judge::contestant::Contestant;
 
 /// The paper's strategies, in the order of frame rates that it claims.
 pub const STRATEGIES: [Strategy; 6] = [

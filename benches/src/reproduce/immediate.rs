@@ -5,18 +5,18 @@
 //! pair, after sixteen, or at the end; nothing else differs.
 
 use super::experiment::PaperScene;
-use sdop::bodies::Bodies;
-use sdop::choice::choices;
-use sdop_judge::contestant::Contestant;
 use crate::measure::turns::{Regime, Turns, median, next_turn};
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
+use sdop::bodies::Bodies;
+use sdop::choice::choices;
 use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
 use sdop::settings::Overlap;
 use sdop::simd::Tier;
 use sdop::update::ShapeFrame;
 use sdop::volume::Shape;
+use sdop_judge::contestant::Contestant;
 
 /// Frames of each measurement.
 const FRAMES: u32 = 24;

@@ -12,18 +12,18 @@ use toml::Spanned;
 
 use super::experiment::{Plan, ReproduceError};
 use super::paper::{TABLE_1, TABLE_1_BODIES};
-use sdop::choice::choices;
-use sdop::counters::Counters;
 use crate::effects::walls;
-use sdop_judge::contestant::Contestant;
 use crate::measure::culling::Culling;
 use crate::measure::variant::Variant;
 use crate::number::Positive;
 use crate::scene::file::Placement;
 use crate::scene::{Scene, SceneFile};
 use crate::simulate::{SimulationError, Trajectory};
+use sdop::choice::choices;
+use sdop::counters::Counters;
 use sdop::settings::{Axes, CullSettings, DirectionSet, Overlap, Strategy};
 use sdop::simd::Tier;
+use sdop_judge::contestant::Contestant;
 
 /// Frames after which counts are looked at.
 const LENGTHS: [u32; 4] = [1, 10, 60, 400];

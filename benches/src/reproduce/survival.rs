@@ -1,12 +1,12 @@
 //! How much or-DOPs leave of what spheres report, by k and overlap test.
 
-use sdop_judge::contestant::Contestant as _;
 use crate::measure::variant::Variant;
 use crate::scene::Scene;
 use crate::simulate::SimulationError;
 use sdop::settings::{CullSettings, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
+use sdop_judge::contestant::Contestant as _;
 
 /// The share of sphere hits that an or-DOP test lets through, in the first frames of the calibrated scene.
 #[derive(Clone, Debug, PartialEq)]

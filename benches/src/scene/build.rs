@@ -11,10 +11,10 @@ use super::group::{Draws, Group, Purpose};
 use super::library::{Form, Library};
 use super::placement::Placer;
 use super::{Scene, Share};
-use sdop::bodies::Bodies;
-use sdop::bodies::contract::{ContractError, check_bodies};
 use crate::effects::{Velocities, world_centre};
 use crate::number::{Interval, Positive};
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::{ContractError, check_bodies};
 
 impl SceneFile {
     /// Builds the scene: reads meshes, builds shapes, places bodies.

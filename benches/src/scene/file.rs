@@ -9,10 +9,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
 use super::error::{SceneError, Source};
-use sdop::choice::choices;
-use sdop::files;
 use crate::effects::EffectsSpec;
 use crate::number::{Interval, Positive, Real};
+use sdop::choice::choices;
+use sdop::files;
 use sdop::settings::CullSettings;
 use sdop::volume::Origin;
 

@@ -9,8 +9,8 @@ use toml::Spanned;
 
 use super::error::{SceneError, Source};
 use super::file::SceneFile;
-use sdop::choice::suggest;
 use crate::number::Real;
+use sdop::choice::suggest;
 use sdop::mesh::{ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError};
 use sdop::settings::CullSettings;
 use sdop::volume::{Origin, Shape, ShapeSpec};

@@ -17,8 +17,8 @@ pub use error::SceneError;
 pub use file::SceneFile;
 pub use share::Share;
 
-use sdop::bodies::Bodies;
 use crate::effects::{EffectError, Effects, EffectsSpec, Start, Velocities};
+use sdop::bodies::Bodies;
 use sdop::settings::CullSettings;
 use sdop::volume::Shape;
 

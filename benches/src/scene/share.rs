@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use sdop::bodies::Bodies;
 use crate::effects::runs;
+use sdop::bodies::Bodies;
 
 /// A run of a scene's bodies, by their numbers in the whole scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

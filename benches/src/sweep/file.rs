@@ -19,8 +19,8 @@ use miette::Diagnostic;
 use sha2::{Digest as _, Sha256};
 
 use super::{Event, Header};
-use sdop::files::{self, MAX_BYTES, Whole};
 use crate::hash::hex;
+use sdop::files::{self, MAX_BYTES, Whole};
 
 /// Finished units, as a file has them.
 #[derive(Clone, Debug)]

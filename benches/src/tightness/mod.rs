@@ -2,7 +2,7 @@
 
 mod polytope;
 
-pub use polytope::mean_world_aligned_volume;
+pub use polytope::{PolytopeVolume, mean_world_aligned_volume};
 
 use serde::{Deserialize, Serialize};
 

@@ -18,10 +18,15 @@ struct HalfSpace {
     end: f64,
 }
 
-impl OrDop {
+/// The size of a bounding polytope.
+pub trait PolytopeVolume {
     /// The polytope's volume; 0 for a flat one.
     #[must_use]
-    pub fn volume(&self) -> f64 {
+    fn volume(&self) -> f64;
+}
+
+impl PolytopeVolume for OrDop {
+    fn volume(&self) -> f64 {
         let slabs = self
             .directions
             .coefficients()

@@ -13,11 +13,11 @@ use super::counts::{share, shared};
 use super::interest::spread;
 use super::truth::{Judge, Sample};
 use super::variant::Variant;
-use sdop::culler::Culler;
 use crate::cost::pass::{Culled, Simulated, pass};
 use crate::measure::turns::{Regime, median};
 use crate::percentiles::Percentiles;
 use crate::scene::Scene;
+use sdop::culler::Culler;
 use sdop::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
 use sdop::simd::Tier;
 

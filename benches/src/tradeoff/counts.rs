@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::truth::{Sample, Truth};
 use super::variant::Variant;
+use crate::hash::PairsHash;
+use crate::scene::Scene;
 use sdop::counters::{Counters, VolumeCounters};
 use sdop::culler::CullError;
-use crate::hash::PairsHash;
-use sdop_judge::contestant::Contestant;
-use crate::scene::Scene;
 use sdop::simd::Tier;
+use sdop_judge::contestant::Contestant;
 
 /// What a variant counted on the sample frames of one seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

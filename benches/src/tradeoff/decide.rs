@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::density::Density;
 use super::pays::Line;
 use super::shapes::ShapeSurvival;
-use sdop::choice::choices;
 use crate::measure::counts::Volume;
+use sdop::choice::choices;
 
 /// Prices of a narrow-phase check in seconds.
 pub const CHECKS: [f64; 4] = [10e-9, 100e-9, 1e-6, 10e-6];

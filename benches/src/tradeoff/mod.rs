@@ -32,9 +32,9 @@ use std::path::PathBuf;
 use miette::Diagnostic;
 use thiserror::Error;
 
-use sdop::culler::CullError;
 use crate::scene::SceneError;
 use crate::simulate::SimulationError;
+use sdop::culler::CullError;
 
 /// Why there is no answer.
 #[derive(Debug, Error, Diagnostic)]

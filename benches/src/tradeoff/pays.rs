@@ -7,10 +7,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::truth::NarrowPhase;
-use sdop::choice::choices;
 use crate::measure::counts::Volume;
 use crate::measure::estimate::Estimate;
 use crate::measure::variant::Variant;
+use sdop::choice::choices;
 use sdop::settings::{Axes, Overlap};
 
 /// One variant's cost a frame.

@@ -9,19 +9,19 @@ use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::truth::windows;
-use sdop::bodies::Bodies;
-use sdop::choice::choices;
-use sdop_judge::contestant::Contestant;
 use crate::measure::culling::Culling;
 use crate::measure::turns::{Quartiles, Regime, Turns, turn_frames};
 use crate::scene::Scene;
-use sdop_judge::ours::judged::{Shapes, overlap};
+use sdop::bodies::Bodies;
+use sdop::choice::choices;
 use sdop::rounding::pose::norm;
 use sdop::rounding::slab::{SLAB_FLOOR, SLAB_MARGIN};
 use sdop::rounding::sphere::inflate_radius;
 use sdop::settings::{CullSettings, Strategy, Updates};
 use sdop::simd::Tier;
 use sdop::volume::Shape;
+use sdop_judge::contestant::Contestant;
+use sdop_judge::ours::judged::{Shapes, overlap};
 
 choices! {
     /// How the same predicate is computed.

@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::truth::Judge;
-use sdop::bodies::Bodies;
 use crate::hull_test::{HullGraph, PosedHull, may_touch};
 use crate::measure::estimate::Estimate;
 use crate::random::Stream;
 use crate::tightness::Size;
+use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;

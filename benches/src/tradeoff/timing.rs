@@ -4,12 +4,12 @@
 //! calibration ([`pass`](crate::cost::pass)): the same protocol as everywhere.
 
 use super::truth::windows;
-use sdop::bodies::Bodies;
 use crate::cost::pass::{Frames, Pass, pass};
 use crate::measure::turns::turn_frames;
 use crate::measure::variant::Variant;
 use crate::scene::Scene;
 use crate::simulate::SimulationError;
+use sdop::bodies::Bodies;
 use sdop::simd::Tier;
 
 /// The fewest passes behind a number, each apart in time.

@@ -16,12 +16,12 @@ use sha2::{Digest, Sha256};
 
 use super::TradeoffError;
 use super::variant::Variant;
-use sdop::bodies::Bodies;
-use sdop::culler::Culler;
-use sdop::files;
 use crate::hash::{PairsHash, hex};
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
+use sdop::files;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 

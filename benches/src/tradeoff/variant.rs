@@ -1,5 +1,6 @@
 //! What is compared: every volume and strategy, as culling settings with the shapes that they need.
 
+use crate::tightness::PolytopeVolume as _;
 use glam::Vec3;
 
 use crate::measure::counts::Volume;

@@ -6,13 +6,13 @@ use miette::Diagnostic;
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::scene::Scene;
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::bodies::Bodies;
 use sdop_judge::ours::answers::{Answers, Predicate};
 use sdop_judge::ours::judged::Shapes;
 use sdop_judge::ours::rounds::{Ledger, RoundError, Run};
 use sdop_judge::ours::ways::{Rotation, rows};
-use sdop::bodies::Bodies;
-use crate::scene::Scene;
-use crate::simulate::{SimulationError, Trajectory};
 
 /// Frames that are judged at once, to bound memory. A culler lives for one block, and each block is a turn of the rotation:
 /// a hundred frames show every way in twenty modes.

@@ -4,18 +4,18 @@ use std::fmt::Write as _;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::scene::SceneFile;
+use sdop::bodies::Bodies;
+use sdop::culler::CullError;
+use sdop::files;
+use sdop::mesh::{self, TriangleMesh};
+use sdop::settings::{CullSettings, Finder, Interest};
+use sdop::volume::Shape;
 use sdop_judge::ours::answers::{Answers, Predicate};
 use sdop_judge::ours::compare::{compare, culler, difference, found};
 use sdop_judge::ours::judged::Shapes;
 use sdop_judge::ours::rounds::Failure;
 use sdop_judge::ours::ways::Mode;
-use sdop::bodies::Bodies;
-use sdop::culler::CullError;
-use sdop::files;
-use crate::scene::SceneFile;
-use sdop::mesh::{self, TriangleMesh};
-use sdop::settings::{CullSettings, Finder, Interest};
-use sdop::volume::Shape;
 
 /// A scene of a few bodies that shows a missed pair.
 #[derive(Clone, Debug)]

@@ -8,18 +8,18 @@ use miette::{IntoDiagnostic as _, miette};
 use sdop_reference::exact::Tally;
 use serde::{Deserialize, Serialize};
 
+use super::scenes::{block, blocks, frames_of};
+use crate::scene::Scene;
+use crate::sweep::{Header, Sweep, digest};
+use sdop::settings::{Axes, DirectionSet, Overlap, Strategy};
+use sdop::simd::Tier;
 use sdop_judge::ours::answers::Predicate;
 use sdop_judge::ours::boxes::BoxCell;
 use sdop_judge::ours::compare::Count;
 use sdop_judge::ours::hard::{FILES, Group};
 use sdop_judge::ours::matrix::Cell;
 use sdop_judge::ours::rounds::{Judged, Ledger, Source, boxes, group, round};
-use super::scenes::{block, blocks, frames_of};
 use sdop_judge::ours::ways::{Rotation, variants};
-use crate::scene::Scene;
-use crate::sweep::{Header, Sweep, digest};
-use sdop::settings::{Axes, DirectionSet, Overlap, Strategy};
-use sdop::simd::Tier;
 
 /// What its files are called.
 pub const NAME: &str = "verify";

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::Show;
 use super::show::{file_name, in_words};
+use sdop::settings::{Interest, Strategy};
 use sdop_judge::Claim;
 use sdop_judge::record::{EffectLine, OrDopLine, RecordError};
-use sdop::settings::{Interest, Strategy};
 
 /// What the header calls itself.
 const FORMAT: &str = "sdop-view";

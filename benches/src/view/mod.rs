@@ -17,10 +17,10 @@ pub use show::{Culled, Show};
 
 use rayon::prelude::*;
 
-use sdop::bodies::Bodies;
-use sdop_judge::record::FrameLine;
 use crate::tradeoff::TradeoffError;
 use crate::tradeoff::truth::Judge;
+use sdop::bodies::Bodies;
+use sdop_judge::record::FrameLine;
 
 /// Has every frame know which meshes meet, in exact arithmetic; frames that know it already stay as they are. `done` is called
 /// once per frame, from any thread.

@@ -14,11 +14,11 @@ use super::header::{BlockHeader, Header, Level, RunHeader, ShapeHeader};
 use super::pairs::Pairs;
 use super::terms::{self, TermCourse};
 use super::{Culled, Show};
-use sdop::culler::CullError;
-use sdop_judge::record::{FrameLine, RecordError, ShapeLine};
 use crate::simulate::SimulationError;
+use sdop::culler::CullError;
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
+use sdop_judge::record::{FrameLine, RecordError, ShapeLine};
 
 /// The page without data, as `web/build.mjs` makes it.
 const PAGE: &str = include_str!("web/dist/page.html");

@@ -4,17 +4,17 @@ use std::path::Path;
 
 use miette::Diagnostic as _;
 
-use sdop::bodies::Bodies;
-use sdop::culler::{CullError, Culler};
-use sdop_judge::{Case, Claim, truth::Truth};
 use crate::measure::counts::Volume;
 use crate::record;
-use sdop_judge::record::{FrameLine, Header, Reader, RecordError, VolumeLine};
 use crate::scene::Scene;
 use crate::simulate::{Simulation, SimulationError};
+use sdop::bodies::Bodies;
+use sdop::culler::{CullError, Culler};
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::Shape;
+use sdop_judge::record::{FrameLine, Header, Reader, RecordError, VolumeLine};
+use sdop_judge::{Case, Claim, truth::Truth};
 
 /// A run in memory.
 #[derive(Clone, Debug)]

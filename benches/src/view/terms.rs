@@ -6,11 +6,11 @@ use crate::cost::predict::Prices;
 use crate::effects::{EffectsSpec, Velocities};
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::variant::Variant;
-use sdop_judge::record::VolumeLine;
 use crate::scene::Scene;
 use crate::simulate::SimulationError;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
+use sdop_judge::record::VolumeLine;
 
 /// Enough for a picture: one pass, in a fraction of a second for hundreds of bodies.
 const EFFORT: Effort = Effort {

@@ -1,8 +1,8 @@
 //! A case: shapes, and a few frames of bodies with the boxes that belong to them.
 
 use super::claim::Claim;
-use sdop::bodies::Bodies;
 use crate::contestant::WorldBox;
+use sdop::bodies::Bodies;
 use sdop::rounding::pose::{COORDINATE_ERROR, rotation, transform};
 use sdop::rounding::{down, up};
 use sdop::volume::Shape;

@@ -5,8 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::answer::{Answer, Stop, Trouble};
 use super::case::Case;
 use super::claim::Claim;
-use sdop::bodies::Bodies;
 use crate::contestant::{Contestant, WorldBox};
+use sdop::bodies::Bodies;
 use sdop::volume::Shape;
 
 /// What a culler is made for: the first frame of a case.

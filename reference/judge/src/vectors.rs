@@ -8,8 +8,8 @@ use serde_json::Value;
 use super::catalogue::{CatalogueError, Group, groups};
 use super::report::Named;
 use super::truth::Truth;
-use crate::record::ShapeLine;
 use crate::ours::judged::InvalidInput;
+use crate::record::ShapeLine;
 
 /// What the files' versions count.
 pub const VERSION: u32 = 1;

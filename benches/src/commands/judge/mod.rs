@@ -15,7 +15,7 @@ use sdop_judge::process::Program;
 use sdop_judge::report::{STEM, counter_example};
 use sdop_judge::run::examine_given;
 use sdop_judge::wire::{Wire, ndjson};
-use sdop_judge::judge::{Claim, Options, Verdict, examine};
+use sdop_judge::{Claim, Options, Verdict, examine};
 
 use super::output::{print as say, progress};
 use super::{Outcome, files, one_of};

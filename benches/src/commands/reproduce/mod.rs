@@ -7,13 +7,13 @@ mod summary;
 use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic as _, miette};
+use sdop::settings::Strategy;
 use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::measure::conditions::Conditions;
 pub use sdop_bench::reproduce::units::NAME;
 use sdop_bench::reproduce::units::{Experiments, Settings};
 use sdop_bench::reproduce::{Plan, Results};
 use sdop_bench::sweep::{Merged, Sweep as _};
-use sdop::settings::Strategy;
 
 use super::Outcome;
 use super::files::{command, write};

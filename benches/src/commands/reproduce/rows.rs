@@ -3,6 +3,7 @@
 //! Of those, `counts` has what is equal on every machine, and its hash stands in the summary; `times` has what is not.
 
 use miette::IntoDiagnostic as _;
+use sdop::settings::Strategy;
 use sdop_bench::cost::table::{self, Cost, PriceRow};
 use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::measure::machine::Machine;
@@ -13,7 +14,6 @@ use sdop_bench::reproduce::rates::{self, Rate};
 use sdop_bench::reproduce::readings::{self, Cell};
 use sdop_bench::reproduce::sensitivity::Interpretation;
 use sdop_bench::reproduce::{Estimate, PaperScene, Results, Run, claims, study};
-use sdop::settings::Strategy;
 use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};

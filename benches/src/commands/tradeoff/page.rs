@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 
 use comfy_table::Table;
+use sdop::settings::{Axes, Overlap};
 use sdop_bench::tradeoff::figure_4;
 use sdop_bench::tradeoff::pays::Standing;
 use sdop_bench::tradeoff::{Estimate, Tradeoff, VariantResult};
-use sdop::settings::{Axes, Overlap};
 
 use super::{Recorded, tables};
 

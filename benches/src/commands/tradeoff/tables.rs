@@ -1,6 +1,7 @@
 //! The result as tables: what a terminal shows, and what the page quotes.
 
 use comfy_table::Table;
+use sdop::settings::{Axes, Overlap};
 use sdop_bench::cost::predict::Terms;
 use sdop_bench::cost::table::Compared;
 use sdop_bench::measure::turns::median;
@@ -8,7 +9,6 @@ use sdop_bench::tradeoff::decide::{CHECKS, Decision};
 use sdop_bench::tradeoff::pays::{Line, Standing};
 use sdop_bench::tradeoff::shapes::ShapeSurvival;
 use sdop_bench::tradeoff::{Estimate, Tradeoff, VariantResult};
-use sdop::settings::{Axes, Overlap};
 
 use crate::commands::output::{rows, table};
 
@@ -362,8 +362,9 @@ pub fn survivors(
     axes: Axes,
     overlap: Overlap,
 ) -> Option<&Estimate> {
-    let fits =
-        |s: &&sdop_bench::tradeoff::shapes::Survival| (s.k, s.axes, s.overlap) == (k, axes, overlap);
+    let fits = |s: &&sdop_bench::tradeoff::shapes::Survival| {
+        (s.k, s.axes, s.overlap) == (k, axes, overlap)
+    };
     shape.ordops.iter().find(fits).map(|s| &s.share)
 }
 

@@ -6,12 +6,12 @@ use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::Tier;
-use sdop_judge::answer::{Answer, Stop, sorted};
-use sdop_judge::wire::{Wire, ndjson::Read};
-use sdop_judge::judge::{Case, Claim};
-use sdop_judge::record::RecordError;
-use sdop_judge::ours::hard::Group;
 use sdop_bench::view::Show;
+use sdop_judge::answer::{Answer, Stop, sorted};
+use sdop_judge::ours::hard::Group;
+use sdop_judge::record::RecordError;
+use sdop_judge::wire::{Wire, ndjson::Read};
+use sdop_judge::{Case, Claim};
 
 use crate::commands::check::{said, text};
 use crate::commands::judge::read_case;

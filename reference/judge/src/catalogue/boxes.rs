@@ -3,10 +3,10 @@
 use rand::{Rng, RngExt};
 
 use super::{CatalogueError, Drawn};
-use sdop::bodies::Bodies;
 use crate::case::Frame;
 use crate::contestant::WorldBox;
 use crate::ours::forms::Form;
+use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet, Shape};
 
 /// What the boxes are like.

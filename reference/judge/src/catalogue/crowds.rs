@@ -4,11 +4,11 @@ use rand::{Rng, RngExt};
 
 use super::Drawn;
 use super::contacts::forms;
-use sdop::bodies::Bodies;
 use crate::case::Frame;
 use crate::ours::draw::{crowd as uniform, rotation};
 use crate::ours::forms::{self, Form, FormError};
 use crate::ours::judged::Shapes;
+use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet, Shape};
 
 /// What happens.

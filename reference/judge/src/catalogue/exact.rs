@@ -4,8 +4,8 @@ use glam::Vec3;
 use rand::{Rng, RngExt};
 
 use super::{CatalogueError, Drawn};
-use sdop::bodies::Bodies;
 use crate::case::Frame;
+use sdop::bodies::Bodies;
 use sdop::mesh::TriangleMesh;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 

@@ -8,8 +8,8 @@ use rand::{Rng, RngExt};
 
 use super::exact::solids;
 use super::{CatalogueError, Drawn};
-use sdop::bodies::Bodies;
 use crate::case::Frame;
+use sdop::bodies::Bodies;
 
 /// Pairs a case.
 const PAIRS: usize = 16;

@@ -9,8 +9,8 @@ use glam::{DMat3, DVec3};
 use sdop_reference as reference;
 
 use super::judged::Shapes;
-use sdop::rounding::U;
 use reference::overlap::ordop::Turned;
+use sdop::rounding::U;
 
 /// What touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]

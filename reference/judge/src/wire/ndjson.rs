@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{Said, malformed};
-use sdop::bodies::Bodies;
-use sdop::bodies::contract::check_bodies;
-use sdop::files::read_line;
 use crate::answer::{Answer, Trouble};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
 use crate::contestant::WorldBox;
 use crate::record::{BodyLine, FORMAT, FrameLine, Header, ShapeLine, VERSION};
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::check_bodies;
+use sdop::files::read_line;
 use sdop::volume::Shape;
 
 /// A record's first line with what a case has on top.
@@ -55,7 +55,7 @@ struct CaseFrame {
 }
 
 /// A whole case for one claim; with the pairs that were reported of each frame, where there are any.
-pub(in crate) fn encode(
+pub(crate) fn encode(
     case: &Case,
     claim: Claim,
     reported: &[Vec<[u32; 2]>],

@@ -4,10 +4,10 @@
 use std::fmt::Write as _;
 
 use super::{Said, malformed};
-use sdop::bodies::Bodies;
 use crate::answer::{Answer, Trouble};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
+use sdop::bodies::Bodies;
 use sdop::volume::Shape;
 
 /// A whole case for one claim. Formatting into a String cannot fail.

@@ -3,8 +3,8 @@
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
-use sdop_bench::reproduce::readings::{Cell, Reading};
 use sdop::settings::Strategy;
+use sdop_bench::reproduce::readings::{Cell, Reading};
 
 use super::style::{ends, quiet};
 use super::{Area, Drawn, Failure};

@@ -5,10 +5,10 @@ use plotters::coord::CoordTranslate;
 use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use sdop::settings::Strategy;
 use sdop_bench::cost::predict::Terms;
 use sdop_bench::measure::counts::Volume;
 use sdop_bench::reproduce::Estimate;
-use sdop::settings::Strategy;
 
 use super::Area;
 use crate::commands::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};

@@ -2,11 +2,11 @@
 
 use std::fmt::{Result, Write as _};
 
+use sdop::settings::{Axes, Overlap};
+use sdop::volume::DirectionSet;
 use sdop_bench::reproduce::paper::{TABLE_1, TABLE_1_BODIES};
 use sdop_bench::reproduce::paper_name;
 use sdop_bench::reproduce::sensitivity::{Bounce, Interpretation, Start};
-use sdop::settings::{Axes, Overlap};
-use sdop::volume::DirectionSet;
 
 use super::text::{header, number};
 use crate::commands::reproduce::rows::Tables;

@@ -2,9 +2,9 @@
 
 use std::fmt::{Result, Write as _};
 
+use sdop::settings::Strategy;
 use sdop_bench::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
 use sdop_bench::reproduce::{paper, paper_name};
-use sdop::settings::Strategy;
 
 use super::text::{header, interval};
 use crate::commands::reproduce::rows::Tables;

@@ -2,9 +2,9 @@
 
 use std::fmt::{Result, Write as _};
 
+use sdop::settings::Strategy;
 use sdop_bench::reproduce::check::{Claim, Verdict};
 use sdop_bench::reproduce::paper_name;
-use sdop::settings::Strategy;
 
 use super::table_1;
 use crate::commands::reproduce::rows::Tables;

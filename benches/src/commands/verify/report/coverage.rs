@@ -1,10 +1,10 @@
 //! The matrix of what was judged, in two projections: thousands of cells are too many to read, and a tier, a mode or a
 //! finder that was left out shows in one of them.
 
+use sdop::settings::Strategy;
 use sdop_judge::ours::boxes::{BoxCell, BoxLedger};
 use sdop_judge::ours::matrix::{Cell, Filled, Matrix};
 use sdop_judge::ours::ways::Rotation;
-use sdop::settings::Strategy;
 use serde::Serialize;
 
 use crate::commands::output::table;

@@ -4,12 +4,12 @@ use glam::DVec3;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
-use sdop::bodies::Bodies;
 use crate::ours::borders::{Borders, bar_within};
 use crate::ours::contact::Placed;
 use crate::ours::draw::{ContactSpec, add, probe};
 use crate::ours::forms::{self, Form, FormError};
 use crate::ours::judged::Shapes;
+use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet};
 
 /// How bodies are arranged.
