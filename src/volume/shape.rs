@@ -1,10 +1,15 @@
 //! A mesh made ready for culling: placed in its body frame, with its volumes (the paper's one-off construction, Co).
 //!
-//! `origin = "ball"` moves the smallest enclosing ball's centre into the body origin, so that the sphere of a posed body
-//! is a copy of its translation; `origin = "file"` leaves the coordinates alone. Either way every volume is computed
-//! from, and contains exactly, the f32 vertices as culled.
+//! `origin = "file"`, the default, keeps the mesh's own origin, to which an engine's poses refer. `origin = "ball"` moves the
+//! smallest enclosing ball's centre into the body origin, so that the sphere of a posed body is a copy of its translation.
+//! Either way every volume is computed from, and contains exactly, the f32 vertices as culled:
+//!
+//! > vertex = scale · (point of the mesh − offset), rounded to f32
+//!
+//! with the [`Shape::offset`] and [`Shape::scale`] that the shape keeps. So a mesh's own pose (q, t) is the body's pose
+//! (q, t + R(q)·scale·offset).
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, ball};
 use crate::{choice::choices, mesh::TriangleMesh, rounding::LIMIT};
@@ -22,9 +27,9 @@ choices! {
 /// How a mesh becomes a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeSpec {
-    /// The body's origin.
+    /// The body's origin: the point that poses place. By default the mesh's own, [`Origin::File`].
     pub origin: Origin,
-    /// The radius to which the smallest enclosing ball is scaled; `None` keeps the mesh's size. Needs [`Origin::Ball`].
+    /// The radius to which the smallest enclosing ball is scaled, about the body's origin; `None` keeps the mesh's size.
     pub radius: Option<f32>,
     /// The or-DOP's directions.
     pub directions: DirectionSet,
@@ -35,7 +40,7 @@ pub struct ShapeSpec {
 impl Default for ShapeSpec {
     fn default() -> Self {
         Self {
-            origin: Origin::Ball,
+            origin: Origin::File,
             radius: None,
             directions: DirectionSet::K18,
             axes: Axes::Principal,
@@ -48,10 +53,14 @@ impl Default for ShapeSpec {
 pub struct Shape {
     /// The mesh's name.
     pub name: String,
-    /// Vertices as culled (body frame; for `origin = "ball"` re-centred and scaled, rounded to f32).
+    /// Vertices as culled, in the body frame: scale · (point of the mesh − offset), rounded to f32.
     pub vertices: Vec<Vec3>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
+    /// The point of the mesh's coordinates that is the body's origin: zero for [`Origin::File`].
+    pub offset: [f64; 3],
+    /// By how much the mesh was scaled: 1 without a [`ShapeSpec::radius`].
+    pub scale: f64,
     /// Smallest enclosing ball of `vertices`, rounded up.
     pub ball: Ball,
     /// ρ: the largest vertex norm about the body origin, rounded up.
@@ -66,14 +75,29 @@ impl Shape {
     /// # Errors
     /// An empty or non-finite mesh, a radius that can't be reached, or a size beyond 2⁶⁰.
     pub fn build(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
-        let Placed {
-            vertices,
-            ball,
-            reach,
-        } = place(mesh, spec)?;
+        let Placement { offset, scale } = Placement::of(mesh, spec)?;
+        let vertices: Vec<Vec3> = mesh
+            .vertices
+            .iter()
+            .map(|v| ((v.as_dvec3() - offset) * scale).as_vec3())
+            .collect();
+        let ball = match spec.origin {
+            Origin::File => Ball::smallest(&vertices),
+            Origin::Ball => Ball::about(Vec3::ZERO, &vertices),
+        };
+        let reach = ball::farthest_distance(Vec3::ZERO, &vertices);
+        let within = reach <= LIMIT; // false for NaN; bounds the centre and the ball's radius too
+        if !within {
+            return Err(VolumeError::TooLarge {
+                shape: mesh.name.clone(),
+                reach,
+            });
+        }
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.clone(),
+            offset: offset.to_array(),
+            scale,
             reach,
             ordop: OrDop::build(&vertices, spec.axes.basis(&vertices), spec.directions),
             ball,
@@ -105,74 +129,53 @@ impl Shape {
     }
 }
 
-/// Vertices in the body frame with what depends on the placement alone.
-struct Placed {
-    vertices: Vec<Vec3>,
-    ball: Ball,
-    reach: f32,
+/// Where the body's origin lies in the mesh, and by how much the mesh is scaled.
+struct Placement {
+    offset: DVec3,
+    scale: f64,
 }
 
-fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Placed, VolumeError> {
-    let shape = || mesh.name.clone();
-    if mesh.vertices.is_empty() {
-        return Err(VolumeError::Empty { shape: shape() });
-    }
-    if let Some(vertex) = mesh.vertices.iter().position(|v| !v.is_finite()) {
-        return Err(VolumeError::NotFinite {
-            shape: shape(),
-            vertex,
-        });
-    }
-    let (vertices, ball) = match (spec.origin, spec.radius) {
-        (Origin::File, Some(radius)) => {
-            return Err(VolumeError::FixedSize {
+impl Placement {
+    fn of(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
+        let shape = || mesh.name.clone();
+        if mesh.vertices.is_empty() {
+            return Err(VolumeError::Empty { shape: shape() });
+        }
+        if let Some(vertex) = mesh.vertices.iter().position(|v| !v.is_finite()) {
+            return Err(VolumeError::NotFinite {
                 shape: shape(),
-                radius,
+                vertex,
             });
         }
-        (Origin::File, None) => (mesh.vertices.clone(), Ball::smallest(&mesh.vertices)),
-        (Origin::Ball, radius) => {
-            let vertices = centred(mesh, radius)?;
-            let ball = Ball::about(Vec3::ZERO, &vertices);
-            (vertices, ball)
+        if spec.origin == Origin::File && spec.radius.is_none() {
+            return Ok(Self {
+                offset: DVec3::ZERO,
+                scale: 1.0,
+            });
         }
-    };
-    let reach = ball::farthest_distance(Vec3::ZERO, &vertices);
-    let within = reach <= LIMIT; // false for NaN; bounds the centre and the ball's radius too
-    if !within {
-        return Err(VolumeError::TooLarge {
-            shape: shape(),
-            reach,
-        });
+        let (centre, size) = ball::smallest_enclosing(&mesh.vertices);
+        let scale = match spec.radius {
+            None => 1.0,
+            Some(radius) if !(radius > 0.0 && radius <= LIMIT) => {
+                return Err(VolumeError::Radius {
+                    shape: shape(),
+                    radius,
+                });
+            }
+            Some(radius) if size == 0.0 => {
+                return Err(VolumeError::NoExtent {
+                    shape: shape(),
+                    radius,
+                });
+            }
+            Some(radius) => f64::from(radius) / size,
+        };
+        let offset = match spec.origin {
+            Origin::File => DVec3::ZERO,
+            Origin::Ball => centre,
+        };
+        Ok(Self { offset, scale })
     }
-    Ok(Placed {
-        vertices,
-        ball,
-        reach,
-    })
-}
-
-/// fl32(s·(v − c)): the ball's centre moved into the origin and its radius scaled to `radius`.
-fn centred(mesh: &TriangleMesh, radius: Option<f32>) -> Result<Vec<Vec3>, VolumeError> {
-    let (centre, size) = ball::smallest_enclosing(&mesh.vertices);
-    let scale = match radius {
-        None => 1.0,
-        Some(radius) if !(radius > 0.0 && radius <= LIMIT) => {
-            return Err(VolumeError::Radius {
-                shape: mesh.name.clone(),
-                radius,
-            });
-        }
-        Some(radius) if size == 0.0 => {
-            return Err(VolumeError::NoExtent {
-                shape: mesh.name.clone(),
-                radius,
-            });
-        }
-        Some(radius) => f64::from(radius) / size,
-    };
-    let place = |v: &Vec3| ((v.as_dvec3() - centre) * scale).as_vec3();
-    Ok(mesh.vertices.iter().map(place).collect())
 }
 
 /// Why a mesh has no volumes.
@@ -207,15 +210,6 @@ pub enum VolumeError {
     #[error("shape `{shape}` is a single point and can't be scaled to radius {radius}")]
     #[diagnostic(help("leave the radius out: the point is culled as a ball of radius 0"))]
     NoExtent {
-        /// The mesh's name.
-        shape: String,
-        /// The radius as given.
-        radius: f32,
-    },
-    /// A radius together with `origin = "file"`.
-    #[error("shape `{shape}` keeps its file's coordinates and can't be scaled to radius {radius}")]
-    #[diagnostic(help("leave the radius out, or use origin = \"ball\""))]
-    FixedSize {
         /// The mesh's name.
         shape: String,
         /// The radius as given.
