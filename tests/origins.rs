@@ -39,7 +39,10 @@ fn bracket() -> TriangleMesh {
         thickness: 0.25,
     };
     let mut mesh = form.build().unwrap();
-    let least = mesh.vertices.iter().fold(glam::Vec3::INFINITY, |m, v| m.min(*v));
+    let least = mesh
+        .vertices
+        .iter()
+        .fold(glam::Vec3::INFINITY, |m, v| m.min(*v));
     for vertex in &mut mesh.vertices {
         *vertex -= least;
     }
@@ -87,11 +90,18 @@ fn assert_nothing_missed(what: &str, may_touch: impl FnMut(&Pose) -> bool) {
     let poses = poses();
     let meets = meeting(&bracket(), &poses);
     let reported: Vec<bool> = poses.iter().map(may_touch).collect();
-    let missed = meets.iter().zip(&reported).filter(|&(m, r)| *m && !r).count();
+    let missed = meets
+        .iter()
+        .zip(&reported)
+        .filter(|&(m, r)| *m && !r)
+        .count();
     let meet = meets.iter().filter(|meets| **meets).count();
     assert_eq!(missed, 0, "{what}: missed of {meet} pairs that meet");
     let spared = reported.iter().filter(|reported| !**reported).count();
-    assert!(meet > 100 && spared > 20, "{what}: {meet} meet, {spared} spared");
+    assert!(
+        meet > 100 && spared > 20,
+        "{what}: {meet} meet, {spared} spared"
+    );
 }
 
 fn bodies(pose: &Pose) -> Bodies {
@@ -137,7 +147,11 @@ fn the_pages_use_the_default() {
     for page in ["README.md", "src/lib.rs", "src/world/mod.rs"] {
         let text = std::fs::read_to_string(page).unwrap();
         let built = text.matches("Shape::build(").count();
-        assert_eq!(built, text.matches("&ShapeSpec::default())").count(), "{page}");
+        assert_eq!(
+            built,
+            text.matches("&ShapeSpec::default())").count(),
+            "{page}"
+        );
         assert!(built > 0, "{page}");
     }
 }
@@ -146,7 +160,10 @@ fn the_pages_use_the_default() {
 fn the_examples_keep_the_origin() {
     let mesh = bracket();
     assert_nothing_missed("cull.rs", by_culler(cull::volumes(&mesh).unwrap()));
-    assert_nothing_missed("world_glam.rs", by_world(world_glam::volumes(&mesh).unwrap()));
+    assert_nothing_missed(
+        "world_glam.rs",
+        by_world(world_glam::volumes(&mesh).unwrap()),
+    );
 }
 
 #[test]

@@ -4,15 +4,20 @@
 //! smallest enclosing ball's centre into the body origin, so that the sphere of a posed body is a copy of its translation.
 //! Either way every volume is computed from, and contains exactly, the f32 vertices as culled:
 //!
-//! > vertex = scale · (point of the mesh − offset), rounded to f32
+//! > vertex = scale · (point of the file − offset), rounded to f32
 //!
-//! with the [`Shape::offset`] and [`Shape::scale`] that the shape keeps. So a mesh's own pose (q, t) is the body's pose
-//! (q, t + R(q)·scale·offset).
+//! with the [`Shape::offset`] and [`Shape::scale`] that the shape keeps. A mesh that is far from its own origin is the
+//! exception to "keeps": its vertices are about a point near it, and its [`Shape::pose_offset`] says where that lies, seen from
+//! the point that poses refer to. Its volumes are grown by what rounding has moved, [`Shape::rounding`].
 
 use glam::{DVec3, Vec3};
 
 use super::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, ball};
-use crate::{choice::choices, mesh::TriangleMesh, rounding::LIMIT};
+use crate::{
+    choice::choices,
+    mesh::TriangleMesh,
+    rounding::{LIMIT, exp2, up},
+};
 
 choices! {
     /// Which point of the mesh becomes the body's origin.
@@ -57,10 +62,18 @@ pub struct Shape {
     pub vertices: Vec<Vec3>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// The point of the mesh's coordinates that is the body's origin: zero for [`Origin::File`].
+    /// The point of the file's coordinates that is the origin of `vertices`: zero for [`Origin::File`], unless the mesh is far
+    /// from its origin.
     pub offset: [f64; 3],
     /// By how much the mesh was scaled: 1 without a [`ShapeSpec::radius`].
     pub scale: f64,
+    /// Where the origin of `vertices` lies in the frame that poses place: zero, or scale · offset for a mesh that is far from
+    /// its origin and keeps it. A pose (q, t) stands for vertices at (q, t + R(q)·pose_offset), which a
+    /// [`World`](crate::World) composes in f64; what has poses in f32 refuses such a shape.
+    pub pose_offset: [f64; 3],
+    /// How far a vertex of a far mesh is at most from the f64 point that it stands for: 0 for any other mesh. Ball, reach and
+    /// slabs are grown by it.
+    pub rounding: f32,
     /// Smallest enclosing ball of `vertices`, rounded up.
     pub ball: Ball,
     /// ρ: the largest vertex norm about the body origin, rounded up.
@@ -75,17 +88,19 @@ impl Shape {
     /// # Errors
     /// An empty or non-finite mesh, a radius that can't be reached, or a size beyond 2⁶⁰.
     pub fn build(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
-        let Placement { offset, scale } = Placement::of(mesh, spec)?;
+        let placement = Placement::of(mesh, spec)?;
         let vertices: Vec<Vec3> = mesh
             .vertices
             .iter()
-            .map(|v| ((v.as_dvec3() - offset) * scale).as_vec3())
+            .map(|v| placement.point(v).as_vec3())
             .collect();
-        let ball = match spec.origin {
+        let rounding = placement.rounding(mesh, &vertices);
+        let mut ball = match spec.origin {
             Origin::File => Ball::smallest(&vertices),
             Origin::Ball => Ball::about(Vec3::ZERO, &vertices),
         };
-        let reach = ball::farthest_distance(Vec3::ZERO, &vertices);
+        ball.radius = grown(ball.radius, rounding);
+        let reach = grown(ball::farthest_distance(Vec3::ZERO, &vertices), rounding);
         let within = reach <= LIMIT; // false for NaN; bounds the centre and the ball's radius too
         if !within {
             return Err(VolumeError::TooLarge {
@@ -96,43 +111,80 @@ impl Shape {
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.clone(),
-            offset: offset.to_array(),
-            scale,
+            offset: placement.offset.to_array(),
+            scale: placement.scale,
+            pose_offset: placement.pose_offset.to_array(),
+            rounding,
             reach,
-            ordop: OrDop::build(&vertices, spec.axes.basis(&vertices), spec.directions),
+            ordop: slabs(
+                &vertices,
+                spec.axes.basis(&vertices),
+                spec.directions,
+                rounding,
+            ),
             ball,
             vertices,
         })
     }
 
+    /// Whether poses refer to a point other than the origin of the vertices.
+    #[must_use]
+    pub fn is_far(&self) -> bool {
+        self.pose_offset != [0.0; 3]
+    }
+
+    /// The or-DOP along a basis, with what rounding has moved.
+    pub(crate) fn slabs(&self, basis: Basis, directions: DirectionSet) -> OrDop {
+        slabs(&self.vertices, basis, directions, self.rounding)
+    }
+
     /// Exchanges the or-DOP's directions; ball, basis and placement stay.
     #[must_use]
     pub fn with_directions(mut self, directions: DirectionSet) -> Self {
-        self.ordop = OrDop::build(&self.vertices, self.ordop.basis, directions);
+        self.ordop = self.slabs(self.ordop.basis, directions);
         self
     }
 
     /// The or-DOP of these vertices along other axes, with other directions.
     #[must_use]
     pub fn ordop_along(&self, axes: Axes, directions: DirectionSet) -> OrDop {
-        OrDop::build(&self.vertices, axes.basis(&self.vertices), directions)
+        self.slabs(axes.basis(&self.vertices), directions)
     }
 
     /// The oriented bounding box: an or-DOP of three slabs along the principal axes, whatever the or-DOP's own axes.
     #[must_use]
     pub fn obb(&self, hull: &Hull) -> OrDop {
-        OrDop::build(
-            &self.vertices,
-            Basis::principal(hull, &self.vertices),
-            DirectionSet::K6,
-        )
+        self.slabs(Basis::principal(hull, &self.vertices), DirectionSet::K6)
     }
 }
 
-/// Where the body's origin lies in the mesh, and by how much the mesh is scaled.
+/// The or-DOP of vertices that rounding has moved.
+fn slabs(vertices: &[Vec3], basis: Basis, directions: DirectionSet, rounding: f32) -> OrDop {
+    let ordop = OrDop::build(vertices, basis, directions);
+    if rounding == 0.0 {
+        ordop
+    } else {
+        ordop.grown(rounding)
+    }
+}
+
+/// A size, with what rounding has moved.
+fn grown(size: f32, rounding: f32) -> f32 {
+    if rounding == 0.0 {
+        size
+    } else {
+        up(f64::from(size) + f64::from(rounding))
+    }
+}
+
+/// Where the origin of the vertices lies, and by how much the mesh is scaled.
 struct Placement {
+    /// In the mesh's coordinates, which are about an offset of its own.
+    centre: DVec3,
+    /// In the file's.
     offset: DVec3,
     scale: f64,
+    pose_offset: DVec3,
 }
 
 impl Placement {
@@ -148,10 +200,7 @@ impl Placement {
             });
         }
         if spec.origin == Origin::File && spec.radius.is_none() {
-            return Ok(Self {
-                offset: DVec3::ZERO,
-                scale: 1.0,
-            });
+            return Ok(Self::at(mesh, spec.origin, DVec3::ZERO, 1.0));
         }
         let (centre, size) = ball::smallest_enclosing(&mesh.vertices);
         let scale = match spec.radius {
@@ -170,11 +219,66 @@ impl Placement {
             }
             Some(radius) => f64::from(radius) / size,
         };
-        let offset = match spec.origin {
-            Origin::File => DVec3::ZERO,
-            Origin::Ball => centre,
+        Ok(Self::at(mesh, spec.origin, centre, scale))
+    }
+
+    fn at(mesh: &TriangleMesh, origin: Origin, centre: DVec3, scale: f64) -> Self {
+        let base = DVec3::from_array(mesh.offset);
+        match origin {
+            Origin::File => Self {
+                centre: DVec3::ZERO,
+                offset: base,
+                scale,
+                pose_offset: base * scale,
+            },
+            Origin::Ball => {
+                // Of a far mesh, what their sum keeps of the centre.
+                let offset = if mesh.is_far() { base + centre } else { centre };
+                let centre = if mesh.is_far() { offset - base } else { centre };
+                Self {
+                    centre,
+                    offset,
+                    scale,
+                    pose_offset: DVec3::ZERO,
+                }
+            }
+        }
+    }
+
+    /// A vertex before it is rounded.
+    fn point(&self, vertex: &Vec3) -> DVec3 {
+        (vertex.as_dvec3() - self.centre) * self.scale
+    }
+
+    /// How far a vertex is at most from scale · (point of the file − offset), or with the pose's offset from scale · point: 0
+    /// for a mesh that has been rounded where it is, whose own vertices count.
+    fn rounding(&self, mesh: &TriangleMesh, vertices: &[Vec3]) -> f32 {
+        if !mesh.is_far() && mesh.rounding == 0.0 {
+            return 0.0;
+        }
+        let pairs = mesh.vertices.iter().zip(vertices);
+        let (mut placed, mut size) = (0.0_f64, 0.0_f64);
+        for (vertex, rounded) in pairs {
+            placed = placed.max(self.point(vertex).distance(rounded.as_dvec3()));
+            size = size.max(vertex.as_dvec3().abs().max_element());
+        }
+        // In f64 the difference and the product round each coordinate twice, and a scaled offset once.
+        let size = (size + self.centre.abs().max_element()) * self.scale;
+        let scaled = if self.scale == 1.0 {
+            0.0
+        } else {
+            self.pose_offset.abs().max_element()
         };
-        Ok(Self { offset, scale })
+        let exact = self.centre == DVec3::ZERO && self.scale == 1.0;
+        let lost = if exact {
+            0.0
+        } else {
+            exp2(-50) * (size + scaled)
+        };
+        match f64::from(mesh.rounding) * self.scale + placed + lost {
+            0.0 => 0.0,
+            moved => up(moved),
+        }
     }
 }
 
