@@ -10,7 +10,7 @@ use sdop::Bodies;
 use sdop::rounding::pose::{rotation, transform};
 use sdop_judge::{Claim, Contestant, JudgeError, Scene, judge};
 
-struct Grid {
+pub struct Grid {
     /// Centre in the body frame and radius of each shape's ball.
     balls: Vec<([f32; 3], f64)>,
     tight: bool,
@@ -18,7 +18,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(scene: &Scene<'_>, tight: bool) -> Self {
+    pub fn new(scene: &Scene<'_>, tight: bool) -> Self {
         let ball =
             |shape: &sdop::Shape| (shape.ball.centre.to_array(), f64::from(shape.ball.radius));
         Self {

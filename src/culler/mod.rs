@@ -14,6 +14,7 @@ mod portions;
 mod replace;
 
 pub use builder::CullerBuilder;
+pub(crate) use check::FAR;
 pub use error::CullError;
 
 use std::ops::Range;
@@ -130,8 +131,14 @@ impl Culler {
     /// Adds a shape. Bodies take it by the returned number in `bodies.shape`, from the next [`Self::refresh`] on.
     ///
     /// # Errors
-    /// A shape beyond the contract, or with other slab directions than those before; nothing is added.
+    /// A shape beyond the contract, far from its origin, or with other slab directions than those before; nothing is added.
     pub fn add_shape(&mut self, shape: &Shape) -> Result<u32, CullError> {
+        check::near(std::slice::from_ref(shape))?;
+        self.add_shape_about_vertices(shape)
+    }
+
+    /// The same of poses that place the origin of the shape's vertices.
+    pub(crate) fn add_shape_about_vertices(&mut self, shape: &Shape) -> Result<u32, CullError> {
         check::shape(shape, self.models.directions())?;
         if let Some(intervals) = &mut self.intervals {
             intervals.add(shape);

@@ -58,7 +58,7 @@ impl FromIterator<ShapeFrame> for Frames {
 /// The numbers of a shape from which a body's volumes are updated, in the body frame.
 #[derive(Clone, Debug)]
 pub struct ShapeFrame {
-    /// The shape, and how far it is grown.
+    /// The shape, and how far it is grown beyond its vertices.
     pub(super) shape: u32,
     pub(super) margin: f32,
     centre: [f32; 3],
@@ -76,7 +76,7 @@ impl ShapeFrame {
     pub fn new(shape: &Shape, basis: &Basis) -> Self {
         let frame = Self {
             shape: 0,
-            margin: 0.0,
+            margin: shape.rounding,
             centre: shape.ball.centre.to_array(),
             radius: 0.0,
             inflated: None,
@@ -108,7 +108,11 @@ impl ShapeFrame {
     pub fn grown(&self, margin: f32) -> Self {
         let grow = |size: f32| up(f64::from(size) + f64::from(margin));
         let frame = Self {
-            margin,
+            margin: if self.margin == 0.0 {
+                margin
+            } else {
+                grow(self.margin)
+            },
             reach: grow(self.reach),
             ..*self
         };

@@ -30,6 +30,7 @@ mod ids;
 mod local;
 mod lookup;
 mod margins;
+mod offset;
 mod pair_test;
 
 pub use crate::bodies::Groups;
@@ -98,7 +99,7 @@ impl World {
             return Err(CullError::from(refused).into());
         }
         let culler = culler.clone().interest(Interest::Bodies(Vec::new()));
-        let culler = culler.build(&shapes, &Bodies::default())?;
+        let culler = culler.build_about_vertices(&shapes, &Bodies::default())?;
         Ok(Self {
             models: (0..shapes.len() as u32).collect(),
             shapes,
@@ -123,7 +124,7 @@ impl World {
     /// # Errors
     /// A shape beyond the contract, or with other slab directions than those before; nothing is added.
     pub fn add_shape(&mut self, shape: Shape) -> Result<u32, WorldError> {
-        let model = self.culler.add_shape(&shape)?;
+        let model = self.culler.add_shape_about_vertices(&shape)?;
         self.models.push(model);
         self.shapes.push(shape);
         Ok(self.shapes.len() as u32 - 1)
@@ -303,19 +304,21 @@ impl World {
     fn place(&mut self) -> Result<(), WorldError> {
         let (ids, slots) = (&self.ids, 0..self.ids.slots());
         let present = slots.filter(|&slot| ids.present()[slot]);
-        let translations = present.clone().map(|slot| self.translation[slot]);
+        let translations = present.clone().map(|slot| self.composed(slot).0);
         let local = self.local.follow(translations);
         self.replaced |= local != self.local; // static bodies have moved, as seen from there
         if let Some(slot) = present
             .clone()
-            .find(|&slot| !local.reaches(self.translation[slot]))
+            .find(|&slot| !local.reaches(self.composed(slot).0))
         {
             return Err(WorldError::Apart(ids.id(slot as u32)));
         }
         self.local = local;
         let mut changed = false;
         for slot in present {
-            let (place, moved) = local.place(self.translation[slot]);
+            let (translation, composed) = self.composed(slot);
+            let (place, moved) = local.place(translation);
+            let moved = moved + composed;
             let shape = self.shape[slot] as usize;
             let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
             let grow = |model, margin| self.culler.grow(model, margin);
@@ -330,6 +333,12 @@ impl World {
             self.culler.reread_shapes(&self.bodies);
         }
         Ok(())
+    }
+
+    /// The translation of the vertices of the body in a slot, and how far from the exact one it may be.
+    fn composed(&self, slot: usize) -> ([f64; 3], f64) {
+        let offset = self.shapes[self.shape[slot] as usize].pose_offset;
+        offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)
     }
 
     /// Tells the culler of the bodies of interest that are still there.

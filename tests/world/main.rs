@@ -15,7 +15,7 @@ use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Strategy, Updates};
-use sdop::volume::{Shape, ShapeSpec};
+use sdop::volume::{Origin, Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, Groups, PairLookup, World, WorldError};
 
 struct Random(ChaCha8Rng);
@@ -290,6 +290,7 @@ fn touching_spheres_meet_wherever_f64_puts_them() {
         }
         tried += 1;
         let spec = ShapeSpec {
+            origin: Origin::Ball,
             radius: Some(radius),
             ..ShapeSpec::default()
         };

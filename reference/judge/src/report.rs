@@ -34,6 +34,7 @@ pub fn counter_example(smallest: &Smallest, claim: Claim) -> std::io::Result<Vec
             name: shape.name.clone(),
             vertices: shape.vertices.clone(),
             triangles: shape.triangles.clone(),
+            ..TriangleMesh::default()
         };
         let bytes = write_bytes(&mesh, MeshFormat::Obj);
         files.push((format!("{STEM}-{number}.obj"), bytes));

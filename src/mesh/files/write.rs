@@ -1,11 +1,11 @@
 //! Writing a mesh; the extension names the format.
 //!
-//! Coordinates are the shortest decimals that read back to the same f32, so a mesh survives the way to a file and back
-//! to the bit. `.tri` files are Bourke's dialect, whose vertices also have a unit normal and a colour: the
+//! Coordinates are the shortest decimals that read back to the same f32, or f64 for a mesh far from its origin, so a mesh
+//! survives the way to a file and back to the bit. `.tri` files are Bourke's dialect, whose vertices also have a unit normal and a colour: the
 //! normal is the sum of the adjacent triangles' cross products (area-weighted), in three decimals
 //! since it is for display only; a vertex without one gets 0 0 1.
 
-use std::fmt::Write;
+use std::fmt::{Display, LowerExp, Write};
 use std::path::Path;
 
 use glam::DVec3;
@@ -44,8 +44,7 @@ pub fn write_bytes(mesh: &TriangleMesh, format: MeshFormat) -> Vec<u8> {
 /// The mesh as a `.tri` file in Bourke's dialect.
 fn tri_text(mesh: &TriangleMesh) -> String {
     let mut text = format!("{} {}\n", mesh.vertices.len(), mesh.triangles.len());
-    for (position, normal) in mesh.vertices.iter().zip(vertex_normals(mesh)) {
-        let [x, y, z] = position.to_array().map(shortest);
+    for ([x, y, z], normal) in coordinates(mesh).zip(vertex_normals(mesh)) {
         let [nx, ny, nz] = normal.to_array().map(three_decimals);
         put(
             &mut text,
@@ -61,8 +60,7 @@ fn tri_text(mesh: &TriangleMesh) -> String {
 /// The mesh as a Wavefront OBJ file.
 fn obj_text(mesh: &TriangleMesh) -> String {
     let mut text = String::new();
-    for position in &mesh.vertices {
-        let [x, y, z] = position.to_array().map(shortest);
+    for [x, y, z] in coordinates(mesh) {
         put(&mut text, format_args!("v {x} {y} {z}\n"));
     }
     for triangle in &mesh.triangles {
@@ -74,14 +72,14 @@ fn obj_text(mesh: &TriangleMesh) -> String {
 
 /// The mesh as a text PLY file.
 fn ply_text(mesh: &TriangleMesh) -> String {
+    let real = if mesh.is_far() { "double" } else { "float" };
     let mut text = format!(
-        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty {real} x\nproperty {real} y\nproperty {real} z\n\
          element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
         mesh.vertices.len(),
         mesh.triangles.len()
     );
-    for position in &mesh.vertices {
-        let [x, y, z] = position.to_array().map(shortest);
+    for [x, y, z] in coordinates(mesh) {
         put(&mut text, format_args!("{x} {y} {z}\n"));
     }
     for [a, b, c] in &mesh.triangles {
@@ -90,13 +88,20 @@ fn ply_text(mesh: &TriangleMesh) -> String {
     text
 }
 
-fn put(text: &mut String, line: std::fmt::Arguments) {
+/// Each vertex' coordinates in the file, as text.
+fn coordinates(mesh: &TriangleMesh) -> impl Iterator<Item = [String; 3]> + '_ {
+    let far = mesh.is_far();
+    mesh.points()
+        .map(move |point| point.map(|x| if far { shortest(x) } else { shortest(x as f32) }))
+}
+
+pub(super) fn put(text: &mut String, line: std::fmt::Arguments) {
     // Writing to a String cannot fail.
     let _ = text.write_fmt(line);
 }
 
-/// The shorter of the plain and the exponent form that reads back to the same f32.
-fn shortest(value: f32) -> String {
+/// The shorter of the plain and the exponent form that reads back to the same number.
+pub(super) fn shortest(value: impl Display + LowerExp) -> String {
     let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
     if exponent.len() < plain.len() {
         exponent
