@@ -7,7 +7,7 @@
 use glam::Vec3;
 
 use super::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, ball};
-use crate::{choice::choices, mesh::TriangleMesh, rounding::LIMIT};
+use crate::{choice::choices, mesh::TriangleMesh, rounding::LIMIT, simd::in_default_mode};
 
 choices! {
     /// Which point of the mesh becomes the body's origin.
@@ -66,42 +66,44 @@ impl Shape {
     /// # Errors
     /// An empty or non-finite mesh, a radius that can't be reached, or a size beyond 2⁶⁰.
     pub fn build(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
-        let Placed {
-            vertices,
-            ball,
-            reach,
-        } = place(mesh, spec)?;
-        Ok(Self {
-            name: mesh.name.clone(),
-            triangles: mesh.triangles.clone(),
-            reach,
-            ordop: OrDop::build(&vertices, spec.axes.basis(&vertices), spec.directions),
-            ball,
-            vertices,
+        in_default_mode(|| {
+            let Placed {
+                vertices,
+                ball,
+                reach,
+            } = place(mesh, spec)?;
+            Ok(Self {
+                name: mesh.name.clone(),
+                triangles: mesh.triangles.clone(),
+                reach,
+                ordop: OrDop::build(&vertices, spec.axes.basis(&vertices), spec.directions),
+                ball,
+                vertices,
+            })
         })
     }
 
     /// Exchanges the or-DOP's directions; ball, basis and placement stay.
     #[must_use]
     pub fn with_directions(mut self, directions: DirectionSet) -> Self {
-        self.ordop = OrDop::build(&self.vertices, self.ordop.basis, directions);
+        let basis = self.ordop.basis;
+        self.ordop = in_default_mode(|| OrDop::build(&self.vertices, basis, directions));
         self
     }
 
     /// The or-DOP of these vertices along other axes, with other directions.
     #[must_use]
     pub fn ordop_along(&self, axes: Axes, directions: DirectionSet) -> OrDop {
-        OrDop::build(&self.vertices, axes.basis(&self.vertices), directions)
+        in_default_mode(|| OrDop::build(&self.vertices, axes.basis(&self.vertices), directions))
     }
 
     /// The oriented bounding box: an or-DOP of three slabs along the principal axes, whatever the or-DOP's own axes.
     #[must_use]
     pub fn obb(&self, hull: &Hull) -> OrDop {
-        OrDop::build(
-            &self.vertices,
-            Basis::principal(hull, &self.vertices),
-            DirectionSet::K6,
-        )
+        in_default_mode(|| {
+            let basis = Basis::principal(hull, &self.vertices);
+            OrDop::build(&self.vertices, basis, DirectionSet::K6)
+        })
     }
 }
 
