@@ -11,7 +11,7 @@ use crate::counters::VolumeCounters;
 use crate::overlap::boxes::Cubes;
 use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
-use crate::simd::{Tier, dispatch};
+use crate::simd::{Tier, dispatch, in_default_mode};
 use crate::strategy::{BoxInputs, BoxTest, Output, Scratch, list_boxes};
 use crate::threads::{FrameThreads, Work};
 
@@ -106,6 +106,15 @@ impl Frames {
 
     /// Hands the boxes that meet, not both at rest, whose groups collide, to `output`. `boxes` and `groups` are by name.
     pub fn cull(
+        &mut self,
+        boxes: &[Aabb],
+        groups: Option<&[Groups]>,
+        output: Output<'_>,
+    ) -> Result<VolumeCounters, ContractError> {
+        in_default_mode(|| self.cull_frame(boxes, groups, output))
+    }
+
+    fn cull_frame(
         &mut self,
         boxes: &[Aabb],
         groups: Option<&[Groups]>,
@@ -212,6 +221,11 @@ impl Frames {
             asked.filter(|cube| cube[3] < CUBIC * gap).count(),
         );
         FEW * small <= all
+    }
+
+    /// Candidates that the last frame tested to make a list of neighbours.
+    pub fn list_tests(&self) -> u64 {
+        self.finder.list_tests()
     }
 
     /// Gives back the memory of lists of pairs.

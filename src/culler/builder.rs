@@ -5,7 +5,7 @@ use crate::bodies::Bodies;
 use crate::settings::{
     Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, Strategy, Updates,
 };
-use crate::simd::Tier;
+use crate::simd::{Tier, in_default_mode};
 use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 use crate::volume::Shape;
 
@@ -87,7 +87,8 @@ impl CullerBuilder {
         self
     }
 
-    /// Number of threads, the caller's included; 0 is taken as 1. Frames of little work stay on the caller's. Lists, counters and hashes don't depend on it.
+    /// Number of threads, the caller's included, at most 1,024 or
+    /// the culler isn't built; 0 is taken as 1. Frames of little work stay on the caller's. Lists, counters and hashes don't depend on it.
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
     }
@@ -130,7 +131,7 @@ impl CullerBuilder {
         let tier = self.tier.unwrap_or_else(Tier::detect);
         let worth_waking = self.worth_waking.unwrap_or(WORTH_WAKING);
         let threads = FrameThreads::new(Threads::new(self.threads)?, worth_waking);
-        Culler::build(shapes, bodies, &self.settings, tier, threads)
+        in_default_mode(|| Culler::build(shapes, bodies, &self.settings, tier, threads))
     }
 }
 

@@ -8,6 +8,7 @@ use super::{CullError, Culler};
 use crate::bodies::Bodies;
 use crate::bodies::contract::{check_columns, check_numbers, check_poses, has_sound_size};
 use crate::settings::{CullSettings, DirectionSet};
+use crate::simd::in_default_mode;
 use crate::volume::Shape;
 
 /// What a culler keeps of the bodies: their shapes, which of them may move, and all poses where some may not.
@@ -80,15 +81,17 @@ impl Culler {
     /// # Errors
     /// Bodies outside of the contract, an interest in a body that is no longer there; the culler stays as it was.
     pub fn refresh(&mut self, bodies: &Bodies) -> Result<(), CullError> {
-        check_columns(bodies)?;
-        check_numbers(&bodies.shape, self.models.frames.len())?;
-        check_poses(bodies, 0..bodies.len())?;
-        self.settings.check(bodies.len())?;
-        if bodies.len() != self.fixed.len() {
-            self.groups = None;
-        }
-        self.replace(bodies, &vec![true; bodies.len()]);
-        Ok(())
+        in_default_mode(|| {
+            check_columns(bodies)?;
+            check_numbers(&bodies.shape, self.models.frames.len())?;
+            check_poses(bodies, 0..bodies.len())?;
+            self.settings.check(bodies.len())?;
+            if bodies.len() != self.fixed.len() {
+                self.groups = None;
+            }
+            self.replace(bodies, &vec![true; bodies.len()]);
+            Ok(())
+        })
     }
 
     /// Checks that there are as many bodies as there were, and that the same may move.

@@ -29,7 +29,7 @@ use crate::counters::{Counters, Seconds};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
 use crate::settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates};
-use crate::simd::Tier;
+use crate::simd::{Tier, in_default_mode};
 use crate::strategy::{self, Inputs, Output, Scratch, SlotNames, Totals};
 use crate::threads::FrameThreads;
 use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
@@ -139,11 +139,13 @@ impl Culler {
 
     /// The same of poses that place the origin of the shape's vertices.
     pub(crate) fn add_shape_about_vertices(&mut self, shape: &Shape) -> Result<u32, CullError> {
-        check::shape(shape, self.models.directions())?;
-        if let Some(intervals) = &mut self.intervals {
-            intervals.add(shape);
-        }
-        Ok(self.models.add(shape))
+        in_default_mode(|| {
+            check::shape(shape, self.models.directions())?;
+            if let Some(intervals) = &mut self.intervals {
+                intervals.add(shape);
+            }
+            Ok(self.models.add(shape))
+        })
     }
 
     /// Adds a model: another grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the returned number.
@@ -197,6 +199,14 @@ impl Culler {
         self.finder.bytes()
     }
 
+    /// Candidates that the last frame tested to make a list of neighbours, in addition to the tests that
+    /// [`Self::counters`] count. At most three times the candidates that the grid would test, and 48 per
+    /// body; a search that reaches this limit is abandoned and counts as the limit.
+    #[must_use]
+    pub fn list_tests(&self) -> u64 {
+        self.finder.list_tests()
+    }
+
     /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
     /// finder and on the frames so far alone.
     ///
@@ -222,6 +232,15 @@ impl Culler {
 
     /// Culls one frame, which began at `start`, and hands its pairs to `output`.
     fn cull_into(
+        &mut self,
+        bodies: &Bodies,
+        output: Output<'_>,
+        start: Instant,
+    ) -> Result<(), CullError> {
+        in_default_mode(|| self.cull_frame(bodies, output, start))
+    }
+
+    fn cull_frame(
         &mut self,
         bodies: &Bodies,
         output: Output<'_>,

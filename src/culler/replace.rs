@@ -5,6 +5,7 @@ use super::{Culler, check};
 use crate::bodies::Bodies;
 use crate::broad_phase::{PairFinder, Reorder};
 use crate::settings::Flow;
+use crate::simd::in_default_mode;
 
 impl Culler {
     /// Re-reads `bodies.shape` after a change of margin class.
@@ -16,14 +17,16 @@ impl Culler {
     /// Takes up another set of bodies, those that are `present`, as far as it is new: what is known of the others' neighbours
     /// is kept. Volumes of static bodies are placed anew.
     pub(crate) fn exchange(&mut self, bodies: &Bodies, present: &[bool]) {
-        let stays = self.take_places(bodies, present);
-        let population = needs::population(self.scheme, &self.models, &self.places);
-        let finder = self.settings.pairs;
-        if (self.finder).replace(finder, &population, &stays, self.places.moving) {
-            self.place_static(bodies); // the others in the frame to come
-        } else {
-            self.begin(bodies);
-        }
+        in_default_mode(|| {
+            let stays = self.take_places(bodies, present);
+            let population = needs::population(self.scheme, &self.models, &self.places);
+            let finder = self.settings.pairs;
+            if (self.finder).replace(finder, &population, &stays, self.places.moving) {
+                self.place_static(bodies); // the others in the frame to come
+            } else {
+                self.begin(bodies);
+            }
+        });
     }
 
     /// Replaces the set of bodies by those that are `present`, of which nothing is known.

@@ -17,6 +17,7 @@ use crate::{
     choice::choices,
     mesh::TriangleMesh,
     rounding::{LIMIT, exp2, up},
+    simd::in_default_mode,
 };
 
 choices! {
@@ -88,6 +89,10 @@ impl Shape {
     /// # Errors
     /// An empty or non-finite mesh, a radius that can't be reached, or a size beyond 2⁶⁰.
     pub fn build(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
+        in_default_mode(|| Self::place(mesh, spec))
+    }
+
+    fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
         let placement = Placement::of(mesh, spec)?;
         let vertices: Vec<Vec3> = mesh
             .vertices
@@ -135,7 +140,7 @@ impl Shape {
 
     /// The or-DOP along a basis, with what rounding has moved.
     pub(crate) fn slabs(&self, basis: Basis, directions: DirectionSet) -> OrDop {
-        slabs(&self.vertices, basis, directions, self.rounding)
+        in_default_mode(|| slabs(&self.vertices, basis, directions, self.rounding))
     }
 
     /// Exchanges the or-DOP's directions; ball, basis and placement stay.
@@ -148,13 +153,13 @@ impl Shape {
     /// The or-DOP of these vertices along other axes, with other directions.
     #[must_use]
     pub fn ordop_along(&self, axes: Axes, directions: DirectionSet) -> OrDop {
-        self.slabs(axes.basis(&self.vertices), directions)
+        in_default_mode(|| self.slabs(axes.basis(&self.vertices), directions))
     }
 
     /// The oriented bounding box: an or-DOP of three slabs along the principal axes, whatever the or-DOP's own axes.
     #[must_use]
     pub fn obb(&self, hull: &Hull) -> OrDop {
-        self.slabs(Basis::principal(hull, &self.vertices), DirectionSet::K6)
+        in_default_mode(|| self.slabs(Basis::principal(hull, &self.vertices), DirectionSet::K6))
     }
 }
 

@@ -50,6 +50,7 @@ use crate::bodies::contract::{ContractError, check_number, check_pose, check_sha
 use crate::counters::{Counters, Seconds};
 use crate::culler::{CullError, Culler, CullerBuilder};
 use crate::settings::{Interest, SettingsError};
+use crate::simd::in_default_mode;
 use crate::volume::Shape;
 
 /// Bodies in slots, and their culler.
@@ -213,7 +214,7 @@ impl World {
     ) -> Result<(), WorldError> {
         let (rotation, translation) = (rotation.into(), translation.into());
         let slot = self.ids.slot(id)?;
-        check_pose(slot, &rotation, &translation)?;
+        in_default_mode(|| check_pose(slot, &rotation, &translation))?;
         self.replaced |= !self.bodies.dynamic[slot];
         self.bodies.rotation[slot] = rotation;
         self.translation[slot] = translation;
@@ -238,7 +239,7 @@ impl World {
     /// # Errors
     /// Bodies more than 2⁶⁰ apart.
     pub fn cull(&mut self) -> Result<(), WorldError> {
-        self.place()?;
+        in_default_mode(|| self.place())?;
         if self.replaced {
             self.culler.exchange(&self.bodies, self.ids.present());
             self.replaced = false;
@@ -351,9 +352,11 @@ impl World {
 
     /// Checks a body that is to take a slot.
     fn check(&self, slot: usize, body: &Body) -> Result<(), ContractError> {
-        check_number(slot + 1)?;
-        check_shape(slot, body.shape, &self.shapes)?;
-        check_pose(slot, &body.rotation, &body.translation)?;
-        check_margin(slot, self.shapes[body.shape as usize].reach, body.margin)
+        in_default_mode(|| {
+            check_number(slot + 1)?;
+            check_shape(slot, body.shape, &self.shapes)?;
+            check_pose(slot, &body.rotation, &body.translation)?;
+            check_margin(slot, self.shapes[body.shape as usize].reach, body.margin)
+        })
     }
 }

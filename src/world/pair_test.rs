@@ -9,7 +9,7 @@ use crate::bodies::contract::{ContractError, check_pose, check_shape};
 use crate::culler::FAR;
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
 use crate::settings::Overlap;
-use crate::simd::ROW;
+use crate::simd::{ROW, in_default_mode};
 use crate::update::{RowsByNumber, ShapeFrame};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
@@ -67,8 +67,12 @@ impl PairTest {
                 hint: FAR,
             });
         }
-        let ordop = shape.slabs(shape.ordop.basis, self.tables.directions());
-        let frame = ShapeFrame::new(shape, &ordop.basis);
+        let directions = self.tables.directions();
+        let (ordop, frame) = in_default_mode(|| {
+            let ordop = shape.slabs(shape.ordop.basis, directions);
+            let frame = ShapeFrame::new(shape, &ordop.basis);
+            (ordop, frame)
+        });
         Ok(self.push(ordop, frame))
     }
 
@@ -85,8 +89,10 @@ impl PairTest {
                 hint: "numbers come from `add` and `grown`",
             });
         };
-        check_margin(shape as usize, model.frame.reach(), margin)?;
-        let (ordop, frame) = (model.ordop.grown(margin), model.frame.grown(margin));
+        let (ordop, frame) = in_default_mode(|| {
+            check_margin(shape as usize, model.frame.reach(), margin)?;
+            Ok((model.ordop.grown(margin), model.frame.grown(margin)))
+        })?;
         Ok(self.push(ordop, frame))
     }
 
@@ -107,16 +113,18 @@ impl PairTest {
         let (Some(a), Some(b)) = (model(first), model(second)) else {
             return true;
         };
-        if check_pose(0, &rotation, &translation.map(f64::from)).is_err() {
-            return true;
-        }
-        let rows = [a.unturned, b.frame.row(second, rotation, translation)];
-        let columns = OrDopColumns {
-            rows: RowsByNumber::all(&rows),
-            tables: &self.tables,
-            overlap: Overlap::TwoSided,
-        };
-        columns.may_overlap(0, 1)
+        in_default_mode(|| {
+            if check_pose(0, &rotation, &translation.map(f64::from)).is_err() {
+                return true;
+            }
+            let rows = [a.unturned, b.frame.row(second, rotation, translation)];
+            let columns = OrDopColumns {
+                rows: RowsByNumber::all(&rows),
+                tables: &self.tables,
+                overlap: Overlap::TwoSided,
+            };
+            columns.may_overlap(0, 1)
+        })
     }
 
     fn push(&mut self, ordop: OrDop, frame: ShapeFrame) -> u32 {
