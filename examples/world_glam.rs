@@ -28,11 +28,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let place = start + DVec3::X * f64::from(rolled);
         world.set_pose(ball, Quat::from_rotation_z(-2.0 * rolled), place)?;
         world.cull()?;
-        let events = world.events().clone();
-        for pair in events.begun {
+        let events = world.events();
+        for pair in events.begun() {
             println!("step {step}: {} and {} might touch", pair[0], pair[1]);
         }
-        for pair in events.ended {
+        for pair in events.ended() {
             println!("step {step}: {} is left behind", pair[0]);
             world.remove(pair[0])?;
         }

@@ -116,7 +116,7 @@ pub use settings::{
 pub use simd::{Tier, TierError};
 pub use threads::ThreadsError;
 pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
-pub use world::{Body, BodyId, Events, World, WorldError};
+pub use world::{Body, BodyId, Event, Events, World, WorldError};
 
 /// The README's example compiles and runs.
 #[cfg(all(doctest, feature = "readers"))]

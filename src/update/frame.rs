@@ -34,6 +34,22 @@ impl Frames {
         self.frames.push(frame);
     }
 
+    /// Puts another in the place of one.
+    pub(crate) fn set(&mut self, number: usize, frame: ShapeFrame) {
+        self.records[number] = frame.record();
+        self.some_eccentric |= frame.inflated.is_none();
+        self.frames[number] = frame;
+    }
+
+    /// Keeps the first ones, and no room for more.
+    pub(crate) fn shrink_to(&mut self, len: usize) {
+        self.records.truncate(len);
+        self.frames.truncate(len);
+        self.records.shrink_to_fit();
+        self.frames.shrink_to_fit();
+        self.some_eccentric = self.frames.iter().any(|frame| frame.inflated.is_none());
+    }
+
     /// Whether the centre of each body's ball is its origin.
     pub(super) fn are_centred(&self) -> bool {
         !self.some_eccentric
@@ -101,6 +117,11 @@ impl ShapeFrame {
     #[must_use]
     pub fn numbered(self, shape: u32) -> Self {
         Self { shape, ..self }
+    }
+
+    /// The number of its shape's hull.
+    pub(crate) fn hull(&self) -> u32 {
+        self.shape
     }
 
     /// The same, grown by `margin` all around.

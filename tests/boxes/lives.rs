@@ -89,15 +89,17 @@ fn live(world: &mut BoxWorld, kind: Kind, seed: u64) {
         );
         let events = world.events();
         assert!(
-            events.begun.iter().eq(wanted.difference(&before)),
+            events.begun().eq(wanted.difference(&before).copied()),
             "{kind:?}, frame {frame}"
         );
         assert!(
-            events.persisting.iter().eq(wanted.intersection(&before)),
+            events
+                .persisting()
+                .eq(wanted.intersection(&before).copied()),
             "{kind:?}, frame {frame}"
         );
         assert!(
-            events.ended.iter().eq(before.difference(&wanted)),
+            events.ended().eq(before.difference(&wanted).copied()),
             "{kind:?}, frame {frame}"
         );
         before = wanted;

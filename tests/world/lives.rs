@@ -89,7 +89,7 @@ fn ids_are_never_given_again() {
     .unwrap();
     let [a, b] = [(); 2].map(|()| world.insert(Body::default()).unwrap());
     world.cull().unwrap();
-    assert_eq!(world.events().begun, [[a, b]]);
+    assert!(world.events().begun().eq([[a, b]]));
     world.remove(b).unwrap();
     let c = world.insert(Body::default()).unwrap();
     assert_eq!(
@@ -98,8 +98,8 @@ fn ids_are_never_given_again() {
         "as of the last cull"
     );
     world.cull().unwrap();
-    let events = world.events().clone();
-    assert_eq!((events.begun, events.ended), (vec![[a, c]], vec![[a, b]]));
+    let events = world.events();
+    assert!(events.begun().eq([[a, c]]) && events.ended().eq([[a, b]]));
     let d = world.insert(Body::default()).unwrap();
     assert_eq!(d.slot(), b.slot(), "slots are");
     assert!(d != b && world.body(b).is_err() && world.slots() == 3);
@@ -212,7 +212,7 @@ fn a_body_that_collides_with_all_joins_others_that_do_not() {
     assert_eq!(world.pairs().len(), 0);
     let all = world.insert(Body::default()).unwrap();
     world.cull().unwrap();
-    assert_eq!(world.events().begun, [[a, all], [b, all]]);
+    assert!(world.events().begun().eq([[a, all], [b, all]]));
 }
 
 #[test]
@@ -388,12 +388,12 @@ fn pairs_are_looked_up_and_told_apart_from_those_of_the_frame_before() {
                 .collect()
         };
         let events = world.events();
-        assert_eq!(events.begun, named(&|pair| !before.contains(pair), &met));
-        assert_eq!(
-            events.persisting,
-            named(&|pair| before.contains(pair), &met)
-        );
-        assert_eq!(events.ended, named(&|pair| !met.contains(pair), &before));
+        let begun: Vec<_> = events.begun().collect();
+        let persisting: Vec<_> = events.persisting().collect();
+        let ended: Vec<_> = events.ended().collect();
+        assert_eq!(begun, named(&|pair| !before.contains(pair), &met));
+        assert_eq!(persisting, named(&|pair| before.contains(pair), &met));
+        assert_eq!(ended, named(&|pair| !met.contains(pair), &before));
         before = met;
     }
 }

@@ -157,9 +157,9 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
                 assert_eq!(now, expected, "{way:?}, frame {frame}");
             }
             let events = world.events();
-            assert!(events.begun.iter().eq(now.difference(&before)));
-            assert!(events.persisting.iter().eq(now.intersection(&before)));
-            assert!(events.ended.iter().eq(before.difference(&now)));
+            assert!(events.begun().eq(now.difference(&before).copied()));
+            assert!(events.persisting().eq(now.intersection(&before).copied()));
+            assert!(events.ended().eq(before.difference(&now).copied()));
             seen += now.len();
             before = now;
         }
