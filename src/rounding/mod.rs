@@ -11,7 +11,7 @@
 //!
 //! Each constant tells its derivation, the Gappa script in `paper/proofs/` that checks it (the control beside it is one
 //! notch tighter and must fail), and the largest error that hill climbing has found in 10⁷ steps
-//! (`benches/worst_case.rs`; a shorter search is in the tests).
+//! (`benches/criterion/worst_case.rs`; a shorter search is in the tests).
 
 pub mod border;
 pub mod cube;

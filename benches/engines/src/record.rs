@@ -100,7 +100,7 @@ impl Record {
         let mut out = format!("# Side by side\n\n{}", self.facts);
         out.push_str(
             "- milliseconds a frame, the mean of a turn, median over turns (times ours for the same boxes); bytes a body that are held\n\
-             - what favours or harms whom: `benches/peers/BIAS.md`\n",
+             - what favours or harms whom: `benches/engines/BIAS.md`\n",
         );
         let mut tables: Vec<(Spread, Order, usize)> = Vec::new();
         for row in &self.rows {

@@ -6,7 +6,13 @@ use std::process::Command;
 use serde::{Deserialize, Serialize};
 
 /// What is measured: changes of anything else leave a record as young as it was.
-const MEASURED: [&str; 4] = ["src", "reference/src", "benches", "Cargo.lock"];
+const MEASURED: [&str; 5] = [
+    "src",
+    "reference/src",
+    "reference/judge/src",
+    "benches",
+    "Cargo.lock",
+];
 
 /// The code that was measured, as its repository names it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,6 +1,6 @@
 // The page's data: a JSON header and blocks of numbers in base64, little endian, each in a script element of its own.
 //
-// `src/lab/view/page.rs` writes it; `format` and `version` say which layout. All poses are the record's f32 to the bit.
+// `benches/src/view/page.rs` writes it; `format` and `version` say which layout. All poses are the record's f32 to the bit.
 
 export const FORMAT = "sdop-view";
 export const VERSION = 1;
