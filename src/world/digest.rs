@@ -30,6 +30,10 @@ pub(super) fn of(shape: &Shape) -> u64 {
     (0..3).for_each(|axis| digest.number(shape.ball.centre[axis]));
     digest.number(shape.ball.radius);
     digest.number(shape.reach);
+    for offset in shape.pose_offset.map(f64::to_bits) {
+        digest.word(offset as u32);
+        digest.word((offset >> 32) as u32);
+    }
     digest.word(shape.ordop.directions.k() as u32);
     for column in &shape.ordop.basis.columns {
         (0..3).for_each(|axis| digest.number(column[axis]));

@@ -247,6 +247,8 @@ impl World {
     /// Finds the pairs that might touch now, and returns them: the lower slot first, sorted by slots. Under every strategy,
     /// list and order are a function of the bodies as they are now (with [`Order::OldestAnswer`](crate::Order), also of when
     /// pairs were refined, and with a budget of time, of the clock), whatever the finder, the threads and the calls before.
+    /// Translations that f32 has to round are the exception: the origin about which they are rounded follows the bodies, and
+    /// how much wider their volumes are depends on where it has been.
     ///
     /// # Errors
     /// Bodies more than 2⁶⁰ apart; [`Self::pairs`] are still those of the cull before.

@@ -3,9 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod exchange;
+mod far;
 mod lives;
 mod margins;
 mod pair_test;
+mod snapshots;
 
 use std::collections::{BTreeSet, HashMap};
 
