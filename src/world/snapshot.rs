@@ -5,9 +5,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::local::Local;
 use super::saved::{IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged};
 use super::shapes::{ShapeSlot, check_shape};
-use super::local::Local;
 use super::{BodyId, Groups, World, check_margin, check_pose};
 use crate::bodies::Bodies;
 use crate::rounding::LIMIT;
@@ -134,7 +134,10 @@ impl World {
             }
         }
         let origin = snapshot.origin.map(f64::from_bits);
-        if origin.iter().any(|x| x.abs() > f64::from(LIMIT) || x.is_nan()) {
+        if origin
+            .iter()
+            .any(|x| x.abs() > f64::from(LIMIT) || x.is_nan())
+        {
             return damaged(format!("its origin is {origin:?}"));
         }
         let log = snapshot.pairs.restored(&ids)?;
