@@ -67,6 +67,7 @@
 //! | feature | brings |
 //! |---|---|
 //! | none | all of the above |
+//! | `serde` | snapshots of worlds that can be stored and sent |
 //! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
 //! | `lab` | scenes, effects, the exact judge, measurements and studies |
 //! | `cli` (default) | the command line; implies `lab` |

@@ -68,7 +68,10 @@ impl World {
         };
         WorldSnapshot {
             version: Version,
-            shapes: self.shapes.iter().map(saved).collect(),
+            shapes: self.shapes[..self.shape_numbers()]
+                .iter()
+                .map(saved)
+                .collect(),
             ids: IdsSnapshot::of(&self.ids),
             shape: self.shape.clone(),
             dynamic: self.bodies.dynamic.clone(),

@@ -4,8 +4,10 @@
 
 mod exchange;
 mod lives;
+mod many;
 mod margins;
 mod pair_test;
+mod saves;
 
 use std::collections::{BTreeSet, HashMap};
 
