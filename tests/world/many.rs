@@ -129,8 +129,10 @@ fn pairs_follow_from_their_own_bodies() {
                     }
                 }
                 // Shapes, margins and places change; many bodies keep theirs.
-                for (id, _) in bodies.iter().filter(|_| random.below(3) == 0) {
-                    world.set(*id, drawn(&mut random)).unwrap();
+                for (id, _) in bodies {
+                    if random.below(3) == 0 {
+                        world.set(id, drawn(&mut random)).unwrap();
+                    }
                 }
             }
         }

@@ -80,7 +80,7 @@ fn carry_out(world: &mut World, call: &Call) -> Answer {
 fn drawn(random: &mut Random, world: &World, moves_only: bool) -> Vec<Call> {
     let mut calls = Vec::new();
     let shapes: Vec<u32> = world.shapes().collect();
-    let mut body = |random: &mut Random| {
+    let body = |random: &mut Random| {
         let shape = shapes[random.below(shapes.len() as u32) as usize];
         let margin = random.below(3) as f32 * 0.1 * random.below(4) as f32;
         let drawn = random.body(1);
@@ -395,7 +395,7 @@ fn each_damage_is_named() {
         ),
         ("/translation/20/1", serde_json::json!(nan), "translation"),
         ("/margin/20", number(f32::NAN.to_bits()), "margin NaN"),
-        ("/shape/20", number(7), "shape 7 of 3"),
+        ("/shape/20", number(7), "slot 20 has shape 7"),
         (
             "/margin",
             serde_json::json!([]),
