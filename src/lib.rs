@@ -67,6 +67,7 @@
 //! | feature | brings |
 //! |---|---|
 //! | none | all of the above |
+//! | `serde` | snapshots of worlds that can be stored and sent |
 //! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
 //! | `serde` | settings, choices and counters as serde's data |
 //!

@@ -60,8 +60,7 @@ impl World {
         shrink_column(&mut self.translation, slots);
         shrink_column(&mut self.margin, slots);
         shrink_column(&mut self.groups, slots);
-        let last = self.shapes.iter().rposition(|slot| slot.is_present);
-        let shapes = last.map_or(0, |last| last + 1);
+        let shapes = self.shape_numbers();
         shrink_column(&mut self.shapes, shapes);
         shrink_column(&mut self.models, shapes);
         self.interest.shrink_to_fit();

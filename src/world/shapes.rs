@@ -126,6 +126,12 @@ impl World {
             .map(|(number, _)| number)
     }
 
+    /// One above the number of every shape.
+    pub(super) fn shape_numbers(&self) -> usize {
+        let last = self.shapes.iter().rposition(|slot| slot.is_present);
+        last.map_or(0, |last| last + 1)
+    }
+
     fn shape_at(&self, number: u32) -> Result<usize, WorldError> {
         let at = number as usize;
         let slot = self.shapes.get(at).filter(|slot| slot.is_present);

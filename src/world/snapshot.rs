@@ -72,7 +72,10 @@ impl World {
         };
         WorldSnapshot {
             version: Version,
-            shapes: self.shapes.iter().map(saved).collect(),
+            shapes: self.shapes[..self.shape_numbers()]
+                .iter()
+                .map(saved)
+                .collect(),
             ids: IdsSnapshot::of(&self.ids),
             shape: self.shape.clone(),
             dynamic: self.bodies.dynamic.clone(),
@@ -128,6 +131,9 @@ impl World {
             check_pose(slot, &rotation[slot], &translation[slot])?;
             let shape = snapshot.shape[slot];
             if ids.present()[slot] {
+                if !matches!(snapshot.shapes.get(shape as usize), Some(Some(_))) {
+                    return damaged(format!("slot {slot} has shape {shape}, which isn't in it"));
+                }
                 let reach = check_shape(slot, shape, &self.shapes)?;
                 check_margin(slot, reach, margin[slot])?;
                 counts[shape as usize] += 1;

@@ -172,3 +172,29 @@ fn a_scaled_far_mesh_keeps_its_origin() {
     }
     assert!(twice.rounding > 0.0 && twice.rounding < 1e-6);
 }
+
+/// The origin follows bodies that go far away, and stays while they come halfway back: it isn't theirs alone.
+#[test]
+fn restored_worlds_round_about_one_origin() {
+    let far = 1.0e9 + 0.1;
+    let mut world = World::new(shapes()).unwrap();
+    let ids = [0.0, 1.0, 2.5].map(|x| world.insert(Body::at(0, UNTURNED, [far + x, 0.1, 0.0])));
+    world.cull().unwrap();
+    let back = |world: &mut World, share: f64| {
+        for (x, id) in [0.0, 1.0, 2.5].into_iter().zip(&ids) {
+            let translation = [share * far + x, 0.1, 0.0];
+            world
+                .set_pose(*id.as_ref().unwrap(), UNTURNED, translation)
+                .unwrap();
+        }
+        world.cull().unwrap().sorted()
+    };
+    let saved = world.snapshot();
+    let mut other = World::new(shapes()).unwrap();
+    other.restore(&saved).unwrap();
+    assert_eq!(other.snapshot(), saved);
+    for share in [1.0, 1.000_000_000_1, 0.999_999, -1.0] {
+        assert_eq!(back(&mut world, share), back(&mut other, share), "{share}");
+        assert_eq!(world.snapshot(), other.snapshot(), "{share}");
+    }
+}

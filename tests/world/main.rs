@@ -5,9 +5,10 @@
 mod exchange;
 mod far;
 mod lives;
+mod many;
 mod margins;
 mod pair_test;
-mod snapshots;
+mod saves;
 
 use std::collections::{BTreeSet, HashMap};
 
