@@ -10,6 +10,7 @@ use sdop::Bodies;
 use sdop::rounding::pose::{rotation, transform};
 use sdop_judge::{Claim, Contestant, JudgeError, Scene, judge};
 
+/// A grid over bounding balls, counted anew in each frame.
 pub struct Grid {
     /// Centre in the body frame and radius of each shape's ball.
     balls: Vec<([f32; 3], f64)>,
@@ -18,6 +19,7 @@ pub struct Grid {
 }
 
 impl Grid {
+    /// The culler of a case's bodies; with `tight`, cells are as large as the largest ball.
     pub fn new(scene: &Scene<'_>, tight: bool) -> Self {
         let ball =
             |shape: &sdop::Shape| (shape.ball.centre.to_array(), f64::from(shape.ball.radius));
