@@ -18,11 +18,11 @@ mod world_glam;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use sdop::judge::{Claim, Contestant, Scene};
 use sdop::world::PairTest;
 use sdop::{
     Bodies, Body, Culler, DirectionSet, ProceduralShape, Shape, ShapeSpec, TriangleMesh, World,
 };
+use sdop_judge::{Claim, Contestant, Scene};
 use sdop_reference as reference;
 
 const POSES: usize = 300;
