@@ -225,10 +225,7 @@ fn a_written_mesh_is_read_as_it_is() {
             assert_eq!(again.rounding, 0.0, "{format:?}");
         }
     }
-    assert!(
-        far > 2000 && far < 4000 && rounded > 500,
-        "{far} far, {rounded} rounded"
-    );
+    assert!(far > 2000 && rounded > 500, "{far} far, {rounded} rounded");
 }
 
 /// The bound holds exactly, in whole numbers, and isn't far above what it bounds.
