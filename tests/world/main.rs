@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod exchange;
+mod far;
 mod lives;
 mod margins;
 mod pair_test;

@@ -11,7 +11,7 @@ use stl_io::Triangle;
 
 use super::read::Parts;
 use super::text::{self, Fault, between_f32};
-use super::write::{put, shortest};
+use super::write::{put, wide};
 use crate::mesh::{Problem, TriangleMesh, check_vertex};
 
 const HEADER_BYTES: usize = 84;
@@ -201,7 +201,7 @@ fn text(mesh: &TriangleMesh) -> String {
             format_args!("facet normal {x} {y} {z}\nouter loop\n"),
         );
         for corner in triangle {
-            let [x, y, z] = points[*corner as usize].map(shortest);
+            let [x, y, z] = points[*corner as usize].map(wide);
             put(&mut text, format_args!("vertex {x} {y} {z}\n"));
         }
         text += "endloop\nendfacet\n";

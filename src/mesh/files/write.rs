@@ -1,7 +1,7 @@
 //! Writing a mesh; the extension names the format.
 //!
-//! Coordinates are the shortest decimals that read back to the same f32, or f64 for a mesh far from its origin, so a mesh
-//! survives the way to a file and back to the bit. `.tri` files are Bourke's dialect, whose vertices also have a unit normal and a colour: the
+//! Coordinates are the shortest decimals that read back to the same f32, or f64 for a mesh far from its origin or nearly so:
+//! a mesh survives the way to a file and back to the bit. `.tri` files are Bourke's dialect, whose vertices also have a unit normal and a colour: the
 //! normal is the sum of the adjacent triangles' cross products (area-weighted), in three decimals
 //! since it is for display only; a vertex without one gets 0 0 1.
 
@@ -10,8 +10,10 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::text::between_f32;
 use super::{MeshFormat, stl};
 use crate::files;
+use crate::mesh::far::place;
 use crate::mesh::{MeshError, Problem, TriangleMesh};
 
 /// Writes a mesh in the format that the extension names; the file appears when it is whole.
@@ -88,11 +90,33 @@ fn ply_text(mesh: &TriangleMesh) -> String {
     text
 }
 
-/// Each vertex' coordinates in the file, as text.
+/// Each vertex' coordinates in the file, as text that is read back as they are: the shortest f32 where that keeps the mesh where
+/// it is, f64 otherwise.
 fn coordinates(mesh: &TriangleMesh) -> impl Iterator<Item = [String; 3]> + '_ {
-    let far = mesh.is_far();
-    mesh.points()
-        .map(move |point| point.map(|x| if far { shortest(x) } else { shortest(x as f32) }))
+    let short = !mesh.is_far() && stays_when_shortened(mesh);
+    let word = move |x: f64| if short { shortest(x as f32) } else { wide(x) };
+    mesh.points().map(move |point| point.map(word))
+}
+
+/// Whether a mesh that isn't far would not be so as the shortest decimals of its f32: read as f64, they are others.
+fn stays_when_shortened(mesh: &TriangleMesh) -> bool {
+    let shortened = |x: f64| shortest(x as f32).parse().unwrap_or(x);
+    let points: Vec<[f64; 3]> = mesh.points().map(|point| point.map(shortened)).collect();
+    let placed = place(&points);
+    placed.offset == [0.0; 3] && placed.rounding == 0.0
+}
+
+/// The shortest text that reads back to the same f64, and is not taken for one beside the middle of two f32.
+pub(super) fn wide(x: f64) -> String {
+    let text = shortest(x);
+    if between_f32(x, || text.parse()) == Ok(x) {
+        return text;
+    }
+    let all_digits = format!("{x:.1074}");
+    all_digits
+        .trim_end_matches('0')
+        .trim_end_matches('.')
+        .to_owned()
 }
 
 pub(super) fn put(text: &mut String, line: std::fmt::Arguments) {
@@ -101,7 +125,7 @@ pub(super) fn put(text: &mut String, line: std::fmt::Arguments) {
 }
 
 /// The shorter of the plain and the exponent form that reads back to the same number.
-pub(super) fn shortest(value: impl Display + LowerExp) -> String {
+fn shortest(value: impl Display + LowerExp) -> String {
     let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
     if exponent.len() < plain.len() {
         exponent
