@@ -201,9 +201,9 @@ fn checked(answers: &[([u32; 2], u32)], slots: usize) -> Result<Answers, Snapsho
         i < j && (j as usize) < slots && rank as usize <= answers.len()
     };
     let is_sorted = answers.is_sorted_by(|(a, _), (b, _)| a < b);
-    // Ranks are 1, 2, 3 … without a gap, as they are written.
-    let ranks: BTreeSet<u32> = answers.iter().map(|&(_, rank)| rank).collect();
-    let is_dense = ranks.iter().copied().eq(1..=ranks.len() as u32);
+    // Ranks are 1, 2, 3 … without a gap, as they are written, and 0 of pairs that were never refined.
+    let ranks: BTreeSet<u32> = answers.iter().map(|&(_, rank)| rank).chain([0]).collect();
+    let is_dense = ranks.iter().copied().eq(0..ranks.len() as u32);
     if is_sorted && is_dense && answers.iter().all(is_sound) {
         return Ok(Answers(answers.to_vec()));
     }
