@@ -125,3 +125,8 @@ pub use world::{Body, BodyId, Event, Events, World, WorldError};
 #[cfg(all(doctest, feature = "readers"))]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The recipes compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../paper/how-to.md")]
+struct HowTo;

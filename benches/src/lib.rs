@@ -1,5 +1,10 @@
 //! The laboratory: scenes, their simulation, and the studies that judge and measure the culler. An engine needs none of it.
 
+extern crate self as sdop_bench; // commands name the rooms as from outside
+
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod commands;
 pub mod cost;
 pub mod domain;
 pub mod effects;

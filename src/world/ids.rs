@@ -20,6 +20,21 @@ impl BodyId {
     pub fn slot(self) -> usize {
         self.slot as usize
     }
+
+    /// The id as a number, for languages and files that have no such type: the generation above the slot.
+    #[must_use]
+    pub fn to_bits(self) -> u64 {
+        u64::from(self.generation) << 32 | u64::from(self.slot)
+    }
+
+    /// The id of [`Self::to_bits`]. Any other number is an id that no world has given.
+    #[must_use]
+    pub fn from_bits(bits: u64) -> Self {
+        Self {
+            slot: bits as u32,
+            generation: (bits >> 32) as u32,
+        }
+    }
 }
 
 impl fmt::Display for BodyId {

@@ -33,6 +33,7 @@ use std::io::Write as _;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use miette::MietteHandlerOpts;
+use sdop_bench::mpi;
 
 /// Collision culling by sphere-encapsulated or-DOPs (S-DOP): verified, vectorised, measured.
 #[derive(Parser)]
@@ -41,7 +42,7 @@ use miette::MietteHandlerOpts;
     version,
     after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input."
 )]
-pub struct Cli {
+struct Cli {
     #[command(subcommand)]
     command: Command,
 }
@@ -148,17 +149,55 @@ impl Cli {
     }
 }
 
+/// Runs the program with these arguments, its own name first. Returns its exit code: 0 when all is well, 1 when a check failed, 2 on
+/// bad input.
+pub fn main(arguments: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>) -> u8 {
+    report_errors_whole();
+    let ending = mpi::Ending;
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(told) => {
+            // Nobody may be listening: that is no reason to panic.
+            ending.alike(|| drop(told.print()));
+            // Help is no error.
+            return if told.exit_code() == 0 { 0 } else { BAD_INPUT };
+        }
+    };
+    if let Err(report) = cli.refuse() {
+        ending.alike(|| complain(&report));
+        return BAD_INPUT;
+    }
+    match cli.run() {
+        Ok(outcome) => {
+            ending.well();
+            match outcome {
+                Outcome::Passed => 0,
+                Outcome::Failed => 1,
+                #[cfg(feature = "mpi")]
+                Outcome::Told => BAD_INPUT,
+            }
+        }
+        Err(report) => {
+            complain(&report);
+            ending.badly(BAD_INPUT.into());
+            BAD_INPUT
+        }
+    }
+}
+
+const BAD_INPUT: u8 = 2;
+
 /// Says an error. Nobody may be listening on standard error: that is no reason to panic.
-pub fn complain(report: &miette::Report) {
+fn complain(report: &miette::Report) {
     let _ = writeln!(std::io::stderr(), "{report:?}");
 }
 
 /// Has errors printed unwrapped: a path or a command in a hint must survive being copied.
-pub fn report_errors_whole() {
+fn report_errors_whole() {
     let hook = miette::set_hook(Box::new(|_| {
         Box::new(MietteHandlerOpts::new().wrap_lines(false).build())
     }));
-    debug_assert!(hook.is_ok(), "set before the first error");
+    drop(hook); // another call of the same process has set it before
 }
 
 /// Reads one of a library enum's names; help and errors list them all.
