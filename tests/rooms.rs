@@ -34,6 +34,7 @@ const BENCH: &[&str] = &[
     "random",
     "hash",
     "mpi",
+    "network",
     "sweep",
     "tightness",
     "effects",

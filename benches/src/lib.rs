@@ -7,6 +7,7 @@ pub mod hash;
 pub mod hull_test;
 pub mod measure;
 pub mod mpi;
+pub mod network;
 pub mod number;
 pub mod outsiders;
 pub mod percentiles;

@@ -238,8 +238,9 @@ fn a_body_that_leaves_the_contract_is_named_by_its_number_on_every_rank() {
         poses = [[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 5, 0, 0], [0, 0, 0, 1, 9, 0, 0], [0, 0, 0, 1, 1e18, 0, 0]]
         velocities = [[0, 0, 0], [0, 0, 0], [0, 0, 0], [1e18, 0, 0]]\n[effects]\nmotion = true\n";
     let file = parse(text);
-    let all = sdop_bench::domain::local::on_ranks(3, |net| {
-        use sdop_bench::domain::{Network as _, Rank, run};
+    let all = sdop_bench::network::on_ranks(3, |net| {
+        use sdop_bench::domain::{Rank, run};
+        use sdop_bench::network::Network as _;
         let scene = file.build_share(net.rank(), 3).unwrap();
         let rank = Rank::new(net, scene, sdop::Tier::detect(), 1).unwrap();
         run(rank, |_| ()).unwrap_err().to_string()

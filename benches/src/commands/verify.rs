@@ -58,7 +58,7 @@ pub struct Args {
     /// One SIMD tier alone, instead of all that the CPU has
     #[arg(long, value_name = "TIER")]
     simd: Option<Tier>,
-    /// Where the scene that shows a missed pair is written, and shards and journals
+    /// Where the scene that shows a missed pair is written, and shards
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// Write the hard cases' exact answers and their page into this directory, and judge nothing
@@ -105,12 +105,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let run = verification(args)?;
     let mut taken = Taken::default();
     let mut take = |unit, result: &str| taken.take(&run, unit, result);
-    let Some(finished) = args.sweep.run(&run, &args.out, &mut take)? else {
+    let Some(seconds) = args.sweep.run(&run, &args.out, &mut take)? else {
         return Ok(Outcome::Passed);
     };
-    let outcome = taken.report(&run, finished.seconds, format, &args.out)?;
-    finished.clear()?;
-    Ok(outcome)
+    taken.report(&run, seconds, format, &args.out)
 }
 
 /// The report of merged shards. A scene whose frames show a failure is read again, if it is where it was.

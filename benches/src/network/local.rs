@@ -2,7 +2,7 @@
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use super::network::Network;
+use super::Network;
 
 /// One of several ranks of this process.
 #[derive(Debug)]
@@ -100,6 +100,14 @@ impl Network for LocalRank {
 
     fn max(&self, numbers: &mut [u64]) {
         self.combine(numbers, u64::max);
+    }
+
+    fn wait(&self) {
+        self.gather(&[]);
+    }
+
+    fn machine(&self) -> String {
+        "this one".to_owned()
     }
 }
 

@@ -5,7 +5,7 @@ use mpi::datatype::{Partition, PartitionMut};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::CommunicatorCollectives as _;
 
-use super::network::Network;
+use super::Network;
 use crate::mpi::Ranks;
 
 /// Bytes of one call: MPI counts them in an i32.
@@ -114,5 +114,14 @@ impl Network for MpiNetwork {
         let mine = numbers.to_vec();
         self.world
             .all_reduce_into(&mine[..], numbers, SystemOperation::max());
+    }
+
+    fn wait(&self) {
+        self.ranks.wait();
+    }
+
+    fn machine(&self) -> String {
+        // A machine without a name is taken for the only one: its ranks time one after the other.
+        mpi::environment::processor_name().unwrap_or_default()
     }
 }
