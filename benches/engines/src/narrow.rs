@@ -85,7 +85,6 @@ const fn entry(
         version,
         work,
         threads: 1,
-        slack: 0,
         ages: false,
         new,
     }
