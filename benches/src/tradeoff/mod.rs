@@ -10,7 +10,6 @@ pub mod budget;
 pub mod counts;
 pub mod decide;
 pub mod density;
-pub mod figure_4;
 pub mod interest;
 pub mod pays;
 mod result;

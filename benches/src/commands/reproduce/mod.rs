@@ -1,8 +1,8 @@
-//! `sdop reproduce`: the paper's experiments, from the runs to the written summary.
+//! `sdop reproduce`: the paper's experiments, from the runs to their tables and figures.
 
+mod brief;
 mod figures;
 mod rows;
-mod summary;
 
 use std::path::{Path, PathBuf};
 
@@ -27,8 +27,8 @@ use rows::Tables;
 ///
 /// For 50, 150, 300, 350 and 500 objects in one box, and 500 in a small one, every strategy culls the same seeded trajectories.
 /// Counts and hashes are equal on every CPU; times are medians over warm frames with intervals over seeds. Results are written
-/// as CSV, JSON, SVG and a summary in Markdown. The exit code is 1 when the sequential and the listed S-DOP report
-/// different pairs.
+/// as CSV, JSON and SVG; of a record (`sdop record reproduce`), `sdop report` makes the page paper/summary.md. The exit code is 1
+/// when the sequential and the listed S-DOP report different pairs.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop reproduce --quick\n          sdop reproduce --out results --seeds 20\n          \
@@ -49,7 +49,7 @@ pub struct Args {
     /// Where tables go
     #[arg(long, value_name = "DIR", default_value = "target/reproduce")]
     out: PathBuf,
-    /// Where the summary and its figures go [default: the same]
+    /// Where figures go, in a directory of that name [default: the same]
     #[arg(long, value_name = "DIR")]
     paper: Option<PathBuf>,
     /// Where the paper's scenes are
@@ -57,7 +57,7 @@ pub struct Args {
     scenes: PathBuf,
     #[command(flatten)]
     machine: MachineArgs,
-    /// What is printed: the summary, or all results as JSON, or Table 1 as CSV
+    /// What is printed: the main numbers, or all results as JSON, or Table 1 as CSV
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -96,7 +96,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let before = Conditions::before();
     let mut results = Results::of_header(&experiments.header()?)?;
     let mut take = |_, result: &str| results.take(result);
-    let Some(finished) = args.sweep.run(&experiments, &args.out, &mut take)? else {
+    let Some(seconds) = args.sweep.run(&experiments, &args.out, &mut take)? else {
         return Ok(Outcome::Passed);
     };
     let machine = experiments.settings().machine;
@@ -105,10 +105,9 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let written = Written {
         numbers: &args.out,
         paper,
-        seconds: finished.seconds,
+        seconds,
     };
     written.write(&tables, args.format)?;
-    finished.clear()?;
     Ok(outcome(&results))
 }
 
@@ -145,13 +144,10 @@ impl Written<'_> {
     fn write(&self, tables: &Tables, format: Format) -> miette::Result<()> {
         write_tables(self.numbers, tables)?;
         figures::draw_all(&self.paper.join("figures"), tables)?;
-        let summary = self.paper.join("summary.md");
-        write(&summary, summary::write(tables))?;
         match format {
             Format::Csv => emit(Format::Csv, &tables.table_1, |_| String::new()),
             format => emit(format, tables, |tables| {
-                let place = format!("{}, {}", summary.display(), self.numbers.display());
-                summary::brief(tables, self.seconds, &place)
+                brief::brief(tables, self.seconds, &self.numbers.display().to_string())
             }),
         }
     }

@@ -1,14 +1,14 @@
-//! The summary for the terminal.
+//! The results for the terminal.
 
 use std::fmt::{Result, Write as _};
 
 use sdop_bench::cost::table::Cost;
+use sdop_bench::report::digits::{interval, number};
 use sdop_bench::reproduce::paper_name;
 use sdop_bench::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
 
-use super::text::{interval, number};
+use super::rows::Tables;
 use crate::commands::output::table;
-use crate::commands::reproduce::rows::Tables;
 
 /// Table 1, times and verdicts; `place` is where the rest was written.
 pub fn brief(tables: &Tables, seconds: f64, place: &str) -> String {
