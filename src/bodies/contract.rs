@@ -5,7 +5,6 @@
 
 use std::ops::Range;
 
-use miette::Diagnostic;
 use thiserror::Error;
 
 use super::Bodies;
@@ -14,7 +13,7 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, MOST_QUADS, Tier, dispatch};
 use crate::volume::Shape;
 
 /// A body outside of the contract.
-#[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[error("body {body}: {quantity} {value}")]
 pub struct ContractError {
     /// The body's index.
@@ -24,11 +23,16 @@ pub struct ContractError {
     /// Its impossible value.
     pub value: String,
     /// How to mend it.
-    #[help]
     pub hint: &'static str,
 }
 
 impl ContractError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        self.hint
+    }
+
     /// The same, with the body's number in a set in which this one's bodies begin at `first`.
     #[cfg(feature = "internals")]
     #[doc(hidden)]

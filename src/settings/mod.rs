@@ -4,7 +4,6 @@ mod scheme;
 #[cfg(feature = "serde")]
 mod text;
 
-use miette::Diagnostic;
 use thiserror::Error;
 
 pub use crate::choice::UnknownChoice;
@@ -187,7 +186,7 @@ impl Default for CullSettings {
 }
 
 /// Settings that can't be carried out as they stand.
-#[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum SettingsError {
     /// A strategy lacks what it spends or looks at.
     #[error("strategy {strategy} needs `{key}`")]
@@ -197,7 +196,6 @@ pub enum SettingsError {
         /// The `[cull]` key that is absent.
         key: &'static str,
         /// How to mend it.
-        #[help]
         hint: &'static str,
     },
     /// An interest that names no body of the scene, or a cone that is none.
@@ -206,9 +204,18 @@ pub enum SettingsError {
         /// What is wrong.
         problem: String,
         /// How to mend it.
-        #[help]
         hint: &'static str,
     },
+}
+
+impl SettingsError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        match self {
+            Self::Missing { hint, .. } | Self::Interest { hint, .. } => hint,
+        }
+    }
 }
 
 impl CullSettings {

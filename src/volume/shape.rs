@@ -288,18 +288,16 @@ impl Placement {
 }
 
 /// Why a mesh has no volumes.
-#[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum VolumeError {
     /// No vertices.
     #[error("shape `{shape}` has no vertices")]
-    #[diagnostic(help("a shape needs at least one vertex: check the mesh file"))]
     Empty {
         /// The mesh's name.
         shape: String,
     },
     /// A coordinate is NaN or infinite.
     #[error("vertex {vertex} of shape `{shape}` is not finite")]
-    #[diagnostic(help("coordinates must be finite f32: mend the mesh file"))]
     NotFinite {
         /// The mesh's name.
         shape: String,
@@ -308,7 +306,6 @@ pub enum VolumeError {
     },
     /// The requested radius is not a positive number within the limit.
     #[error("radius {radius} of shape `{shape}` is not in 0 < radius ≤ 2⁶⁰")]
-    #[diagnostic(help("give a positive radius, or none to keep the mesh's own size"))]
     Radius {
         /// The mesh's name.
         shape: String,
@@ -317,7 +314,6 @@ pub enum VolumeError {
     },
     /// A mesh of one point can't be scaled.
     #[error("shape `{shape}` is a single point and can't be scaled to radius {radius}")]
-    #[diagnostic(help("leave the radius out: the point is culled as a ball of radius 0"))]
     NoExtent {
         /// The mesh's name.
         shape: String,
@@ -326,11 +322,26 @@ pub enum VolumeError {
     },
     /// Vertices too far from the body origin for the culler's f32 arithmetic.
     #[error("shape `{shape}` reaches {reach:e} from its origin, beyond the limit of 2⁶⁰ ≈ 1.15e18")]
-    #[diagnostic(help("scale the mesh down, or give a radius"))]
     TooLarge {
         /// The mesh's name.
         shape: String,
         /// The largest vertex norm.
         reach: f32,
     },
+}
+
+impl VolumeError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        match self {
+            Self::Empty { .. } => "a shape needs at least one vertex: check the mesh file",
+            Self::NotFinite { .. } => "coordinates must be finite f32: mend the mesh file",
+            Self::Radius { .. } => "give a positive radius, or none to keep the mesh's own size",
+            Self::NoExtent { .. } => {
+                "leave the radius out: the point is culled as a ball of radius 0"
+            }
+            Self::TooLarge { .. } => "scale the mesh down, or give a radius",
+        }
+    }
 }

@@ -206,7 +206,7 @@ fn sizes_that_make_no_shape_are_refused_with_what_would_do() {
     ];
     for (name, sizes, message, help) in cases {
         let error = with(name, sizes).unwrap_err();
-        let found_help = miette::Diagnostic::help(&error).unwrap().to_string();
+        let found_help = error.help();
         assert!(error.to_string().contains(message), "{error}");
         assert!(found_help.contains(help), "{found_help}");
     }

@@ -6,9 +6,10 @@ mod still;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use miette::{IntoDiagnostic as _, Report, WrapErr as _, miette};
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::files::Whole;
 use sdop::settings::{CullSettings, Strategy};
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::view::{Culled, Page, Show, decide_truth};
 
 use super::Outcome;
@@ -98,7 +99,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         };
     let written = write(args, &page, &name)?;
     match broken {
-        Some(error) => Err(Report::from(error))
+        Some(error) => Err(error)
+            .or_report()
             .wrap_err_with(|| format!("the page {} shows what can be read", written.display())),
         None => Ok(Outcome::Passed),
     }
@@ -116,7 +118,7 @@ fn culled(args: &Args, show: &Show) -> miette::Result<Vec<Culled>> {
                 strategy,
                 ..show.header.cull.clone().unwrap_or_default()
             };
-            show.cull(&settings, args.machine.tier())?
+            show.cull(&settings, args.machine.tier()).or_report()?
         }
         Err(unknown) if !Path::new(beside).exists() => {
             return Err(miette!(
@@ -125,9 +127,9 @@ fn culled(args: &Args, show: &Show) -> miette::Result<Vec<Culled>> {
             ));
         }
         Err(_) => {
-            let (other, broken) = Show::record(Path::new(beside), None)?;
+            let (other, broken) = Show::record(Path::new(beside), None).or_report()?;
             if let Some(error) = broken {
-                return Err(error.into());
+                return Err(error).or_report();
             }
             show.culled_by(&other).map_err(|why| {
                 miette!(

@@ -50,7 +50,7 @@ pub enum PageError {
     },
     /// Culling settings that can't be carried out.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Cull(#[from] CullError),
     /// Prices that can't be calibrated.
     #[error(transparent)]

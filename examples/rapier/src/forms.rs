@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use miette::{IntoDiagnostic, Result};
+use miette::Result;
 use sdop::mesh::decimate::decimate;
 use sdop::mesh::{ProceduralShape, ReadOptions, TriangleMesh, read};
+use sdop_bench::remedy::OrReport as _;
 
 use crate::plan::Detail;
 
@@ -13,7 +14,7 @@ use crate::plan::Detail;
 /// # Errors
 /// `meshes` isn't the repository's folder of meshes.
 pub fn forms(meshes: &Path, detail: Detail) -> Result<Vec<TriangleMesh>> {
-    let cow = read(meshes.join("spot.tri"), &ReadOptions::default())?;
+    let cow = read(meshes.join("spot.tri"), &ReadOptions::default()).or_report()?;
     let (cow, n) = match detail {
         Detail::Coarse => (decimate(&cow, 300), 1),
         Detail::Fine => (cow, 4),
@@ -51,7 +52,7 @@ pub fn forms(meshes: &Path, detail: Detail) -> Result<Vec<TriangleMesh>> {
             sides: 6 * n,
         },
     ] {
-        forms.push(shape.build().into_diagnostic()?);
+        forms.push(shape.build().or_report()?);
     }
     Ok(forms.iter().map(sized).collect())
 }
