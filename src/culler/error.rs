@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::bodies::contract::ContractError;
+#[cfg(feature = "shapes")]
 use crate::settings::SettingsError;
 use crate::threads::ThreadsError;
 
@@ -23,6 +24,7 @@ pub enum CullError {
         hint: &'static str,
     },
     /// Settings that can't be carried out.
+    #[cfg(feature = "shapes")]
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// Threads that the system refuses to start.
@@ -51,6 +53,7 @@ impl CullError {
         match self {
             Self::Contract(error) => error.help(),
             Self::Shape { hint, .. } => hint,
+            #[cfg(feature = "shapes")]
             Self::Settings(error) => error.help(),
             Self::Threads(error) => error.help(),
             Self::TooManyPairs { .. } => {
