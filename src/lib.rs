@@ -14,7 +14,7 @@
 //! ```
 //! use sdop::{Bodies, Culler, ProceduralShape, Shape, ShapeSpec};
 //!
-//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?; // or `TriangleMesh::from_arrays`, or a file
+//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?; // or `TriangleMesh::from_f32`, or a file
 //! let shapes = [Shape::build(&mesh, &ShapeSpec::default())?]; // ball, hull and or-DOP, once
 //!
 //! let mut bodies = Bodies::default();

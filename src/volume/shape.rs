@@ -10,12 +10,12 @@
 //! exception to "keeps": its vertices are about a point near it, and its [`Shape::pose_offset`] says where that lies, seen from
 //! the point that poses refer to. Its volumes are grown by what rounding has moved, [`Shape::rounding`].
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, ball};
 use crate::{
     choice::choices,
-    mesh::TriangleMesh,
+    mesh::{TriangleMesh, in_f64},
     rounding::{LIMIT, exp2, up},
     simd::in_default_mode,
 };
@@ -60,7 +60,7 @@ pub struct Shape {
     /// The mesh's name.
     pub name: String,
     /// Vertices as culled, in the body frame: scale · (point of the mesh − offset), rounded to f32.
-    pub vertices: Vec<Vec3>,
+    pub vertices: Vec<[f32; 3]>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
     /// The point of the file's coordinates that is the origin of `vertices`: zero for [`Origin::File`], unless the mesh is far
@@ -94,18 +94,18 @@ impl Shape {
 
     fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
         let placement = Placement::of(mesh, spec)?;
-        let vertices: Vec<Vec3> = mesh
+        let vertices: Vec<[f32; 3]> = mesh
             .vertices
             .iter()
-            .map(|v| placement.point(v).as_vec3())
+            .map(|v| placement.point(v).as_vec3().to_array())
             .collect();
         let rounding = placement.rounding(mesh, &vertices);
         let mut ball = match spec.origin {
             Origin::File => Ball::smallest(&vertices),
-            Origin::Ball => Ball::about(Vec3::ZERO, &vertices),
+            Origin::Ball => Ball::about([0.0; 3], &vertices),
         };
         ball.radius = grown(ball.radius, rounding);
-        let reach = grown(ball::farthest_distance(Vec3::ZERO, &vertices), rounding);
+        let reach = grown(ball::farthest_distance([0.0; 3], &vertices), rounding);
         let within = reach <= LIMIT; // false for NaN; bounds the centre and the ball's radius too
         if !within {
             return Err(VolumeError::TooLarge {
@@ -164,7 +164,7 @@ impl Shape {
 }
 
 /// The or-DOP of vertices that rounding has moved.
-fn slabs(vertices: &[Vec3], basis: Basis, directions: DirectionSet, rounding: f32) -> OrDop {
+fn slabs(vertices: &[[f32; 3]], basis: Basis, directions: DirectionSet, rounding: f32) -> OrDop {
     let ordop = OrDop::build(vertices, basis, directions);
     if rounding == 0.0 {
         ordop
@@ -198,7 +198,11 @@ impl Placement {
         if mesh.vertices.is_empty() {
             return Err(VolumeError::Empty { shape: shape() });
         }
-        if let Some(vertex) = mesh.vertices.iter().position(|v| !v.is_finite()) {
+        if let Some(vertex) = mesh
+            .vertices
+            .iter()
+            .position(|v| !v.iter().all(|x| x.is_finite()))
+        {
             return Err(VolumeError::NotFinite {
                 shape: shape(),
                 vertex,
@@ -251,21 +255,21 @@ impl Placement {
     }
 
     /// A vertex before it is rounded.
-    fn point(&self, vertex: &Vec3) -> DVec3 {
-        (vertex.as_dvec3() - self.centre) * self.scale
+    fn point(&self, vertex: &[f32; 3]) -> DVec3 {
+        (in_f64(vertex) - self.centre) * self.scale
     }
 
     /// How far a vertex is at most from scale · (point of the file − offset), or with the pose's offset from scale · point: 0
     /// for a mesh that has been rounded where it is, whose own vertices count.
-    fn rounding(&self, mesh: &TriangleMesh, vertices: &[Vec3]) -> f32 {
+    fn rounding(&self, mesh: &TriangleMesh, vertices: &[[f32; 3]]) -> f32 {
         if !mesh.is_far() && mesh.rounding == 0.0 {
             return 0.0;
         }
         let pairs = mesh.vertices.iter().zip(vertices);
         let (mut placed, mut size) = (0.0_f64, 0.0_f64);
         for (vertex, rounded) in pairs {
-            placed = placed.max(self.point(vertex).distance(rounded.as_dvec3()));
-            size = size.max(vertex.as_dvec3().abs().max_element());
+            placed = placed.max(self.point(vertex).distance(in_f64(rounded)));
+            size = size.max(in_f64(vertex).abs().max_element());
         }
         // In f64 the difference and the product round each coordinate twice, and a scaled offset once.
         let size = (size + self.centre.abs().max_element()) * self.scale;

@@ -235,10 +235,7 @@ fn nanoseconds(pairs: &[(&Bodies, [u32; 2])], judge: &Judge<'_>) -> miette::Resu
 }
 
 fn exact(shapes: &[Shape]) -> miette::Result<Judge<'static>> {
-    let mesh = |shape: &Shape| {
-        let vertices: Vec<_> = shape.vertices.iter().map(|v| v.to_array()).collect();
-        Mesh::new(&vertices, &shape.triangles).into_diagnostic()
-    };
+    let mesh = |shape: &Shape| Mesh::new(&shape.vertices, &shape.triangles).into_diagnostic();
     let meshes = shapes
         .iter()
         .map(mesh)
@@ -291,7 +288,7 @@ fn parry(
 
 fn vertices(shape: &Shape) -> Vec<Vector> {
     let corners = shape.vertices.iter();
-    corners.map(|v| Vector::from_array(v.to_array())).collect()
+    corners.map(|v| Vector::from_array(*v)).collect()
 }
 
 fn convex(shape: &Shape) -> miette::Result<Box<dyn Solid>> {

@@ -95,7 +95,7 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
     };
     let shape = Shape::build(mesh, &spec).or_report()?;
     let hull = Hull::of(&shape.vertices);
-    let centre = shape.ball.centre.to_array();
+    let centre = shape.ball.centre;
     let [x, y, z] = std::array::from_fn(|i| shape.offset[i] + f64::from(centre[i]));
     Ok(Report {
         name: mesh.name.clone(),

@@ -59,19 +59,24 @@ pub fn forms(meshes: &Path, detail: Detail) -> Result<Vec<TriangleMesh>> {
 
 /// Centred on its box, and scaled into the ball of radius ½.
 fn sized(mesh: &TriangleMesh) -> TriangleMesh {
-    let first = mesh.vertices[0];
-    let (lo, hi) = mesh
-        .vertices
-        .iter()
-        .fold((first, first), |(lo, hi), &v| (lo.min(v), hi.max(v)));
-    let middle = (lo + hi) * 0.5;
+    let (mut lo, mut hi) = (mesh.vertices[0], mesh.vertices[0]);
+    for vertex in &mesh.vertices {
+        for axis in 0..3 {
+            lo[axis] = lo[axis].min(vertex[axis]);
+            hi[axis] = hi[axis].max(vertex[axis]);
+        }
+    }
+    let centred = |vertex: &[f32; 3]| -> [f32; 3] {
+        std::array::from_fn(|axis| vertex[axis] - (lo[axis] + hi[axis]) * 0.5)
+    };
+    let length = |[x, y, z]: [f32; 3]| (x * x + y * y + z * z).sqrt();
     let reach = mesh
         .vertices
         .iter()
-        .fold(0.0, |r: f32, v| r.max((*v - middle).length()));
+        .fold(0.0, |r: f32, vertex| r.max(length(centred(vertex))));
     let mut sized = mesh.clone();
     for vertex in &mut sized.vertices {
-        *vertex = (*vertex - middle) * (0.5 / reach);
+        *vertex = centred(vertex).map(|x| x * (0.5 / reach));
     }
     sized
 }

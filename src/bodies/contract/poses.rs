@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use glam::Vec3;
+
 use super::{ContractError, check_column, check_number, refuse};
 use crate::bodies::Bodies;
 use crate::rounding::LIMIT;
@@ -131,9 +133,13 @@ fn size(number: f32) -> u32 {
 
 pub(crate) fn has_sound_size(shape: &Shape) -> bool {
     // The reach bounds the ball's centre and radius; a NaN in them it does not.
-    [shape.reach, shape.ball.radius, shape.ball.centre.length()]
-        .iter()
-        .all(|size| (0.0..=LIMIT).contains(size))
+    [
+        shape.reach,
+        shape.ball.radius,
+        Vec3::from_array(shape.ball.centre).length(),
+    ]
+    .iter()
+    .all(|size| (0.0..=LIMIT).contains(size))
 }
 
 #[inline]
