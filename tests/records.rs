@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use miette::Diagnostic as _;
 use sdop::simd::Tier;
 use sdop_bench::scene::SceneFile;
 use sdop_bench::simulate::Simulation;

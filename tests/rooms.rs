@@ -31,6 +31,7 @@ const JUDGE: &[&str] = &["contestant", "record", "ours", REST];
 const BENCH: &[&str] = &[
     "number",
     "percentiles",
+    "remedy",
     "random",
     "hash",
     "mpi",

@@ -61,8 +61,7 @@ fn hulls_agree_with_the_exact_meeting_of_hull_meshes() {
     let (mut meetings, mut pairs) = (0, 0);
     for shape in builtin().unwrap() {
         let hull = Hull::of(&shape.vertices);
-        let vertices: Vec<_> = shape.vertices.iter().map(|v| v.to_array()).collect();
-        let mesh = Mesh::new(&vertices, &hull.facets).unwrap();
+        let mesh = Mesh::new(&shape.vertices, &hull.facets).unwrap();
         let graphs = [HullGraph::new(&shape)];
         let crowd = Crowd::new(std::slice::from_ref(&shape), 1.0, 300, 5);
         let bodies = &crowd.bodies;

@@ -13,6 +13,7 @@ pub mod outsiders;
 pub mod percentiles;
 pub mod random;
 pub mod record;
+pub mod remedy;
 pub mod report;
 pub mod reproduce;
 pub mod scene;

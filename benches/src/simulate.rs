@@ -12,6 +12,7 @@ use crate::effects::{EffectError, EffectReport, Effects};
 use crate::hash::volumes_sha256;
 use crate::hash::{PairsDigest, PairsHash};
 use crate::percentiles::Percentiles;
+use crate::remedy::Explained;
 use crate::scene::Scene;
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::ContractError;
@@ -65,7 +66,7 @@ impl Trajectory {
         if frame > 0 {
             let start = Instant::now();
             let step = self.effects.step(&mut self.bodies);
-            step.map_err(|error| SimulationError::Contract { frame, error })?;
+            step.map_err(|error| SimulationError::contract(frame, error))?;
             self.step_seconds = start.elapsed().as_secs_f64();
         }
         self.next += 1;
@@ -146,7 +147,7 @@ pub struct Summary {
 pub enum SimulationError {
     /// A culler that can't be made, or bodies that it refuses.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Cull(#[from] CullError),
     /// An effect that the scene can't have.
     #[error(transparent)]
@@ -159,8 +160,16 @@ pub enum SimulationError {
         frame: u32,
         /// The body and what is wrong with it.
         #[diagnostic_source]
-        error: ContractError,
+        error: Explained<ContractError>,
     },
+}
+
+impl SimulationError {
+    /// A body that left the contract in the step to `frame`.
+    pub(crate) fn contract(frame: u32, error: ContractError) -> Self {
+        let error = Explained(error);
+        Self::Contract { frame, error }
+    }
 }
 
 impl<'a> Simulation<'a> {

@@ -24,56 +24,74 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "shapes")]
 mod body;
+#[cfg(feature = "shapes")]
 mod crowds;
-#[cfg(feature = "serde")]
+#[cfg(all(feature = "shapes", feature = "serde"))]
 mod digest;
 mod error;
 mod events;
 mod ids;
+#[cfg(feature = "shapes")]
 mod local;
+#[cfg(feature = "shapes")]
 mod lookup;
+#[cfg(feature = "shapes")]
 mod margins;
+#[cfg(feature = "shapes")]
 mod offset;
 mod pair_log;
+#[cfg(feature = "shapes")]
 mod pair_test;
 #[cfg(feature = "serde")]
 mod saved;
+#[cfg(feature = "shapes")]
 mod shapes;
-#[cfg(feature = "serde")]
+#[cfg(all(feature = "shapes", feature = "serde"))]
 mod snapshot;
 
 pub use crate::bodies::Groups;
+#[cfg(feature = "shapes")]
 pub use body::Body;
 pub use error::WorldError;
 pub use events::{Event, Events};
 pub use ids::BodyId;
+#[cfg(feature = "shapes")]
 pub use lookup::PairLookup;
 pub use pair_log::{PairIds, WorldPairs};
+#[cfg(feature = "shapes")]
 pub use pair_test::PairTest;
 #[cfg(feature = "serde")]
 pub use saved::SnapshotError;
-#[cfg(feature = "serde")]
+#[cfg(all(feature = "shapes", feature = "serde"))]
 pub use snapshot::WorldSnapshot;
 
 pub(crate) use self::ids::{Ids, shrink_column};
-use self::local::Local;
-use self::margins::{Margins, check_margin};
 pub(crate) use self::pair_log::PairLog;
 #[cfg(feature = "serde")]
 pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length};
-use self::shapes::{ShapeSlot, check_shape};
-use crate::bodies::Bodies;
-use crate::bodies::contract::{ContractError, check_number, check_pose};
-use crate::counters::{Counters, Seconds};
-use crate::culler::{CullError, Culler, CullerBuilder};
-use crate::settings::{Interest, SettingsError};
-use crate::simd::in_default_mode;
-use crate::volume::Shape;
+#[cfg(feature = "shapes")]
+use self::{
+    local::Local,
+    margins::{Margins, check_margin},
+    shapes::{ShapeSlot, check_shape},
+};
+#[cfg(feature = "shapes")]
+use crate::{
+    bodies::Bodies,
+    bodies::contract::{ContractError, check_number, check_pose},
+    counters::{Counters, Seconds},
+    culler::{CullError, Culler, CullerBuilder},
+    settings::{Interest, SettingsError},
+    simd::in_default_mode,
+    volume::Shape,
+};
 
 /// Bodies in slots, and their culler.
 ///
 /// A clone goes on as the original would, on threads that it starts for itself.
+#[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 pub struct World {
     shapes: Vec<ShapeSlot>,
@@ -96,6 +114,7 @@ pub struct World {
     regrouped: bool,
 }
 
+#[cfg(feature = "shapes")]
 impl World {
     /// A world without bodies, culled with every default ([`Culler::new`]).
     ///

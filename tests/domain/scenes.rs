@@ -1,6 +1,6 @@
 //! Whole scenes: the digest, the hash and what must add up, over ranks, strategies and finders.
 
-use sdop::settings::{Finder, Interest, Strategy, Updates};
+use sdop::settings::{CullSettings, Finder, Interest, Strategy, Updates};
 use sdop_bench::scene::Scene;
 
 use crate::{RANKS, alone, build, ghosts, on, parse};
@@ -122,7 +122,8 @@ fn a_cone_that_a_body_looks_along_sees_the_same_from_every_rank() {
         "{ body = 17, direction = [0, 0, 1], half_angle = 40 }",
         "{ apex = [1, 2, 3], direction = [1, 0, 1], half_angle = 60, range = 6.0 }",
     ] {
-        scene.cull.interest = Some(cone.parse().unwrap());
+        let text = format!("interest = {cone}");
+        scene.cull.interest = toml::from_str::<CullSettings>(&text).unwrap().interest;
         let whole = alone(&scene);
         assert!(
             whole.counters.ordop.tests < whole.counters.sphere.hits,

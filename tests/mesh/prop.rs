@@ -40,19 +40,12 @@ fn mesh() -> impl Strategy<Value = TriangleMesh> {
 }
 
 fn bits(mesh: &TriangleMesh) -> Vec<[u32; 3]> {
-    mesh.vertices
-        .iter()
-        .map(|v| v.to_array().map(f32::to_bits))
-        .collect()
+    mesh.vertices.iter().map(|v| v.map(f32::to_bits)).collect()
 }
 
 /// The positions of all corners, with one zero: what a format of loose triangles can keep.
 fn corners(mesh: &TriangleMesh) -> Vec<[u32; 3]> {
-    let corner = |&i: &u32| {
-        mesh.vertices[i as usize]
-            .to_array()
-            .map(|x| (x + 0.0).to_bits())
-    };
+    let corner = |&i: &u32| mesh.vertices[i as usize].map(|x| (x + 0.0).to_bits());
     mesh.triangles.as_flattened().iter().map(corner).collect()
 }
 
@@ -139,7 +132,7 @@ fn binary_ply(mesh: &TriangleMesh) -> Vec<u8> {
     let end = text.find("end_header\n").unwrap() + "end_header\n".len();
     let mut bytes = text.as_bytes()[..end].to_vec();
     for vertex in &mesh.vertices {
-        bytes.extend(vertex.to_array().iter().flat_map(|x| x.to_le_bytes()));
+        bytes.extend(vertex.iter().flat_map(|x| x.to_le_bytes()));
     }
     for triangle in &mesh.triangles {
         bytes.push(3);

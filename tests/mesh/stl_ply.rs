@@ -160,10 +160,10 @@ const BODY: &str = "0 0 0 9\n1 0 0 9\n0 1 0 9\n1 1 0 9\n3 0 1 2\n3 1 3 2\n";
 
 fn binary_ply(format: &str, bytes: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
     let mut file = HEADER.replace("ascii", format).into_bytes();
-    for vertex in two_triangles().vertices {
-        file.extend(bytes(&vertex.x.to_le_bytes()));
-        file.extend(bytes(&vertex.y.to_le_bytes()));
-        file.extend(bytes(&f64::from(vertex.z).to_le_bytes()));
+    for [x, y, z] in two_triangles().vertices {
+        file.extend(bytes(&x.to_le_bytes()));
+        file.extend(bytes(&y.to_le_bytes()));
+        file.extend(bytes(&f64::from(z).to_le_bytes()));
         file.push(9);
     }
     for triangle in two_triangles().triangles {

@@ -2,7 +2,6 @@
 //! both names.
 
 use glam::Vec3;
-use miette::Diagnostic;
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};
 
 fn read(text: impl AsRef<[u8]>) -> Result<TriangleMesh, MeshError> {
@@ -149,7 +148,7 @@ fn two_fitting_dialects_are_refused_by_name_and_the_name_decides() {
             error.to_string(),
             format!("data/a.tri: the file can be read as {readings}")
         );
-        let help = error.help().unwrap().to_string();
+        let help = error.help();
         for (name, triangle) in names {
             assert!(help.contains(&format!("--tri-format {name}")), "{help}");
             assert_eq!(

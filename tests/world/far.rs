@@ -129,7 +129,7 @@ fn poses_in_f32_refuse_a_far_shape() {
     let mut bodies = Bodies::default();
     bodies.push(0, true, UNTURNED, [0.0; 3]);
     let mends = |error: CullError| {
-        let help = miette::Diagnostic::help(&error).unwrap().to_string();
+        let help = error.help();
         assert!(error.to_string().contains("far from the origin"), "{error}");
         assert!(
             help.contains("`World`") && help.contains("`Origin::Ball`"),

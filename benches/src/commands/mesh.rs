@@ -7,6 +7,7 @@ use sdop::mesh::decimate::decimate;
 use sdop::mesh::topology::Topology;
 use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};
 use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::tightness::Size;
 use serde::Serialize;
 
@@ -73,12 +74,12 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         tri_format: args.tri_format,
         max_bytes: args.files.max_bytes(),
     };
-    let mut mesh = read(&args.file, &options)?;
+    let mut mesh = read(&args.file, &options).or_report()?;
     if let Some(most) = args.triangles {
         mesh = decimate(&mesh, most as usize);
     }
     if let Some(path) = &args.to {
-        write(&mesh, path)?;
+        write(&mesh, path).or_report()?;
     }
     let report = describe(args, &mesh)?;
     emit(args.format, &report, text)?;
@@ -92,9 +93,9 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
         origin: Origin::File,
         ..ShapeSpec::default()
     };
-    let shape = Shape::build(mesh, &spec)?;
+    let shape = Shape::build(mesh, &spec).or_report()?;
     let hull = Hull::of(&shape.vertices);
-    let centre = shape.ball.centre.to_array();
+    let centre = shape.ball.centre;
     let [x, y, z] = std::array::from_fn(|i| shape.offset[i] + f64::from(centre[i]));
     Ok(Report {
         name: mesh.name.clone(),

@@ -5,9 +5,10 @@ mod input;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use miette::{IntoDiagnostic as _, Report, WrapErr as _, miette};
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::files::Whole;
 use sdop::settings::{CullSettings, Strategy};
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::view::{Culled, Page, Show, decide_truth};
 
 use super::Outcome;
@@ -85,7 +86,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         };
     let written = write(args, &page, &name)?;
     match broken {
-        Some(error) => Err(Report::from(error))
+        Some(error) => Err(error)
+            .or_report()
             .wrap_err_with(|| format!("the page {} shows what can be read", written.display())),
         None => Ok(Outcome::Passed),
     }
@@ -103,7 +105,7 @@ fn culled(args: &Args, show: &Show) -> miette::Result<Vec<Culled>> {
                 strategy,
                 ..show.header.cull.clone().unwrap_or_default()
             };
-            show.cull(&settings, args.machine.tier())?
+            show.cull(&settings, args.machine.tier()).or_report()?
         }
         Err(unknown) if !Path::new(beside).exists() => {
             return Err(miette!(
@@ -112,9 +114,9 @@ fn culled(args: &Args, show: &Show) -> miette::Result<Vec<Culled>> {
             ));
         }
         Err(_) => {
-            let (other, broken) = Show::record(Path::new(beside), None)?;
+            let (other, broken) = Show::record(Path::new(beside), None).or_report()?;
             if let Some(error) = broken {
-                return Err(error.into());
+                return Err(error).or_report();
             }
             show.culled_by(&other).map_err(|why| {
                 miette!(

@@ -198,7 +198,7 @@ impl<'a, N: Network> Rank<'a, N> {
     fn contract_error(&self, error: ContractError) -> DomainError {
         let (frame, body) = (self.next, self.held.numbers[error.body] as usize);
         let error = ContractError { body, ..error };
-        SimulationError::Contract { frame, error }.into()
+        SimulationError::contract(frame, error).into()
     }
 
     /// The ball of the body in a place now.

@@ -237,7 +237,7 @@ impl SceneFile {
             let ball = library.get(shape).ball;
             let centre = placer.centre(ball.radius, centres);
             // The ball's centre is placed: t is what brings it there, the ball's centre itself for origin = "ball".
-            let offset = world_centre(ball.centre.to_array(), &rotation, &[0.0; 3]);
+            let offset = world_centre(ball.centre, &rotation, &[0.0; 3]);
             bodies.rotation.push(rotation);
             bodies
                 .translation

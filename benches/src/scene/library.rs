@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use miette::Diagnostic;
 use toml::Spanned;
 
 use super::error::{SceneError, Source};
@@ -55,7 +54,7 @@ impl Library {
                 };
                 self.meshes.push(read(&path, &options).map_err(|error| {
                     let hint = if path.exists() {
-                        help(&error)
+                        Some(error.help())
                     } else {
                         nearest_file(&path)
                     };
@@ -99,7 +98,7 @@ impl Library {
         };
         let start = Instant::now();
         let shape = Shape::build(&self.meshes[mesh], &spec)
-            .map_err(|error| (error.to_string(), help(&error)))?;
+            .map_err(|error| (error.to_string(), Some(error.help().to_owned())))?;
         self.seconds += start.elapsed().as_secs_f64();
         // Fewer shapes than bodies, which a u32 counts.
         let number = self.shapes.len() as u32;
@@ -154,14 +153,9 @@ fn procedural(
         source.error(
             blamed.unwrap_or(name.span()),
             error.to_string(),
-            help(&error),
+            error.help(),
         )
     })
-}
-
-/// The help text of an error of another room.
-pub(super) fn help(error: &dyn Diagnostic) -> Option<String> {
-    error.help().map(|text| text.to_string())
 }
 
 /// What stands beside a file that doesn't exist.

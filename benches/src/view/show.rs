@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use miette::Diagnostic as _;
-
 use crate::measure::counts::Volume;
 use crate::record;
 use crate::scene::Scene;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use miette::{IntoDiagnostic, Result};
 use sdop::mesh::{self, TriangleMesh};
 use sdop::volume::Shape;
+use sdop_bench::remedy::OrReport as _;
 
 /// One collider of the pair.
 pub struct CaseBody {
@@ -34,7 +35,7 @@ pub fn write(directory: &Path, bodies: &[CaseBody], comment: &str) -> Result<Pat
             triangles: body.shape.triangles.clone(),
             ..TriangleMesh::default()
         };
-        mesh::write(&mesh, directory.join(&file))?;
+        mesh::write(&mesh, directory.join(&file)).or_report()?;
         let pose = [&body.rotation[..], &body.translation].concat();
         let numbers: Vec<String> = pose.iter().map(|x| format!("{x:?}")).collect();
         // Formatting into a String cannot fail.

@@ -6,13 +6,12 @@
 
 use std::io::Cursor;
 
-use glam::Vec3;
 use stl_io::Triangle;
 
 use super::read::Parts;
 use super::text::{self, Fault, between_f32};
 use super::write::{put, wide};
-use crate::mesh::{Problem, TriangleMesh, check_vertex};
+use crate::mesh::{Problem, TriangleMesh, check_vertex, in_f64};
 
 const HEADER_BYTES: usize = 84;
 const TRIANGLE_BYTES: u64 = 50;
@@ -180,7 +179,7 @@ pub(super) fn bytes(mesh: &TriangleMesh) -> Vec<u8> {
             let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize]);
             Triangle {
                 normal: stl_io::Normal::new(normal([a, b, c])),
-                vertices: [a, b, c].map(|corner| stl_io::Vertex::new(corner.to_array())),
+                vertices: [a, b, c].map(|corner| stl_io::Vertex::new(corner)),
             }
         })
         .collect();
@@ -210,8 +209,8 @@ fn text(mesh: &TriangleMesh) -> String {
 }
 
 /// A triangle's unit normal; zero where it has none.
-fn normal(corners: [Vec3; 3]) -> [f32; 3] {
-    let [a, b, c] = corners.map(Vec3::as_dvec3);
+fn normal(corners: [[f32; 3]; 3]) -> [f32; 3] {
+    let [a, b, c] = corners.each_ref().map(in_f64);
     let normal = (b - a).cross(c - a).normalize_or_zero();
     normal.as_vec3().to_array()
 }

@@ -14,7 +14,7 @@ use super::text::between_f32;
 use super::{MeshFormat, stl};
 use crate::files;
 use crate::mesh::far::place;
-use crate::mesh::{MeshError, Problem, TriangleMesh};
+use crate::mesh::{MeshError, Problem, TriangleMesh, in_f64};
 
 /// Writes a mesh in the format that the extension names; the file appears when it is whole.
 ///
@@ -143,7 +143,7 @@ fn three_decimals(value: f64) -> f64 {
 fn vertex_normals(mesh: &TriangleMesh) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; mesh.vertices.len()];
     for triangle in &mesh.triangles {
-        let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize].as_dvec3());
+        let [a, b, c] = triangle.map(|i| in_f64(&mesh.vertices[i as usize]));
         for &corner in triangle {
             sums[corner as usize] += (b - a).cross(c - a);
         }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::Tier;
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::view::Show;
 use sdop_judge::answer::{Answer, Stop, sorted};
 use sdop_judge::ours::hard::Group;
@@ -186,7 +187,7 @@ fn record(args: &SceneArgs, run: Option<usize>) -> miette::Result<Input> {
     match Show::record(args.path(), args.frames()) {
         Ok((show, broken)) => Ok(Input::Show(Box::new(show), broken)),
         // Nothing there is no record that is broken.
-        Err(error @ RecordError::Unreadable { .. }) => Err(error.into()),
+        Err(error @ RecordError::Unreadable { .. }) => Err(error).or_report(),
         Err(error) => Ok(Input::Broken(error)),
     }
 }
@@ -233,7 +234,8 @@ fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<Show> {
         &frames[..most],
         &settings,
         tier,
-    )?;
+    )
+    .or_report()?;
     show.header.seed = group.seed;
     show.messages.push(group.why.clone());
     if cases.runs.len() > 1 {

@@ -158,11 +158,11 @@ impl ShapeLine {
     /// A shape's numbers.
     #[must_use]
     pub fn of(shape: &Shape) -> Self {
-        let [x, y, z] = shape.ball.centre.to_array();
-        let [a, b, c] = shape.ordop.basis.columns.map(|column| column.to_array());
+        let [x, y, z] = shape.ball.centre;
+        let [a, b, c] = shape.ordop.basis.columns;
         Self {
             name: shape.name.clone(),
-            vertices: shape.vertices.iter().map(|v| v.to_array()).collect(),
+            vertices: shape.vertices.clone(),
             triangles: shape.triangles.clone(),
             ball: [x, y, z, shape.ball.radius],
             ordop: OrDopLine {
@@ -176,12 +176,9 @@ impl ShapeLine {
 
     /// The shape with these numbers, nothing computed anew; `None` for a k that no or-DOP has.
     fn shape(&self) -> Option<Shape> {
-        let vertices: Vec<_> = self.vertices.iter().map(|&v| v.into()).collect();
+        let vertices = self.vertices.clone();
         let [x, y, z, radius] = self.ball;
-        let [a, b, c] = [0, 3, 6].map(|at| {
-            let column = &self.ordop.basis[at..at + 3];
-            glam::Vec3::from_slice(column)
-        });
+        let columns = [0, 3, 6].map(|at| std::array::from_fn(|i| self.ordop.basis[at + i]));
         let mut sets = DirectionSet::ALL.iter();
         Some(Shape {
             name: self.name.clone(),
@@ -189,14 +186,14 @@ impl ShapeLine {
             scale: 1.0,
             pose_offset: [0.0; 3],
             rounding: 0.0,
-            reach: Ball::about(glam::Vec3::ZERO, &vertices).radius,
+            reach: Ball::about([0.0; 3], &vertices).radius,
             ball: Ball {
-                centre: [x, y, z].into(),
+                centre: [x, y, z],
                 radius,
             },
             ordop: OrDop {
                 directions: *sets.find(|set| set.k() == self.ordop.k)?,
-                basis: Basis { columns: [a, b, c] },
+                basis: Basis { columns },
                 lo: self.ordop.lo.clone(),
                 hi: self.ordop.hi.clone(),
             },
