@@ -1,191 +1,129 @@
-//! Large worlds: f64 translations, culled as f32 about a local origin.
+//! Large worlds: f64 translations, culled as f32 about local origins.
 //!
-//! t − origin rounds twice, to f64 and to f32, so its distance from the exact one is at most √3·|t − origin|∞·2⁻²⁴ and a
-//! little; half as much again in the bound covers the little. The bound joins the body's margin, so volumes at the rounded
-//! place contain what the exact mesh occupies. A translation that is an f32 from the start is left as it is, without a
-//! bound, as long as the origin is the world's own.
+//! Where the origins lie is a function of the bodies as they are now, never of earlier frames. Translations that are all f32
+//! stay as they are. Otherwise bodies that lie near each other are placed about one origin; bodies in many far-apart places
+//! have an [origin per region](super::regions).
+//!
+//! A translation is subtracted twice in f64 and rounded to f32. Its distance from the exact one is bounded, and the bound
+//! joins the body's margin, so that volumes at the rounded place contain what the exact mesh occupies (theorem T).
 
-use crate::rounding::{LIMIT, exp2};
+use super::regions::{Regions, regions};
+use crate::rounding::exp2;
 
-/// √3·2⁻²⁴ < 2⁻²³: how far a body is moved by rounding, as a multiple of |t − origin|∞.
+/// √3·2⁻²⁴ < 2⁻²³: how far rounding the local translation to f64 and then to f32 moves a body, as a multiple of its largest
+/// coordinate.
 const MOVED: f64 = exp2(-23);
 
 /// √3·2⁻¹⁵⁰ < 2⁻¹⁴⁹: the same where f32 underflows.
 const MOVED_LEAST: f64 = exp2(-149);
 
-/// The origin about which translations are f32.
+/// √3·2⁻⁵³ < 2⁻⁵²: how far rounding the distance from the origin to f64 moves a body, as a multiple of its largest coordinate.
+const MOVED_BEFORE: f64 = exp2(-52);
+
+/// Cells across that are placed about one origin without looking for regions: rounding there is below 2⁻¹¹ of the largest body.
+const FEW_CELLS: f64 = 64.0;
+
+/// The least cell, for bodies without any extent.
+const LEAST_CELL: f64 = exp2(-149);
+
+/// Where the f32 coordinates of a region's bodies count from: `origin` in the world becomes −`corner`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Local {
+pub(super) struct Region {
     pub origin: [f64; 3],
+    pub corner: [f64; 3],
+}
+
+/// A body as far as it matters here: its slot, its translation, and how far the mesh with its margin reaches from there.
+pub(super) type Placed = (usize, [f64; 3], f64);
+
+/// Which region each slot's body belongs to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Local {
+    whole: Region,
+    parts: Option<Regions>,
 }
 
 impl Local {
-    /// The local translation, and how far from the exact one it may be.
-    pub fn place(&self, t: [f64; 3]) -> ([f32; 3], f64) {
-        let relative: [f64; 3] = std::array::from_fn(|i| t[i] - self.origin[i]);
-        let local = relative.map(|x| x as f32);
-        if self.origin == [0.0; 3] && local.map(f64::from) == t {
-            return (local, 0.0);
+    /// The regions of these bodies, whose translations are at most 2⁶⁰ in size.
+    pub fn of(bodies: impl Iterator<Item = Placed> + Clone) -> Self {
+        if bodies.clone().all(|(_, t, _)| is_f32(t)) {
+            return Self::default();
         }
-        let farthest = relative.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        (local, farthest * MOVED + MOVED_LEAST)
-    }
-
-    /// Whether translations are within the contract here.
-    pub fn reaches(&self, t: [f64; 3]) -> bool {
-        (0..3).all(|i| (t[i] - self.origin[i]).abs() <= f64::from(LIMIT))
-    }
-
-    /// The middle of the bodies when it lies so far out that a move there at least halves their distances and some of them
-    /// had to be rounded; otherwise as before.
-    pub fn follow(self, translations: impl Iterator<Item = [f64; 3]> + Clone) -> Self {
-        if translations.clone().all(|t| self.place(t).1 == 0.0) {
-            return self;
-        }
-        let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for t in translations {
+        let (mut lo, mut hi, mut size) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], 0.0_f64);
+        for (_, t, reach) in bodies.clone() {
             for axis in 0..3 {
                 lo[axis] = lo[axis].min(t[axis]);
                 hi[axis] = hi[axis].max(t[axis]);
             }
+            size = size.max(reach);
         }
-        let middle: [f64; 3] = std::array::from_fn(|i| 0.5 * lo[i] + 0.5 * hi[i]);
+        // Bodies that can meet are at most 2·size apart, a 32nd of a cell.
+        let cell = power_from((64.0 * size).max(LEAST_CELL));
         let half = (0..3).fold(0.0, |m: f64, i| m.max(0.5 * hi[i] - 0.5 * lo[i]));
-        let away = (0..3).fold(0.0, |m: f64, i| m.max((middle[i] - self.origin[i]).abs()));
-        if away > half {
-            Self { origin: middle }
+        let parts = if 2.0 * half > FEW_CELLS * cell {
+            regions(bodies, cell).filter(|parts| 2.0 * parts.half < half)
         } else {
-            self
-        }
+            None
+        };
+        let whole = Region::about(lo, hi, half, cell);
+        Self { whole, parts }
+    }
+
+    /// The local translation of a slot's body, and how far from the exact one it may be.
+    pub fn place(&self, slot: usize, t: [f64; 3]) -> ([f32; 3], f64) {
+        let region = self.parts.as_ref().map(|parts| parts.of(slot));
+        region.unwrap_or(&self.whole).place(t)
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use rand_chacha::ChaCha8Rng;
-    use rand_chacha::rand_core::{Rng, SeedableRng};
-
-    use super::*;
-
-    #[test]
-    fn f32_translations_stay_as_they_are() {
-        let far = [[1.0e9, -3.5, 0.0], [1.0e9 + 64.0, 7.25, 2.0f64.powi(-149)]];
-        let local = Local::default().follow(far.into_iter());
-        assert_eq!(local, Local::default());
-        assert_eq!(local.place(far[0]), ([1.0e9, -3.5, 0.0], 0.0));
-    }
-
-    #[test]
-    fn the_origin_follows_bodies_that_f32_cannot_place() {
-        let far = [[1.0e9 + 0.1, 0.0, 0.0], [1.0e9 + 8.3, 1.0, 0.0]];
-        let local = Local::default().follow(far.into_iter());
-        assert!((local.origin[0] - 1.0e9).abs() < 8.0);
-        // 5 away instead of 10⁹: rounded by less than 2⁻²⁰ instead of by 100.
-        assert!(local.place(far[0]).1 < 1.0e-6 && Local::default().place(far[0]).1 > 100.0);
-        assert_eq!(local.follow(far.into_iter()), local, "and stays with them");
-    }
-
-    /// A translation along one axis.
-    fn along(axis: usize, x: f64) -> [f64; 3] {
-        std::array::from_fn(|i| if i == axis { x } else { 0.0 })
-    }
-
-    #[test]
-    fn the_origin_moves_only_where_that_halves_the_distances() {
-        // No f32: they step by 128 here.
-        let s = f64::from(1 << 30) + 2.0;
-        let around = [(0.0, s, false), (-s, 2.0 * s, false), (s, 3.0 * s, true)];
-        for (lo, hi, moves) in around {
-            for axis in 0..3 {
-                let bodies = [lo, hi].map(|x| along(axis, x));
-                let local = Local::default().follow(bodies.into_iter());
-                let middle = if moves { 0.5 * (lo + hi) } else { 0.0 };
-                assert_eq!(local.origin, along(axis, middle), "{lo} to {hi}");
-            }
+impl Region {
+    /// One origin for the box from `lo` to `hi`: the world's own, unless the box lies farther out than it is wide. Then the
+    /// middle, in steps of about an eighth of the width, so that it seldom changes while bodies move.
+    fn about(lo: [f64; 3], hi: [f64; 3], half: f64, cell: f64) -> Self {
+        let middle: [f64; 3] = std::array::from_fn(|i| 0.5 * lo[i] + 0.5 * hi[i]);
+        if middle.iter().all(|x| x.abs() <= half) {
+            return Self::default();
         }
-        let local = Local {
-            origin: along(1, s),
-        };
-        let bodies = [s - 3.3, s + 4.1].map(|y| along(1, y));
-        assert_eq!(local.follow(bodies.into_iter()), local, "it is near enough");
-    }
-
-    #[test]
-    fn the_contract_ends_at_its_limit_from_the_origin() {
-        let (limit, step) = (f64::from(LIMIT), f64::from(LIMIT) * f64::EPSILON);
-        for axis in 0..3 {
-            let local = Local {
-                origin: along(axis, 2.0 * limit),
-            };
-            for (x, within) in [(1.0, true), (3.0, true), (0.0, false), (4.0, false)] {
-                assert_eq!(local.reaches(along(axis, x * limit)), within, "{x}");
-            }
-            assert!(!local.reaches(along(axis, limit - step)));
+        let step = power_from(0.125 * half).max(cell);
+        Self {
+            origin: middle.map(|x| (x / step).round() * step),
+            corner: [0.0; 3],
         }
     }
 
-    #[test]
-    fn the_bound_covers_the_worst_rounding() {
-        let local = Local {
-            origin: [0.3, -7.1, 1.0e5],
-        };
-        // Half an ulp off in every coordinate.
-        let t = [0.3, -7.1, 1.0e5].map(|o| o + 1.0 + 2.0f64.powi(-24));
-        let (placed, bound) = local.place(t);
-        let moved = (0..3)
-            .map(|i| (t[i] - local.origin[i] - f64::from(placed[i])).powi(2))
-            .sum::<f64>()
-            .sqrt();
-        assert!(moved > 0.5 * bound && moved <= bound, "{moved:e} {bound:e}");
-    }
-
-    /// How far rounding moves a body, exactly but for 2⁻⁵⁰ of it, as a share of the bound.
-    fn share(local: &Local, t: [f64; 3]) -> f64 {
-        let (placed, bound) = local.place(t);
-        let moved = |i: usize| {
-            // Knuth's two-sum: t − origin = sum + lost.
-            let (a, b) = (t[i], -local.origin[i]);
-            let sum = a + b;
-            let of_b = sum - a;
-            let lost = (a - (sum - of_b)) + (b - of_b);
-            (f64::from(placed[i]) - sum) - lost
-        };
-        assert!(bound > 0.0);
-        let sum: f64 = (0..3).map(|i| (moved(i) / bound).powi(2)).sum();
-        sum.sqrt()
-    }
-
-    #[test]
-    fn no_translation_is_moved_farther_than_the_bound_and_some_nearly_as_far() {
-        let mut words = ChaCha8Rng::seed_from_u64(1);
-        let mut random = move || words.next_u32();
-        for least in [false, true] {
-            let mut worst = 0.0_f64;
-            for _ in 0..50_000 {
-                // Sizes of 2⁻⁴⁰ to 2⁴⁰, or the smallest there are; halfway between two f32, and next to halfway.
-                let exponent = if least {
-                    -149
-                } else {
-                    (random() % 80) as i32 - 40
-                };
-                let relative: [f64; 3] = std::array::from_fn(|_| {
-                    let odd = f64::from(2 * (random() % 4) + 1)
-                        + [0.0, 1e-9, -1e-9][random() as usize % 3];
-                    if least {
-                        odd * exp2(-150)
-                    } else {
-                        (1.0 + odd * exp2(-24)) * exp2(exponent)
-                    }
-                });
-                let origin = std::array::from_fn(|_| f64::from(random() % 64) * exp2(exponent + 1));
-                let t = std::array::from_fn(|i| origin[i] + relative[i]);
-                worst = worst.max(share(&Local { origin }, t));
-            }
-            // √3/2 of the bound is reached.
-            assert!(
-                (0.86..=1.0).contains(&worst),
-                "{worst}, of the least: {least}"
-            );
+    /// The local translation, and how far from the exact one it may be: 0 where no step is rounded.
+    fn place(&self, t: [f64; 3]) -> ([f32; 3], f64) {
+        let (mut far, mut near, mut exact) = (0.0_f64, 0.0_f64, true);
+        let local = std::array::from_fn(|i| {
+            let (first, lost) = difference(t[i], self.origin[i]);
+            let (second, lost_again) = difference(first, self.corner[i]);
+            let local = second as f32;
+            exact &= lost == 0.0 && lost_again == 0.0 && f64::from(local) == second;
+            far = far.max(first.abs());
+            near = near.max(second.abs());
+            local
+        });
+        if exact {
+            return (local, 0.0);
         }
+        (local, near * MOVED + far * MOVED_BEFORE + MOVED_LEAST)
     }
+}
+
+/// Whether the coordinates are f32.
+fn is_f32(t: [f64; 3]) -> bool {
+    t.iter().all(|&x| f64::from(x as f32) == x)
+}
+
+/// a − b in f64, and what rounding lost of it, exactly (Knuth's two-sum).
+fn difference(a: f64, b: f64) -> (f64, f64) {
+    let sum = a - b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) - (b + of_b))
+}
+
+/// The smallest power of two that is no less than a positive normal number; 0 for 0.
+fn power_from(x: f64) -> f64 {
+    const MANTISSA: u64 = (1 << 52) - 1;
+    f64::from_bits((x.to_bits() + MANTISSA) & !MANTISSA)
 }

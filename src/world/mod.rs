@@ -31,6 +31,7 @@ mod local;
 mod lookup;
 mod margins;
 mod pair_test;
+mod regions;
 
 pub use crate::bodies::Groups;
 pub use body::Body;
@@ -64,7 +65,6 @@ pub struct World {
     translation: Vec<[f64; 3]>,
     margin: Vec<f32>,
     groups: Vec<Groups>,
-    local: Local,
     margins: Margins,
     interest: Vec<BodyId>,
     culler: Culler,
@@ -108,7 +108,6 @@ impl World {
             translation: Vec::new(),
             margin: Vec::new(),
             groups: Vec::new(),
-            local: Local::default(),
             margins: Margins::default(),
             interest: Vec::new(),
             culler,
@@ -235,9 +234,9 @@ impl World {
     /// Finds the pairs that might touch now.
     ///
     /// # Errors
-    /// Bodies more than 2⁶⁰ apart.
+    /// Never for bodies that this world has taken.
     pub fn cull(&mut self) -> Result<(), WorldError> {
-        self.place()?;
+        self.place();
         if self.replaced {
             self.culler.exchange(&self.bodies, self.ids.present());
             self.replaced = false;
@@ -299,37 +298,31 @@ impl World {
         self.culler.seconds()
     }
 
-    /// Brings all bodies near the local origin, in the model that their margin and rounding call for.
-    fn place(&mut self) -> Result<(), WorldError> {
-        let (ids, slots) = (&self.ids, 0..self.ids.slots());
-        let present = slots.filter(|&slot| ids.present()[slot]);
-        let translations = present.clone().map(|slot| self.translation[slot]);
-        let local = self.local.follow(translations);
-        self.replaced |= local != self.local; // static bodies have moved, as seen from there
-        if let Some(slot) = present
-            .clone()
-            .find(|&slot| !local.reaches(self.translation[slot]))
-        {
-            return Err(WorldError::Apart(ids.id(slot as u32)));
-        }
-        self.local = local;
+    /// Brings all bodies near local origins, in the models that their margins and rounding call for.
+    fn place(&mut self) {
+        let ids = &self.ids;
+        let present = (0..ids.slots()).filter(|&slot| ids.present()[slot]);
+        let reach = |slot: usize| self.shapes[self.shape[slot] as usize].reach;
+        let size = |slot| f64::from(reach(slot)) + f64::from(self.margin[slot]);
+        let local = Local::of(present.clone().map(|slot| (slot, self.translation[slot], size(slot))));
         let mut changed = false;
         for slot in present {
-            let (place, moved) = local.place(self.translation[slot]);
-            let shape = self.shape[slot] as usize;
-            let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
+            let (place, moved) = local.place(slot, self.translation[slot]);
+            let (number, margin) = (self.models[self.shape[slot] as usize], self.margin[slot]);
             let grow = |model, margin| self.culler.grow(model, margin);
             let model = self
                 .margins
-                .model(self.models[shape], reach, margin, moved, grow);
-            changed |= self.bodies.shape[slot] != model;
+                .model(number, reach(slot), margin, moved, grow);
+            let other_model = self.bodies.shape[slot] != model;
+            let other_place = self.bodies.translation[slot] != place;
+            changed |= other_model;
+            self.replaced |= !self.bodies.dynamic[slot] && (other_model || other_place);
             self.bodies.shape[slot] = model;
             self.bodies.translation[slot] = place;
         }
         if changed && !self.replaced {
             self.culler.reread_shapes(&self.bodies);
         }
-        Ok(())
     }
 
     /// Tells the culler of the bodies of interest that are still there.
