@@ -3,38 +3,16 @@
 //! Where the origins lie is a function of the bodies as they are now, never of earlier frames. Translations that are all f32
 //! stay as they are. Otherwise bodies that lie near each other are placed about one origin; bodies in many far-apart places
 //! have an [origin per region](super::regions).
-//!
-//! A translation is subtracted twice in f64 and rounded to f32. Its distance from the exact one is bounded, and the bound
-//! joins the body's margin, so that volumes at the rounded place contain what the exact mesh occupies (theorem T).
 
+use super::region::{Placed, Region};
 use super::regions::{Regions, regions};
 use crate::rounding::exp2;
 
-/// √3·2⁻²⁴ < 2⁻²³: how far rounding the local translation to f64 and then to f32 moves a body, as a multiple of its largest
-/// coordinate.
-const MOVED: f64 = exp2(-23);
-
-/// √3·2⁻¹⁵⁰ < 2⁻¹⁴⁹: the same where f32 underflows.
-const MOVED_LEAST: f64 = exp2(-149);
-
-/// √3·2⁻⁵³ < 2⁻⁵²: how far rounding the distance from the origin to f64 moves a body, as a multiple of its largest coordinate.
-const MOVED_BEFORE: f64 = exp2(-52);
-
-/// Cells across that are placed about one origin without looking for regions: rounding there is below 2⁻¹¹ of the largest body.
+/// Cells across that are placed about one origin without looking for regions: rounding there is below 2⁻¹⁰ of the largest body.
 const FEW_CELLS: f64 = 64.0;
 
 /// The least cell, for bodies without any extent.
 const LEAST_CELL: f64 = exp2(-149);
-
-/// Where the f32 coordinates of a region's bodies count from: `origin` in the world becomes −`corner`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Region {
-    pub origin: [f64; 3],
-    pub corner: [f64; 3],
-}
-
-/// A body as far as it matters here: its slot, its translation, and how far the mesh with its margin reaches from there.
-pub(super) type Placed = (usize, [f64; 3], f64);
 
 /// Which region each slot's body belongs to.
 #[derive(Clone, Debug, Default)]
@@ -65,7 +43,7 @@ impl Local {
         } else {
             None
         };
-        let whole = Region::about(lo, hi, half, cell);
+        let whole = Self::about(lo, hi, half, cell);
         Self { whole, parts }
     }
 
@@ -74,39 +52,19 @@ impl Local {
         let region = self.parts.as_ref().map(|parts| parts.of(slot));
         region.unwrap_or(&self.whole).place(t)
     }
-}
 
-impl Region {
     /// One origin for the box from `lo` to `hi`: the world's own, unless the box lies farther out than it is wide. Then the
     /// middle, in steps of about an eighth of the width, so that it seldom changes while bodies move.
-    fn about(lo: [f64; 3], hi: [f64; 3], half: f64, cell: f64) -> Self {
+    fn about(lo: [f64; 3], hi: [f64; 3], half: f64, cell: f64) -> Region {
         let middle: [f64; 3] = std::array::from_fn(|i| 0.5 * lo[i] + 0.5 * hi[i]);
         if middle.iter().all(|x| x.abs() <= half) {
-            return Self::default();
+            return Region::default();
         }
         let step = power_from(0.125 * half).max(cell);
-        Self {
+        Region {
             origin: middle.map(|x| (x / step).round() * step),
             corner: [0.0; 3],
         }
-    }
-
-    /// The local translation, and how far from the exact one it may be: 0 where no step is rounded.
-    fn place(&self, t: [f64; 3]) -> ([f32; 3], f64) {
-        let (mut far, mut near, mut exact) = (0.0_f64, 0.0_f64, true);
-        let local = std::array::from_fn(|i| {
-            let (first, lost) = difference(t[i], self.origin[i]);
-            let (second, lost_again) = difference(first, self.corner[i]);
-            let local = second as f32;
-            exact &= lost == 0.0 && lost_again == 0.0 && f64::from(local) == second;
-            far = far.max(first.abs());
-            near = near.max(second.abs());
-            local
-        });
-        if exact {
-            return (local, 0.0);
-        }
-        (local, near * MOVED + far * MOVED_BEFORE + MOVED_LEAST)
     }
 }
 
@@ -115,15 +73,65 @@ fn is_f32(t: [f64; 3]) -> bool {
     t.iter().all(|&x| f64::from(x as f32) == x)
 }
 
-/// a − b in f64, and what rounding lost of it, exactly (Knuth's two-sum).
-fn difference(a: f64, b: f64) -> (f64, f64) {
-    let sum = a - b;
-    let of_b = sum - a;
-    (sum, (a - (sum - of_b)) - (b + of_b))
-}
-
 /// The smallest power of two that is no less than a positive normal number; 0 for 0.
 fn power_from(x: f64) -> f64 {
     const MANTISSA: u64 = (1 << 52) - 1;
     f64::from_bits((x.to_bits() + MANTISSA) & !MANTISSA)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bodies of size 1 at these places, in slots that begin at 3.
+    fn local(places: &[[f64; 3]]) -> Local {
+        Local::of(places.iter().zip(3..).map(|(&t, slot)| (slot, t, 1.0)))
+    }
+
+    #[test]
+    fn f32_translations_stay() {
+        let far = [[1.0e9, -3.5, 0.0], [1.0e15, 7.25, 2.0f64.powi(-149)]];
+        let local = local(&far);
+        assert_eq!(local.place(3, far[0]), ([1.0e9, -3.5, 0.0], 0.0));
+        assert_eq!(local.place(4, far[1]).1, 0.0);
+    }
+
+    #[test]
+    fn far_bodies_get_an_origin() {
+        let far = [[1.0e9 + 0.1, 0.0, 0.0], [1.0e9 + 8.3, 1.0, 0.0]];
+        let local = local(&far);
+        let [a, b] = [0, 1].map(|i| local.place(3 + i, far[i]));
+        // Within 64 of an origin, instead of 10⁹ from it.
+        assert!(a.0[0].abs() <= 64.0 && a.1 < 1.0e-5, "{a:?}");
+        assert!((b.0[0] - a.0[0] - 8.2).abs() < 1.0e-5, "{b:?}");
+    }
+
+    #[test]
+    fn bodies_about_the_origin_keep_it() {
+        let near = [[-900.1, 3.0, 0.5], [1000.0, 0.25, 0.0]];
+        let local = local(&near);
+        assert_eq!(local.place(4, near[1]), ([1000.0, 0.25, 0.0], 0.0));
+        assert_eq!(local.place(3, near[0]).0, near[0].map(|x| x as f32));
+    }
+
+    #[test]
+    fn far_regions_are_brought_together() {
+        let places: Vec<[f64; 3]> = (0..1000_u32)
+            .map(|i| [f64::from(i) * 1.0e9 + 0.1, f64::from(i % 7) * -3.0e11, 0.7])
+            .collect();
+        let local = local(&places);
+        let placed: Vec<[f32; 3]> = (0..1000)
+            .map(|i| {
+                let (place, moved) = local.place(3 + i, places[i]);
+                assert!(moved < 2.0_f64.powi(-10), "{moved}");
+                place
+            })
+            .collect();
+        for (i, a) in placed.iter().enumerate() {
+            for b in &placed[i + 1..] {
+                let apart = (0..3).fold(0.0_f32, |m, i| m.max((a[i] - b[i]).abs()));
+                assert!(apart >= 60.0, "{a:?} {b:?}");
+            }
+        }
+    }
 }

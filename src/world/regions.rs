@@ -5,12 +5,13 @@
 //! upper ends. The cubes are packed next to each other, larger ones first, along a Morton curve: then f32 coordinates stay
 //! about as small as those of all cubes' volume, wherever in the world the regions are.
 //!
-//! Cells are numbered by whole f64, which hold the cell of any f64 translation exactly. From 2⁵³ on no two cells differ by
-//! one, so that rounding there hides no neighbour.
+//! Cells are numbered by whole f64, which hold the cell of any f64 translation exactly. They are compared by differences, since
+//! a number's own neighbours are no f64 from 2⁵³ on.
 
 use std::cmp::Ordering;
 
-use super::local::{Placed, Region};
+use super::region::{Placed, Region};
+use crate::rounding::exp2;
 
 /// A cell's number along each axis, a whole number.
 type Cell = [f64; 3];
@@ -82,12 +83,14 @@ fn connect(cells: &[Cell]) -> Vec<u32> {
         // Where the neighbours of a cell in that row begin: never before those of the cell before it.
         let mut from = 0;
         for (at, cell) in cells.iter().enumerate() {
-            let to = |z: f64| [cell[0] + x, cell[1] + y, cell[2] + z];
-            while from < cells.len() && compare(&cells[from], &to(-1.0)) == Ordering::Less {
+            // From this cell to another: exact where it is at most one, whatever the numbers.
+            let step_to = |c: &Cell| -> Cell { std::array::from_fn(|i| c[i] - cell[i]) };
+            let order = |c: &Cell, z: f64| compare(&step_to(c), &[x, y, z]);
+            while from < cells.len() && order(&cells[from], -1.0) == Ordering::Less {
                 from += 1;
             }
             let near = cells[from..].iter().zip(from..);
-            for (_, other) in near.take_while(|(c, _)| compare(c, &to(1.0)) != Ordering::Greater) {
+            for (_, other) in near.take_while(|(c, _)| order(c, 1.0) != Ordering::Greater) {
                 join(&mut first, at as u32, other as u32);
             }
         }
@@ -96,7 +99,11 @@ fn connect(cells: &[Cell]) -> Vec<u32> {
     for at in 0..first.len() {
         // A cell's first comes before it, and so has its region's number by now.
         let leads = first[at] as usize == at;
-        first[at] = if leads { regions } else { first[first[at] as usize] };
+        first[at] = if leads {
+            regions
+        } else {
+            first[first[at] as usize]
+        };
         regions += u32::from(leads);
     }
     first
@@ -164,7 +171,7 @@ fn pack(cubes: &[Cube], cell: f64) -> (Vec<Region>, f64) {
         let (lowest, doubled) = outer[at];
         let corner = place_on_curve(next);
         next += 1 << (3 * doubled);
-        let side = f64::from(doubled).exp2();
+        let side = exp2(doubled as i32);
         end = std::array::from_fn(|i| end[i].max(corner[i] + side));
         regions[at] = Region {
             origin: lowest.map(|x| x * cell),
@@ -184,4 +191,91 @@ fn place_on_curve(place: u128) -> [f64; 3] {
         let bits = (0..42).map(|bit| (place >> (3 * bit + axis) & 1) << bit);
         bits.sum::<u128>() as f64
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    use super::*;
+
+    /// The region of each cell, from pairs of cells.
+    fn slowly(cells: &[Cell]) -> Vec<u32> {
+        let mut of: Vec<u32> = (0..cells.len() as u32).collect();
+        for (i, a) in cells.iter().enumerate() {
+            for (j, b) in cells.iter().enumerate() {
+                if (0..3).all(|axis| (a[axis] - b[axis]).abs() <= 1.0) {
+                    let (kept, gone) = (of[i].min(of[j]), of[i].max(of[j]));
+                    of.iter_mut()
+                        .filter(|r| **r == gone)
+                        .for_each(|r| *r = kept);
+                }
+            }
+        }
+        let mut names: Vec<u32> = of.clone();
+        names.sort_unstable();
+        names.dedup();
+        of.iter()
+            .map(|r| names.binary_search(r).unwrap_or(0) as u32)
+            .collect()
+    }
+
+    #[test]
+    fn neighbours_along_corners_connect() {
+        let cells = [[-1.0, 4.0, 0.0], [0.0, 3.0, 1.0], [0.0, 5.0, 2.0]];
+        assert_eq!(connect(&cells), [0, 0, 1]);
+        assert_eq!(connect(&cells), slowly(&cells));
+    }
+
+    #[test]
+    fn sweeps_find_what_pairs_find() {
+        let mut words = ChaCha8Rng::seed_from_u64(1);
+        let mut seen = [0; 2];
+        for round in 0..400_u32 {
+            let side = 3 + round % 9;
+            // Some lie where whole f64 are even, so that a cell's neighbours are no f64.
+            let base = [0.0, -4.0, 2.0_f64.powi(53), -2.0_f64.powi(55)][round as usize % 4];
+            let mut cells: Vec<Cell> = (0..40)
+                .map(|_| [(); 3].map(|()| base + f64::from(words.next_u32() % side) + 0.0))
+                .collect();
+            cells.sort_unstable_by(compare);
+            cells.dedup();
+            let regions = connect(&cells);
+            assert_eq!(regions, slowly(&cells), "{cells:?}");
+            seen[usize::from(regions.contains(&1))] += 1;
+        }
+        assert!(seen[0] > 20 && seen[1] > 20, "{seen:?}");
+    }
+
+    #[test]
+    fn cubes_keep_an_empty_layer() {
+        let mut words = ChaCha8Rng::seed_from_u64(2);
+        for _ in 0..200 {
+            let cubes: Vec<Cube> = (0..50)
+                .map(|_| {
+                    let lo = [(); 3].map(|()| f64::from(words.next_u32() % 1000) - 500.0);
+                    let wide = 1 << (words.next_u32() % 6);
+                    let hi = lo.map(|x| x + f64::from(words.next_u32() % wide));
+                    Cube { lo, hi }
+                })
+                .collect();
+            let (regions, half) = pack(&cubes, 2.0);
+            // The local ends of the occupied cells, in cells.
+            let ends = |i: usize| -> [[f64; 2]; 3] {
+                std::array::from_fn(|a| {
+                    let at = |x: f64| x - (regions[i].origin[a] + regions[i].corner[a]) / 2.0;
+                    [at(cubes[i].lo[a]), at(cubes[i].hi[a]) + 1.0]
+                })
+            };
+            for i in 0..cubes.len() {
+                assert!(ends(i).as_flattened().iter().all(|x| x.abs() * 2.0 <= half));
+                for j in 0..i {
+                    let (a, b) = (ends(i), ends(j));
+                    let gap = (0..3).map(|k| (a[k][0] - b[k][1]).max(b[k][0] - a[k][1]));
+                    assert!(gap.fold(-1.0, f64::max) >= 1.0, "{a:?} {b:?}");
+                }
+            }
+        }
+    }
 }

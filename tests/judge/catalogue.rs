@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use sdop::bodies::contract::check_bodies;
-use sdop::judge::catalogue::groups;
-use sdop::judge::wire::{Wire, ndjson};
-use sdop::judge::{Claim, case::matches};
+use sdop_judge::catalogue::groups;
+use sdop_judge::wire::{Wire, ndjson};
+use sdop_judge::{Claim, case::matches};
 
 #[test]
 fn a_name_is_the_same_case_every_time_and_a_seed_another() {
