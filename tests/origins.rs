@@ -79,7 +79,7 @@ fn meeting(mesh: &TriangleMesh, poses: &[Pose]) -> Vec<bool> {
     };
     let first = body((UNTURNED, [0.0; 3]));
     let meets = |pose: &Pose| {
-        let bodies = [first.clone(), body(*pose)];
+        let bodies = [first, body(*pose)];
         !reference::exact::judge::meeting_pairs(&bodies).0.is_empty()
     };
     poses.iter().map(meets).collect()

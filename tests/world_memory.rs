@@ -184,7 +184,7 @@ fn a_crowd_of_bodies_that_disperses_gives_its_memory_back() {
                 world.events();
             }
             world.shrink_to_fit();
-            assert_eq!(world.pair_bytes() > 100 * CROWD, false);
+            assert!(world.pair_bytes() <= 100 * CROWD);
             world.cull().unwrap();
             world
         };

@@ -113,7 +113,11 @@ impl TriangleMesh {
 
     /// The vertices in the file's coordinates. Exact: an offset has few enough bits.
     pub fn points(&self) -> impl ExactSizeIterator<Item = [f64; 3]> + '_ {
-        let point = |v: &Vec3| std::array::from_fn(|i| self.offset[i] + f64::from(v[i]));
+        let coordinate = |offset: f64, x: f32| match offset {
+            0.0 => f64::from(x), // 0 + −0 would be 0
+            _ => offset + f64::from(x),
+        };
+        let point = move |v: &Vec3| std::array::from_fn(|i| coordinate(self.offset[i], v[i]));
         self.vertices.iter().map(point)
     }
 

@@ -182,10 +182,14 @@ impl PairsSnapshot {
         let last = Arc::new(Reported { slots, generation });
         let watched = match &self.watched {
             None => last.clone(),
-            Some(WatchedSnapshot { pairs, generation }) => Arc::new(Reported {
-                slots: sorted(pairs, generation.len())?,
-                generation: Arc::new(generation.clone()),
-            }),
+            Some(WatchedSnapshot { pairs, generation }) => {
+                let named = pairs[1].iter().max().map_or(0, |&last| last as usize + 1);
+                check_length("watched generation", generation.len(), named)?;
+                Arc::new(Reported {
+                    slots: sorted(pairs, generation.len())?,
+                    generation: Arc::new(generation.clone()),
+                })
+            }
         };
         Ok(PairLog::of(last, watched))
     }

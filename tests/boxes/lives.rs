@@ -137,7 +137,7 @@ fn through_text(world: &BoxWorld) -> BoxWorldSnapshot {
 /// Goes astray in a clone and rolls it back, or restores the world in another that culls by another finder.
 fn restore(world: &mut BoxWorld, frame: usize) {
     let saved = through_text(world);
-    let mut other = if frame % 3 == 0 {
+    let mut other = if frame.is_multiple_of(3) {
         world.clone()
     } else {
         let finder = Finder::ALL[frame % Finder::ALL.len()];

@@ -192,7 +192,7 @@ fn a_mesh_is_far_from_two_to_the_minus_twenty_on() {
 fn cloud(random: &mut ChaCha8Rng) -> Vec<[f64; 3]> {
     let mut unit = || random.next_u64() as f64 / 2f64.powi(63) - 1.0;
     let size = 2f64.powf(60.0 * unit() - 10.0);
-    let far: [f64; 3] = std::array::from_fn(|_| size * 2f64.powf(30.0 + 25.0 * unit()) * unit());
+    let far: [f64; 3] = std::array::from_fn(|_| size * 2f64.powf(25.0 + 30.0 * unit()) * unit());
     let bits = 2f64.powi((26.0 + 26.0 * unit()) as i32);
     let mut point = |_| {
         std::array::from_fn(|i| {

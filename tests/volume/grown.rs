@@ -41,7 +41,6 @@ fn slabs_grow_by_the_margin_to_the_ulp() {
                 axes,
                 origin: Origin::Ball,
                 radius: Some(rng.random_range(0.5..2.0)),
-                ..ShapeSpec::default()
             };
             let ordop = Shape::build(&mesh, &spec).unwrap().ordop;
             let lengths = lengths_squared(&ordop);

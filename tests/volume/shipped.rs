@@ -20,7 +20,6 @@ fn shape(name: &str, axes: Axes) -> Shape {
         radius: Some(1.0),
         directions: DirectionSet::K26,
         axes,
-        ..ShapeSpec::default()
     };
     Shape::build(&mesh, &spec).unwrap()
 }

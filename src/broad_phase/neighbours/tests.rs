@@ -152,7 +152,7 @@ fn holds_what_touches(bodies: &Followed, skin: [f64; 2]) {
     let list = list.expect("bodies of which little is known are worth a list");
     let (listed, seen) = (bodies.candidates(true), bodies.candidates(false));
     assert_eq!(list.len(), listed.len());
-    assert_eq!(list.tested(), seen.len() as u64);
+    assert_eq!(list.seen(), seen.len() as u64);
     assert_eq!(
         bodies.finder.grid.age_and_candidates().1,
         (seen.len() as f64 / 1.25f64.powi(3)) as u64
