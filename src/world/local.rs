@@ -4,79 +4,99 @@
 //! stay as they are. Otherwise bodies that lie near each other are placed about one origin; bodies in many far-apart places
 //! have an [origin per region](super::regions).
 
+use super::bounds::Bounds;
 use super::region::{Placed, Region};
 use super::regions::{Regions, regions};
-use crate::rounding::exp2;
+use super::{World, WorldError, offset};
+use crate::bodies::contract::is_within_limit;
+use crate::rounding::LIMIT;
 
-/// Cells across that are placed about one origin without looking for regions: rounding there is below 2⁻¹⁰ of the largest body.
-const FEW_CELLS: f64 = 64.0;
-
-/// The least cell, for bodies without any extent.
-const LEAST_CELL: f64 = exp2(-149);
-
-/// Which region each slot's body belongs to.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Local {
-    whole: Region,
-    parts: Option<Regions>,
+/// About which origin each slot's body is placed.
+enum Local {
+    /// All translations stay as they are.
+    World,
+    One(Region),
+    Many(Regions),
 }
 
 impl Local {
-    /// The regions of these bodies, whose translations are at most 2⁶⁰ in size.
-    pub fn of(bodies: impl Iterator<Item = Placed> + Clone) -> Self {
-        if bodies.clone().all(|(_, t, _)| is_f32(t)) {
-            return Self::default();
+    /// The origins for these bodies, whose translations are at most 2⁶⁰ in size, or little more where meshes are far from
+    /// their own origins.
+    fn of(bodies: impl Iterator<Item = Placed> + Clone) -> Self {
+        if bodies.clone().all(|(_, t, _)| is_placed(t)) {
+            return Self::World;
         }
-        let (mut lo, mut hi, mut size) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], 0.0_f64);
-        for (_, t, reach) in bodies.clone() {
-            for axis in 0..3 {
-                lo[axis] = lo[axis].min(t[axis]);
-                hi[axis] = hi[axis].max(t[axis]);
-            }
-            size = size.max(reach);
+        let bounds = Bounds::of(bodies.clone());
+        let many = bounds.is_wide().then(|| regions(bodies.collect(), bounds));
+        match many.flatten() {
+            Some(regions) => Self::Many(regions),
+            None => Self::One(bounds.region()),
         }
-        // Bodies that can meet are at most 2·size apart, a 32nd of a cell.
-        let cell = power_from((64.0 * size).max(LEAST_CELL));
-        let half = (0..3).fold(0.0, |m: f64, i| m.max(0.5 * hi[i] - 0.5 * lo[i]));
-        let parts = if 2.0 * half > FEW_CELLS * cell {
-            regions(bodies, cell).filter(|parts| 2.0 * parts.half < half)
-        } else {
-            None
-        };
-        let whole = Self::about(lo, hi, half, cell);
-        Self { whole, parts }
     }
 
     /// The local translation of a slot's body, and how far from the exact one it may be.
-    pub fn place(&self, slot: usize, t: [f64; 3]) -> ([f32; 3], f64) {
-        let region = self.parts.as_ref().map(|parts| parts.of(slot));
-        region.unwrap_or(&self.whole).place(t)
-    }
-
-    /// One origin for the box from `lo` to `hi`: the world's own, unless the box lies farther out than it is wide. Then the
-    /// middle, in steps of about an eighth of the width, so that it seldom changes while bodies move.
-    fn about(lo: [f64; 3], hi: [f64; 3], half: f64, cell: f64) -> Region {
-        let middle: [f64; 3] = std::array::from_fn(|i| 0.5 * lo[i] + 0.5 * hi[i]);
-        if middle.iter().all(|x| x.abs() <= half) {
-            return Region::default();
-        }
-        let step = power_from(0.125 * half).max(cell);
-        Region {
-            origin: middle.map(|x| (x / step).round() * step),
-            corner: [0.0; 3],
+    fn place(&self, slot: usize, t: [f64; 3]) -> ([f32; 3], f64) {
+        match self {
+            Self::World => (t.map(|x| x as f32), 0.0),
+            Self::One(region) => region.place(t),
+            Self::Many(regions) => regions.of(slot).place(t),
         }
     }
 }
 
-/// Whether the coordinates are f32.
-fn is_f32(t: [f64; 3]) -> bool {
-    t.iter().all(|&x| f64::from(x as f32) == x)
+/// Whether a translation can stay as it is: f32, and within the contract.
+fn is_placed(t: [f64; 3]) -> bool {
+    t.iter()
+        .all(|&x| f64::from(x as f32) == x && x.abs() <= f64::from(LIMIT))
 }
 
-/// The smallest power of two that is no less than a positive normal number; 0 for 0.
-fn power_from(x: f64) -> f64 {
-    const MANTISSA: u64 = (1 << 52) - 1;
-    f64::from_bits((x.to_bits() + MANTISSA) & !MANTISSA)
+impl World {
+    /// Brings all bodies near local origins, in the models that their margins and rounding call for.
+    pub(super) fn place(&mut self) -> Result<(), WorldError> {
+        let (ids, slots) = (&self.ids, 0..self.ids.slots());
+        let present = slots.filter(|&slot| ids.present()[slot]);
+        let local = Local::of(present.clone().map(|slot| self.placed(slot)));
+        let mut changed = false;
+        for slot in present {
+            let (translation, composed) = self.composed(slot);
+            let (place, moved) = local.place(slot, translation);
+            if !is_within_limit(&place) {
+                self.replaced = true; // some bodies have been placed
+                return Err(WorldError::Apart(ids.id(slot as u32)));
+            }
+            let moved = moved + composed;
+            let shape = self.shape[slot] as usize;
+            let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
+            let grow = |model, margin| self.culler.grow(model, margin);
+            let model = self
+                .margins
+                .model(self.models[shape], reach, margin, moved, grow);
+            let is_new = self.bodies.shape[slot] != model;
+            let is_moved = self.bodies.translation[slot] != place;
+            changed |= is_new;
+            self.replaced |= !self.bodies.dynamic[slot] && (is_new || is_moved);
+            self.bodies.shape[slot] = model;
+            self.bodies.translation[slot] = place;
+        }
+        if changed && !self.replaced {
+            self.culler.reread_shapes(&self.bodies);
+        }
+        Ok(())
+    }
+
+    /// The body in a slot, as far as its place is concerned.
+    fn placed(&self, slot: usize) -> Placed {
+        let (translation, composed) = self.composed(slot);
+        let reach = f64::from(self.shapes[self.shape[slot] as usize].reach);
+        let size = reach + f64::from(self.margin[slot]) + composed;
+        (slot, translation, size)
+    }
+
+    /// The translation of the vertices of the body in a slot, and how far from the exact one it may be.
+    fn composed(&self, slot: usize) -> ([f64; 3], f64) {
+        let offset = self.shapes[self.shape[slot] as usize].pose_offset;
+        offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)
+    }
 }
 
 #[cfg(test)]
@@ -90,7 +110,7 @@ mod tests {
 
     #[test]
     fn f32_translations_stay() {
-        let far = [[1.0e9, -3.5, 0.0], [1.0e15, 7.25, 2.0f64.powi(-149)]];
+        let far = [[1.0e9, -3.5, 0.0], [2.0f64.powi(50), 7.25, 2.0f64.powi(-149)]];
         let local = local(&far);
         assert_eq!(local.place(3, far[0]), ([1.0e9, -3.5, 0.0], 0.0));
         assert_eq!(local.place(4, far[1]).1, 0.0);
@@ -130,7 +150,7 @@ mod tests {
         for (i, a) in placed.iter().enumerate() {
             for b in &placed[i + 1..] {
                 let apart = (0..3).fold(0.0_f32, |m, i| m.max((a[i] - b[i]).abs()));
-                assert!(apart >= 60.0, "{a:?} {b:?}");
+                assert!(apart >= 8.0, "{a:?} {b:?}");
             }
         }
     }

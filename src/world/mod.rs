@@ -25,6 +25,7 @@
 //! ```
 
 mod body;
+mod bounds;
 mod crowds;
 #[cfg(feature = "serde")]
 mod digest;
@@ -59,18 +60,16 @@ pub use saved::SnapshotError;
 pub use snapshot::WorldSnapshot;
 
 pub(crate) use self::ids::{Ids, shrink_column};
-use self::local::Local;
 use self::margins::{Margins, check_margin};
 pub(crate) use self::pair_log::PairLog;
-use self::region::Placed;
 #[cfg(feature = "serde")]
 pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length};
 use self::shapes::{ShapeSlot, check_shape};
 use crate::bodies::Bodies;
-use crate::bodies::contract::{ContractError, check_number, check_pose, is_within_limit};
+use crate::bodies::contract::{ContractError, check_number, check_pose};
 use crate::counters::{Counters, Seconds};
 use crate::culler::{CullError, Culler, CullerBuilder};
-use crate::settings::{Interest, SettingsError};
+use crate::settings::{Finder, Interest, SettingsError};
 use crate::simd::in_default_mode;
 use crate::volume::Shape;
 
@@ -323,6 +322,12 @@ impl World {
         self.ids.slots()
     }
 
+    /// The pair finder at work: the one asked for, or what `auto` picked last.
+    #[must_use]
+    pub fn finder(&self) -> Finder {
+        self.culler.finder()
+    }
+
     /// Counters summed over all culls.
     #[must_use]
     pub fn counters(&self) -> &Counters {
@@ -333,53 +338,6 @@ impl World {
     #[must_use]
     pub fn seconds(&self) -> &Seconds {
         self.culler.seconds()
-    }
-
-    /// Brings all bodies near local origins, in the models that their margins and rounding call for.
-    fn place(&mut self) -> Result<(), WorldError> {
-        let (ids, slots) = (&self.ids, 0..self.ids.slots());
-        let present = slots.filter(|&slot| ids.present()[slot]);
-        let local = Local::of(present.clone().map(|slot| self.placed(slot)));
-        let mut changed = false;
-        for slot in present {
-            let (translation, composed) = self.composed(slot);
-            let (place, moved) = local.place(slot, translation);
-            if !is_within_limit(&place) {
-                self.replaced = true; // some bodies have been placed
-                return Err(WorldError::Apart(ids.id(slot as u32)));
-            }
-            let moved = moved + composed;
-            let shape = self.shape[slot] as usize;
-            let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
-            let grow = |model, margin| self.culler.grow(model, margin);
-            let model = self
-                .margins
-                .model(self.models[shape], reach, margin, moved, grow);
-            let is_new = self.bodies.shape[slot] != model;
-            let is_moved = self.bodies.translation[slot] != place;
-            changed |= is_new;
-            self.replaced |= !self.bodies.dynamic[slot] && (is_new || is_moved);
-            self.bodies.shape[slot] = model;
-            self.bodies.translation[slot] = place;
-        }
-        if changed && !self.replaced {
-            self.culler.reread_shapes(&self.bodies);
-        }
-        Ok(())
-    }
-
-    /// The body in a slot, as far as its place is concerned.
-    fn placed(&self, slot: usize) -> Placed {
-        let (translation, composed) = self.composed(slot);
-        let reach = f64::from(self.shapes[self.shape[slot] as usize].reach);
-        let size = reach + f64::from(self.margin[slot]) + composed;
-        (slot, translation, size)
-    }
-
-    /// The translation of the vertices of the body in a slot, and how far from the exact one it may be.
-    fn composed(&self, slot: usize) -> ([f64; 3], f64) {
-        let offset = self.shapes[self.shape[slot] as usize].pose_offset;
-        offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)
     }
 
     /// Tells the culler of the bodies of interest that are still there.

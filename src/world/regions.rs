@@ -1,23 +1,22 @@
 //! Regions: bodies that lie so far from all others that they can meet only each other.
 //!
 //! Space is cut into cells, far wider than two bodies that meet are apart. A region is a connected set of occupied cells, next
-//! to each other along faces, edges or corners. It lies in a cube of a power of two cells, with an empty layer at its
-//! upper ends. The cubes are packed next to each other, larger ones first, along a Morton curve: then f32 coordinates stay
-//! about as small as those of all cubes' volume, wherever in the world the regions are.
+//! to each other along faces, edges or corners; where its bodies are smaller than those of others, it is cut again into cells of
+//! its own. Each region lies in a cube with room about its bodies. The cubes are packed next to each other along a Morton curve,
+//! the small ones first: f32 coordinates are about as small as those of all cubes that are no larger, wherever in the world the
+//! regions are.
 //!
 //! Cells are numbered by whole f64, which hold the cell of any f64 translation exactly. They are compared by differences, since
 //! a number's own neighbours are no f64 from 2⁵³ on.
 
 use std::cmp::Ordering;
 
+use super::bounds::{Bounds, Cube};
 use super::region::{Placed, Region};
-use crate::rounding::exp2;
+use crate::rounding::LIMIT;
 
 /// A cell's number along each axis, a whole number.
 type Cell = [f64; 3];
-
-/// Cells across the smallest cube: up to two that are occupied at any place, and an empty one.
-const SMALLEST: f64 = 4.0;
 
 /// The rows of cells next to a cell's own that come after it, as steps along x and y; along z a cell on either side.
 const ROWS: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1.0], [1.0, -1.0], [1.0, 0.0], [1.0, 1.0]];
@@ -27,8 +26,6 @@ const ROWS: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1.0], [1.0, -1.0], [1.0, 0.0], [1
 pub(super) struct Regions {
     regions: Vec<Region>,
     of_slot: Vec<u32>,
-    /// The largest local coordinate of any cube.
-    pub half: f64,
 }
 
 impl Regions {
@@ -37,37 +34,79 @@ impl Regions {
     }
 }
 
-/// The regions of these bodies, if there are at least two; `cell` is a power of two.
-pub(super) fn regions(bodies: impl Iterator<Item = Placed>, cell: f64) -> Option<Regions> {
-    let cell_of = |t: [f64; 3]| t.map(|x| (x / cell).floor() + 0.0); // + 0.0: one zero, not two
-    let mut occupied: Vec<(Cell, usize)> = bodies.map(|(slot, t, _)| (cell_of(t), slot)).collect();
-    occupied.sort_unstable_by(|a, b| compare(&a.0, &b.0));
-    let mut cells: Vec<Cell> = occupied.iter().map(|&(cell, _)| cell).collect();
-    cells.dedup();
-    let region_of = connect(&cells);
-    let mut cubes: Vec<Cube> = Vec::new();
-    for (&cell, &region) in cells.iter().zip(&region_of) {
-        match cubes.get_mut(region as usize) {
-            Some(cube) => cube.take_in(cell),
-            None => cubes.push(Cube::of(cell)),
-        }
-    }
-    if cubes.len() < 2 {
+/// The regions of these bodies, if f32 coordinates about them are finer than about one origin for all.
+pub(super) fn regions(mut bodies: Vec<Placed>, whole: Bounds) -> Option<Regions> {
+    let mut found = Vec::new();
+    split(&mut bodies, whole, &mut found);
+    let cubes: Vec<Cube> = found.iter().map(|(_, bounds)| bounds.cube()).collect();
+    let regions = pack(&cubes);
+    if !are_finer(&regions, &cubes, &found, whole.half()) {
         return None;
     }
-    let slots = occupied.iter().map(|&(_, slot)| slot + 1).max();
+    let slots = bodies.iter().map(|&(slot, ..)| slot + 1).max();
     let mut of_slot = vec![0; slots.unwrap_or(0)];
-    let mut at = 0;
-    for (cell, slot) in occupied {
-        at += usize::from(cells[at] != cell);
-        of_slot[slot] = region_of[at];
+    let mut bodies = bodies.iter();
+    for (region, &(number, _)) in found.iter().enumerate() {
+        for &(slot, ..) in bodies.by_ref().take(number) {
+            of_slot[slot] = region as u32;
+        }
     }
-    let (regions, half) = pack(&cubes, cell);
-    Some(Regions {
-        regions,
-        of_slot,
-        half,
-    })
+    Some(Regions { regions, of_slot })
+}
+
+/// Sorts bodies by region, and adds for each region how many they are, and their box.
+fn split(bodies: &mut [Placed], bounds: Bounds, found: &mut Vec<(usize, Bounds)>) {
+    let cell = bounds.cell();
+    if !bounds.is_wide() {
+        return found.push((bodies.len(), bounds));
+    }
+    let mut rest = bodies;
+    for number in sort_by_set(rest, cell) {
+        let (region, others) = rest.split_at_mut(number);
+        let bounds = Bounds::of(region.iter().copied());
+        if bounds.cell() < cell {
+            split(region, bounds, found);
+        } else {
+            found.push((number, bounds)); // connected, in cells of this side
+        }
+        rest = others;
+    }
+}
+
+/// Sorts bodies by the connected set of cells that they lie in; returns how many each set has.
+fn sort_by_set(bodies: &mut [Placed], cell: f64) -> Vec<usize> {
+    let cell_of = |t: [f64; 3]| t.map(|x| (x / cell).floor() + 0.0); // + 0.0: one zero, not two
+    let mut by_cell: Vec<(Cell, Placed)> = bodies.iter().map(|&b| (cell_of(b.1), b)).collect();
+    by_cell.sort_unstable_by(|a, b| compare(&a.0, &b.0));
+    let mut cells: Vec<Cell> = by_cell.iter().map(|&(cell, _)| cell).collect();
+    cells.dedup();
+    let set_of = connect(&cells);
+    let mut at = 0;
+    let with_set = by_cell.into_iter().map(|(cell, body)| {
+        at += usize::from(cells[at] != cell);
+        (set_of[at], body)
+    });
+    let mut by_set: Vec<(u32, Placed)> = with_set.collect();
+    by_set.sort_by_key(|&(set, _)| set);
+    for (body, &(_, sorted)) in bodies.iter_mut().zip(&by_set) {
+        *body = sorted;
+    }
+    by_set.chunk_by(|a, b| a.0 == b.0).map(<[_]>::len).collect()
+}
+
+/// Whether coordinates about these regions are within the contract, and the coarsest of them, measured by the bodies there, at least
+/// twice as fine as about one origin for a box of this half width.
+fn are_finer(regions: &[Region], cubes: &[Cube], found: &[(usize, Bounds)], half: f64) -> bool {
+    let (mut before, mut after) = (0.0_f64, 0.0_f64);
+    for ((region, cube), (_, bounds)) in regions.iter().zip(cubes).zip(found) {
+        let farthest = region.corner.iter().fold(0.0, |far: f64, x| far.max(-x)) + cube.side;
+        if farthest > 0.5 * f64::from(LIMIT) {
+            return false;
+        }
+        before = before.max(half / bounds.cell());
+        after = after.max(farthest / bounds.cell());
+    }
+    2.0 * after < before
 }
 
 /// The order of cells: by x, then y, then z.
@@ -124,81 +163,44 @@ fn first_of(first: &mut [u32], mut at: u32) -> u32 {
     at
 }
 
-/// The box of a region's cells.
-struct Cube {
-    lo: Cell,
-    hi: Cell,
-}
-
-impl Cube {
-    fn of(cell: Cell) -> Self {
-        Self { lo: cell, hi: cell }
-    }
-
-    fn take_in(&mut self, cell: Cell) {
-        for axis in 0..3 {
-            self.lo[axis] = self.lo[axis].min(cell[axis]);
-            self.hi[axis] = self.hi[axis].max(cell[axis]);
-        }
-    }
-
-    /// The lowest cell of the smallest cube that holds the box and an empty layer above it, and how often the smallest side is
-    /// doubled for its side. The lowest cell is a multiple of a quarter of the side, so that it seldom changes while bodies move.
-    fn outer(&self) -> (Cell, u32) {
-        let (mut side, mut doubled) = (SMALLEST, 0);
-        loop {
-            let step = 0.25 * side;
-            let lowest = self.lo.map(|x| (x / step).floor() * step);
-            if (0..3).all(|i| self.hi[i] - lowest[i] + 2.0 <= side) {
-                return (lowest, doubled);
-            }
-            side *= 2.0;
-            doubled += 1;
-        }
-    }
-}
-
-/// A place for each cube, of this size of cells, about the middle of all; and the largest coordinate.
-fn pack(cubes: &[Cube], cell: f64) -> (Vec<Region>, f64) {
-    let outer: Vec<(Cell, u32)> = cubes.iter().map(Cube::outer).collect();
+/// A place for each cube, from the world's origin on: cubes of one side follow one another along a Morton curve, and the larger
+/// ones the smaller ones, in a multiple of their own side.
+fn pack(cubes: &[Cube]) -> Vec<Region> {
     let mut order: Vec<usize> = (0..cubes.len()).collect();
-    order.sort_by_key(|&at| std::cmp::Reverse(outer[at].1));
-    let unit = SMALLEST * cell;
+    order.sort_by(|&a, &b| cubes[a].side.total_cmp(&cubes[b].side));
     let mut regions = vec![Region::default(); cubes.len()];
-    // A whole number of cubes of the next size, as sizes descend.
-    let (mut next, mut end) = (0_u128, [0.0_f64; 3]);
+    // The first free place of the curve through cubes of this side.
+    let (mut next, mut side) = (0_u64, order.first().map_or(1.0, |&at| cubes[at].side));
     for at in order {
-        let (lowest, doubled) = outer[at];
-        let corner = place_on_curve(next);
-        next += 1 << (3 * doubled);
-        let side = exp2(doubled as i32);
-        end = std::array::from_fn(|i| end[i].max(corner[i] + side));
+        while side < cubes[at].side {
+            (next, side) = (next.div_ceil(8), 2.0 * side);
+        }
         regions[at] = Region {
-            origin: lowest.map(|x| x * cell),
-            corner: corner.map(|x| -(x * unit)),
+            origin: cubes[at].lowest,
+            corner: place_on_curve(next).map(|x| 0.0 - x * side),
         };
+        next += 1;
     }
-    let half = end.map(|x| 0.5 * x * unit);
-    for region in &mut regions {
-        region.corner = std::array::from_fn(|i| region.corner[i] + half[i]);
-    }
-    (regions, half.into_iter().fold(0.0, f64::max))
+    regions
 }
 
 /// The coordinates of a place on a Morton curve: every third bit.
-fn place_on_curve(place: u128) -> [f64; 3] {
+fn place_on_curve(place: u64) -> [f64; 3] {
     [0, 1, 2].map(|axis| {
-        let bits = (0..42).map(|bit| (place >> (3 * bit + axis) & 1) << bit);
-        bits.sum::<u128>() as f64
+        let bits = (0..21).map(|bit| (place >> (3 * bit + axis) & 1) << bit);
+        bits.sum::<u64>() as f64
     })
 }
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
     use super::*;
+    use crate::rounding::exp2;
 
     /// The region of each cell, from pairs of cells.
     fn slowly(cells: &[Cell]) -> Vec<u32> {
@@ -248,34 +250,56 @@ mod tests {
         assert!(seen[0] > 20 && seen[1] > 20, "{seen:?}");
     }
 
+    /// Cubes of very different sides, in any order: no two overlap, and small ones lie near the origin.
     #[test]
-    fn cubes_keep_an_empty_layer() {
+    fn packed_cubes_are_apart() {
         let mut words = ChaCha8Rng::seed_from_u64(2);
-        for _ in 0..200 {
-            let cubes: Vec<Cube> = (0..50)
-                .map(|_| {
-                    let lo = [(); 3].map(|()| f64::from(words.next_u32() % 1000) - 500.0);
-                    let wide = 1 << (words.next_u32() % 6);
-                    let hi = lo.map(|x| x + f64::from(words.next_u32() % wide));
-                    Cube { lo, hi }
+        for round in 0..60 {
+            let octaves = [1, 4, 40][round % 3];
+            let cubes: Vec<Cube> = (0..80)
+                .map(|_| Cube {
+                    lowest: [(); 3].map(|()| f64::from(words.next_u32())),
+                    side: exp2(-20 + (words.next_u32() % octaves) as i32),
                 })
                 .collect();
-            let (regions, half) = pack(&cubes, 2.0);
-            // The local ends of the occupied cells, in cells.
-            let ends = |i: usize| -> [[f64; 2]; 3] {
-                std::array::from_fn(|a| {
-                    let at = |x: f64| x - (regions[i].origin[a] + regions[i].corner[a]) / 2.0;
-                    [at(cubes[i].lo[a]), at(cubes[i].hi[a]) + 1.0]
-                })
-            };
+            let regions = pack(&cubes);
+            let corners: Vec<[f64; 3]> = regions.iter().map(|r| r.corner.map(|x| -x)).collect();
             for i in 0..cubes.len() {
-                assert!(ends(i).as_flattened().iter().all(|x| x.abs() * 2.0 <= half));
+                let side = cubes[i].side;
+                let no_larger = cubes.iter().filter(|cube| cube.side <= side).count();
+                let most = 2.0 * side * (no_larger as f64).cbrt();
+                assert!(corners[i].iter().all(|x| (0.0..=most).contains(x)), "{i}");
+                assert_eq!(regions[i].origin, cubes[i].lowest);
                 for j in 0..i {
-                    let (a, b) = (ends(i), ends(j));
-                    let gap = (0..3).map(|k| (a[k][0] - b[k][1]).max(b[k][0] - a[k][1]));
-                    assert!(gap.fold(-1.0, f64::max) >= 1.0, "{a:?} {b:?}");
+                    let apart = (0..3).any(|k| {
+                        corners[i][k] >= corners[j][k] + cubes[j].side
+                            || corners[j][k] >= corners[i][k] + side
+                    });
+                    assert!(apart, "{:?} {:?}", corners[i], corners[j]);
                 }
             }
+        }
+    }
+
+    /// Small bodies between two giants that are no farther from each other than giants have to be.
+    #[test]
+    fn small_bodies_have_cells_of_their_own() {
+        let mut bodies: Vec<Placed> = (0..40)
+            .map(|i| {
+                (
+                    i,
+                    [1.0e12 + 1.0e4 * f64::from((i / 2) as u32), 0.1, 0.0],
+                    1.0,
+                )
+            })
+            .collect();
+        bodies.push((40, [0.1, 0.0, 0.0], 1.0e6));
+        let whole = Bounds::of(bodies.iter().copied());
+        let regions = regions(bodies.clone(), whole).unwrap();
+        assert_eq!(regions.regions.len(), 21);
+        for (slot, t, size) in bodies {
+            let (place, moved) = regions.of(slot).place(t);
+            assert!(moved < size * exp2(-10), "{slot}: {place:?} {moved}");
         }
     }
 }
