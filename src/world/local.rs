@@ -110,7 +110,10 @@ mod tests {
 
     #[test]
     fn f32_translations_stay() {
-        let far = [[1.0e9, -3.5, 0.0], [2.0f64.powi(50), 7.25, 2.0f64.powi(-149)]];
+        let far = [
+            [1.0e9, -3.5, 0.0],
+            [2.0f64.powi(50), 7.25, 2.0f64.powi(-149)],
+        ];
         let local = local(&far);
         assert_eq!(local.place(3, far[0]), ([1.0e9, -3.5, 0.0], 0.0));
         assert_eq!(local.place(4, far[1]).1, 0.0);
