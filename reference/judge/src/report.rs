@@ -60,13 +60,11 @@ fn scene(bodies: &Bodies, shapes: &[Shape]) -> String {
     text
 }
 
-/// A pose's seven numbers as a scene file has them: f64 for the translation, so that it reads back to this f32, and is no other
-/// f64.
+/// A pose's seven numbers as a scene file has them: written as f64, so that the translation is this one and no other f64.
 #[must_use]
 pub fn pose_in_text(rotation: [f32; 4], translation: [f32; 3]) -> String {
-    let rotation = rotation.iter().map(|x| format!("{x:?}"));
-    let translation = translation.iter().map(|&x| format!("{:?}", f64::from(x)));
-    let numbers: Vec<String> = rotation.chain(translation).collect();
+    let pose = rotation.into_iter().chain(translation);
+    let numbers: Vec<String> = pose.map(|x| format!("{:?}", f64::from(x))).collect();
     numbers.join(", ")
 }
 
