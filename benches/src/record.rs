@@ -31,6 +31,7 @@ pub fn frame_line(frame: &Frame<'_>, strategy: Strategy) -> FrameLine {
     FrameLine {
         frame: frame.number,
         poses: FrameLine::poses(frame.bodies),
+        translations: frame.fine.of(frame.bodies),
         pairs: frame.pairs.sorted(),
         counters: Some(volume_lines(strategy, &frame.counters)),
         meets: None,

@@ -27,6 +27,8 @@
 #[cfg(feature = "shapes")]
 mod body;
 #[cfg(feature = "shapes")]
+mod bounds;
+#[cfg(feature = "shapes")]
 mod crowds;
 #[cfg(all(feature = "shapes", feature = "serde"))]
 mod digest;
@@ -44,6 +46,10 @@ mod offset;
 mod pair_log;
 #[cfg(feature = "shapes")]
 mod pair_test;
+#[cfg(feature = "shapes")]
+mod region;
+#[cfg(feature = "shapes")]
+mod regions;
 #[cfg(feature = "serde")]
 mod saved;
 #[cfg(feature = "shapes")]
@@ -73,7 +79,6 @@ pub(crate) use self::pair_log::PairLog;
 pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length};
 #[cfg(feature = "shapes")]
 use self::{
-    local::Local,
     margins::{Margins, check_margin},
     shapes::{ShapeSlot, check_shape},
 };
@@ -83,7 +88,7 @@ use crate::{
     bodies::contract::{ContractError, check_number, check_pose},
     counters::{Counters, Seconds},
     culler::{CullError, Culler, CullerBuilder},
-    settings::{Interest, SettingsError},
+    settings::{Finder, Interest, SettingsError},
     simd::in_default_mode,
     volume::Shape,
 };
@@ -104,7 +109,6 @@ pub struct World {
     translation: Vec<[f64; 3]>,
     margin: Vec<f32>,
     groups: Vec<Groups>,
-    local: Local,
     margins: Margins,
     interest: Vec<BodyId>,
     culler: Culler,
@@ -150,7 +154,6 @@ impl World {
             translation: Vec::new(),
             margin: Vec::new(),
             groups: Vec::new(),
-            local: Local::default(),
             margins: Margins::default(),
             interest: Vec::new(),
             culler,
@@ -266,11 +269,12 @@ impl World {
     /// Finds the pairs that might touch now, and returns them: the lower slot first, sorted by slots. Under every strategy,
     /// list and order are a function of the bodies as they are now (with [`Order::OldestAnswer`](crate::Order), also of when
     /// pairs were refined, and with a budget of time, of the clock), whatever the finder, the threads and the calls before.
-    /// Translations that f32 has to round are the exception: the origin about which they are rounded follows the bodies, and
-    /// how much wider their volumes are depends on where it has been.
+    /// That holds for translations that f32 has to round, too: the origins about which they are rounded follow from the bodies
+    /// as they are now.
     ///
     /// # Errors
-    /// Bodies more than 2⁶⁰ apart; [`Self::pairs`] are still those of the cull before.
+    /// Bodies that can't be placed within 2⁶⁰ of an origin, which takes meshes far from their own origins; [`Self::pairs`] are
+    /// still those of the cull before.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
         self.cull_with(|culler, bodies| culler.cull(bodies).map(|_| ()))
     }
@@ -340,6 +344,12 @@ impl World {
         self.ids.slots()
     }
 
+    /// The pair finder at work: the one asked for, or what `auto` picked last.
+    #[must_use]
+    pub fn finder(&self) -> Finder {
+        self.culler.finder()
+    }
+
     /// Counters summed over all culls.
     #[must_use]
     pub fn counters(&self) -> &Counters {
@@ -350,47 +360,6 @@ impl World {
     #[must_use]
     pub fn seconds(&self) -> &Seconds {
         self.culler.seconds()
-    }
-
-    /// Brings all bodies near the local origin, in the model that their margin and rounding call for.
-    fn place(&mut self) -> Result<(), WorldError> {
-        let (ids, slots) = (&self.ids, 0..self.ids.slots());
-        let present = slots.filter(|&slot| ids.present()[slot]);
-        let translations = present.clone().map(|slot| self.composed(slot).0);
-        let local = self.local.follow(translations);
-        self.replaced |= local != self.local; // static bodies have moved, as seen from there
-        if let Some(slot) = present
-            .clone()
-            .find(|&slot| !local.reaches(self.composed(slot).0))
-        {
-            return Err(WorldError::Apart(ids.id(slot as u32)));
-        }
-        self.local = local;
-        let mut changed = false;
-        for slot in present {
-            let (translation, composed) = self.composed(slot);
-            let (place, moved) = local.place(translation);
-            let moved = moved + composed;
-            let shape = self.shape[slot] as usize;
-            let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
-            let grow = |model, margin| self.culler.grow(model, margin);
-            let model = self
-                .margins
-                .model(self.models[shape], reach, margin, moved, grow);
-            changed |= self.bodies.shape[slot] != model;
-            self.bodies.shape[slot] = model;
-            self.bodies.translation[slot] = place;
-        }
-        if changed && !self.replaced {
-            self.culler.reread_shapes(&self.bodies);
-        }
-        Ok(())
-    }
-
-    /// The translation of the vertices of the body in a slot, and how far from the exact one it may be.
-    fn composed(&self, slot: usize) -> ([f64; 3], f64) {
-        let offset = self.shapes[self.shape[slot] as usize].pose_offset;
-        offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)
     }
 
     /// Tells the culler of the bodies of interest that are still there.

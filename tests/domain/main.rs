@@ -62,6 +62,7 @@ fn scene_of(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings) -> Scene
             angular: still,
         },
         bodies: bodies.clone(),
+        fine: Default::default(),
         share: None,
         effects: EffectsSpec::default(),
         cull: settings.clone(),

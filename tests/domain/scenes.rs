@@ -231,12 +231,20 @@ fn what_needs_one_order_over_all_pairs_is_refused_on_many_ranks() {
         "name = \"r\"\nframes = 2\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n[effects]\nresponse = \"elastic\"\n",
     );
     assert_eq!(refusal(&response), "effect response on 2 ranks");
+    let fine = parse(
+        "name = \"f\"\nframes = 1\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0.1, 0, 0]]\n",
+    );
+    let fine = fine.build_exact().unwrap();
+    assert_eq!(
+        refusal(&fine),
+        "translations that f32 doesn't hold on 2 ranks"
+    );
 }
 
 #[test]
 fn a_body_that_leaves_the_contract_is_named_by_its_number_on_every_rank() {
     let text = "name = \"far\"\nframes = 3\ndt = 1.0\n[[bodies]]\nshape = \"box\"
-        poses = [[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 5, 0, 0], [0, 0, 0, 1, 9, 0, 0], [0, 0, 0, 1, 1e18, 0, 0]]
+        poses = [[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 5, 0, 0], [0, 0, 0, 1, 9, 0, 0], [0, 0, 0, 1, 999999984306749440, 0, 0]]
         velocities = [[0, 0, 0], [0, 0, 0], [0, 0, 0], [1e18, 0, 0]]\n[effects]\nmotion = true\n";
     let file = parse(text);
     let all = sdop_bench::network::on_ranks(3, |net| {

@@ -111,7 +111,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if sdop_bench::mpi::launched() > 1 {
         return Ok(ranks::run(args));
     }
-    let scene = args.scene.build()?;
+    let scene = args.scene.read()?.build_exact()?;
     let tier = args.machine.tier();
     let mut recorder = match &args.record {
         Some(path) => {
@@ -120,6 +120,12 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         None => None,
     };
     let judge = if args.truth {
+        if !scene.fine.is_empty() {
+            miette::bail!(
+                help = "leave --truth out, or round the translations to f32",
+                "--truth, and translations that f32 doesn't hold: the exact reference reads f32 poses"
+            );
+        }
         Some(Judge::new(&scene.shapes).map_err(TradeoffError::from)?)
     } else {
         None

@@ -78,10 +78,10 @@ pub struct MachineArgs {
 }
 
 impl SceneArgs {
-    /// Reads and builds the scene with the overrides in place.
+    /// Reads and builds the scene with the overrides in place, to be studied in f32.
     ///
     /// # Errors
-    /// A scene that can't be read or built, or settings that it can't have.
+    /// A scene that can't be read or built, translations that f32 rounds too far, or settings that it can't have.
     pub fn build(&self) -> miette::Result<Scene> {
         Ok(self.read()?.build()?)
     }

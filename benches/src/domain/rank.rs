@@ -275,6 +275,10 @@ fn decider(balls: &Balls, [i, j]: [u32; 2]) -> usize {
 fn supported(scene: &Scene, ranks: usize) -> Result<(), DomainError> {
     let refuse = |what: String, hint| Err(DomainError::Unsupported { what, ranks, hint });
     let strategy = scene.cull.strategy;
+    if !scene.fine.is_empty() {
+        let hint = "ranks exchange f32 poses: take one process, or round the translations to f32";
+        return refuse("translations that f32 doesn't hold".to_owned(), hint);
+    }
     if ranks > 1 && strategy.scheme().has_budget() {
         let hint =
             "a budget is spent in one order over all pairs: take another strategy, or one process";

@@ -37,7 +37,9 @@ pub fn write(directory: &Path, bodies: &[CaseBody], comment: &str) -> Result<Pat
         };
         mesh::write(&mesh, directory.join(&file)).or_report()?;
         let pose = [&body.rotation[..], &body.translation].concat();
-        let numbers: Vec<String> = pose.iter().map(|x| format!("{x:?}")).collect();
+        // As f64, which scene files have for translations: each reads back to this number.
+        let numbers = pose.iter().map(|&x| format!("{:?}", f64::from(x)));
+        let numbers: Vec<String> = numbers.collect();
         // Formatting into a String cannot fail.
         let _ = write!(
             text,

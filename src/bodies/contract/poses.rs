@@ -61,7 +61,8 @@ pub(crate) fn check_shape(body: usize, number: u32, shapes: &[Shape]) -> Result<
 }
 
 /// Checks one pose with a translation in f64.
-pub(crate) fn check_pose(body: usize, q: &[f32; 4], t: &[f64; 3]) -> Result<(), ContractError> {
+#[doc(hidden)]
+pub fn check_pose(body: usize, q: &[f32; 4], t: &[f64; 3]) -> Result<(), ContractError> {
     if !is_invertible(q) {
         return refuse(body, "rotation", format!("{q:?}"), INVERTIBLE);
     }

@@ -2,7 +2,7 @@
 //!
 //! Line 1 holds shapes and bodies, every further line a frame with its poses and sorted pairs. Vertices, balls and slabs
 //! are the body-frame numbers exactly as built, before any inflation for rounding; floats are the shortest decimals that
-//! read back to the same f32. Bodies and frames are counted from 0; frame numbers ascend.
+//! read back to the same f32, those of `translations` to the same f64. Bodies and frames are counted from 0; frame numbers ascend.
 //!
 //! ```text
 //! {"format":"sdop-record","version":1,"scene":name,"seed":n,"shapes":[{"name","vertices":[[x,y,z]…],"triangles":[[a,b,c]…],
@@ -11,16 +11,17 @@
 //! ```
 //!
 //! Readers leave out keys that they don't know. Keys may be added without a new version, which counts what an old reader would
-//! get wrong; `minor` counts additions. Minor 1 added, all optional:
+//! get wrong; `minor` counts additions. Minors 1 and 2 added, all optional:
 //!
 //! | line | key | holds |
 //! |---|---|---|
-//! | first | `minor` | 1 |
+//! | first | `minor` | 2 |
 //! | first | `program` | who culled, with its version |
 //! | first | `dt`, `side` | seconds between frames; the side of the box about the origin |
 //! | first | `effects` | `[{"name","on"}…]`: what is simulated and what isn't |
 //! | first | `cull` | the `[cull]` table of the scene, as run |
 //! | frame | `counters` | `[{"volume","updates","tests","hits"}…]` of this frame, in the order of the tests |
+//! | frame | `translations` | `[[tx,ty,tz]…]` in f64 of every body, where f32 doesn't hold them all; `poses` then have the nearest f32 (minor 2) |
 //! | frame | `meets` | the pairs, not both static, whose meshes meet in exact arithmetic, sorted |
 
 mod error;
@@ -43,7 +44,7 @@ pub const FORMAT: &str = "sdop-record";
 /// The version written and read here.
 pub const VERSION: u32 = 1;
 /// The additions to it that are written here.
-pub const MINOR: u32 = 1;
+pub const MINOR: u32 = 2;
 
 /// The first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -134,6 +135,9 @@ pub struct FrameLine {
     pub frame: u32,
     /// q (x, y, z, w), then t, of every body.
     pub poses: Vec<[f32; 7]>,
+    /// The translations of every body in f64, where f32 doesn't hold them all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub translations: Option<Vec<[f64; 3]>>,
     /// The reported pairs i < j, sorted.
     pub pairs: Vec<[u32; 2]>,
     /// What this frame's culling counted, in the order of its tests.

@@ -3,6 +3,8 @@
 //! F frames are F culls and F − 1 steps: the first frame is the scene as placed. The trajectory doesn't depend on how it is
 //! culled, so that runs which differ in [`CullSettings`](sdop::settings::CullSettings) alone see the same poses.
 
+mod scene_culler;
+
 use std::time::Instant;
 
 use miette::Diagnostic;
@@ -13,14 +15,17 @@ use crate::hash::volumes_sha256;
 use crate::hash::{PairsDigest, PairsHash};
 use crate::percentiles::Percentiles;
 use crate::remedy::Explained;
-use crate::scene::Scene;
+use crate::scene::{FineTranslations, Scene};
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::ContractError;
 use sdop::counters::{Counters, Seconds};
-use sdop::culler::{CullError, Culler};
+use sdop::culler::CullError;
 use sdop::pairs::PairList;
 use sdop::settings::Finder;
 use sdop::simd::Tier;
+use sdop::world::WorldError;
+
+use scene_culler::SceneCuller;
 
 /// The poses of a scene, frame after frame: the first is the scene as placed, every other one a step of its effects.
 ///
@@ -103,7 +108,7 @@ impl Iterator for Trajectory {
 pub struct Simulation<'a> {
     scene: &'a Scene,
     trajectory: Trajectory,
-    culler: Culler,
+    culler: SceneCuller,
 }
 
 /// One culled frame.
@@ -111,8 +116,10 @@ pub struct Simulation<'a> {
 pub struct Frame<'a> {
     /// Counted from 0.
     pub number: u32,
-    /// The poses that were culled.
+    /// The poses that were culled, with translations rounded to f32.
     pub bodies: &'a Bodies,
+    /// The translations that f32 doesn't hold.
+    pub fine: &'a FineTranslations,
     /// The reported pairs, in the finder's order.
     pub pairs: &'a PairList,
     /// What this frame's culling counted.
@@ -149,6 +156,10 @@ pub enum SimulationError {
     #[error(transparent)]
     #[diagnostic(help("{}", .0.help()))]
     Cull(#[from] CullError),
+    /// A world that can't be made, or bodies that it refuses.
+    #[error(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
+    World(#[from] WorldError),
     /// An effect that the scene can't have.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -190,13 +201,10 @@ impl<'a> Simulation<'a> {
         tier: Tier,
         threads: usize,
     ) -> Result<Self, SimulationError> {
-        let culler = Culler::builder().settings(&scene.cull).tier(tier);
         Ok(Self {
             scene,
             trajectory: Trajectory::new(scene)?,
-            culler: culler
-                .threads(threads)
-                .build(&scene.shapes, &scene.bodies)?,
+            culler: SceneCuller::new(scene, tier, threads)?,
         })
     }
 
@@ -209,12 +217,13 @@ impl<'a> Simulation<'a> {
         let Some(bodies) = self.trajectory.advance()? else {
             return Ok(None);
         };
-        let (counted, took) = (*self.culler.counters(), *self.culler.seconds());
-        self.culler.cull(bodies)?;
+        let (counted, took) = (*self.culler.counters(), self.culler.seconds());
+        self.culler.cull(self.scene, bodies)?;
         Ok(Some(Frame {
             number,
             pairs: self.culler.pairs(),
             bodies,
+            fine: &self.scene.fine,
             counters: self.culler.counters().since(&counted),
             seconds: self.culler.seconds().since(&took),
         }))
@@ -233,7 +242,7 @@ impl<'a> Simulation<'a> {
         Seconds {
             construct: self.scene.construct_seconds + culling.construct,
             effects: self.trajectory.reports().iter().map(|e| e.seconds).sum(),
-            ..*culling
+            ..culling
         }
     }
 
