@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::Parser as _;
 use sdop::lab::mpi;
 
-/// 0 when all is well, 1 when a check failed, 2 on bad input.
+/// 0 when all is well, 1 when a check failed, 2 on bad input, 3 when not all checks were made.
 fn main() -> ExitCode {
     cli::report_errors_whole();
     let ending = mpi::Ending;
@@ -30,6 +30,7 @@ fn main() -> ExitCode {
             ExitCode::from(match outcome {
                 cli::Outcome::Passed => 0,
                 cli::Outcome::Failed => 1,
+                cli::Outcome::Incomplete => 3,
                 #[cfg(feature = "mpi")]
                 cli::Outcome::Told => BAD_INPUT,
             })

@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
-use sdop::simd::FpMode;
+use sdop::simd::{FpMode, in_default_mode};
 use sdop::volume::{DirectionSet, Shape, ShapeSpec};
 use sdop::world::{Body, PairTest, World};
 use sdop::{Aabb, BoxCuller, BoxWorld, Culler, Finder, Strategy};
@@ -47,19 +47,23 @@ fn assert_same<R: PartialEq>(what: &str, work: impl Fn() -> R) {
 }
 
 fn shape(size: f64) -> Shape {
-    let mesh = ProceduralShape::default_of("torus")
-        .unwrap()
-        .build()
-        .unwrap();
-    let spec = ShapeSpec {
-        radius: Some(size as f32),
-        ..ShapeSpec::default()
-    };
+    let (mesh, spec) = in_default_mode(|| {
+        let mesh = ProceduralShape::default_of("torus").unwrap().build();
+        let spec = ShapeSpec {
+            radius: Some(size as f32),
+            ..ShapeSpec::default()
+        };
+        (mesh.unwrap(), spec)
+    });
     Shape::build(&mesh, &spec).unwrap()
 }
 
-/// Poses of so many bodies, two sizes apart in the mean.
+/// Poses of so many bodies, two sizes apart in the mean. Inputs are made in the default mode.
 fn poses(count: usize, size: f64, frame: usize) -> Vec<([f32; 4], [f32; 3])> {
+    in_default_mode(|| drawn_poses(count, size, frame))
+}
+
+fn drawn_poses(count: usize, size: f64, frame: usize) -> Vec<([f32; 4], [f32; 3])> {
     let (mut still, mut moved) = (Random(5), Random(frame as u64));
     let side = 1.6 * size * (count as f64).cbrt();
     (0..count)
@@ -120,6 +124,10 @@ fn pairs_of_cullers_are_the_same_in_every_mode() {
 
 /// Boxes whose sides and distances are of this size.
 fn boxes(size: f64, frame: usize) -> Vec<Aabb> {
+    in_default_mode(|| drawn_boxes(size, frame))
+}
+
+fn drawn_boxes(size: f64, frame: usize) -> Vec<Aabb> {
     let mut random = Random(3 + frame as u64);
     (0..200)
         .map(|_| {
@@ -164,8 +172,10 @@ fn pairs_of_worlds_are_the_same_in_every_mode() {
             let mut world = World::new(vec![shape(size)]).unwrap();
             let mut random = Random(9);
             for (q, t) in poses(200, size, 0) {
-                let t = t.map(|x| f64::from(x) + random.next() * 1e-12 * size);
-                let margin = (0.01 * size * random.next()) as f32;
+                let (t, margin) = in_default_mode(|| {
+                    let t = t.map(|x| f64::from(x) + random.next() * 1e-12 * size);
+                    (t, (0.01 * size * random.next()) as f32)
+                });
                 let body = Body {
                     margin,
                     ..Body::at(0, q, t)
@@ -185,8 +195,10 @@ fn single_pairs_are_the_same_in_every_mode() {
         assert_same("single pairs", || {
             let mut test = PairTest::new(DirectionSet::K18);
             let one = test.add(&shape(size)).unwrap();
-            let other = test.grown(one, (0.01 * size) as f32).unwrap();
-            let poses = poses(500, 0.2 * size, 1).into_iter();
+            let margin = in_default_mode(|| (0.01 * size) as f32);
+            let other = test.grown(one, margin).unwrap();
+            let near = in_default_mode(|| 0.2 * size);
+            let poses = poses(500, near, 1).into_iter();
             let touch = poses.map(|(q, t)| test.may_touch(one, other, q, t));
             touch.collect::<Vec<_>>()
         });

@@ -61,12 +61,16 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     };
     let table = compare(&args.exec, &program, &case, args.claims, args.rounds).into_diagnostic()?;
     emit(args.format, &table, |table| page(table, args))?;
-    let passed = table.iter().all(|row| row.outcome == CaseOutcome::Pass);
-    Ok(if passed {
-        Outcome::Passed
-    } else {
-        Outcome::Failed
-    })
+    let any = |is: fn(&CaseOutcome) -> bool| table.iter().any(|row| is(&row.outcome));
+    Ok(
+        if any(|o| matches!(o, CaseOutcome::Fail { .. } | CaseOutcome::Error { .. })) {
+            Outcome::Failed
+        } else if any(|o| matches!(o, CaseOutcome::Skipped { .. })) {
+            Outcome::Incomplete
+        } else {
+            Outcome::Passed
+        },
+    )
 }
 
 fn page(table: &[ContestantTiming], args: &Args) -> String {

@@ -33,12 +33,13 @@ use std::io::Write as _;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use miette::MietteHandlerOpts;
+use sdop::judge::Conclusion;
 
 /// Collision culling by sphere-encapsulated or-DOPs (S-DOP): verified, vectorised, measured.
 #[derive(Parser)]
 #[command(
     version,
-    after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input."
+    after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input, 3 not all that was asked for was judged."
 )]
 pub struct Cli {
     #[command(subcommand)]
@@ -103,6 +104,8 @@ pub enum Outcome {
     Passed,
     /// A check failed: exit code 1.
     Failed,
+    /// No check failed, but some that were asked for weren't made: exit code 3.
+    Incomplete,
     /// The input was bad, all ranks know, and one of them has said it: exit code 2.
     #[cfg(feature = "mpi")]
     Told,
@@ -143,6 +146,16 @@ impl Cli {
             Command::Report(args) => report::run(&args),
             Command::Completions(args) => completions::run(&args),
             Command::Man(args) => man::run(&args),
+        }
+    }
+}
+
+impl From<Conclusion> for Outcome {
+    fn from(conclusion: Conclusion) -> Self {
+        match conclusion {
+            Conclusion::Pass => Self::Passed,
+            Conclusion::Incomplete => Self::Incomplete,
+            Conclusion::NotPassed => Self::Failed,
         }
     }
 }

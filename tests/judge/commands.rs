@@ -116,11 +116,13 @@ fn a_list_of_known_failures_cannot_go_stale() {
         .collect();
     // Known failures alone: nothing was shown to be right.
     assert_eq!(run(&all, "table").0.status.code(), Some(1));
-    let (output, text) = run(&format!("{all}box/grid/0009\n"), "json");
+    let (output, _) = run(&format!("{all}box/grid/0009\n"), "json");
+    let error = String::from_utf8_lossy(&output.stderr);
     assert!(
-        output.status.code() == Some(1)
-            && text.contains("\"stale\": [\n    \"box/grid/0009\"\n  ]"),
-        "{text}"
+        output.status.code() == Some(2)
+            && error.contains("`box/grid/0009` is no case of the claim aabb")
+            && error.contains("the nearest is `box/grid/000"),
+        "{error}"
     );
     let (output, text) = run("", "junit");
     assert_eq!(output.status.code(), Some(1));
@@ -187,6 +189,32 @@ fn cases_are_written_answered_elsewhere_and_checked() {
         .code(),
         Some(2)
     );
+}
+
+#[test]
+fn records_without_all_frames_are_incomplete() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = "name = \"two\"\nframes = 4\n[[bodies]]\nshape = \"box\"\nposes = [[0,0,0,1,0,0,0],[0,0,0,1,0.5,0,0]]\n";
+    std::fs::write(directory.path().join("two.toml"), scene).unwrap();
+    let recorded = ["run", "two.toml", "--record", "whole"];
+    assert!(sdop(directory.path(), &recorded).0.status.success());
+    let whole = std::fs::read_to_string(directory.path().join("whole")).unwrap();
+    let lines: Vec<&str> = whole.lines().collect();
+    assert_eq!(lines.len(), 5);
+    let missed = lines[2].replace("[[0,1]]", "[]");
+    for (kept, code, said) in [
+        (lines.clone(), 0, "PASS"),
+        (lines[..4].to_vec(), 3, "3 of its 4 frames"),
+        (vec![lines[0], lines[2], lines[4]], 3, "2 of its 4 frames"),
+        (vec![lines[0]], 3, "0 of its 4 frames"),
+        (vec![lines[0], &missed], 1, "NOT PASSED"),
+        (vec![lines[0], lines[2], lines[1]], 2, ""),
+    ] {
+        std::fs::write(directory.path().join("part"), kept.join("\n")).unwrap();
+        let (output, text) = sdop(directory.path(), &["check", "part"]);
+        assert_eq!(output.status.code(), Some(code), "{said}: {text}");
+        assert!(text.contains(said), "{text}");
+    }
 }
 
 #[test]

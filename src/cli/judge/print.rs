@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 use miette::miette;
-use sdop::judge::Verdict;
 use sdop::judge::report::junit;
 use sdop::judge::verdict::GroupVerdict;
+use sdop::judge::{Conclusion, Verdict};
 use serde::Serialize;
 
 use crate::cli::output::{self, Format, print, rows};
@@ -45,6 +45,9 @@ impl ReportFormat {
 #[derive(Serialize)]
 struct Whole<'a> {
     passed: bool,
+    conclusion: Conclusion,
+    asked: usize,
+    judged: usize,
     groups: Vec<GroupVerdict>,
     #[serde(flatten)]
     verdict: &'a Verdict,
@@ -67,6 +70,9 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
                 .and_then(|smallest| smallest.witness.as_ref());
             let whole = Whole {
                 passed: verdict.passed(),
+                conclusion: verdict.conclusion(),
+                asked: verdict.asked(),
+                judged: verdict.judged(),
                 groups: verdict.groups(),
                 verdict,
                 witness,

@@ -164,7 +164,7 @@ fn answered(case: &Case, file: &Path, most: u64) -> miette::Result<Vec<Answer>> 
             "{name}: {} answers to {frames} frames",
             answers.len()
         )),
-        Err(Stop::Skipped(why)) => Err(miette!("{name}: the case was skipped: {why}")),
+        Err(Stop::Skipped { why, .. }) => Err(miette!("{name}: the case was skipped: {why}")),
         Err(Stop::Trouble(trouble)) => Err(miette!(help = hint, "{name}: {trouble}")),
     }
 }

@@ -116,13 +116,13 @@ pub fn judge_case(
 ) -> Result<Judged, InvalidInput> {
     let answers = match subject.answer(case, claim) {
         Ok(answers) => answers,
-        Err(stop) => return Ok(stopped(stop)),
+        Err(stop) => return stopped(case, claim, stop),
     };
     let mut judged = judge_answers(case, claim, &answers)?;
     if twice && judged.outcome == Outcome::Pass {
         let again = match subject.answer(case, claim) {
             Ok(answers) => judge_answers(case, claim, &answers)?,
-            Err(stop) => stopped(stop),
+            Err(stop) => stopped(case, claim, stop)?,
         };
         if again.outcome != Outcome::Pass {
             return Ok(again);
@@ -135,10 +135,20 @@ pub fn judge_case(
     Ok(judged)
 }
 
-fn stopped(stop: Stop) -> Judged {
-    Judged::without_answers(match stop {
-        Stop::Skipped(why) => Outcome::Skipped { why },
-        Stop::Trouble(trouble) => Outcome::Error { trouble },
+/// What a case without all answers is. A wrong answer counts, also if the rest of the case is skipped.
+fn stopped(case: &Case, claim: Claim, stop: Stop) -> Result<Judged, InvalidInput> {
+    let (why, answered) = match stop {
+        Stop::Skipped { why, answered } => (why, answered),
+        Stop::Trouble(trouble) => return Ok(Judged::without_answers(Outcome::Error { trouble })),
+    };
+    let mut begun = case.clone();
+    begun.frames.truncate(answered.len());
+    let judged = judge_answers(&begun, claim, &answered)?;
+    Ok(match judged.outcome {
+        Outcome::Fail { .. } | Outcome::Error { .. } => judged,
+        Outcome::Pass | Outcome::Skipped { .. } => {
+            Judged::without_answers(Outcome::Skipped { why })
+        }
     })
 }
 

@@ -54,6 +54,28 @@ pub struct GroupVerdict {
     pub pairs: Count,
 }
 
+/// What a run shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Conclusion {
+    /// All that was asked for was judged, and nothing speaks against the claim.
+    Pass,
+    /// Nothing speaks against the claim, but some cases were skipped or not run.
+    Incomplete,
+    /// Something speaks against the claim, or no case passes.
+    NotPassed,
+}
+
+impl fmt::Display for Conclusion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Pass => "PASS",
+            Self::Incomplete => "INCOMPLETE",
+            Self::NotPassed => "NOT PASSED",
+        })
+    }
+}
+
 /// The result of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
@@ -65,7 +87,7 @@ pub struct Verdict {
     pub cases: Vec<CaseVerdict>,
     /// Cases that time or an earlier failure left no room for.
     pub not_run: usize,
-    /// Known failures that pass, or that are no case of this run: the list is stale.
+    /// Known failures that pass: the list is stale.
     pub stale: Vec<String>,
     /// The most extra pairs for each required one that the culler allows itself.
     pub extra_limit: Option<f64>,
@@ -75,13 +97,41 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Whether nothing speaks against the claim: some cases passed, and all others are skipped or known.
+    /// What the run shows.
+    #[must_use]
+    pub fn conclusion(&self) -> Conclusion {
+        let is_refuted = !self.stale.is_empty()
+            || self.is_beyond_limit()
+            || self.cases.iter().any(|case| self.counts_against(case));
+        if is_refuted {
+            Conclusion::NotPassed
+        } else if self.judged() < self.asked() {
+            Conclusion::Incomplete
+        } else if self.cases.iter().any(|case| case.outcome == Outcome::Pass) {
+            Conclusion::Pass
+        } else {
+            Conclusion::NotPassed // known failures alone show nothing to be right
+        }
+    }
+
+    /// Whether all that was asked for was judged and nothing speaks against the claim: some cases passed, and
+    /// all others are known to fail.
     #[must_use]
     pub fn passed(&self) -> bool {
-        self.stale.is_empty()
-            && !self.is_beyond_limit()
-            && self.cases.iter().any(|case| case.outcome == Outcome::Pass)
-            && !self.cases.iter().any(|case| self.counts_against(case))
+        self.conclusion() == Conclusion::Pass
+    }
+
+    /// Cases that were asked for.
+    #[must_use]
+    pub fn asked(&self) -> usize {
+        self.cases.len() + self.not_run
+    }
+
+    /// Cases that were judged: run, and not skipped.
+    #[must_use]
+    pub fn judged(&self) -> usize {
+        let is_skipped = |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. });
+        self.cases.len() - self.cases.iter().filter(is_skipped).count()
     }
 
     /// A case that failed or erred, and isn't known to.
@@ -151,9 +201,11 @@ impl fmt::Display for Verdict {
         });
         writeln!(
             f,
-            "claim {}: {}",
+            "claim {}: {}, {} of {} cases judged",
             self.claim,
-            if self.passed() { "PASS" } else { "NOT PASSED" }
+            self.conclusion(),
+            self.judged(),
+            self.asked()
         )?;
         writeln!(
             f,
@@ -184,10 +236,7 @@ impl fmt::Display for Verdict {
             )?;
         }
         for name in self.stale.iter().take(3) {
-            writeln!(
-                f,
-                "known failure {name} passes or is no case of this run: take it off the list"
-            )?;
+            writeln!(f, "known failure {name} passes: take it off the list")?;
         }
         for case in self
             .cases

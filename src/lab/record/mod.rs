@@ -11,16 +11,17 @@
 //! ```
 //!
 //! Readers leave out keys that they don't know. Keys may be added without a new version, which counts what an old reader would
-//! get wrong; `minor` counts additions. Minor 1 added, all optional:
+//! get wrong; `minor` counts additions. Minors 1 and 2 added, all optional:
 //!
 //! | line | key | holds |
 //! |---|---|---|
-//! | first | `minor` | 1 |
+//! | first | `minor` | 2 |
 //! | first | `program` | who culled, with its version |
 //! | first | `dt`, `side` | seconds between frames; the side of the box about the origin |
 //! | first | `effects` | `[{"name","on"}…]`: what is simulated and what isn't |
 //! | first | `cull` | the `[cull]` table of the scene, as run |
 //! | frame | `counters` | `[{"volume","updates","tests","hits"}…]` of this frame, in the order of the tests |
+//! | first | `frames` | how many frames the record has when it is complete (minor 2) |
 //! | frame | `meets` | the pairs, not both static, whose meshes meet in exact arithmetic, sorted |
 
 mod error;
@@ -43,7 +44,7 @@ pub const FORMAT: &str = "sdop-record";
 /// The version written and read here.
 pub const VERSION: u32 = 1;
 /// The additions to it that are written here.
-pub const MINOR: u32 = 1;
+pub const MINOR: u32 = 2;
 
 /// The first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,6 +59,9 @@ pub struct Header {
     /// Who culled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub program: Option<String>,
+    /// Frames that the record has when it is complete.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frames: Option<u32>,
     /// The scene's name.
     pub scene: String,
     /// Where all random draws started.

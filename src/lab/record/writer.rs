@@ -27,6 +27,7 @@ impl Header {
             version: VERSION,
             minor: MINOR,
             program: Some(concat!("sdop ", env!("CARGO_PKG_VERSION")).to_owned()),
+            frames: None,
             scene: scene.to_owned(),
             seed,
             dt: None,
@@ -47,6 +48,7 @@ impl Header {
             on,
         });
         Self {
+            frames: Some(scene.frames),
             dt: Some(scene.dt),
             side: scene.side,
             effects: Some(effects.collect()),
