@@ -116,7 +116,7 @@ fn judged(
     claim: Claim,
     answers: Option<&Path>,
 ) -> miette::Result<Show> {
-    let Read { case, pairs } = read_case(path, most)?;
+    let Read { case, pairs, .. } = read_case(path, most)?;
     let given = match answers {
         None => {
             let answer = |pairs: Option<Vec<_>>| pairs.map(|pairs| Answer { pairs, ns: None });
