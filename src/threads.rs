@@ -25,6 +25,14 @@ pub const MOST_THREADS: usize = 1024;
 #[derive(Debug, Default)]
 pub struct Threads(Option<ThreadPool>);
 
+impl Clone for Threads {
+    /// As many threads, not the same ones: a clone may be used while the original's threads wait for their caller. The
+    /// caller's alone where the system refuses more; no result depends on it.
+    fn clone(&self) -> Self {
+        Self::new(self.threads()).unwrap_or_default()
+    }
+}
+
 /// A frame's work on one thread, in nanoseconds or so (measured with AVX-512 on an Intel and rounded): by counts, so that nothing
 /// depends on the machine.
 #[derive(Clone, Copy, Debug, Default)]
@@ -48,7 +56,7 @@ impl Work {
 pub const WORTH_WAKING: u64 = 1 << 20;
 
 /// The threads of one frame after the other: all, or the caller's alone where a frame is little work.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct FrameThreads {
     all: Threads,
     alone: Threads,

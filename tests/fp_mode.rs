@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
-use sdop::simd::{FpMode, in_default_mode};
+use sdop::simd::FpMode;
 use sdop::volume::{DirectionSet, Shape, ShapeSpec};
 use sdop::world::{Body, PairTest, World};
 use sdop::{Aabb, BoxCuller, BoxWorld, Culler, Finder, Strategy};
@@ -46,24 +46,25 @@ fn assert_same<R: PartialEq>(what: &str, work: impl Fn() -> R) {
     }
 }
 
+/// The test's own numbers are made in the default mode.
+fn given<R>(numbers: impl FnOnce() -> R) -> R {
+    FpMode::DEFAULT.run(numbers)
+}
+
 fn shape(size: f64) -> Shape {
-    let (mesh, spec) = in_default_mode(|| {
-        let mesh = ProceduralShape::default_of("torus").unwrap().build();
+    let (mesh, spec) = given(|| {
+        let torus = ProceduralShape::default_of("torus").unwrap();
         let spec = ShapeSpec {
             radius: Some(size as f32),
             ..ShapeSpec::default()
         };
-        (mesh.unwrap(), spec)
+        (torus.build().unwrap(), spec)
     });
     Shape::build(&mesh, &spec).unwrap()
 }
 
-/// Poses of so many bodies, two sizes apart in the mean. Inputs are made in the default mode.
+/// Poses of so many bodies, two sizes apart in the mean.
 fn poses(count: usize, size: f64, frame: usize) -> Vec<([f32; 4], [f32; 3])> {
-    in_default_mode(|| drawn_poses(count, size, frame))
-}
-
-fn drawn_poses(count: usize, size: f64, frame: usize) -> Vec<([f32; 4], [f32; 3])> {
     let (mut still, mut moved) = (Random(5), Random(frame as u64));
     let side = 1.6 * size * (count as f64).cbrt();
     (0..count)
@@ -78,7 +79,7 @@ fn drawn_poses(count: usize, size: f64, frame: usize) -> Vec<([f32; 4], [f32; 3]
 fn culled(strategy: Strategy, finder: Finder, size: f64, threads: usize) -> Vec<Vec<[u32; 2]>> {
     let shape = shape(size);
     let mut bodies = Bodies::default();
-    for (i, (q, t)) in poses(300, size, 0).into_iter().enumerate() {
+    for (i, (q, t)) in given(|| poses(300, size, 0)).into_iter().enumerate() {
         bodies.push(0, i % 4 != 0, q, t);
     }
     let of = Culler::builder().strategy(strategy).finder(finder);
@@ -86,7 +87,7 @@ fn culled(strategy: Strategy, finder: Finder, size: f64, threads: usize) -> Vec<
     let mut culler = of.build(std::slice::from_ref(&shape), &bodies).unwrap();
     (0..FRAMES)
         .map(|frame| {
-            for (i, (_, t)) in poses(300, size, frame).into_iter().enumerate() {
+            for (i, (_, t)) in given(|| poses(300, size, frame)).into_iter().enumerate() {
                 if bodies.dynamic[i] {
                     bodies.translation[i] = t;
                 }
@@ -101,9 +102,9 @@ fn shapes_are_the_same_in_every_mode() {
     for size in SIZES {
         assert_same("a shape", || {
             let shape = shape(size);
-            let numbers = format!("{:?} {:?} {:?}", shape.vertices, shape.ball, shape.ordop);
-            let others = shape.with_directions(DirectionSet::K26);
-            (numbers, format!("{:?}", others.ordop))
+            let others = shape.clone().with_directions(DirectionSet::K26);
+            // Texts are written in the default mode: they depend on comparisons, too.
+            given(|| format!("{shape:?} {:?}", others.ordop))
         });
     }
 }
@@ -124,10 +125,6 @@ fn pairs_of_cullers_are_the_same_in_every_mode() {
 
 /// Boxes whose sides and distances are of this size.
 fn boxes(size: f64, frame: usize) -> Vec<Aabb> {
-    in_default_mode(|| drawn_boxes(size, frame))
-}
-
-fn drawn_boxes(size: f64, frame: usize) -> Vec<Aabb> {
     let mut random = Random(3 + frame as u64);
     (0..200)
         .map(|_| {
@@ -145,14 +142,14 @@ fn pairs_of_boxes_are_the_same_in_every_mode() {
             assert_same(&format!("boxes, {finder}, {size}"), || {
                 let of = BoxCuller::builder().finder(finder).threads(threads);
                 let mut culler = of.worth_waking(0).build().unwrap();
-                let frames = (0..FRAMES).map(|frame| boxes(size, frame));
+                let frames = (0..FRAMES).map(|frame| given(|| boxes(size, frame)));
                 let pairs = frames.map(|boxes| culler.cull(&boxes).unwrap().sorted());
                 pairs.collect::<Vec<_>>()
             });
         }
         assert_same("a world of boxes", || {
             let mut world = BoxWorld::new();
-            for aabb in boxes(size, 0) {
+            for aabb in given(|| boxes(size, 0)) {
                 world.insert(aabb).unwrap();
             }
             world.cull().unwrap();
@@ -171,15 +168,11 @@ fn pairs_of_worlds_are_the_same_in_every_mode() {
         assert_same("a world", || {
             let mut world = World::new(vec![shape(size)]).unwrap();
             let mut random = Random(9);
-            for (q, t) in poses(200, size, 0) {
-                let (t, margin) = in_default_mode(|| {
-                    let t = t.map(|x| f64::from(x) + random.next() * 1e-12 * size);
-                    (t, (0.01 * size * random.next()) as f32)
+            for (q, t) in given(|| poses(200, size, 0)) {
+                let body = given(|| Body {
+                    margin: (0.01 * size * random.next()) as f32,
+                    ..Body::at(0, q, t.map(|x| f64::from(x) + random.next() * 1e-12 * size))
                 });
-                let body = Body {
-                    margin,
-                    ..Body::at(0, q, t)
-                };
                 world.insert(body).unwrap();
             }
             world.cull().unwrap();
@@ -195,10 +188,8 @@ fn single_pairs_are_the_same_in_every_mode() {
         assert_same("single pairs", || {
             let mut test = PairTest::new(DirectionSet::K18);
             let one = test.add(&shape(size)).unwrap();
-            let margin = in_default_mode(|| (0.01 * size) as f32);
-            let other = test.grown(one, margin).unwrap();
-            let near = in_default_mode(|| 0.2 * size);
-            let poses = poses(500, near, 1).into_iter();
+            let other = test.grown(one, given(|| (0.01 * size) as f32)).unwrap();
+            let poses = given(|| poses(500, 0.2 * size, 1)).into_iter();
             let touch = poses.map(|(q, t)| test.may_touch(one, other, q, t));
             touch.collect::<Vec<_>>()
         });
@@ -207,7 +198,7 @@ fn single_pairs_are_the_same_in_every_mode() {
 
 #[test]
 fn the_mode_returns_after_an_error_or_a_panic() {
-    let boxes = boxes(1.0, 0);
+    let boxes = given(|| boxes(1.0, 0));
     for mode in FpMode::OTHERS {
         mode.run(|| {
             let mut culler = BoxCuller::new();

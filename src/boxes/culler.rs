@@ -22,7 +22,9 @@ use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 /// assert_eq!(culler.cull(&boxes)?.sorted(), [[0, 1]]); // touching is meeting
 /// # Ok::<(), sdop::CullError>(())
 /// ```
-#[derive(Debug)]
+///
+/// A clone culls on as the original would, on threads that it starts for itself.
+#[derive(Clone, Debug)]
 pub struct BoxCuller {
     frames: Frames,
     groups: Option<Vec<Groups>>,

@@ -30,7 +30,7 @@ const CUBIC: f32 = 32.0;
 const FEW: usize = 16;
 
 /// The boxes of a set, as a finder has them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Frames {
     tier: Tier,
     threads: FrameThreads,
@@ -95,6 +95,14 @@ impl Frames {
         } else {
             self.start_anew();
         }
+    }
+
+    /// Forgets all boxes, and gives back their memory. The next [`Self::replace`] begins anew.
+    pub fn forget(&mut self) {
+        (self.places, self.order) = Default::default();
+        (self.ends, self.scratch) = Default::default();
+        self.cubes = Balls::new(0);
+        self.start_anew();
     }
 
     fn start_anew(&mut self) {

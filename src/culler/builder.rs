@@ -1,6 +1,6 @@
 //! How a culler is made: settings first, then the shapes and bodies.
 
-use super::{CullError, Culler};
+use super::{CullError, Culler, check};
 use crate::bodies::Bodies;
 use crate::settings::{
     Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, Strategy, Updates,
@@ -115,8 +115,19 @@ impl CullerBuilder {
     ///
     /// # Errors
     /// Bodies or shapes outside of the contract ([`check_bodies`](crate::bodies::contract::check_bodies)); settings that
-    /// can't be carried out (a missing interest or budget, a body that doesn't exist); threads that the system refuses.
+    /// can't be carried out (a missing interest or budget, a body that doesn't exist); threads that the system refuses; a shape
+    /// far from its origin ([`Shape::pose_offset`]).
     pub fn build(&self, shapes: &[Shape], bodies: &Bodies) -> Result<Culler, CullError> {
+        check::near(shapes)?;
+        self.build_about_vertices(shapes, bodies)
+    }
+
+    /// The same of poses that place the origin of each shape's vertices, however far that is from the mesh's own.
+    pub(crate) fn build_about_vertices(
+        &self,
+        shapes: &[Shape],
+        bodies: &Bodies,
+    ) -> Result<Culler, CullError> {
         let tier = self.tier.unwrap_or_else(Tier::detect);
         let worth_waking = self.worth_waking.unwrap_or(WORTH_WAKING);
         let threads = FrameThreads::new(Threads::new(self.threads)?, worth_waking);

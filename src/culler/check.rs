@@ -23,6 +23,25 @@ pub(super) fn fixed(bodies: &Bodies) -> Bodies {
     }
 }
 
+/// How to mend a shape that is far from its origin.
+pub(crate) const FAR: &str = "keep its bodies in a `World`, whose translations are f64, or build it with `Origin::Ball` and \
+                              pose it by the centre of its ball, `Shape::offset`";
+
+/// Refuses shapes that f32 poses can't place: those far from the origin that the poses refer to.
+pub(super) fn near(shapes: &[Shape]) -> Result<(), CullError> {
+    match shapes.iter().find(|shape| shape.is_far()) {
+        None => Ok(()),
+        Some(shape) => Err(CullError::Shape {
+            shape: shape.name.clone(),
+            problem: format!(
+                "lies far from the origin of its file, about {:?}: too far for poses in f32",
+                shape.offset
+            ),
+            hint: FAR,
+        }),
+    }
+}
+
 /// Checks that all shapes have the slab directions of the first, where or-DOPs are tested.
 pub(super) fn directions(shapes: &[Shape], settings: &CullSettings) -> Result<(), CullError> {
     let first = shapes.first().map(|shape| shape.ordop.directions);

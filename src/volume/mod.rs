@@ -6,6 +6,7 @@ mod ball;
 mod basis;
 mod directions;
 mod hull;
+mod jacobi;
 mod ordop;
 mod principal;
 mod shape;

@@ -4,9 +4,9 @@
 //! C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. Taken over the hull's surface, not the mesh's vertices, neither
 //! interior detail nor sampling density turns the axes.
 
-use faer::{Mat, Side};
 use glam::{DMat3, DQuat, DVec3, Vec3};
 
+use super::jacobi::eigen;
 use super::{Axes, Basis, Hull};
 
 /// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are whatever rounding
@@ -68,24 +68,13 @@ fn outer(v: DVec3) -> DMat3 {
 
 /// Eigenvectors by falling eigenvalue as a right-handed rotation; `None` when two eigenvalues tie.
 fn principal_rotation(covariance: DMat3) -> Option<DMat3> {
-    let matrix = Mat::from_fn(3, 3, |row, column| covariance.col(column)[row]);
-    let eigen = matrix.self_adjoint_eigen(Side::Lower).ok()?;
-    let (values, vectors) = (eigen.S().column_vector(), eigen.U());
-    // faer sorts ascending.
-    let gap = (values[2] - values[1]).min(values[1] - values[0]);
-    let separate = gap > TIE * values[2]; // false for NaN
+    let [(first, x), (second, y), (third, _)] = eigen(covariance);
+    let gap = (first - second).min(second - third);
+    let separate = gap > TIE * first; // false for NaN
     if !separate {
         return None;
     }
-    let axis = |column: usize| {
-        let v = DVec3::new(
-            vectors[(0, column)],
-            vectors[(1, column)],
-            vectors[(2, column)],
-        );
-        v * sign_of_largest(v)
-    };
-    let (x, y) = (axis(2), axis(1));
+    let [x, y] = [x, y].map(|axis| axis * sign_of_largest(axis));
     Some(DMat3::from_cols(x, y, x.cross(y)))
 }
 

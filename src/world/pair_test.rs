@@ -6,6 +6,7 @@
 
 use super::margins::check_margin;
 use crate::bodies::contract::{ContractError, check_pose, check_shape};
+use crate::culler::FAR;
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
 use crate::settings::Overlap;
 use crate::simd::{ROW, in_default_mode};
@@ -55,12 +56,20 @@ impl PairTest {
     /// Adds a shape; returns the number that tests know it by.
     ///
     /// # Errors
-    /// A shape larger than 2⁶⁰.
+    /// A shape larger than 2⁶⁰, or far from its origin ([`Shape::pose_offset`]).
     pub fn add(&mut self, shape: &Shape) -> Result<u32, ContractError> {
         check_shape(self.models.len(), 0, std::slice::from_ref(shape))?;
+        if shape.is_far() {
+            return Err(ContractError {
+                body: self.models.len(),
+                quantity: "shape",
+                value: format!("{} lies far from the origin of its file", shape.name),
+                hint: FAR,
+            });
+        }
         let directions = self.tables.directions();
         let (ordop, frame) = in_default_mode(|| {
-            let ordop = OrDop::build(&shape.vertices, shape.ordop.basis, directions);
+            let ordop = shape.slabs(shape.ordop.basis, directions);
             let frame = ShapeFrame::new(shape, &ordop.basis);
             (ordop, frame)
         });
