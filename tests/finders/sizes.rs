@@ -181,3 +181,35 @@ fn searches_count_alike_on_any_threads() {
         );
     }
 }
+
+/// Lists pay for long boxes: the first one is made in the second frame, and serves those that follow.
+#[test]
+fn long_boxes_are_listed_at_once() {
+    let of = |finder| BoxCuller::builder().finder(finder).build().unwrap();
+    for exponent in [-40, 0, 30] {
+        let [mut grid, mut auto] = [Finder::Grid, Finder::Auto].map(of);
+        let mut tests = Vec::new();
+        let mut before = [0; 2];
+        for frame in 0..6 {
+            let size = 2f32.powi(exponent);
+            let centres = placed(exponent, 0).into_iter();
+            let drift = 0.001 * size * frame as f32;
+            let boxes: Vec<Aabb> = centres
+                .map(|centre| {
+                    let halves = [size, size, 0.05 * size];
+                    let end = |sign: f32| [0, 1, 2].map(|k| centre[k] + drift + sign * halves[k]);
+                    Aabb::new(end(-1.0), end(1.0))
+                })
+                .collect();
+            let all = grid.cull(&boxes).unwrap().sorted();
+            assert_eq!(auto.cull(&boxes).unwrap().sorted(), all);
+            let now = [&grid, &auto].map(|culler| culler.counters().tests);
+            tests.push(([0, 1].map(|k| now[k] - before[k]), auto.list_tests()));
+            before = now;
+        }
+        let (first, rest) = tests.split_at(2);
+        assert!(first[0].1 == 0 && first[1].1 > 0, "2^{exponent}: {tests:?}");
+        let is_followed = |&([of_grid, tests], searched)| searched == 0 && 2 * tests < of_grid;
+        assert!(rest.iter().all(is_followed), "2^{exponent}: {tests:?}");
+    }
+}

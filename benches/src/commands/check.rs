@@ -85,7 +85,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         }
     }
     emit_verdict(args.format, &verdict)?;
-    Ok(verdict.conclusion().into())
+    Ok(Outcome::from(&verdict))
 }
 
 fn recorded(args: &Args, pairs: Vec<Option<Vec<[u32; 2]>>>) -> miette::Result<Vec<Answer>> {

@@ -156,7 +156,11 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     let table = rows(&["problem"], &problems, |problem| vec![problem.clone()]);
     print(&table.to_string())?;
-    Ok(Outcome::Failed)
+    Ok(Outcome::Failed(format!(
+        "{} problems, the first: {}",
+        problems.len(),
+        problems[0]
+    )))
 }
 
 /// The templates of blocks, by name. A repository may have none.

@@ -37,6 +37,19 @@ impl CaseVerdict {
     }
 }
 
+/// The name and what is wrong, if anything is.
+impl fmt::Display for CaseVerdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = &self.name;
+        match &self.outcome {
+            Outcome::Pass => write!(f, "{name} passed"),
+            Outcome::Fail { why } => write!(f, "{name} {why} [{}]", self.flag),
+            Outcome::Error { trouble } => write!(f, "{name} {trouble}"),
+            Outcome::Skipped { why } => write!(f, "{name} ({why})"),
+        }
+    }
+}
+
 /// A group's line.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct GroupVerdict {
@@ -119,6 +132,39 @@ impl Verdict {
     #[must_use]
     pub fn passed(&self) -> bool {
         self.conclusion() == Conclusion::Pass
+    }
+
+    /// Why the conclusion is not [`Conclusion::Pass`], on one line.
+    #[must_use]
+    pub fn why(&self) -> Option<String> {
+        let is_skipped = |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. });
+        match self.conclusion() {
+            Conclusion::Pass => None,
+            Conclusion::Incomplete => Some(format!(
+                "{} of {} cases were judged: {} skipped, {} not run",
+                self.judged(),
+                self.asked(),
+                self.cases.iter().filter(is_skipped).count(),
+                self.not_run
+            )),
+            Conclusion::NotPassed => Some(self.refutation()),
+        }
+    }
+
+    /// What speaks against the claim first.
+    fn refutation(&self) -> String {
+        let mut against = self.cases.iter().filter(|case| self.counts_against(case));
+        if let Some(first) = against.next() {
+            let count = 1 + against.count();
+            return format!("{count} of {} cases failed, first {first}", self.asked());
+        }
+        if let Some(name) = self.stale.first() {
+            return format!("the known failure {name} passes: take it off the list");
+        }
+        match self.extra_limit.filter(|_| self.is_beyond_limit()) {
+            Some(limit) => format!("more extra pairs than {limit} for each required one"),
+            None => "no case passed: all are known failures".to_owned(),
+        }
     }
 
     /// Cases that were asked for.
@@ -244,19 +290,14 @@ impl fmt::Display for Verdict {
             .filter(|case| self.counts_against(case))
             .take(3)
         {
-            match &case.outcome {
-                Outcome::Fail { why } => writeln!(f, "{} {why} [{}]", case.name, case.flag)?,
-                Outcome::Error { trouble } => writeln!(f, "{} {trouble}", case.name)?,
-                _ => {}
-            }
+            writeln!(f, "{case}")?;
         }
-        if let Some(case) = self
+        let mut skipped = self
             .cases
             .iter()
-            .find(|case| matches!(case.outcome, Outcome::Skipped { .. }))
-            && let Outcome::Skipped { why } = &case.outcome
-        {
-            writeln!(f, "skipped, for one: {} ({why})", case.name)?;
+            .filter(|case| matches!(case.outcome, Outcome::Skipped { .. }));
+        if let Some(case) = skipped.next() {
+            writeln!(f, "skipped, for one: {case}")?;
         }
         self.smallest
             .as_ref()
@@ -298,3 +339,6 @@ impl fmt::Display for Smallest {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -141,7 +141,7 @@ pub fn run(
     };
     print::emit(format, &verdict)?;
     save(args, command, &verdict, out, format)?;
-    Ok(verdict.conclusion().into())
+    Ok(Outcome::from(&verdict))
 }
 
 impl Outside {

@@ -46,6 +46,8 @@ impl ReportFormat {
 struct Whole<'a> {
     passed: bool,
     conclusion: Conclusion,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    why: Option<String>,
     asked: usize,
     judged: usize,
     groups: Vec<GroupVerdict>,
@@ -71,6 +73,7 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
             let whole = Whole {
                 passed: verdict.passed(),
                 conclusion: verdict.conclusion(),
+                why: verdict.why(),
                 asked: verdict.asked(),
                 judged: verdict.judged(),
                 groups: verdict.groups(),

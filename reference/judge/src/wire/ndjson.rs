@@ -64,7 +64,10 @@ pub(crate) fn encode(
     let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
     let others = case.claims.iter().copied().filter(|other| *other != claim);
     let header = CaseHeader {
-        record: Header::new(&case.name, 0, &case.shapes, first),
+        record: Header {
+            frames: Some(case.frames.len() as u32),
+            ..Header::new(&case.name, 0, &case.shapes, first)
+        },
         flag: case.flag.clone(),
         source: case.source.clone(),
         claims: std::iter::once(claim).chain(others).collect(),
