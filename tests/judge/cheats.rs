@@ -58,7 +58,9 @@ fn with_first_bodies(case: &Case) -> Case {
 impl Subject for Cheat {
     fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
         let right = exact(case, claim);
-        let last = right.len() - 1;
+        let Some(last) = right.len().checked_sub(1) else {
+            return Ok(Vec::new()); // so small are the scenes that shrinking tries
+        };
         let lists: Lists = match self {
             Self::None => right,
             Self::LastFrame => vec![right[last].clone(); right.len()],

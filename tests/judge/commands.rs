@@ -214,7 +214,68 @@ fn records_without_all_frames_are_incomplete() {
         let (output, text) = sdop(directory.path(), &["check", "part"]);
         assert_eq!(output.status.code(), Some(code), "{said}: {text}");
         assert!(text.contains(said), "{text}");
+        if [1, 3].contains(&code) {
+            reason(&output);
+        }
     }
+}
+
+/// The only line of standard error that starts with the program's name, without it.
+fn reason(output: &Output) -> String {
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    let mut lines = error.lines().filter_map(|line| line.strip_prefix("sdop: "));
+    let reason = lines.next().unwrap_or_else(|| panic!("no reason: {error}"));
+    assert_eq!(lines.next(), None, "{error}");
+    reason.to_owned()
+}
+
+#[test]
+fn no_success_without_a_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let skips = answering(r#"echo '{"frame":0,"skipped":"no grids"}'; exit 0"#);
+    let silent = answering(RIGHT);
+    for (program, code, says) in [
+        (&skips, 3, "0 of 8 cases were judged: 8 skipped, 0 not run"),
+        (
+            &silent,
+            1,
+            "8 of 8 cases failed, first box/grid/0000 misses ",
+        ),
+        (
+            &"false".to_owned(),
+            1,
+            "8 of 8 cases failed, first box/grid/0000 crashed",
+        ),
+    ] {
+        let case = ["--claims", "aabb", "--case", "box/grid/*", "--no-fresh"];
+        let more = ["--timeout", "60", "--format", "json"];
+        let run = [&["verify", "--exec", program], &case[..], &more].concat();
+        let (output, text) = sdop(directory.path(), &run);
+        assert_eq!(output.status.code(), Some(code), "{text}");
+        let (why, found): (_, serde_json::Value) =
+            (reason(&output), serde_json::from_str(&text).unwrap());
+        assert!(why.starts_with(says), "{why}");
+        assert_eq!(found["why"], why.as_str());
+        let word = if code == 3 {
+            "incomplete"
+        } else {
+            "not-passed"
+        };
+        assert_eq!(
+            (&found["conclusion"], &found["asked"]),
+            (&word.into(), &8.into())
+        );
+    }
+    // A timing's rows say it themselves.
+    let scene =
+        "name = \"one\"\nframes = 2\n[[bodies]]\nshape = \"box\"\nposes = [[0,0,0,1,0,0,0]]\n";
+    std::fs::write(directory.path().join("one.toml"), scene).unwrap();
+    let timing = [
+        "bench", "one.toml", "--exec", &skips, "--frames", "2", "--rounds", "1",
+    ];
+    let (output, _) = sdop(directory.path(), &timing);
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    assert!(reason(&output).ends_with("skipped the scene: no grids"));
 }
 
 #[test]
