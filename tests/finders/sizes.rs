@@ -209,7 +209,8 @@ fn long_boxes_are_listed_at_once() {
         }
         let (first, rest) = tests.split_at(2);
         assert!(first[0].1 == 0 && first[1].1 > 0, "2^{exponent}: {tests:?}");
-        let is_followed = |&([of_grid, tests], searched)| searched == 0 && 2 * tests < of_grid;
+        let is_followed =
+            |&([of_grid, tests], searched): &([u64; 2], u64)| searched == 0 && 2 * tests < of_grid;
         assert!(rest.iter().all(is_followed), "2^{exponent}: {tests:?}");
     }
 }

@@ -279,6 +279,8 @@ fn nearer(frame: &Frame, [i, j]: [u32; 2]) -> Frame {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
     use sdop::bodies::Bodies;
     use sdop::mesh::shapes::ProceduralShape;
     use sdop::volume::{Shape, ShapeSpec};
