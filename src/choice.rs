@@ -36,44 +36,24 @@ impl UnknownChoice {
 #[must_use]
 pub fn suggest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
-    let lower = given.to_lowercase().replace('_', "-");
-    // Two typing errors in a short word already make another word: allow one edit per three letters.
-    let allowed = given.chars().count() / 3;
-    let nearest = known
-        .iter()
-        .map(|name| (edits(&lower, &name.replace('_', "-")), *name))
-        .min_by_key(|(distance, _)| *distance);
-    match nearest {
-        Some((distance, name)) if distance <= allowed => format!("did you mean `{name}`?"),
-        _ => format!("one of: {}", known.join(", ")),
+    match nearest(given, known.iter().copied()) {
+        Some(name) => format!("did you mean `{name}`?"),
+        None => format!("one of: {}", known.join(", ")),
     }
 }
 
-/// How many characters have to be inserted, removed, exchanged for others or swapped with their neighbours: the distance of
-/// Damerau and Levenshtein, by their dynamic programme.
-fn edits(from: &str, to: &str) -> usize {
-    let [from, to] = [from, to].map(|text| text.chars().collect::<Vec<char>>());
-    // Entry [i + 1][j + 1] is the distance of the first i characters from the first j; the edges are out of reach.
-    let far = from.len() + to.len();
-    let mut table = vec![vec![far; to.len() + 2]; from.len() + 2];
-    for i in 0..=from.len() {
-        table[i + 1][1] = i;
-    }
-    for j in 0..=to.len() {
-        table[1][j + 1] = j;
-    }
-    for (i, a) in from.iter().enumerate() {
-        for (j, b) in to.iter().enumerate() {
-            let replaced = table[i + 1][j + 1] + usize::from(a != b);
-            let shorter = table[i + 1][j + 2].min(table[i + 2][j + 1]) + 1;
-            // Where the two last met, crossed over: what lies between them is removed on one side and inserted on the other.
-            let k = from[..i].iter().rposition(|c| c == b).map_or(0, |k| k + 1);
-            let l = to[..j].iter().rposition(|c| c == a).map_or(0, |l| l + 1);
-            let swapped = table[k][l] + (i - k) + 1 + (j - l);
-            table[i + 2][j + 2] = replaced.min(shorter).min(swapped);
-        }
-    }
-    table[from.len() + 1][to.len() + 1]
+/// The known name that is close to the given one, if one is.
+#[must_use]
+pub fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = given.to_lowercase().replace('_', "-");
+    // Two typing errors in a short word already make another word: allow one edit per three letters.
+    let allowed = given.chars().count() / 3;
+    let distance = |name: &str| strsim::damerau_levenshtein(&lower, &name.replace('_', "-"));
+    known
+        .map(|name| (distance(name), name))
+        .min_by_key(|(distance, _)| *distance)
+        .filter(|(distance, _)| *distance <= allowed)
+        .map(|(_, name)| name)
 }
 
 /// Declares an enum of named choices with `ALL`, `NAMES`, `name`, `Display`, `FromStr` and serde as its name.
@@ -177,26 +157,5 @@ impl<T: Copy> serde::de::Visitor<'_> for NameVisitor<T> {
             .zip(self.values)
             .find_map(|(name, value)| (*name == text).then_some(*value))
             .ok_or_else(|| E::unknown_variant(text, self.names))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::edits;
-
-    #[test]
-    fn edits_count_swaps_once() {
-        for (from, to, expected) in [
-            ("", "", 0),
-            ("grid", "", 4),
-            ("grid", "gird", 1),
-            ("sweep", "seep", 1),
-            ("kitten", "sitting", 3),
-            ("ab", "bca", 2), // swapped, then inserted between
-            ("öd", "dö", 1),
-        ] {
-            assert_eq!(edits(from, to), expected, "{from} {to}");
-            assert_eq!(edits(to, from), expected, "{to} {from}");
-        }
     }
 }

@@ -5,9 +5,10 @@ mod commands;
 use std::process::ExitCode;
 
 use clap::Parser as _;
+use commands::BAD_INPUT;
 use sdop_bench::mpi;
 
-/// 0 when all is well, 1 when a check failed, 2 on bad input.
+/// 0 when all is well, 1 when a check failed, 2 on bad input, 3 when not all checks were made.
 fn main() -> ExitCode {
     commands::report_errors_whole();
     let ending = mpi::Ending;
@@ -27,12 +28,7 @@ fn main() -> ExitCode {
     match cli.run() {
         Ok(outcome) => {
             ending.well();
-            ExitCode::from(match outcome {
-                commands::Outcome::Passed => 0,
-                commands::Outcome::Failed => 1,
-                #[cfg(feature = "mpi")]
-                commands::Outcome::Told => BAD_INPUT,
-            })
+            ExitCode::from(outcome.into_code())
         }
         Err(report) => {
             commands::complain(&report);
@@ -41,5 +37,3 @@ fn main() -> ExitCode {
         }
     }
 }
-
-const BAD_INPUT: u8 = 2;

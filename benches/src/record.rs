@@ -17,6 +17,7 @@ pub fn header(scene: &Scene) -> Header {
         on,
     });
     Header {
+        frames: Some(scene.frames),
         dt: Some(scene.dt),
         side: scene.side,
         effects: Some(effects.collect()),

@@ -231,6 +231,11 @@ impl Frames {
         FEW * small <= all
     }
 
+    /// Candidates that the last frame tested to make a list of neighbours.
+    pub fn list_tests(&self) -> u64 {
+        self.finder.list_tests()
+    }
+
     /// Gives back the memory of lists of pairs.
     pub fn shrink_to_fit(&mut self) {
         self.tasks.shrink_to_fit();

@@ -219,6 +219,14 @@ impl Culler {
         self.finder.bytes()
     }
 
+    /// Candidates that the last frame tested to make a list of neighbours, in addition to the tests that
+    /// [`Self::counters`] count. At most three times the candidates that the grid would test, and 48 per
+    /// body; a search that reaches this limit is abandoned and counts as the limit.
+    #[must_use]
+    pub fn list_tests(&self) -> u64 {
+        self.finder.list_tests()
+    }
+
     /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
     /// finder and on the frames so far alone.
     ///

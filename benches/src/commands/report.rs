@@ -157,7 +157,11 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     let table = rows(&["problem"], &problems, |problem| vec![problem.clone()]);
     print(&table.to_string())?;
-    Ok(Outcome::Failed)
+    Ok(Outcome::Failed(format!(
+        "{} problems, the first: {}",
+        problems.len(),
+        problems[0]
+    )))
 }
 
 /// Files of a directory, and of those in it, by their path from `root`. A repository may have none.

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Outcome;
 use super::files::{self, command, write};
-use super::output::{Format, csv_text, emit};
+use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::{MachineArgs, SceneArgs};
 use super::sweep::{self, SweepArgs};
 
@@ -158,17 +158,17 @@ fn print(
     text: fn(&Tradeoff) -> String,
 ) -> miette::Result<Outcome> {
     let result = &recorded.result;
+    let failures: Vec<&str> = result.failures().collect();
+    let why = (!failures.is_empty())
+        .then(|| format!("true pairs were missed by: {}", failures.join("; ")));
     match format {
         // A line a variant; the rest is in the other formats.
         Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
-        format => emit(format, recorded, |recorded| text(&recorded.result))?,
+        format => emit_with_reason(format, recorded, why.as_deref(), |recorded| {
+            text(&recorded.result)
+        })?,
     }
-    let failures: Vec<&str> = result.failures().collect();
-    if failures.is_empty() {
-        return Ok(Outcome::Passed);
-    }
-    eprintln!("true pairs were missed by: {}", failures.join("; "));
-    Ok(Outcome::Failed)
+    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
 fn plan(args: &Args) -> Plan {

@@ -20,7 +20,7 @@ use sdop_judge::ours::rounds::{Failure, Ledger};
 use super::Outcome;
 use super::files::{self, ReadArgs};
 use super::judge::{self, ReportFormat};
-use super::output::{Format, emit, print, progress};
+use super::output::{Format, emit_with_reason, print, progress};
 use super::sweep::{self, SweepArgs};
 use report::Report;
 
@@ -200,10 +200,11 @@ impl Taken {
         let none = Ledger::default();
         let boxes = self.ledgers.get(&Origin::Boxes).unwrap_or(&none);
         report.finish(seconds, &boxes.boxes, run.rotation());
-        emit(format, &report, Report::tables)?;
-        if report.passed() {
+        let why = report.why();
+        emit_with_reason(format, &report, why.as_deref(), Report::tables)?;
+        let Some(why) = why else {
             return Ok(Outcome::Passed);
-        }
+        };
         if let Some((origin, &unit)) = self.failed.first_key_value() {
             let judged = run.judge(unit)?.into_iter().filter(|(of, _)| of == origin);
             let ledger = judged.map(|(_, ledger)| ledger).next().unwrap_or_default();
@@ -213,7 +214,7 @@ impl Taken {
                 (None, None) => print("the failure doesn't show on this machine")?,
             }
         }
-        Ok(Outcome::Failed)
+        Ok(Outcome::Failed(why))
     }
 }
 

@@ -54,4 +54,4 @@ pub use claim::Claim;
 pub use run::{Judge, JudgeError, Options, examine, judge, judge_pair_test};
 pub use score::{Count, Miss, Outcome};
 pub use subject::{PairTest, Scene, Subject};
-pub use verdict::Verdict;
+pub use verdict::{Conclusion, Verdict};

@@ -110,6 +110,13 @@ pub fn junit(verdict: &Verdict) -> String {
         }
         text.push_str("  </testsuite>\n");
     }
+    if verdict.not_run > 0 {
+        let n = verdict.not_run;
+        let _ = writeln!(
+            text,
+            "  <testsuite name=\"not run\" tests=\"{n}\" failures=\"0\" errors=\"0\" skipped=\"{n}\"/>"
+        );
+    }
     text.push_str("</testsuites>\n");
     text
 }

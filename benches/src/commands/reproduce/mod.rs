@@ -17,7 +17,7 @@ use sdop_bench::sweep::{Merged, Sweep as _};
 
 use super::Outcome;
 use super::files::{command, write};
-use super::output::{Format, csv_text, emit};
+use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::MachineArgs;
 use super::sweep::{self, SweepArgs};
 pub use figures::draw_costs;
@@ -107,8 +107,9 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         paper,
         seconds,
     };
-    written.write(&tables, args.format)?;
-    Ok(outcome(&results))
+    let why = disagreement(&results);
+    written.write(&tables, args.format, why.as_deref())?;
+    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
 /// What merged shards give.
@@ -129,8 +130,9 @@ pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Out
         paper: out,
         seconds: merged.seconds,
     };
-    written.write(&tables, format)?;
-    Ok(outcome(&results))
+    let why = disagreement(&results);
+    written.write(&tables, format, why.as_deref())?;
+    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
 /// Where results go, and how long they took.
@@ -141,23 +143,15 @@ struct Written<'a> {
 }
 
 impl Written<'_> {
-    fn write(&self, tables: &Tables, format: Format) -> miette::Result<()> {
+    fn write(&self, tables: &Tables, format: Format, why: Option<&str>) -> miette::Result<()> {
         write_tables(self.numbers, tables)?;
         figures::draw_all(&self.paper.join("figures"), tables)?;
         match format {
             Format::Csv => emit(Format::Csv, &tables.table_1, |_| String::new()),
-            format => emit(format, tables, |tables| {
+            format => emit_with_reason(format, tables, why, |tables| {
                 brief::brief(tables, self.seconds, &self.numbers.display().to_string())
             }),
         }
-    }
-}
-
-fn outcome(results: &Results) -> Outcome {
-    if lists_agree(results) {
-        Outcome::Passed
-    } else {
-        Outcome::Failed
     }
 }
 
@@ -177,8 +171,8 @@ fn plan(args: &Args) -> miette::Result<Plan> {
     Ok(Plan::new(&args.scenes, seeds, frames, size.effort, tier))
 }
 
-/// Whether sequential and listed S-DOP reported the same pairs in every run.
-fn lists_agree(results: &Results) -> bool {
+/// Says so if sequential and listed S-DOP did not report the same pairs in every run.
+fn disagreement(results: &Results) -> Option<String> {
     let hashes = |strategy| {
         let of = results
             .runs
@@ -186,7 +180,8 @@ fn lists_agree(results: &Results) -> bool {
             .filter(move |run| run.strategy == strategy);
         of.map(|run| &run.pairs_sha256)
     };
-    hashes(Strategy::SDopSequential).eq(hashes(Strategy::SDopBatch))
+    let agree = hashes(Strategy::SDopSequential).eq(hashes(Strategy::SDopBatch));
+    (!agree).then(|| "sequential and listed S-DOP report different pairs".to_owned())
 }
 
 fn write_tables(directory: &Path, tables: &Tables) -> miette::Result<()> {

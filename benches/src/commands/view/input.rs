@@ -117,7 +117,7 @@ fn judged(
     claim: Claim,
     answers: Option<&Path>,
 ) -> miette::Result<Show> {
-    let Read { case, pairs } = read_case(path, most)?;
+    let Read { case, pairs, .. } = read_case(path, most)?;
     let given = match answers {
         None => {
             let answer = |pairs: Option<Vec<_>>| pairs.map(|pairs| Answer { pairs, ns: None });
@@ -165,7 +165,7 @@ fn answered(case: &Case, file: &Path, most: u64) -> miette::Result<Vec<Answer>> 
             "{name}: {} answers to {frames} frames",
             answers.len()
         )),
-        Err(Stop::Skipped(why)) => Err(miette!("{name}: the case was skipped: {why}")),
+        Err(Stop::Skipped { why, .. }) => Err(miette!("{name}: the case was skipped: {why}")),
         Err(Stop::Trouble(trouble)) => Err(miette!(help = hint, "{name}: {trouble}")),
     }
 }

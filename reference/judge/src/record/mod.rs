@@ -22,6 +22,7 @@
 //! | first | `cull` | the `[cull]` table of the scene, as run |
 //! | frame | `counters` | `[{"volume","updates","tests","hits"}…]` of this frame, in the order of the tests |
 //! | frame | `translations` | `[[tx,ty,tz]…]` in f64 of every body, where f32 doesn't hold them all; `poses` then have the nearest f32 (minor 2) |
+//! | first | `frames` | how many frames the record has when it is complete (minor 2) |
 //! | frame | `meets` | the pairs, not both static, whose meshes meet in exact arithmetic, sorted |
 
 mod error;
@@ -59,6 +60,9 @@ pub struct Header {
     /// Who culled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub program: Option<String>,
+    /// Frames that the record has when it is complete.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frames: Option<u32>,
     /// The scene's name.
     pub scene: String,
     /// Where all random draws started.

@@ -19,6 +19,7 @@ impl Header {
             version: VERSION,
             minor: MINOR,
             program: Some(concat!("sdop ", env!("CARGO_PKG_VERSION")).to_owned()),
+            frames: None,
             scene: scene.to_owned(),
             seed,
             dt: None,

@@ -64,7 +64,10 @@ pub(crate) fn encode(
     let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
     let others = case.claims.iter().copied().filter(|other| *other != claim);
     let header = CaseHeader {
-        record: Header::new(&case.name, 0, &case.shapes, first),
+        record: Header {
+            frames: Some(case.frames.len() as u32),
+            ..Header::new(&case.name, 0, &case.shapes, first)
+        },
         flag: case.flag.clone(),
         source: case.source.clone(),
         claims: std::iter::once(claim).chain(others).collect(),
@@ -98,6 +101,8 @@ pub struct Read {
     pub case: Case,
     /// The pairs of each frame that has some.
     pub pairs: Vec<Option<Vec<[u32; 2]>>>,
+    /// Which frames aren't there, in words, if some aren't.
+    pub lacks: Option<String>,
 }
 
 /// Reads a case or a record whose lines have at most `most` bytes.
@@ -137,9 +142,18 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
         .collect::<Result<_, _>>()
         .map_err(|e| format!("line 1: {e}"))?;
     let (mut bodies, mut frames, mut pairs) = (header.bodies, Vec::new(), Vec::new());
+    let mut next = 0;
     for (number, line) in lines {
         let at = |problem: String| format!("line {number}: {problem}");
         let line: CaseFrame = parse(number, line)?;
+        if line.frame < next {
+            return Err(at(format!(
+                "frame {} follows frame {}",
+                line.frame,
+                next - 1
+            )));
+        }
+        next = line.frame.saturating_add(1);
         let was = line.bodies.map(|changed| {
             let (set, was) = changed
                 .into_iter()
@@ -180,7 +194,13 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
         shapes,
         frames,
     };
-    Ok(Read { case, pairs })
+    let (there, wanted) = (
+        case.frames.len(),
+        header.frames.unwrap_or(0).max(next) as usize,
+    );
+    let lacks = (there == 0 || there < wanted)
+        .then(|| format!("the record has {there} of its {} frames", wanted.max(1)));
+    Ok(Read { case, pairs, lacks })
 }
 
 fn parse<T: for<'a> Deserialize<'a>>(
