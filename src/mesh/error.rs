@@ -42,7 +42,7 @@ pub enum Problem {
     },
     /// The file name's extension names no known format.
     #[error("the extension {found:?} names no mesh format that can be {action}")]
-    #[diagnostic(help("use .tri, .obj, .stl or .ply"))]
+    #[diagnostic(help("use .tri, .obj, .stl, .ply or .off"))]
     UnknownFormat {
         /// The extension as found, without the dot.
         found: String,

@@ -86,7 +86,7 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), Problem> {
         }
     }
     for (index, vertex) in vertices.iter().enumerate() {
-        check_vertex(index, *vertex)?;
+        check_vertex(index, vertex.to_array().map(f64::from))?;
     }
     for (index, triangle) in triangles.iter().enumerate() {
         check_triangle(index, triangle.map(i64::from), 0, vertices.len())?;
@@ -94,8 +94,8 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), Problem> {
     Ok(())
 }
 
-fn check_vertex(vertex: usize, position: Vec3) -> Result<(), Problem> {
-    for value in position.to_array() {
+fn check_vertex(vertex: usize, position: [f64; 3]) -> Result<(), Problem> {
+    for value in position.map(|x| x as f32) {
         if !value.is_finite() {
             return Err(Problem::NotFinite { vertex, value });
         }

@@ -7,6 +7,7 @@ mod prop;
 mod shapes;
 mod stl_ply;
 mod topology;
+mod tolerant;
 mod tri;
 
 use sdop::mesh::TriangleMesh;

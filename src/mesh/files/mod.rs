@@ -1,6 +1,7 @@
 //! Mesh files: a reader and a writer per format. Feature `readers`.
 
 mod obj;
+mod off;
 mod ply;
 mod read;
 mod stl;

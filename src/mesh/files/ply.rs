@@ -1,20 +1,11 @@
-//! PLY, text and binary, parsed by `ply-rs-bw`.
+//! PLY, text and binary: vertices, and faces as polygons or as strips.
 //!
-//! Elements are read one kind at a time into types that keep only what a mesh needs, and only after a check that the
-//! file can hold as many as the header declares: a count alone must not cost memory or time. Polygons become fans;
-//! faces of one or two vertices become degenerate triangles.
+//! The header names elements and their properties; all are passed over but the vertices' x, y, z and the lists of indices.
+//! Values that are passed over are not read as numbers: a NaN, or a word, in a property that nobody uses is no error.
+//! Polygons become fans; faces of one or two vertices become degenerate triangles; strips are unrolled.
 
-use std::io::ErrorKind;
-
-use glam::Vec3;
-use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{
-    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType,
-    ScalarType,
-};
-
-use super::text::{Fault, excerpt};
-use super::tri::Parts;
+use super::read::Parts;
+use super::text::{self, Fault, Token, excerpt};
 use crate::mesh::{Problem, check_triangle, check_vertex};
 
 /// Reads a PLY file.
@@ -22,258 +13,415 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     if bytes.is_empty() {
         return Err((None, Problem::NoVertices));
     }
-    let mut file = File {
-        bytes,
-        reader: Reader::new(bytes),
-        text: false,
+    let header = Header::read(bytes)?;
+    let text;
+    let mut body = match header.encoding {
+        Encoding::Text => {
+            text = text::decode(&bytes[header.size..]);
+            let first = header.lines;
+            let later = move |(line, text): (usize, _)| (line + first, text);
+            Body::Text(Box::new(
+                text::lines(&text).map(later).flat_map(text::words),
+            ))
+        }
+        Encoding::Binary { big_endian } => Body::Binary {
+            rest: &bytes[header.size..],
+            big_endian,
+        },
     };
-    let header = Parser::<Skipped>::new()
-        .read_header(&mut file.reader)
-        .map_err(|error| file.bad_line("a PLY header", &error, true))?;
-    file.text = header.encoding == Encoding::Ascii;
-    check_header(&header)?;
-    let (mut vertices, mut polygons, mut face_line) = (Vec::new(), Vec::new(), None);
-    for element in header.elements.values() {
-        let first_line = file.line();
-        match element.name.as_str() {
-            "vertex" => {
-                let points = file.elements::<Point>(element, &header)?;
-                for (index, Point(position)) in points.into_iter().enumerate() {
-                    let position = Vec3::from_array(position);
-                    let line = first_line.map(|line| line + index);
-                    check_vertex(index, position).map_err(|problem| (line, problem))?;
-                    vertices.push(position);
+    let mut mesh = Mesh::default();
+    for element in &header.elements {
+        mesh.add(element, &mut body)?;
+    }
+    body.check_end()?;
+    mesh.into_parts()
+}
+
+/// A type of numbers.
+#[derive(Clone, Copy, PartialEq)]
+enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn named(name: &str) -> Option<Self> {
+        Some(match name.to_ascii_lowercase().as_str() {
+            "char" | "int8" => Self::I8,
+            "uchar" | "uint8" => Self::U8,
+            "short" | "int16" => Self::I16,
+            "ushort" | "uint16" => Self::U16,
+            "int" | "int32" => Self::I32,
+            "uint" | "uint32" => Self::U32,
+            "float" | "float32" => Self::F32,
+            "double" | "float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    /// The number that the first bytes of `word`, least significant first, stand for.
+    fn number(self, word: [u8; 8]) -> f64 {
+        let [a, b, c, d, ..] = word;
+        match self {
+            Self::I8 => i8::from_le_bytes([a]).into(),
+            Self::U8 => a.into(),
+            Self::I16 => i16::from_le_bytes([a, b]).into(),
+            Self::U16 => u16::from_le_bytes([a, b]).into(),
+            Self::I32 => i32::from_le_bytes([a, b, c, d]).into(),
+            Self::U32 => u32::from_le_bytes([a, b, c, d]).into(),
+            Self::F32 => f32::from_le_bytes([a, b, c, d]).into(),
+            Self::F64 => f64::from_le_bytes(word),
+        }
+    }
+}
+
+/// What becomes of a property.
+#[derive(Clone, Copy, PartialEq)]
+enum Use {
+    /// A vertex' coordinate of this axis.
+    Coordinate(usize),
+    /// A face's corners.
+    Polygon,
+    /// Corners of strips, between which −1 stands.
+    Strips,
+    Nothing,
+}
+
+struct Property {
+    /// The type of a list's length.
+    length: Option<Scalar>,
+    scalar: Scalar,
+    used_as: Use,
+}
+
+struct Element {
+    name: String,
+    count: usize,
+    properties: Vec<Property>,
+}
+
+#[derive(Clone, Copy)]
+enum Encoding {
+    Text,
+    Binary { big_endian: bool },
+}
+
+struct Header {
+    encoding: Encoding,
+    elements: Vec<Element>,
+    /// Bytes and lines up to the end of the line `end_header`.
+    size: usize,
+    lines: usize,
+}
+
+impl Header {
+    fn read(bytes: &[u8]) -> Result<Self, Fault> {
+        let mut encoding = None;
+        let mut header = Self {
+            encoding: Encoding::Text,
+            elements: Vec::new(),
+            size: 0,
+            lines: 0,
+        };
+        while let Some(line) = header.next_line(bytes) {
+            let line = text::decode(line);
+            let words: Vec<Token> = text::words((header.lines, &line)).collect();
+            let lower: Vec<String> = words.iter().map(|w| w.text.to_ascii_lowercase()).collect();
+            let lower: Vec<&str> = lower.iter().map(String::as_str).collect();
+            let fits = match lower[..] {
+                ["ply"] => header.lines == 1,
+                _ if header.lines == 1 => false,
+                [] | ["comment" | "obj_info", ..] => true,
+                ["format", name, ..] => {
+                    encoding = match name {
+                        "ascii" => Some(Encoding::Text),
+                        "binary_little_endian" => Some(Encoding::Binary { big_endian: false }),
+                        "binary_big_endian" => Some(Encoding::Binary { big_endian: true }),
+                        _ => None,
+                    };
+                    encoding.is_some()
                 }
-            }
-            "face" => {
-                face_line = first_line;
-                polygons = file.elements::<Polygon>(element, &header)?;
-            }
-            _ => {
-                file.elements::<Skipped>(element, &header)?;
+                ["element", name, count] => header.add_element(name, count).is_some(),
+                ["property", ref words @ ..] => header.add_property(words).is_some(),
+                ["end_header"] => {
+                    let no_format = || (None, malformed("the header names no format".to_owned()));
+                    header.encoding = encoding.ok_or_else(no_format)?;
+                    return header.checked();
+                }
+                _ => false,
+            };
+            if !fits {
+                let message = format!("this does not fit a PLY header: {}", excerpt(line.trim()));
+                return Err((Some(header.lines), malformed(message)));
             }
         }
-    }
-    file.check_end()?;
-    let triangles = triangulate(&polygons, vertices.len(), face_line)?;
-    Ok((vertices, triangles))
-}
-
-/// A file that is being read, with what is needed to say where it is wrong.
-struct File<'a> {
-    bytes: &'a [u8],
-    reader: Reader<&'a [u8]>,
-    text: bool,
-}
-
-impl File<'_> {
-    /// The line that comes next, when lines mean anything.
-    fn line(&self) -> Option<usize> {
-        self.text.then(|| self.reader.line())
+        Err((
+            Some(header.lines),
+            malformed("the file ends in a PLY header".to_owned()),
+        ))
     }
 
-    fn elements<E: PropertyAccess>(
-        &mut self,
-        element: &ElementDef,
-        header: &Header,
-    ) -> Result<Vec<E>, Fault> {
-        let (name, count, left) = (&element.name, element.count, self.reader.get_ref().len());
-        let size = if self.text {
-            1
-        } else {
-            least_binary_size(element)
-        };
-        if size == 0 {
-            // Elements without properties take no bytes, however many the header declares.
-            return Ok(Vec::new());
-        }
-        if count > left / size + usize::from(self.text) {
-            let message = format!(
-                "the header declares {count} {name} elements, but only {left} bytes follow"
-            );
-            return Err((self.line(), malformed(message)));
-        }
-        Parser::<E>::new()
-            .read_payload_for_element(&mut self.reader, element, header)
-            .map_err(|error| {
-                self.bad_line(
-                    &format!("one of {count} {name} elements"),
-                    &error,
-                    self.text,
-                )
-            })
-    }
-
-    fn bad_line(&self, what: &str, error: &ParseError, lines_count: bool) -> Fault {
-        let line = error.line().filter(|_| lines_count);
-        let message = match line.map(|line| self.line_text(line)) {
-            _ if error.kind() == ErrorKind::UnexpectedEof => format!("the file ends in {what}"),
-            Some(text) => format!("this does not fit {what}: {}", excerpt(&text)),
-            None => format!("the data does not fit {what}"),
-        };
-        (line, malformed(message))
-    }
-
-    fn line_text(&self, line: usize) -> String {
-        let text = self
-            .bytes
-            .split(|&byte| byte == b'\n')
-            .nth(line - 1)
-            .unwrap_or_default();
-        String::from_utf8_lossy(text).trim_end().to_owned()
-    }
-
-    fn check_end(&self) -> Result<(), Fault> {
-        let rest = *self.reader.get_ref();
-        let rest = if self.text { rest.trim_ascii() } else { rest };
+    /// The next line, up to LF, CR LF or CR. Numbers may follow the last one, so an LF after a CR belongs to the end only in
+    /// a file whose first line ends so.
+    fn next_line<'a>(&mut self, bytes: &'a [u8]) -> Option<&'a [u8]> {
+        let rest = &bytes[self.size..];
         if rest.is_empty() {
-            return Ok(());
+            return None;
         }
-        let message = format!("{} bytes too many after the last element", rest.len());
-        Err((self.line(), malformed(message)))
+        let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+        let first_end = bytes.iter().position(is_end);
+        let windows = first_end.is_some_and(|end| bytes[end..].starts_with(b"\r\n"));
+        let length = rest.iter().position(is_end).unwrap_or(rest.len());
+        let end = if windows && rest[length..].starts_with(b"\r\n") {
+            2
+        } else {
+            1
+        };
+        self.size += (length + end).min(rest.len());
+        self.lines += 1;
+        Some(&rest[..length])
+    }
+
+    fn add_element(&mut self, name: &str, count: &str) -> Option<()> {
+        self.elements.push(Element {
+            name: name.to_owned(),
+            count: count.parse().ok()?,
+            properties: Vec::new(),
+        });
+        Some(())
+    }
+
+    fn add_property(&mut self, words: &[&str]) -> Option<()> {
+        let element = self.elements.last_mut()?;
+        let (length, scalar, name) = match *words {
+            ["list", length, scalar, name] => (Some(Scalar::named(length)?), scalar, name),
+            [scalar, name] => (None, scalar, name),
+            _ => return None,
+        };
+        let axis = ["x", "y", "z"].iter().position(|axis| *axis == name);
+        let is_indices = length.is_some() && ["vertex_indices", "vertex_index"].contains(&name);
+        let used_as = match (element.name.as_str(), axis) {
+            ("vertex", Some(axis)) if length.is_none() => Use::Coordinate(axis),
+            ("face", _) if is_indices => Use::Polygon,
+            ("tristrips", _) if is_indices => Use::Strips,
+            _ => Use::Nothing,
+        };
+        element.properties.push(Property {
+            length,
+            scalar: Scalar::named(scalar)?,
+            used_as,
+        });
+        Some(())
+    }
+
+    /// A mesh needs vertices with x, y, z and faces or strips with a list of indices.
+    fn checked(self) -> Result<Self, Fault> {
+        let has = |used_as: Use| {
+            let mut properties = self.elements.iter().flat_map(|element| &element.properties);
+            properties.any(|property| property.used_as == used_as)
+        };
+        let missing = if !(0..3).all(|axis| has(Use::Coordinate(axis))) {
+            "an element vertex with the properties x, y and z"
+        } else if !has(Use::Polygon) && !has(Use::Strips) {
+            "an element face with a list property vertex_indices"
+        } else {
+            return Ok(self);
+        };
+        let message = format!("the header lacks {missing}");
+        let help = "export the mesh as vertices and faces";
+        Err((None, Problem::malformed(message, help)))
     }
 }
 
 fn malformed(message: String) -> Problem {
-    Problem::malformed(
-        message,
-        "the header's element and property lines must match the data that follows",
-    )
+    let help = "the header's element and property lines must match the data that follows";
+    Problem::malformed(message, help)
 }
 
-/// A mesh needs vertices with x, y, z and faces with a list of indices.
-fn check_header(header: &Header) -> Result<(), Fault> {
-    let scalar = |property: &PropertyType| matches!(property, PropertyType::Scalar(_));
-    let vertex_has = |name: &str| {
-        let property = header
-            .elements
-            .get("vertex")
-            .and_then(|vertex| vertex.properties.get(name));
-        property.is_some_and(|property| scalar(&property.data_type))
-    };
-    let face_has = |name: &&str| {
-        let property = header
-            .elements
-            .get("face")
-            .and_then(|face| face.properties.get(*name));
-        property.is_some_and(|property| !scalar(&property.data_type))
-    };
-    let missing = if !["x", "y", "z"].into_iter().all(vertex_has) {
-        "an element vertex with the properties x, y and z"
-    } else if !INDEX_LISTS.iter().any(face_has) {
-        "an element face with a list property vertex_indices"
-    } else {
-        return Ok(());
-    };
-    Err((
-        None,
-        Problem::malformed(
-            format!("the header lacks {missing}"),
-            "export the mesh as vertices and faces",
-        ),
-    ))
+/// What is left of the data.
+enum Body<'a> {
+    Text(Box<dyn Iterator<Item = Token<'a>> + 'a>),
+    Binary { rest: &'a [u8], big_endian: bool },
 }
 
-/// The two names in use for a face's corners.
-const INDEX_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
-
-/// The bytes of one binary element whose lists are all empty.
-fn least_binary_size(element: &ElementDef) -> usize {
-    let size = |scalar: &ScalarType| match scalar {
-        ScalarType::Char | ScalarType::UChar => 1,
-        ScalarType::Short | ScalarType::UShort => 2,
-        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
-        ScalarType::Double => 8,
-    };
-    let properties = element.properties.values();
-    properties
-        .map(|property| match &property.data_type {
-            PropertyType::Scalar(scalar) | PropertyType::List(scalar, _) => size(scalar),
-        })
-        .sum()
+/// A value of the data and its line, if it has one.
+struct Value {
+    number: f64,
+    line: Option<usize>,
 }
 
-fn triangulate(
-    polygons: &[Polygon],
-    vertices: usize,
-    first_line: Option<usize>,
-) -> Result<Vec<[u32; 3]>, Fault> {
-    let mut triangles = Vec::new();
-    for (face, Polygon(corners)) in polygons.iter().enumerate() {
-        let line = first_line.map(|line| line + face);
-        let fan: Vec<[i64; 3]> = match corners[..] {
-            [] => {
-                return Err((
-                    line,
-                    Problem::malformed(format!("face {face} has no vertices"), "remove it"),
-                ));
+impl Body<'_> {
+    /// The next value, which is not looked at unless it is used; `None` at the end of the file.
+    fn next(&mut self, scalar: Scalar, used: bool) -> Option<Result<Value, Fault>> {
+        match self {
+            Self::Text(tokens) => {
+                let token = tokens.next()?;
+                let line = Some(token.line);
+                if !used {
+                    return Some(Ok(Value { number: 0.0, line }));
+                }
+                let number = match scalar {
+                    Scalar::F32 | Scalar::F64 => token.number("a value"),
+                    // Every type of whole numbers is exact in f64, and what is larger is no index.
+                    _ => token.integer("a value").map(|whole| whole as f64),
+                };
+                Some(number.map(|number| Value { number, line }))
             }
-            [a] => vec![[a, a, a]],
-            [a, b] => vec![[a, b, b]],
-            [a, ref rest @ ..] => rest.windows(2).map(|edge| [a, edge[0], edge[1]]).collect(),
-        };
-        for triangle in fan {
-            check_triangle(face, triangle, 0, vertices).map_err(|problem| (line, problem))?;
-            triangles.push(triangle.map(|index| index as u32));
+            Self::Binary { rest, big_endian } => {
+                let (bytes, after) = rest.split_at_checked(scalar.size())?;
+                *rest = after;
+                let mut word = [0; 8];
+                word[..bytes.len()].copy_from_slice(bytes);
+                if *big_endian {
+                    word[..bytes.len()].reverse();
+                }
+                let number = scalar.number(word);
+                Some(Ok(Value { number, line: None }))
+            }
         }
     }
-    Ok(triangles)
-}
 
-/// A vertex's position; its other properties are passed over.
-struct Point([f32; 3]);
-
-impl PropertyAccess for Point {
-    fn new() -> Self {
-        Self([0.0; 3])
+    /// The next value; `line` becomes that of an element's first one.
+    fn take(
+        &mut self,
+        scalar: Scalar,
+        used: bool,
+        line: &mut Option<usize>,
+        what: impl Fn() -> String,
+    ) -> Result<f64, Fault> {
+        let value = self.next(scalar, used).ok_or_else(|| {
+            let message = format!("the file ends in {}", what());
+            (*line, malformed(message))
+        })??;
+        *line = line.or(value.line);
+        Ok(value.number)
     }
 
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) else {
-            return PropertyAccessResult::Ignored;
+    fn check_end(&mut self) -> Result<(), Fault> {
+        let (line, count, what) = match self {
+            Self::Text(tokens) => {
+                let first = tokens.next();
+                let count = usize::from(first.is_some()) + tokens.count();
+                (first.map(|token| token.line), count, "numbers")
+            }
+            Self::Binary { rest, .. } => (None, rest.len(), "bytes"),
         };
-        property
-            .to_f32_lossy()
-            .map_or(PropertyAccessResult::UnsupportedType, |value| {
-                self.0[axis] = value;
-                PropertyAccessResult::Set
-            })
-    }
-}
-
-/// A face's vertex indices, as written: negative ones are refused later, with their face.
-struct Polygon(Vec<i64>);
-
-impl PropertyAccess for Polygon {
-    fn new() -> Self {
-        Self(Vec::new())
-    }
-
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        fn wide<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
-            list.into_iter().map(Into::into).collect()
+        if count == 0 {
+            return Ok(());
         }
-        if !INDEX_LISTS.contains(&name) {
-            return PropertyAccessResult::Ignored;
-        }
-        self.0 = match property {
-            Property::ListChar(list) => wide(list),
-            Property::ListUChar(list) => wide(list),
-            Property::ListShort(list) => wide(list),
-            Property::ListUShort(list) => wide(list),
-            Property::ListInt(list) => wide(list),
-            Property::ListUInt(list) => wide(list),
-            _ => return PropertyAccessResult::UnsupportedType,
-        };
-        PropertyAccessResult::Set
+        let message = format!("{count} {what} too many after the last element");
+        Err((line, malformed(message)))
     }
 }
 
-/// An element that a mesh has no use for.
-struct Skipped;
+/// What was read of the mesh.
+#[derive(Default)]
+struct Mesh {
+    points: Vec<[f64; 3]>,
+    triangles: Vec<[i64; 3]>,
+    /// The line of each triangle, in a text file.
+    lines: Vec<Option<usize>>,
+}
 
-impl PropertyAccess for Skipped {
-    fn new() -> Self {
-        Self
+impl Mesh {
+    /// Reads all elements of a kind.
+    fn add(&mut self, element: &Element, body: &mut Body) -> Result<(), Fault> {
+        if element.properties.is_empty() {
+            return Ok(()); // takes no bytes, however many the header declares
+        }
+        for index in 0..element.count {
+            let what = || format!("{} {index} of {}", element.name, element.count);
+            let mut position = [0.0; 3];
+            let mut line = None;
+            for property in &element.properties {
+                let used = property.used_as != Use::Nothing;
+                let Some(length) = property.length else {
+                    let number = body.take(property.scalar, used, &mut line, &what)?;
+                    if let Use::Coordinate(axis) = property.used_as {
+                        position[axis] = number;
+                    }
+                    continue;
+                };
+                let length = body.take(length, true, &mut line, &what)?;
+                let mut list = Vec::new();
+                for _ in 0..length as u64 {
+                    let number = body.take(property.scalar, used, &mut line, &what)?;
+                    if used {
+                        list.push(whole(number).ok_or_else(|| {
+                            let message = format!("{} has the index {number}", what());
+                            (line, malformed(message))
+                        })?);
+                    }
+                }
+                self.add_corners(property.used_as, &list, line, &what)?;
+            }
+            if element.name == "vertex" {
+                check_vertex(index, position).map_err(|problem| (line, problem))?;
+                self.points.push(position);
+            }
+        }
+        Ok(())
     }
+
+    fn add_corners(
+        &mut self,
+        used_as: Use,
+        corners: &[i64],
+        line: Option<usize>,
+        what: impl Fn() -> String,
+    ) -> Result<(), Fault> {
+        match used_as {
+            Use::Polygon if corners.is_empty() => {
+                let message = format!("{} has no vertices", what());
+                return Err((line, Problem::malformed(message, "remove it")));
+            }
+            Use::Polygon => self.triangles.extend(text::fan(corners)),
+            Use::Strips => {
+                for strip in corners.split(|&corner| corner == -1) {
+                    // Every second triangle of a strip has its first two corners exchanged.
+                    let turned = |(i, corners): (usize, &[i64])| match (i % 2, corners) {
+                        (1, &[a, b, c]) => [b, a, c],
+                        (_, corners) => [corners[0], corners[1], corners[2]],
+                    };
+                    self.triangles
+                        .extend(strip.windows(3).enumerate().map(turned));
+                }
+            }
+            Use::Coordinate(_) | Use::Nothing => {}
+        }
+        self.lines.resize(self.triangles.len(), line);
+        Ok(())
+    }
+
+    fn into_parts(self) -> Result<Parts, Fault> {
+        if self.points.is_empty() {
+            return Err((None, Problem::NoVertices));
+        }
+        for (index, (triangle, line)) in self.triangles.iter().zip(&self.lines).enumerate() {
+            check_triangle(index, *triangle, 0, self.points.len())
+                .map_err(|problem| (*line, problem))?;
+        }
+        let triangles = self.triangles.iter().map(|t| t.map(|index| index as u32));
+        Ok(Parts::indexed(self.points, triangles.collect()))
+    }
+}
+
+/// A number as an index, if it is a whole one.
+fn whole(number: f64) -> Option<i64> {
+    (number == number.trunc() && number.abs() < 2_f64.powi(53)).then_some(number as i64)
 }

@@ -38,6 +38,7 @@ pub fn write_bytes(mesh: &TriangleMesh, format: MeshFormat) -> Vec<u8> {
         MeshFormat::Obj => obj_text(mesh).into_bytes(),
         MeshFormat::Stl => stl::bytes(mesh),
         MeshFormat::Ply => ply_text(mesh).into_bytes(),
+        MeshFormat::Off => off_text(mesh).into_bytes(),
     }
 }
 
@@ -80,6 +81,20 @@ fn ply_text(mesh: &TriangleMesh) -> String {
         mesh.vertices.len(),
         mesh.triangles.len()
     );
+    for position in &mesh.vertices {
+        let [x, y, z] = position.to_array().map(shortest);
+        put(&mut text, format_args!("{x} {y} {z}\n"));
+    }
+    for [a, b, c] in &mesh.triangles {
+        put(&mut text, format_args!("3 {a} {b} {c}\n"));
+    }
+    text
+}
+
+/// The mesh as an OFF file.
+fn off_text(mesh: &TriangleMesh) -> String {
+    let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
+    let mut text = format!("OFF\n{vertices} {triangles} 0\n");
     for position in &mesh.vertices {
         let [x, y, z] = position.to_array().map(shortest);
         put(&mut text, format_args!("{x} {y} {z}\n"));
