@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use sdop::lab::tightness::Size;
 use sdop::mesh::decimate::decimate;
-use sdop::mesh::topology::Topology;
+use sdop::mesh::topology::{Topology, without_area};
 use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};
 use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
 use serde::Serialize;
@@ -50,12 +50,14 @@ struct Report {
     vertices: usize,
     unused_vertices: usize,
     triangles: usize,
+    /// Without area: a repeated index, two equal corners, or three on a line.
     degenerate_triangles: usize,
     components: usize,
     closed_components: usize,
     boundary_edges: usize,
     non_manifold_edges: usize,
-    /// Smallest enclosing ball (x, y, z, r) in the file's coordinates.
+    /// Smallest enclosing ball (x, y, z, r) in the file's coordinates. This and all that follows is of the vertices that
+    /// triangles use.
     ball: [f32; 4],
     hull_vertices: usize,
     hull_volume: f64,
@@ -90,7 +92,7 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
         origin: Origin::File,
         ..ShapeSpec::default()
     };
-    let shape = Shape::build(mesh, &spec)?;
+    let shape = Shape::build(&of_used_vertices(mesh), &spec)?;
     let hull = Hull::of(&shape.vertices);
     let [x, y, z] = shape.ball.centre.to_array();
     Ok(Report {
@@ -100,16 +102,36 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
         vertices: mesh.vertices.len(),
         unused_vertices: topology.unused_vertices,
         triangles: mesh.triangles.len(),
-        degenerate_triangles: total.degenerate,
+        degenerate_triangles: without_area(mesh),
         components: topology.components.len(),
         closed_components: topology.closed_components(),
         boundary_edges: total.boundary_edges,
         non_manifold_edges: total.non_manifold_edges,
         ball: [x, y, z, shape.ball.radius],
-        hull_vertices: hull.vertices.len(),
+        hull_vertices: hull.corners(&shape.vertices).len(),
         hull_volume: hull.volume(&shape.vertices),
         volumes: Size::of_all(&shape, &hull),
     })
+}
+
+/// The mesh without the vertices that no triangle uses: no surface of it reaches there.
+fn of_used_vertices(mesh: &TriangleMesh) -> TriangleMesh {
+    let mut used = mesh.triangles.as_flattened().to_vec();
+    used.sort_unstable();
+    used.dedup();
+    let mut new_index = vec![0; mesh.vertices.len()];
+    for (new, &old) in used.iter().enumerate() {
+        new_index[old as usize] = new as u32; // no more than there were
+    }
+    let mut mesh = mesh.clone();
+    mesh.vertices = used
+        .iter()
+        .map(|&old| mesh.vertices[old as usize])
+        .collect();
+    for index in mesh.triangles.as_flattened_mut() {
+        *index = new_index[*index as usize];
+    }
+    mesh
 }
 
 fn text(report: &Report) -> String {
@@ -138,6 +160,12 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
         "components: {all}, {state}; boundary edges: {}, non-manifold edges: {}",
         report.boundary_edges, report.non_manifold_edges
     )?;
+    if report.unused_vertices > 0 {
+        writeln!(
+            out,
+            "ball, hull and volumes are of the vertices that triangles use; culled shapes contain all vertices"
+        )?;
+    }
     // What is far below the ball's size is rounding.
     let at = |x: f32| decimal(if x.abs() < 1e-6 * r { 0.0 } else { x.into() });
     writeln!(

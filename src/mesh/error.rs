@@ -88,6 +88,13 @@ pub enum Problem {
         /// The offending coordinate.
         value: f32,
     },
+    /// A scale that leaves nothing of the mesh, or no numbers.
+    #[error("the scale {scale:?} has a factor that is zero or not finite")]
+    #[diagnostic(help("give one factor, or three as [x, y, z]; negative ones mirror"))]
+    Scale {
+        /// The factors of x, y and z.
+        scale: [f64; 3],
+    },
     /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle} names vertex {index}, but the vertices are {first} to {last}")]
     #[diagnostic(help("check the vertex count and whether the file's indices start at 0 or at 1"))]

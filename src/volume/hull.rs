@@ -11,6 +11,8 @@
 use glam::{DVec3, Vec3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use super::flat_hull;
+
 /// The convex hull of a shape's vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
@@ -48,6 +50,16 @@ impl Hull {
         self.vertices.iter().map(position).collect()
     }
 
+    /// Indices of the vertices that span the hull, ascending: of a flat hull, too, whose `vertices` are all there are.
+    #[must_use]
+    pub fn corners(&self, vertices: &[Vec3]) -> Vec<u32> {
+        if !self.facets.is_empty() {
+            return self.vertices.clone();
+        }
+        let points: Vec<_> = vertices.iter().map(|&v| coordinates(v)).collect();
+        flat_hull::corners(&points)
+    }
+
     /// The hull's volume, from the shape's vertices.
     #[must_use]
     pub fn volume(&self, vertices: &[Vec3]) -> f64 {
@@ -65,9 +77,10 @@ impl Hull {
         let position = |i: u32| vertices[i as usize].as_dvec3();
         let origin = self.vertices.first().map_or(DVec3::ZERO, |&i| position(i));
         let facets = self.facets.iter();
+        // From 0, since the sum of no floats is −0.
         facets
             .map(|f| measure(f.map(|i| position(i) - origin)))
-            .sum()
+            .fold(0.0, |sum, part| sum + part)
     }
 }
 

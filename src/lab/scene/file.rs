@@ -12,7 +12,7 @@ use super::error::{SceneError, Source};
 use crate::choice::choices;
 use crate::files;
 use crate::lab::effects::EffectsSpec;
-use crate::lab::number::{Interval, Positive, Real};
+use crate::lab::number::{Factors, Interval, Positive, Real};
 use crate::settings::CullSettings;
 use crate::volume::Origin;
 
@@ -78,6 +78,8 @@ pub struct GroupSpec {
     /// The procedural shape's sizes, where they differ from its defaults.
     #[serde(default)]
     pub sizes: BTreeMap<Spanned<String>, Spanned<Real>>,
+    /// Factors of the mesh's coordinates, before anything else; negative ones mirror.
+    pub scale: Option<Spanned<Factors>>,
     /// How many bodies, placed by the seed.
     pub count: Option<Spanned<NonZeroU32>>,
     /// Explicit poses instead: q (x, y, z, w), then t.
