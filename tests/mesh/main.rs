@@ -3,7 +3,9 @@
 
 mod decimate;
 mod obj;
+mod off;
 mod prop;
+mod scale;
 mod shapes;
 mod stl_ply;
 mod topology;
