@@ -94,7 +94,7 @@ fn capitals_are_letters_too() {
 #[test]
 fn text_stl_begins_and_ends_in_many_ways() {
     let marked = format!("\u{feff}{STL}");
-    let comment = format!("# made by hand\n; and again\n\n// {STL}{STL}");
+    let comment = format!("# made by hand\n; and again\n\n// and {STL}");
     let end = STL
         .replace("endsolid", "end solid")
         .replace("endloop", "end loop");
