@@ -124,10 +124,7 @@ fn bad_stl_is_refused_with_its_line() {
                 text(first() + &second().replace("outer loop", "outer")),
                 "a.stl:10: `outer loop` should stand here, found \"outer\"",
             ),
-            (
-                text(first()),
-                "a.stl:8: the file ends before `endsolid`",
-            ),
+            (text(first()), "a.stl:8: the file ends before `endsolid`"),
             (
                 text(first() + &second().replace("1e0", "inf")),
                 "a.stl:13: vertex 5 has the coordinate inf: not a finite f32",
@@ -286,7 +283,10 @@ fn bad_ply_is_refused_with_its_line() {
                 text("3 1 3 2", "3 1 -3 2"),
                 "a.ply:17: triangle 1 names vertex -3, but the vertices are 0 to 3",
             ),
-            (text("3 1 3 2", "0"), "a.ply:17: face 1 of 2 has no vertices"),
+            (
+                text("3 1 3 2", "0"),
+                "a.ply:17: face 1 of 2 has no vertices",
+            ),
             (cut, "a.ply: the file ends in face 1 of 2"),
             (long, "a.ply: 2 bytes too many after the last element"),
         ],
