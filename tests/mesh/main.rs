@@ -8,8 +8,8 @@ mod prop;
 mod scale;
 mod shapes;
 mod stl_ply;
-mod topology;
 mod tolerant;
+mod topology;
 mod tri;
 
 use sdop::mesh::TriangleMesh;
