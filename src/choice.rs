@@ -29,7 +29,8 @@ impl UnknownChoice {
 }
 
 /// "did you mean …" when one of the known names is close to the given one, the list of all otherwise.
-pub(crate) fn suggest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
+#[must_use]
+pub fn suggest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
     let lower = given.to_lowercase().replace('_', "-");
     // Two typing errors in a short word already make another word: allow one edit per three letters.
@@ -50,6 +51,8 @@ pub(crate) fn suggest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> 
 }
 
 /// Declares an enum of named choices with `ALL`, `NAMES`, `name`, `Display`, `FromStr` and serde as its name.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! choices {
     ($(#[$meta:meta])* $name:ident, $what:literal, { $($(#[$doc:meta])* $variant:ident = $text:literal,)+ }) => {
         $(#[$meta])*
@@ -86,14 +89,23 @@ macro_rules! choices {
             }
         }
 
-        #[cfg(feature = "lab")]
+        $crate::choices_as_text!($name, $what);
+    };
+}
+pub use choices;
+
+/// Serde of a choice, as its name.
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! choices_as_text {
+    ($name:ident, $what:literal) => {
         impl serde::Serialize for $name {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 serializer.serialize_str(self.name())
             }
         }
 
-        #[cfg(feature = "lab")]
         impl<'de> serde::Deserialize<'de> for $name {
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 deserializer.deserialize_str($crate::choice::NameVisitor {
@@ -105,17 +117,27 @@ macro_rules! choices {
         }
     };
 }
-pub(crate) use choices;
 
-#[cfg(feature = "lab")]
-/// Reads one of `names` as the value in the same place.
-pub(crate) struct NameVisitor<T: 'static> {
-    pub(crate) what: &'static str,
-    pub(crate) names: &'static [&'static str],
-    pub(crate) values: &'static [T],
+/// Without the feature `serde`, nothing.
+#[cfg(not(feature = "serde"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! choices_as_text {
+    ($name:ident, $what:literal) => {};
 }
 
-#[cfg(feature = "lab")]
+#[cfg(feature = "serde")]
+/// Reads one of `names` as the value in the same place.
+pub struct NameVisitor<T: 'static> {
+    #[doc(hidden)]
+    pub what: &'static str,
+    #[doc(hidden)]
+    pub names: &'static [&'static str],
+    #[doc(hidden)]
+    pub values: &'static [T],
+}
+
+#[cfg(feature = "serde")]
 impl<T: Copy> serde::de::Visitor<'_> for NameVisitor<T> {
     type Value = T;
 

@@ -8,7 +8,7 @@ use crate::settings::TestedVolume;
 
 /// Work done on one volume. Sums over frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "lab", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VolumeCounters {
     /// Nu: volumes updated.
     pub updates: u64,
@@ -28,7 +28,7 @@ impl AddAssign for VolumeCounters {
 
 /// All counters of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "lab", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counters {
     /// Bounding spheres.
     pub sphere: VolumeCounters,
@@ -99,7 +99,7 @@ impl Counters {
 
 /// Wall time by stage, in seconds. Sums over frames, except for `construct`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "lab", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seconds {
     /// Co: building every volume, once.
     pub construct: f64,

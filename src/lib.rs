@@ -43,8 +43,10 @@
 //! - **Axes**: right-handed. Which one points up doesn't matter: nothing here prefers an axis.
 //! - **Rotations**: quaternions in the order (x, y, z, w), of any non-zero norm. They turn the body frame into the world
 //!   frame: a vertex p of a body stands at R(q)·p + t.
-//! - **Translations**: of the body's origin, world frame. A [`Shape`] puts its mesh's smallest enclosing ball about the origin
-//!   unless [`Origin::File`] says otherwise.
+//! - **Translations**: of the body's origin, world frame. That is the mesh's own origin, as the file has it, unless
+//!   [`Origin::Ball`] moves the centre of the smallest enclosing ball there; [`Shape::offset`] keeps what was moved.
+//! - **Far meshes**: where rounding a mesh to f32 would move a vertex by more than 2⁻²⁰ of the mesh's size, its vertices are kept
+//!   about a point near it. A [`World`] adds that offset to the pose in f64; a [`Culler`], whose poses are f32, refuses it.
 //! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and at most 2⁶⁰.
 //! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair once, and its order depends on the
 //!   finder and the frames so far, never on the CPU or the number of threads; [`PairList::sorted`] gives an order of its own.
@@ -67,66 +69,47 @@
 //! | feature | brings |
 //! |---|---|
 //! | none | all of the above |
-//! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
-//! | `lab` | scenes, effects, the exact judge, measurements and studies |
-//! | `cli` (default) | the command line; implies `lab` |
-//! | `mpi` | one program on many ranks under `mpirun`; links the system's MPI |
-//! | `internals` | the inner rooms as modules, for tests and benches: no promise is made about them |
+//! | `serde` | snapshots of worlds that can be stored and sent |
+//! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, OFF, `.tri` |
+//! | `serde` | settings, choices and counters as serde's data |
+//!
+//! The crate `sdop-judge` judges any culler against the exact reference. `sdop-bench` has scenes, measurements, studies and
+//! the program `sdop`.
 
 pub mod bodies;
 pub mod boxes;
-mod choice;
 pub mod counters;
 pub mod culler;
-#[cfg(feature = "readers")]
-pub mod files;
-#[cfg(feature = "lab")]
-pub mod lab;
 pub mod mesh;
 pub mod pairs;
 pub mod settings;
-mod strategy;
 pub mod volume;
 pub mod world;
 
-// Inner rooms, which tests and benches enter from outside. What they alone need is unused without them.
-#[cfg(feature = "internals")]
+mod strategy;
+
+// Inner rooms, which the judge, tests and benches enter from outside: no promise is made about them.
+#[doc(hidden)]
 pub mod broad_phase;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod broad_phase;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod choice;
+#[cfg(feature = "readers")]
+pub mod files;
+#[doc(hidden)]
 pub mod overlap;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod overlap;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod rounding;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod rounding;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod simd;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod simd;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod threads;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod threads;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod update;
-#[cfg(not(feature = "internals"))]
-#[allow(dead_code, unused_imports, reason = "tests and benches use the rest")]
-mod update;
 
 pub use bodies::contract::ContractError;
 pub use bodies::{Aabb, Bodies, Groups};
 pub use boxes::{BoxCuller, BoxWorld};
 pub use culler::{CullError, Culler, CullerBuilder};
-#[cfg(feature = "lab")]
-pub use lab::judge::{self, judge};
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
 pub use pairs::PairList;
 pub use settings::{
@@ -136,9 +119,9 @@ pub use settings::{
 pub use simd::{Tier, TierError};
 pub use threads::ThreadsError;
 pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
-pub use world::{Body, BodyId, Events, World, WorldError};
+pub use world::{Body, BodyId, Event, Events, World, WorldError};
 
 /// The README's example compiles and runs.
-#[cfg(all(doctest, feature = "lab"))]
+#[cfg(all(doctest, feature = "readers"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -9,11 +9,11 @@ use std::collections::BTreeSet;
 
 use sdop::bodies::Bodies;
 use sdop::culler::Culler;
-use sdop::lab::verify::{Shapes, judged};
 use sdop::pairs::PairList;
 use sdop::settings::{Axes, Budget, CullSettings, Flow, Interest, Overlap, Strategy, Updates};
 use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
+use sdop_judge::ours::{Shapes, judged};
 use sdop_reference as reference;
 use support::{random_bodies, shapes};
 

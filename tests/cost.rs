@@ -7,18 +7,18 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use sdop::counters::pair_count;
-use sdop::lab::cost::calibrate::{Calibration, Effort, scenes};
-use sdop::lab::cost::pass::{Observer, Simulated, pass};
-use sdop::lab::cost::predict::Terms;
-use sdop::lab::cost::table::cost;
-use sdop::lab::measure::contestant::Contestant;
-use sdop::lab::measure::counts::{Counts, Volume};
-use sdop::lab::measure::culling::Culling;
-use sdop::lab::measure::turns::Regime;
-use sdop::lab::measure::variant::Variant;
-use sdop::lab::scene::{Scene, SceneFile};
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
+use sdop_bench::cost::calibrate::{Calibration, Effort, scenes};
+use sdop_bench::cost::pass::{Observer, Simulated, pass};
+use sdop_bench::cost::predict::Terms;
+use sdop_bench::cost::table::cost;
+use sdop_bench::measure::counts::{Counts, Volume};
+use sdop_bench::measure::culling::Culling;
+use sdop_bench::measure::turns::Regime;
+use sdop_bench::measure::variant::Variant;
+use sdop_bench::scene::{Scene, SceneFile};
+use sdop_judge::contestant::Contestant;
 
 /// All but the time-critical one, which tests as much as its budget says.
 static STRATEGIES: LazyLock<Vec<Strategy>> = LazyLock::new(|| {

@@ -7,11 +7,11 @@
 
 use std::path::Path;
 
-use sdop::lab::scene::{Scene, SceneFile};
-use sdop::lab::simulate::{self, SimulationError};
 use sdop::settings::{Budget, Overlap, Strategy, Updates};
 use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
+use sdop_bench::scene::{Scene, SceneFile};
+use sdop_bench::simulate::{self, SimulationError};
 
 fn scene(name: &str, frames: u32, k: DirectionSet) -> Scene {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");

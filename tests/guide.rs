@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use sdop::lab::scene::SceneFile;
+use sdop_bench::scene::SceneFile;
 
 /// The keys in the first column of the table under a heading.
 fn described(heading: &str) -> BTreeSet<String> {

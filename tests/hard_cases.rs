@@ -6,17 +6,17 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use rayon::prelude::*;
-use sdop::lab::verify::compare::{culler, settings};
-use sdop::lab::verify::hard::{
-    Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name,
-};
-use sdop::lab::verify::rounds::{Ledger, Run, group};
-use sdop::lab::verify::ways::{Mode, Rotation, variants, ways};
-use sdop::lab::verify::{Answers, Predicate};
 use sdop::mesh::ReadOptions;
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
+use sdop_judge::ours::compare::{culler, settings};
+use sdop_judge::ours::hard::{
+    Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name,
+};
+use sdop_judge::ours::rounds::{Ledger, Run, group};
+use sdop_judge::ours::ways::{Mode, Rotation, variants, ways};
+use sdop_judge::ours::{Answers, Predicate};
 
 type Variant = (DirectionSet, Axes);
 
@@ -278,7 +278,7 @@ fn what_must_be_refused_is_refused() {
     let text = std::fs::read_to_string("data/hard_cases/refused.toml").unwrap();
     let refused: Refused = toml::from_str(&text).unwrap();
     for case in refused.scene {
-        let scene = sdop::lab::scene::SceneFile::parse(
+        let scene = sdop_bench::scene::SceneFile::parse(
             &case.text,
             "refused.toml",
             Path::new("data/scenes"),

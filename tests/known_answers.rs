@@ -7,13 +7,13 @@
 
 use std::f64::consts::PI;
 
-use sdop::lab::random::Stream;
-use sdop::lab::tradeoff::Estimate;
-use sdop::lab::tradeoff::shapes::{Crowd, share};
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Axes, DirectionSet, Overlap};
 use sdop::simd::Tier;
 use sdop::volume::{OrDop, Shape, ShapeSpec};
+use sdop_bench::random::Stream;
+use sdop_bench::tradeoff::Estimate;
+use sdop_bench::tradeoff::shapes::{Crowd, share};
 
 const PAIRS: u32 = 40_000;
 const BATCHES: u64 = 8;
@@ -107,7 +107,7 @@ fn ordops_hardly_ever_meet_outside_of_their_spheres() {
 }
 
 fn outside(name: &str) -> f64 {
-    let mut shapes = sdop::lab::tradeoff::shapes::builtin().unwrap();
+    let mut shapes = sdop_bench::tradeoff::shapes::builtin().unwrap();
     shapes.retain(|shape| shape.name == name);
-    sdop::lab::tradeoff::shapes::outside(&shapes, 8 * PAIRS, Tier::detect())
+    sdop_bench::tradeoff::shapes::outside(&shapes, 8 * PAIRS, Tier::detect())
 }

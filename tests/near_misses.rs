@@ -10,16 +10,16 @@ use proptest::test_runner::{FileFailurePersistence, TestRunner};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
-use sdop::lab::verify::arbitrary;
-use sdop::lab::verify::contact::{Contact, Placed};
-use sdop::lab::verify::draw::add;
-use sdop::lab::verify::forms::{self, Form};
-use sdop::lab::verify::rounds::{Ledger, Run};
-use sdop::lab::verify::ways::{Mode, Rotation, variants, ways};
-use sdop::lab::verify::{Answers, Predicate, Shapes, compare};
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
+use sdop_judge::ours::arbitrary;
+use sdop_judge::ours::contact::{Contact, Placed};
+use sdop_judge::ours::draw::add;
+use sdop_judge::ours::forms::{self, Form};
+use sdop_judge::ours::rounds::{Ledger, Run};
+use sdop_judge::ours::ways::{Mode, Rotation, variants, ways};
+use sdop_judge::ours::{Answers, Predicate, Shapes, compare};
 
 /// Forms and sizes that the draws choose from: round and flat, long and short, centred and not.
 static SHAPES: LazyLock<Vec<((DirectionSet, Axes), Shapes)>> = LazyLock::new(|| {
@@ -170,8 +170,8 @@ fn the_suite_is_stamped_on_every_tier() {
 fn a_list_that_lacks_one_required_pair_is_caught() {
     let (variant, shapes) = &SHAPES[0];
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    let spec = sdop::lab::verify::draw::ContactSpec::default();
-    let bodies = sdop::lab::verify::draw::probe(shapes, &spec, 0, 32, &mut rng);
+    let spec = sdop_judge::ours::draw::ContactSpec::default();
+    let bodies = sdop_judge::ours::draw::probe(shapes, &spec, 0, 32, &mut rng);
     let answers = Answers::judge(shapes, &bodies, variant.0, &Predicate::ALL).unwrap();
     for way in ways(variant.0, variant.1) {
         let settings = compare::settings(way.strategy, &way, bodies.len());

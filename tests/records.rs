@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use miette::Diagnostic as _;
-use sdop::lab::record::{FrameLine, Header, Reader, RecordError, Recorder};
-use sdop::lab::scene::SceneFile;
-use sdop::lab::simulate::Simulation;
 use sdop::simd::Tier;
+use sdop_bench::scene::SceneFile;
+use sdop_bench::simulate::Simulation;
+use sdop_judge::record::{FrameLine, Reader, RecordError, Recorder};
 
 const SCENE: &str = r#"
 name = "small"
@@ -35,10 +35,10 @@ fn record() -> String {
     std::fs::write(&path, SCENE).unwrap();
     let scene = SceneFile::read(&path).unwrap().build().unwrap();
     let file = directory.path().join("run.ndjson");
-    let mut recorder = Recorder::create(&file, &Header::of(&scene)).unwrap();
+    let mut recorder = Recorder::create(&file, &sdop_bench::record::header(&scene)).unwrap();
     let mut simulation = Simulation::new(&scene, Tier::SCALAR).unwrap();
     while let Some(frame) = simulation.next_frame().unwrap() {
-        let line = FrameLine::of(&frame, scene.cull.strategy);
+        let line = sdop_bench::record::frame_line(&frame, scene.cull.strategy);
         recorder.frame(&line).unwrap();
     }
     assert!(!file.exists(), "under its name before it is whole");
@@ -103,7 +103,12 @@ fn shapes_and_poses_are_those_of_the_scene() {
     let path = directory.path().join("scene.toml");
     std::fs::write(&path, SCENE).unwrap();
     let scene = SceneFile::read(&path).unwrap().build().unwrap();
-    assert_eq!(reader.shapes(), scene.shapes);
+    // A record has the vertices as culled, and not how the scene has scaled and moved them.
+    let mut shapes = scene.shapes.clone();
+    for shape in &mut shapes {
+        (shape.offset, shape.scale) = ([0.0; 3], 1.0);
+    }
+    assert_eq!(reader.shapes(), shapes);
     let mut simulation = Simulation::new(&scene, Tier::SCALAR).unwrap();
     while let Some(frame) = simulation.next_frame().unwrap() {
         let pairs = frame.pairs.sorted();

@@ -4,23 +4,23 @@
 
 use std::path::{Path, PathBuf};
 
-use sdop::lab::cost::calibrate::Effort;
-use sdop::lab::measure::contestant::Contestant;
-use sdop::lab::measure::turns::Regime;
-use sdop::lab::measure::variant::Variant;
-use sdop::lab::reproduce::check::Verdict;
-use sdop::lab::reproduce::closed_form::{probability, relative_reach};
-use sdop::lab::reproduce::immediate::{Handing, PairLoop};
-use sdop::lab::reproduce::readings::{Reading, cell, table};
-use sdop::lab::reproduce::sensitivity::{self, Bounce, Interpretation, Start};
-use sdop::lab::reproduce::units::{Experiments, Found};
-use sdop::lab::reproduce::{
-    Estimate, PaperScene, Plan, Results, Run, claims, rates, run_scene, study,
-};
-use sdop::lab::scene::SceneFile;
-use sdop::lab::sweep::Sweep as _;
 use sdop::settings::{Axes, Overlap, Strategy};
 use sdop::simd::Tier;
+use sdop_bench::cost::calibrate::Effort;
+use sdop_bench::measure::turns::Regime;
+use sdop_bench::measure::variant::Variant;
+use sdop_bench::reproduce::check::Verdict;
+use sdop_bench::reproduce::closed_form::{probability, relative_reach};
+use sdop_bench::reproduce::immediate::{Handing, PairLoop};
+use sdop_bench::reproduce::readings::{Reading, cell, table};
+use sdop_bench::reproduce::sensitivity::{self, Bounce, Interpretation, Start};
+use sdop_bench::reproduce::units::{Experiments, Found};
+use sdop_bench::reproduce::{
+    Estimate, PaperScene, Plan, Results, Run, claims, rates, run_scene, study,
+};
+use sdop_bench::scene::SceneFile;
+use sdop_bench::sweep::Sweep as _;
+use sdop_judge::contestant::Contestant;
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes")

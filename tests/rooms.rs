@@ -1,13 +1,13 @@
-//! Rooms import downward only: read from the `crate::` paths of the sources. A library room knows nothing of the laboratory
-//! or the command line, and no two rooms import each other, since all stand in one order.
+//! Rooms import downward only: read from the `crate::` paths of the sources. Which crate may name which is in their
+//! manifests; within a crate no two rooms import each other, since all stand in one order.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Every room, the lowest first: each imports rooms before it, never one behind. ARCHITECTURE.md draws the same order.
-const ROOMS: &[&str] = &[
-    // The library.
+/// Every room of a crate, the lowest first: each imports rooms before it, never one after it. ARCHITECTURE.md draws the same
+/// order.
+const LIBRARY: &[&str] = &[
     "simd",
     "rounding",
     "choice",
@@ -26,31 +26,42 @@ const ROOMS: &[&str] = &[
     "culler",
     "world",
     "boxes",
-    // The laboratory.
-    "lab/number",
-    "lab/percentiles",
-    "lab/random",
-    "lab/hash",
-    "lab/mpi",
-    "lab/sweep",
-    "lab/tightness",
-    "lab/effects",
-    "lab/scene",
-    "lab/simulate",
-    "lab/domain",
-    "lab/hull_test",
-    "lab/measure",
-    "lab/record",
-    "lab/cost",
-    "lab/verify",
-    "lab/judge",
-    "lab/reproduce",
-    "lab/tradeoff",
-    "lab/view",
-    "lab/report",
-    // The command line.
-    "cli",
+];
+const JUDGE: &[&str] = &["contestant", "record", "ours", REST];
+const BENCH: &[&str] = &[
+    "number",
+    "percentiles",
+    "random",
+    "hash",
+    "mpi",
+    "sweep",
+    "tightness",
+    "effects",
+    "scene",
+    "simulate",
+    "domain",
+    "hull_test",
+    "measure",
+    "record",
+    "cost",
+    "verify",
+    "outsiders",
+    "reproduce",
+    "tradeoff",
+    "view",
+    "report",
+    // The program.
+    "commands",
     "main",
+];
+/// All files of a crate that have no room of their own.
+const REST: &str = "(the rest)";
+
+/// Where the crates are.
+const CRATES: [(&str, &[&str]); 3] = [
+    ("src", LIBRARY),
+    ("reference/judge/src", JUDGE),
+    ("benches/src", BENCH),
 ];
 
 /// The names that a list such as `{a, b::{c, d}}` or a path such as `a::b` begins with.
@@ -87,26 +98,22 @@ fn imports(source: &str) -> Vec<String> {
     let is_code = |line: &&str| !line.trim_start().starts_with("//");
     let code: Vec<&str> = source.lines().filter(is_code).collect();
     let code = code.join("\n").replace("$crate::", "");
-    let mut rooms = Vec::new();
-    for path in code.split("crate::").skip(1) {
-        match path.strip_prefix("lab::") {
-            Some(inner) => rooms.extend(heads(inner).iter().map(|name| format!("lab/{name}"))),
-            None => rooms.extend(heads(path)),
-        }
-    }
-    rooms
+    code.split("crate::").skip(1).flat_map(heads).collect()
 }
 
 /// What is wrong with a room's imports.
-fn wrong(room: &str, source: &str) -> Vec<String> {
-    let place = |name: &str| ROOMS.iter().position(|room| *room == name);
+fn wrong(rooms: &[&str], room: &str, source: &str) -> Vec<String> {
+    let place = |name: &str| {
+        let own = rooms.iter().position(|room| *room == name);
+        own.or_else(|| rooms.iter().position(|room| *room == REST))
+    };
     let Some(own) = place(room) else {
         return vec![format!("{room} is not in the list of rooms")];
     };
     let mut found = Vec::new();
-    for import in imports(source).iter().filter(|import| *import != room) {
-        match place(import) {
-            Some(other) if other < own => {}
+    for import in imports(source) {
+        match place(&import) {
+            Some(other) if other <= own => {}
             Some(_) => found.push(format!("{room} imports {import}, which stands above it")),
             None => found.push(format!("{room} imports {import}, which is no room")),
         }
@@ -114,15 +121,10 @@ fn wrong(room: &str, source: &str) -> Vec<String> {
     found
 }
 
-/// The room of a source: its folder below `src` or `src/lab`, or its own name.
+/// The room of a source: its folder below the crate's, or its own name.
 fn room(path: &Path) -> String {
-    let parts: Vec<&str> = path.iter().map(|part| part.to_str().unwrap()).collect();
-    let name = |at: usize| parts[at].trim_end_matches(".rs");
-    if parts[0] == "lab" {
-        format!("lab/{}", name(1))
-    } else {
-        name(0).to_owned()
-    }
+    let first = path.iter().next().unwrap().to_str().unwrap();
+    first.trim_end_matches(".rs").to_owned()
 }
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -138,20 +140,23 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
 
 #[test]
 fn no_room_imports_upward() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut files = Vec::new();
-    sources(&root, &mut files);
-    assert!(files.len() > 100, "{}", files.len());
-    let faces = ["lib.rs", "lab/mod.rs"]; // they only hand names on
-    let mut found = Vec::new();
-    for file in files {
-        let path = file.strip_prefix(&root).unwrap();
-        if !faces.contains(&path.to_str().unwrap()) {
+    let (mut found, mut read) = (Vec::new(), 0);
+    for (folder, rooms) in CRATES {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        let mut files = Vec::new();
+        sources(&root, &mut files);
+        read += files.len();
+        for file in files {
+            let path = file.strip_prefix(&root).unwrap();
+            if path == Path::new("lib.rs") {
+                continue; // it only hands names on
+            }
             let source = fs::read_to_string(&file).unwrap();
-            let told = wrong(&room(path), &source).into_iter();
-            found.extend(told.map(|what| format!("{}: {what}", path.display())));
+            let upward = wrong(rooms, &room(path), &source).into_iter();
+            found.extend(upward.map(|what| format!("{folder}/{}: {what}", path.display())));
         }
     }
+    assert!(read > 300, "{read}");
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
@@ -160,19 +165,26 @@ fn an_upward_import_is_seen_however_it_is_written() {
     for source in [
         "use crate::world::World;",
         "use crate::{simd::Tier, world::{Body, World}};",
-        "use crate::lab::scene::Scene;",
+        "use crate::scene::Scene;",
         "fn f() { crate::culler::Culler::builder(); }",
-        "use crate::lab::{number, scene};",
+        "use crate::{number, scene};",
     ] {
-        assert!(!wrong("bodies", source).is_empty(), "{source}");
-        assert!(wrong("cli", source).is_empty(), "{source}");
+        assert!(!wrong(LIBRARY, "bodies", source).is_empty(), "{source}");
     }
-    assert!(wrong("bodies", "// see crate::world\nuse crate::volume::Shape;").is_empty());
-    assert_eq!(wrong("update", "use crate::tools::trick;").len(), 1);
+    assert!(!wrong(BENCH, "sweep", "use crate::{number, scene};").is_empty());
+    assert!(wrong(BENCH, "commands", "use crate::{number, scene};").is_empty());
+    assert!(!wrong(JUDGE, "ours", "use crate::case::Case;").is_empty());
+    assert!(wrong(JUDGE, "case", "use crate::{ours::Shapes, claim::Claim};").is_empty());
+    let below = "// see crate::world\nuse crate::volume::Shape;";
+    assert!(wrong(LIBRARY, "bodies", below).is_empty());
     assert_eq!(
-        wrong("update", "use crate::Culler;").len(),
+        wrong(LIBRARY, "update", "use crate::tools::trick;").len(),
+        1
+    );
+    assert_eq!(
+        wrong(LIBRARY, "update", "use crate::Culler;").len(),
         1,
         "the face is above all"
     );
-    assert_eq!(wrong("helpers", "").len(), 1);
+    assert_eq!(wrong(LIBRARY, "helpers", "").len(), 1);
 }

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use sdop::lab::scene::SceneFile;
+use sdop_bench::scene::SceneFile;
 
 fn shipped() -> Vec<PathBuf> {
     let directory =

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use sdop::bodies::Bodies;
-use sdop::lab::scene::{Scene, SceneFile};
+use sdop_bench::scene::{Scene, SceneFile};
 
 fn build(text: &str) -> Scene {
     SceneFile::parse(text, "a.toml", Path::new("data/scenes"))

@@ -4,16 +4,16 @@
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use sdop::lab::scene::SceneFile;
-use sdop::lab::verify::draw::crowd;
-use sdop::lab::verify::forms::{self, Form};
-use sdop::lab::verify::rounds::{Failure, Ledger, judge_and_check};
-use sdop::lab::verify::shrink::Smallest;
-use sdop::lab::verify::ways::{Mode, Rotation};
-use sdop::lab::verify::{Predicate, Shapes};
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
+use sdop_bench::scene::SceneFile;
+use sdop_bench::verify::shrink::Smallest;
+use sdop_judge::ours::draw::crowd;
+use sdop_judge::ours::forms::{self, Form};
+use sdop_judge::ours::rounds::{Failure, Ledger, judge_and_check};
+use sdop_judge::ours::ways::{Mode, Rotation};
+use sdop_judge::ours::{Predicate, Shapes};
 
 fn lying_crowd() -> (Shapes, Ledger) {
     let mut rng = ChaCha8Rng::seed_from_u64(9);

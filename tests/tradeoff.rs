@@ -9,16 +9,16 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use sdop::lab::hull_test::{HullGraph, PosedHull, may_touch};
-use sdop::lab::scene::{Scene, SceneFile};
-use sdop::lab::tradeoff::counts::Tally;
-use sdop::lab::tradeoff::safety::without_margins;
-use sdop::lab::tradeoff::shapes::{Crowd, builtin};
-use sdop::lab::tradeoff::truth::{Judge, samples};
-use sdop::lab::tradeoff::variant::{self, Variant};
 use sdop::rounding::sphere::inflate_radius;
 use sdop::simd::Tier;
 use sdop::volume::Hull;
+use sdop_bench::hull_test::{HullGraph, PosedHull, may_touch};
+use sdop_bench::scene::{Scene, SceneFile};
+use sdop_bench::tradeoff::counts::Tally;
+use sdop_bench::tradeoff::safety::without_margins;
+use sdop_bench::tradeoff::shapes::{Crowd, builtin};
+use sdop_bench::tradeoff::truth::{Judge, samples};
+use sdop_bench::tradeoff::variant::{self, Variant};
 use sdop_reference::Pose;
 use sdop_reference::exact::{meeting, mesh::Mesh};
 

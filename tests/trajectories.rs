@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use sdop::lab::scene::{Scene, SceneFile};
+use sdop_bench::scene::{Scene, SceneFile};
 use sha2::{Digest, Sha256};
 
 /// SHA-256 over q and t of all bodies, little endian, for the initial state and each of `steps` steps.

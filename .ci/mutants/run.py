@@ -36,7 +36,7 @@ import plant
 from outcomes import TOP, Outcomes, by_reason, by_room, judge, place, say
 from trees import ENVIRONMENT, WORK, Built, build, cargo, lanes_tree, main_tree, plant_all, settle, tracked, whole_tree, write_tree
 
-FEATURES = ["-p", "sdop", "--no-default-features", "--features", "proptest"]
+PACKAGES = ["-p", "sdop", "-p", "sdop-judge", "-p", "sdop-bench"]
 SUITES = ["golden_pairs", "finders", "near_misses", "against_reference", "worst_case", "world", "naive_margins", "finder_costs",
           "volume", "misuse", "crowds", "cost", "accounts", "settings", "domain", "boxes"]
 # Seconds: tests below go together.
@@ -93,13 +93,13 @@ def ask(tree, name, command, seconds, **environment):
 
 
 class Test:
-    """A test, or the library's own tests together, but for those of sweeps; `cost` is its CPU time in seconds when nothing is awake,
+    """A test, or the library's own tests together; `cost` is its CPU time in seconds when nothing is awake,
     `places` are those that it comes by."""
 
     def __init__(self, built, suite, test=None):
         self.name = f"{suite}::{test}" if test else suite
         self.built, self.suite = built, suite
-        self.arguments = ["--exact", test] if test else ["--skip", "lab::sweep"]
+        self.arguments = ["--exact", test] if test else []
         self.cost, places = built.tests.get(self.name, (0, None))
         self.places = set(places or ())
 
@@ -124,7 +124,7 @@ def measured(built, options):
         names = [None]
         if suite != "lib":
             listed = subprocess.run([executable, "--list"], cwd=built.tree, stdout=subprocess.PIPE, text=True, check=True).stdout
-            names = re.findall(r"^(\S+): test$", listed, re.M)
+            names = [name for name in re.findall(r"^(\S+): test$", listed, re.M) if not name.startswith("sweep::")]
         found += [Test(built, suite, name) for name in names]
     found = [test for test in found if re.search(options.tests, test.name)]
     for test in found:
@@ -202,7 +202,7 @@ def one_by_one(mutants, outcomes):
     for mutant in mutants:
         name = mutant["file"]
         write_tree(tree, files | {name: plant.applied(files[name], mutant)})
-        if cargo(tree, "check", "--lib", *FEATURES)[1].returncode:
+        if cargo(tree, "check", "--lib", *PACKAGES)[1].returncode:
             outcomes.add(mutant, "doesn't compile", "alone")
         else:
             ask_alone(tree, mutant, outcomes)
@@ -211,7 +211,7 @@ def one_by_one(mutants, outcomes):
 def ask_alone(tree, mutant, outcomes):
     asked = []
     for suites in (["--lib"], ["--test", "golden_pairs"], [part for suite in SUITES[1:] for part in ("--test", suite)]):
-        binaries = build(tree, *FEATURES, *suites)
+        binaries = build(tree, *PACKAGES, *suites)
         if not binaries:
             return outcomes.add(mutant, "doesn't compile", "alone")
         for suite, executable in binaries.items():
@@ -225,9 +225,7 @@ def ask_alone(tree, mutant, outcomes):
 def listed():
     """What `cargo mutants` lists, numbered."""
     found = subprocess.run(["cargo", "mutants", "--list", "--json"], cwd=TOP, stdout=subprocess.PIPE, check=True).stdout
-    # A module that is public behind a feature alone has two declarations, and its mutants are listed twice.
-    unlike = {mutant["name"]: mutant for mutant in json.loads(found)}.values()
-    return [mutant | {"n": n} for n, mutant in enumerate(unlike, 1)]
+    return [mutant | {"n": n} for n, mutant in enumerate(json.loads(found), 1)]
 
 
 def run_all(mutants, outcomes, options, reasons):
@@ -250,8 +248,8 @@ def run_all(mutants, outcomes, options, reasons):
     # All are planted, whatever is wanted, so that a run that goes on finds what is built.
     for name, change, check, test in (
         ("lanes", lanes_tree, ["--lib"], ["--lib"]),
-        ("asleep", main_tree, ["--lib", *FEATURES], [*FEATURES, *tests]),
-        ("constants", whole_tree, ["--lib", *FEATURES], [*FEATURES, *tests]),
+        ("asleep", main_tree, ["--lib", *PACKAGES], [*PACKAGES, *tests]),
+        ("constants", whole_tree, ["--lib", *PACKAGES], [*PACKAGES, *tests]),
     ):
         own = [mutant for mutant in mutants if tree(mutant) == name]
         if not any(is_wanted(mutant) and re.search(options.only, mutant["name"]) for mutant in own):

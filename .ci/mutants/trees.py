@@ -173,4 +173,4 @@ def build(tree, *arguments):
         say("".join(errors)[-3000:] + done.stderr[-1000:])
         return {}
     built = [m for m in messages if m.get("reason") == "compiler-artifact" and m["profile"]["test"] and m["executable"]]
-    return {"lib" if "lib" in m["target"]["kind"] else m["target"]["name"]: m["executable"] for m in built}
+    return {"lib" if m["target"]["name"] == "sdop" else m["target"]["name"]: m["executable"] for m in built}

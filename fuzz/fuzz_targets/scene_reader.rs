@@ -5,7 +5,7 @@ use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
 use sdop::bodies::contract::check_bodies;
-use sdop::lab::scene::SceneFile;
+use sdop_bench::scene::SceneFile;
 
 fuzz_target!(|text: &str| {
     let Ok(file) = SceneFile::parse(text, "fuzz.toml", Path::new("/nonexistent")) else {

@@ -30,8 +30,10 @@ pub struct ContractError {
 
 impl ContractError {
     /// The same, with the body's number in a set in which this one's bodies begin at `first`.
-    #[cfg(feature = "lab")]
-    pub(crate) fn numbered(self, first: usize) -> Self {
+    #[cfg(feature = "internals")]
+    #[doc(hidden)]
+    #[must_use]
+    pub fn numbered(self, first: usize) -> Self {
         let body = self.body + first;
         Self { body, ..self }
     }
@@ -102,7 +104,8 @@ pub(crate) fn check_pose(body: usize, q: &[f32; 4], t: &[f64; 3]) -> Result<(), 
 }
 
 /// Checks the poses of the bodies `range`: what an effects step may have changed.
-pub(crate) fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), ContractError> {
+#[doc(hidden)]
+pub fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), ContractError> {
     let first = range.start;
     check_vectors("translation", &bodies.translation[range.clone()], first)?;
     let rotations = &bodies.rotation[range];
@@ -149,11 +152,8 @@ pub(crate) fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
 }
 
 /// Checks that a column has one entry a body.
-pub(crate) fn check_column(
-    name: &'static str,
-    length: usize,
-    bodies: usize,
-) -> Result<(), ContractError> {
+#[doc(hidden)]
+pub fn check_column(name: &'static str, length: usize, bodies: usize) -> Result<(), ContractError> {
     if length == bodies {
         return Ok(());
     }
@@ -163,7 +163,8 @@ pub(crate) fn check_column(
 }
 
 /// Checks that the coordinates of a column are at most 2⁶⁰ in size; its first entry is that of the body `first`.
-pub(crate) fn check_vectors(
+#[doc(hidden)]
+pub fn check_vectors(
     name: &'static str,
     column: &[[f32; 3]],
     first: usize,
@@ -321,7 +322,7 @@ mod tests {
         }
     }
 
-    #[cfg(feature = "lab")]
+    #[cfg(feature = "internals")]
     #[test]
     fn a_body_of_a_share_is_told_by_its_number_in_the_whole() {
         let own = ContractError {

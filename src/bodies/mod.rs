@@ -3,19 +3,13 @@
 mod aabb;
 pub mod contract;
 mod groups;
-#[cfg_attr(
-    not(feature = "internals"),
-    allow(dead_code, reason = "benches use the rest")
-)]
 mod places;
 mod read_ahead;
 
 pub use aabb::Aabb;
 pub use groups::Groups;
-#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub use places::Places;
-#[cfg(not(feature = "internals"))]
-pub(crate) use places::Places;
 pub(crate) use read_ahead::read_ahead;
 
 /// Rigid bodies as columns. All columns have one length.

@@ -1,8 +1,7 @@
-//! Scaled and mirrored meshes: files in millimetres, URDF's and SDF's scales.
-
-use glam::Vec3;
+//! Scaled and mirrored meshes: files in millimetres, and the scales of URDF and SDF.
 
 use super::{MeshError, Problem, TriangleMesh};
+use crate::rounding::up;
 
 /// Factors of x, y and z: one number for all, or `[x, y, z]`. Negative ones mirror.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +20,9 @@ impl From<[f64; 3]> for Scale {
 }
 
 impl TriangleMesh {
-    /// The mesh with each coordinate multiplied by its factor, rounded to f32 once. What was counter-clockwise from outside
-    /// stays so: where the scale mirrors, each triangle's last two corners are exchanged.
+    /// The mesh with each coordinate of the file multiplied by its factor in f64, and then kept as [`Self::from_f64`] keeps
+    /// coordinates. Faces that were counter-clockwise from outside stay so: where the scale mirrors, each triangle's last two
+    /// corners are exchanged.
     ///
     /// # Errors
     /// A factor that is zero or not finite, or a mesh that is beyond 2⁶⁰ with it.
@@ -34,16 +34,20 @@ impl TriangleMesh {
         {
             return Err(Problem::Scale { scale }.at(&self.name, None));
         }
-        let vertex = |v: &Vec3| {
-            let scaled = [0, 1, 2].map(|axis| (f64::from(v[axis]) * scale[axis]) as f32);
-            Vec3::from_array(scaled)
-        };
+        let point = |point: [f64; 3]| std::array::from_fn(|axis| point[axis] * scale[axis]);
+        let points: Vec<[f64; 3]> = self.points().map(point).collect();
         let mirrors = scale.iter().filter(|factor| **factor < 0.0).count() % 2 == 1;
         let triangle = |&[a, b, c]: &[u32; 3]| if mirrors { [a, c, b] } else { [a, b, c] };
-        Self::new(
-            self.name.clone(),
-            self.vertices.iter().map(vertex).collect(),
-            self.triangles.iter().map(triangle).collect(),
-        )
+        let triangles: Vec<[u32; 3]> = self.triangles.iter().map(triangle).collect();
+        let mut scaled = Self::from_f64(&points, &triangles)
+            .map_err(|error| error.problem.at(&self.name, None))?
+            .named(&self.name);
+        if self.rounding > 0.0 {
+            // What reading has moved is scaled as well.
+            let largest = scale.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let moved = f64::from(self.rounding) * largest + f64::from(scaled.rounding);
+            scaled.rounding = up(moved);
+        }
+        Ok(scaled)
     }
 }

@@ -11,7 +11,7 @@
 //!
 //! Each constant tells its derivation, the Gappa script in `paper/proofs/` that checks it (the control beside it is one
 //! notch tighter and must fail), and the largest error that hill climbing has found in 10⁷ steps
-//! (`benches/worst_case.rs`; a shorter search is in the tests).
+//! (`benches/criterion/worst_case.rs`; a shorter search is in the tests).
 
 pub mod border;
 pub mod cube;
@@ -21,7 +21,7 @@ pub mod slab;
 pub mod sphere;
 
 /// 2ᵉ for a normal exponent.
-pub(crate) const fn exp2(e: i32) -> f64 {
+pub const fn exp2(e: i32) -> f64 {
     assert!(-1022 <= e && e <= 1023);
     f64::from_bits(((1023 + e) as u64) << 52)
 }

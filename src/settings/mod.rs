@@ -1,7 +1,7 @@
 //! How a scene is culled: the `[cull]` table, whose keys are also the flags of the command line (design, section 2).
 
 mod scheme;
-#[cfg(feature = "lab")]
+#[cfg(feature = "serde")]
 mod text;
 
 use miette::Diagnostic;
@@ -93,7 +93,7 @@ choices! {
 
 /// What the viewer looks at: only pairs with a body of interest are refined.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "lab", derive(serde::Serialize), serde(untagged))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(untagged))]
 pub enum Interest {
     /// Body indices.
     Bodies(Vec<u32>),
@@ -104,7 +104,7 @@ pub enum Interest {
 /// A cone of view over sphere centres. With `body` it moves and turns with that body, with `apex` it stands still.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
-    feature = "lab",
+    feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
@@ -125,7 +125,7 @@ pub struct ViewCone {
 /// What a frame's refinement may cost in time-critical culling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
-    feature = "lab",
+    feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "kebab-case")
 )]
@@ -141,7 +141,7 @@ pub enum Budget {
 /// A scene file's `[cull]` table, where the finder is `all-pairs` unless said otherwise ([`Self::all_pairs`]).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
-    feature = "lab",
+    feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields, default = "CullSettings::all_pairs")
 )]
@@ -152,7 +152,7 @@ pub struct CullSettings {
     pub pairs: Finder,
     /// The or-DOP's slab directions; written as k = 6, 14, 18 or 26.
     #[cfg_attr(
-        feature = "lab",
+        feature = "serde",
         serde(serialize_with = "text::write_k", deserialize_with = "text::read_k")
     )]
     pub k: DirectionSet,

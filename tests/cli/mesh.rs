@@ -56,7 +56,8 @@ fn conversion_keeps_every_vertex_to_the_bit() {
     assert!(shown.contains("written to"), "{shown}");
     let report = json(&["mesh", text(&obj), "--to", text(&back)]);
     assert_eq!(report["written"], text(&back));
-    let [before, after] = ["data/meshes/spot.tri", text(&back)]
+    let spot = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/meshes/spot.tri");
+    let [before, after] = [spot, text(&back)]
         .map(|path| sdop::mesh::read(path, &sdop::mesh::ReadOptions::default()).unwrap());
     assert_eq!(before.vertices, after.vertices);
     assert_eq!(before.triangles, after.triangles);

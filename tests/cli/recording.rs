@@ -1,9 +1,9 @@
 //! `sdop run --record`: read back by a stranger who knows the format alone, to the same bits as in the library, and judged
 //! by the reference from the recorded numbers alone.
 
-use sdop::lab::scene::SceneFile;
-use sdop::lab::simulate::{self, SimulationError};
 use sdop::simd::Tier;
+use sdop_bench::scene::SceneFile;
+use sdop_bench::simulate::{self, SimulationError};
 use sdop_reference as reference;
 use serde::Deserialize;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sdop::lab::report::{Experiment, Store};
+use sdop_bench::report::{Experiment, Store};
 
 use super::{command, sdop, text};
 
@@ -232,7 +232,7 @@ fn a_record_compares_with_what_a_commit_had() {
 
 #[test]
 fn every_record_of_the_repository_names_its_command() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     let store = Store::new(root.join("data/record")).unwrap();
     for name in store.names() {
         let manifest = store.manifest(&name).unwrap();
@@ -245,7 +245,7 @@ fn every_record_of_the_repository_names_its_command() {
 
 #[test]
 fn the_repository_s_own_records_and_pages_agree() {
-    let (code, said) = check(Path::new(env!("CARGO_MANIFEST_DIR")));
+    let (code, said) = check(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")));
     assert_eq!(code, Some(0), "{said}");
 }
 

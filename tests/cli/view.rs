@@ -1,5 +1,5 @@
 //! `sdop view`: what pages hold, and what is said of records that are broken, old or strange. What a browser makes of a page is
-//! tested in `src/lab/view/web/test/`.
+//! tested in `benches/src/view/web/test/`.
 
 use std::path::{Path, PathBuf};
 

@@ -1,11 +1,11 @@
 //! Hard cases at borders, with the exact reference and one process as judges.
 
 use sdop::bodies::Bodies;
-use sdop::lab::tradeoff::truth::Judge;
-use sdop::lab::verify::compare::settings;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
+use sdop_bench::tradeoff::truth::Judge;
+use sdop_judge::ours::compare::settings;
 
 use crate::{pairs_alone, pairs_on, support};
 

@@ -1,9 +1,9 @@
 //! The corpus of hard cases on ranks: whatever breaks a culler, at borders.
 
-use sdop::lab::verify::compare::settings;
-use sdop::lab::verify::hard::{FILES, Group};
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet};
+use sdop_judge::ours::compare::settings;
+use sdop_judge::ours::hard::{FILES, Group};
 
 use crate::{pairs_alone, pairs_on};
 

@@ -13,14 +13,14 @@ use std::path::Path;
 
 use sdop::Culler;
 use sdop::bodies::Bodies;
-use sdop::lab::domain::local::on_ranks;
-use sdop::lab::domain::{DomainError, DomainSummary, Network as _, Rank, RankLine, run};
-use sdop::lab::effects::{EffectsSpec, Velocities};
-use sdop::lab::scene::{Scene, SceneFile, Share};
-use sdop::lab::simulate::SimulationError;
 use sdop::settings::CullSettings;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
+use sdop_bench::domain::local::on_ranks;
+use sdop_bench::domain::{DomainError, DomainSummary, Network as _, Rank, RankLine, run};
+use sdop_bench::effects::{EffectsSpec, Velocities};
+use sdop_bench::scene::{Scene, SceneFile, Share};
+use sdop_bench::simulate::SimulationError;
 
 /// One, halves, an odd number, and eight about a corner.
 const RANKS: [usize; 4] = [1, 2, 3, 8];
@@ -43,8 +43,8 @@ fn on(ranks: usize, scene: &Scene) -> Result<DomainSummary, DomainError> {
 }
 
 /// A scene in one process.
-fn alone(scene: &Scene) -> sdop::lab::simulate::Summary {
-    sdop::lab::simulate::run::<SimulationError>(scene, Tier::detect(), |_| Ok(())).unwrap()
+fn alone(scene: &Scene) -> sdop_bench::simulate::Summary {
+    sdop_bench::simulate::run::<SimulationError>(scene, Tier::detect(), |_| Ok(())).unwrap()
 }
 
 /// A scene of given bodies, for frames whose poses come from the test.

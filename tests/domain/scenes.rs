@@ -1,7 +1,7 @@
 //! Whole scenes: the digest, the hash and what must add up, over ranks, strategies and finders.
 
-use sdop::lab::scene::Scene;
 use sdop::settings::{Finder, Interest, Strategy, Updates};
+use sdop_bench::scene::Scene;
 
 use crate::{RANKS, alone, build, ghosts, on, parse};
 
@@ -83,14 +83,14 @@ fn the_pairs_of_any_number_of_ranks_are_those_of_one_process() {
                     assert_eq!(shared.volumes_sha256, whole.volumes_sha256, "{what}");
                     assert_eq!(shared.counters.reported, whole.counters.reported, "{what}");
                     for volume in strategy.scheme().volumes() {
-                        let updates = |summary: &sdop::lab::simulate::Summary| {
+                        let updates = |summary: &sdop_bench::simulate::Summary| {
                             summary.counters.of(volume).updates
                         };
                         assert_eq!(updates(shared), updates(&whole), "{what}: {volume} updates");
                     }
                     for (ours, theirs) in shared.effects.iter().zip(&whole.effects) {
                         let counts =
-                            |e: &sdop::lab::effects::EffectReport| (e.steps, e.visited, e.changed);
+                            |e: &sdop_bench::effects::EffectReport| (e.steps, e.visited, e.changed);
                         assert_eq!(counts(ours), counts(theirs), "{what}: {}", ours.name);
                     }
                 }
@@ -238,8 +238,8 @@ fn a_body_that_leaves_the_contract_is_named_by_its_number_on_every_rank() {
         poses = [[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 5, 0, 0], [0, 0, 0, 1, 9, 0, 0], [0, 0, 0, 1, 1e18, 0, 0]]
         velocities = [[0, 0, 0], [0, 0, 0], [0, 0, 0], [1e18, 0, 0]]\n[effects]\nmotion = true\n";
     let file = parse(text);
-    let all = sdop::lab::domain::local::on_ranks(3, |net| {
-        use sdop::lab::domain::{Network as _, Rank, run};
+    let all = sdop_bench::domain::local::on_ranks(3, |net| {
+        use sdop_bench::domain::{Network as _, Rank, run};
         let scene = file.build_share(net.rank(), 3).unwrap();
         let rank = Rank::new(net, scene, sdop::Tier::detect(), 1).unwrap();
         run(rank, |_| ()).unwrap_err().to_string()

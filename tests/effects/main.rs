@@ -6,8 +6,8 @@ mod response;
 use std::path::Path;
 
 use sdop::bodies::Bodies;
-use sdop::lab::effects::{EffectReport, Effects, NAMES, Velocities};
-use sdop::lab::scene::{Scene, SceneFile};
+use sdop_bench::effects::{EffectReport, Effects, NAMES, Velocities};
+use sdop_bench::scene::{Scene, SceneFile};
 
 fn scene(text: &str) -> Scene {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");

@@ -1,8 +1,8 @@
 //! The response beside its formula, and what it keeps.
 
 use sdop::bodies::Bodies;
-use sdop::lab::effects::Velocities;
-use sdop::lab::scene::Scene;
+use sdop_bench::effects::Velocities;
+use sdop_bench::scene::Scene;
 
 use super::{after, report, scene};
 

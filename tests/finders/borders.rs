@@ -4,9 +4,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
-use sdop::lab::verify::borders::{Borders, bar};
 use sdop::settings::{Finder, Strategy};
 use sdop::simd::Tier;
+use sdop_judge::ours::borders::{Borders, bar};
 
 use super::scenes::Scene;
 use super::{compare, run, settings};

@@ -6,10 +6,10 @@ use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Places;
 use sdop::broad_phase::{PairFinder, Population, Volume};
 use sdop::culler::Culler;
-use sdop::lab::hash::PairsHash;
 use sdop::settings::{Finder, Strategy};
 use sdop::simd::Tier;
 use sdop::threads::Threads;
+use sdop_bench::hash::PairsHash;
 
 use super::scenes::{Scene, hard_scenes, uniform};
 use super::{advance, settings};

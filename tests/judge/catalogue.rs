@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use sdop::bodies::contract::check_bodies;
-use sdop::judge::catalogue::groups;
-use sdop::judge::wire::{Wire, ndjson};
-use sdop::judge::{Claim, case::matches};
+use sdop_judge::catalogue::groups;
+use sdop_judge::wire::{Wire, ndjson};
+use sdop_judge::{Claim, case::matches};
 
 #[test]
 fn a_name_is_the_same_case_every_time_and_a_seed_another() {
@@ -57,7 +57,12 @@ fn cases_come_back_from_their_files_to_the_bit() {
         let back = ndjson::read(bytes.as_slice(), u64::MAX).unwrap().case;
         assert_eq!(back.name, case.name);
         assert_eq!(back.claims[0], claim);
-        assert_eq!(back.shapes, case.shapes, "{}", case.name);
+        // A case has the vertices as culled, and not how they were scaled and moved.
+        let mut shapes = case.shapes.clone();
+        for shape in &mut shapes {
+            (shape.offset, shape.scale) = ([0.0; 3], 1.0);
+        }
+        assert_eq!(back.shapes, shapes, "{}", case.name);
         assert_eq!(back.frames, case.frames, "{}", case.name);
     }
 }

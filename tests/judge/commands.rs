@@ -17,7 +17,7 @@ fn sdop(directory: &Path, arguments: &[&str]) -> (Output, String) {
 }
 
 fn example(name: &str) -> String {
-    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "examples", "judge", name]
+    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "examples", "judge", name]
         .iter()
         .collect();
     path.display().to_string()

@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use sdop::bodies::Bodies;
 use sdop::boxes::BoxBody;
 use sdop::culler::Culler;
-use sdop::judge::{Contestant, PairTest, Scene, WorldBox};
 use sdop::rounding::pose::{rotation, transform};
 use sdop::settings::Strategy;
 use sdop::volume::Shape;
 use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Groups};
+use sdop_judge::{Contestant, PairTest, Scene, WorldBox};
 
 /// Our own culler.
 pub struct Ours {

@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use sdop::judge::answer::Trouble;
-use sdop::judge::process::Program;
-use sdop::judge::wire::Wire;
-use sdop::judge::{Claim, Options, Outcome, Verdict, examine};
+use sdop_judge::answer::Trouble;
+use sdop_judge::process::Program;
+use sdop_judge::wire::Wire;
+use sdop_judge::{Claim, Options, Outcome, Verdict, examine};
 
 /// A program that reads frames and answers each with what `answer` says; $n is the frame's number.
 pub fn answering(answer: &str) -> String {

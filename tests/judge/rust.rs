@@ -2,9 +2,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use sdop::judge::answer::Trouble;
-use sdop::judge::{Claim, Outcome, Scene, Verdict, judge, run::judge_pair_test};
 use sdop::settings::Strategy;
+use sdop_judge::answer::Trouble;
+use sdop_judge::{Claim, Outcome, Scene, Verdict, judge, run::judge_pair_test};
 
 use crate::cullers::{All, Balls, Boxes, BoxesOfAWorld, Flaw, NarrowBalls, Ours};
 
@@ -217,7 +217,7 @@ fn a_limit_of_extra_pairs_is_kept() {
 mod stamped {
     use super::{Claim, Ours, Strategy};
 
-    sdop::judge_tests!(Claim::Mesh, |scene: &super::Scene<'_>| Ours::new(
+    sdop_judge::judge_tests!(Claim::Mesh, |scene: &super::Scene<'_>| Ours::new(
         scene,
         Strategy::SDopBatch
     ));

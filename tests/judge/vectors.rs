@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use sdop::judge::{Claim, vectors};
+use sdop_judge::{Claim, vectors};
 use serde_json::Value;
 
 fn directory() -> &'static Path {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/vectors"))
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../data/vectors"))
 }
 
 #[test]

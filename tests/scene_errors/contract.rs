@@ -2,7 +2,7 @@
 
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::check_bodies;
-use sdop::lab::effects::Velocities;
+use sdop_bench::effects::Velocities;
 
 use super::{SOUND, build, posed, refusal};
 

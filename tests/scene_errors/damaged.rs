@@ -4,7 +4,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use sdop::bodies::contract::check_bodies;
-use sdop::lab::scene::SceneFile;
+use sdop_bench::scene::SceneFile;
 
 use super::SOUND;
 

@@ -9,7 +9,7 @@ mod values;
 use std::path::Path;
 
 use miette::Diagnostic;
-use sdop::lab::scene::{Scene, SceneError, SceneFile};
+use sdop_bench::scene::{Scene, SceneError, SceneFile};
 
 fn build(text: &str) -> Result<Scene, SceneError> {
     SceneFile::parse(text, "a.toml", Path::new("data/scenes"))?.build()

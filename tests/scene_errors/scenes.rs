@@ -1,7 +1,7 @@
 //! Scenes whose parts don't go together: box and bodies, meshes, effects, culling.
 
 use miette::Diagnostic;
-use sdop::lab::scene::SceneFile;
+use sdop_bench::scene::SceneFile;
 
 use super::{SOUND, changed, posed, refusal};
 

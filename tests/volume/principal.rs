@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec3, Vec3};
 use proptest::prelude::*;
 use sdop::volume::{Axes, Basis, Hull, Shape, ShapeSpec};
+use sdop_bench::tightness::PolytopeVolume as _;
 
 use crate::meshes::{box_corners, box_grid, mesh, rotated, rotation};
 

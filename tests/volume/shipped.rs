@@ -1,11 +1,11 @@
 //! The shipped meshes: contained exactly, the same volumes on every CPU, and as tight as recorded.
 
 use sdop::{
-    lab::hash::volumes_sha256,
-    lab::tightness::mean_world_aligned_volume,
     mesh::{ReadOptions, read},
-    volume::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, Shape, ShapeSpec},
+    volume::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, Origin, Shape, ShapeSpec},
 };
+use sdop_bench::hash::volumes_sha256;
+use sdop_bench::tightness::{PolytopeVolume as _, mean_world_aligned_volume};
 
 use crate::{
     exact::{ball_contains, slabs_contain},
@@ -16,10 +16,10 @@ fn shape(name: &str, axes: Axes) -> Shape {
     let path = format!("{}/data/meshes/{name}.tri", env!("CARGO_MANIFEST_DIR"));
     let mesh = read(path, &ReadOptions::default()).unwrap();
     let spec = ShapeSpec {
+        origin: Origin::Ball,
         radius: Some(1.0),
         directions: DirectionSet::K26,
         axes,
-        ..ShapeSpec::default()
     };
     Shape::build(&mesh, &spec).unwrap()
 }

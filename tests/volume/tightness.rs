@@ -1,11 +1,11 @@
 //! Volumes as numbers: known solids, nesting, and means over orientations.
 
+use sdop_bench::tightness::{PolytopeVolume as _, mean_world_aligned_volume};
 use std::f64::consts::PI;
 
 use glam::Vec3;
 use proptest::prelude::*;
 use sdop::{
-    lab::tightness::mean_world_aligned_volume,
     mesh::shapes::ProceduralShape,
     volume::{Ball, Basis, DirectionSet, Hull, OrDop},
 };

@@ -1,11 +1,11 @@
 //! Margins: bodies that touch to the ulp once they are grown, along faces, edges and corners, and margins that change.
 
 use sdop::culler::Culler;
-use sdop::lab::verify::ways::{variants, ways};
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Strategy};
 use sdop::volume::{Axes, DirectionSet, Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, World};
+use sdop_judge::ours::ways::{variants, ways};
 
 /// A cube of edge 2.
 fn cube(directions: DirectionSet, axes: Axes) -> Shape {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use miette::{IntoDiagnostic, Result};
 use sdop::Tier;
-use sdop::lab::measure::machine::Machine;
+use sdop_bench::measure::machine::Machine;
 use sdop_bullet::forms::forms;
 use sdop_bullet::plan::{Detail, Kind, Plan, SceneKind};
 use sdop_bullet::study::{Study, study};

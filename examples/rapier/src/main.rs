@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand};
 use miette::{IntoDiagnostic, Result};
 use sdop::Tier;
-use sdop::lab::measure::machine::Machine;
+use sdop_bench::measure::machine::Machine;
 use sdop_rapier::forms::forms;
 use sdop_rapier::plan::{Detail, Kind, Mode, Plan, Real, Scene};
 use sdop_rapier::record::{Found, Record};

@@ -1,6 +1,6 @@
 //! What a run found, as rows of a table.
 
-use sdop::lab::measure::machine::Machine;
+use sdop_bench::measure::machine::Machine;
 use serde::{Deserialize, Serialize};
 
 /// Steps of a filtered run, each also taken without the filter from the same state.

@@ -74,7 +74,7 @@ fn the_check_sees_margins_left_out_and_saves_the_pair() {
         let found = single::proof::check(plan, &forms, mode, 120, true, cases.path()).unwrap();
         assert!(found.dropped > 0, "{mode}: {found:?}");
         let scene = cases.path().join("dropped-pair.toml");
-        let scene = sdop::lab::scene::SceneFile::read(&scene)
+        let scene = sdop_bench::scene::SceneFile::read(&scene)
             .unwrap()
             .build()
             .unwrap();

@@ -2,6 +2,7 @@
 
 mod obj;
 mod off;
+mod parts;
 mod ply;
 mod read;
 mod stl;
@@ -12,4 +13,5 @@ mod write;
 
 pub use read::{MeshFormat, ReadOptions, read, read_bytes};
 pub use tri::TriFormat;
+pub(super) use weld::weld;
 pub use write::{write, write_bytes};

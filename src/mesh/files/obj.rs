@@ -4,7 +4,7 @@
 //! ends with a backslash goes on in the next, `#` starts a comment anywhere, and a face may name vertices further down.
 //! Polygons become fans; faces of one or two vertices become degenerate triangles, so nothing is lost.
 
-use super::read::Parts;
+use super::parts::Parts;
 use super::text::{self, Fault, Token};
 use crate::mesh::{Problem, check_triangle, check_vertex};
 

@@ -5,7 +5,7 @@
 //! comment. Files without a header are read as well. A record is a line; only a file that does not fit so is read without
 //! regard to lines, which Geomview allows.
 
-use super::read::Parts;
+use super::parts::Parts;
 use super::text::{self, Fault, Token};
 use crate::mesh::{Problem, check_triangle, check_vertex};
 

@@ -4,7 +4,7 @@
 //! Values that are passed over are not read as numbers: a NaN, or a word, in a property that nobody uses is no error.
 //! Polygons become fans; faces of one or two vertices become degenerate triangles; strips are unrolled.
 
-use super::read::Parts;
+use super::parts::Parts;
 use super::text::{self, Fault, Token, excerpt};
 use crate::mesh::{Problem, check_triangle, check_vertex};
 

@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::weld::weld;
+use super::parts::Parts;
 use super::{TriFormat, obj, off, ply, stl, tri};
 use crate::files;
 use crate::mesh::{MeshError, Problem, TriangleMesh};
@@ -112,30 +112,12 @@ pub fn read_bytes(
         .file_stem()
         .unwrap_or_default()
         .to_string_lossy();
-    let mut vertices: Vec<[f32; 3]> = points.iter().map(|point| point.map(|x| x as f32)).collect();
-    let triangles = triangles.unwrap_or_else(|| weld(&mut vertices));
-    TriangleMesh::from_arrays(stem, vertices, triangles)
-        .map_err(|error| error.problem.at(file, error.line))
-}
-
-/// What a format's reader finds.
-pub(super) struct Parts {
-    /// Positions in f64, each of which rounds to the f32 nearest to what the file says.
-    pub points: Vec<[f64; 3]>,
-    /// The three vertices of each triangle; `None` where each three points are one.
-    pub triangles: Option<Vec<[u32; 3]>>,
-}
-
-impl Parts {
-    /// Vertices and what triangles name of them.
-    pub fn indexed(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
-        let triangles = Some(triangles);
-        Self { points, triangles }
-    }
-
-    /// Three points a triangle.
-    pub fn soup(points: Vec<[f64; 3]>) -> Self {
-        let triangles = None;
-        Self { points, triangles }
-    }
+    let mesh = match triangles {
+        Some(triangles) => {
+            TriangleMesh::from_f64(&points, &triangles).map_err(|error| error.problem)
+        }
+        None => TriangleMesh::from_soup(&points),
+    };
+    mesh.map(|mesh| mesh.named(stem))
+        .map_err(|problem| problem.at(file, None))
 }

@@ -7,8 +7,8 @@
 
 use glam::Vec3;
 
-use super::read::Parts;
-use super::text::{self, Fault, Token};
+use super::parts::Parts;
+use super::text::{self, Fault, Token, put, wide};
 use crate::mesh::{Problem, TriangleMesh, check_vertex};
 
 const HEADER_BYTES: usize = 84;
@@ -198,19 +198,48 @@ fn malformed(message: String) -> Problem {
     Problem::malformed(message, help)
 }
 
-/// The mesh as a binary STL file. Sharing of vertices is lost, and so are unused ones; positions are kept to the bit.
+/// The mesh as an STL file: binary, or text where it is far from its origin, since binary STL has f32. Sharing of vertices is
+/// lost, and so are unused ones; positions are kept to the bit.
 pub(super) fn bytes(mesh: &TriangleMesh) -> Vec<u8> {
+    if mesh.is_far() {
+        return text(mesh).into_bytes();
+    }
     let mut bytes = vec![0; HEADER_BYTES - 4];
     // At most u32::MAX triangles: the contract of a mesh.
     bytes.extend((mesh.triangles.len() as u32).to_le_bytes());
     for triangle in &mesh.triangles {
         let corners = triangle.map(|i| mesh.vertices[i as usize]);
-        let [a, b, c] = corners.map(Vec3::as_dvec3);
-        let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
-        for point in [normal, corners[0], corners[1], corners[2]] {
-            bytes.extend(point.to_array().iter().flat_map(|x| x.to_le_bytes()));
+        let [a, b, c] = corners.map(|corner| corner.to_array());
+        for point in [normal(corners), a, b, c] {
+            bytes.extend(point.iter().flat_map(|x| x.to_le_bytes()));
         }
         bytes.extend([0; 2]);
     }
     bytes
+}
+
+/// The mesh as a text STL file.
+fn text(mesh: &TriangleMesh) -> String {
+    let points: Vec<[f64; 3]> = mesh.points().collect();
+    let mut text = "solid mesh\n".to_owned();
+    for triangle in &mesh.triangles {
+        let [x, y, z] = normal(triangle.map(|i| mesh.vertices[i as usize]));
+        put(
+            &mut text,
+            format_args!("facet normal {x} {y} {z}\nouter loop\n"),
+        );
+        for corner in triangle {
+            let [x, y, z] = points[*corner as usize].map(wide);
+            put(&mut text, format_args!("vertex {x} {y} {z}\n"));
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid mesh\n"
+}
+
+/// A triangle's unit normal; zero where it has none.
+fn normal(corners: [Vec3; 3]) -> [f32; 3] {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    normal.as_vec3().to_array()
 }

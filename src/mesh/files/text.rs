@@ -11,6 +11,7 @@
 //! What starts a comment is the format's own.
 
 use std::borrow::Cow;
+use std::fmt::{Display, LowerExp, Write};
 
 use crate::mesh::{Problem, check_vertex};
 
@@ -132,7 +133,7 @@ pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<[f64; 3], Faul
 
 /// The number as an f64 that rounds to the f32 that is nearest to the text. Where an f64 lies in the middle of two f32, the
 /// text may lie on either side of it, and is read once more, by `nearest`.
-fn between_f32<E>(number: f64, nearest: impl FnOnce() -> Result<f32, E>) -> Result<f64, E> {
+pub(super) fn between_f32<E>(number: f64, nearest: impl FnOnce() -> Result<f32, E>) -> Result<f64, E> {
     let rounded = number as f32;
     let [below, above] = [rounded.next_down(), rounded.next_up()];
     let middle = |other: f32| f64::from(rounded) + f64::from(other) == 2.0 * number;
@@ -147,6 +148,35 @@ fn between_f32<E>(number: f64, nearest: impl FnOnce() -> Result<f32, E>) -> Resu
     } else {
         number.next_down()
     })
+}
+
+/// The shortest text that reads back to the same f64, also where that lies in the middle of two f32.
+pub(super) fn wide(x: f64) -> String {
+    let text = shortest(x);
+    if between_f32(x, || text.parse()) == Ok(x) {
+        return text;
+    }
+    let all_digits = format!("{x:.1074}");
+    all_digits
+        .trim_end_matches('0')
+        .trim_end_matches('.')
+        .to_owned()
+}
+
+/// Appends to a text.
+pub(super) fn put(text: &mut String, line: std::fmt::Arguments) {
+    // Writing to a String cannot fail.
+    let _ = text.write_fmt(line);
+}
+
+/// The shorter of the plain and the exponent form that reads back to the same number.
+pub(super) fn shortest(value: impl Display + LowerExp) -> String {
+    let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
+    if exponent.len() < plain.len() {
+        exponent
+    } else {
+        plain
+    }
 }
 
 /// A polygon as triangles: a fan about its first corner; of one or two corners a degenerate one, so that nothing is lost.

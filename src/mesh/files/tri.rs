@@ -15,7 +15,7 @@
 //! pass for one of another dialect. One fit is the answer, two are refused with both names.
 //! When nothing fits, the message comes from the dialect that got furthest into the file.
 
-use super::read::Parts;
+use super::parts::Parts;
 use super::text::{self, Cursor, Fault, Token};
 use crate::choice::choices;
 use crate::mesh::{Problem, check_triangle};

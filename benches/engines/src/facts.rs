@@ -1,0 +1,142 @@
+//! What must be known to read a measurement: the command that makes it again, the machine and what else ran on it.
+
+use std::fmt::{self, Display, Formatter};
+use std::fs;
+use std::path::Path;
+
+use miette::{IntoDiagnostic as _, WrapErr as _};
+use sdop::Tier;
+use sdop_bench::measure::machine::Machine;
+use serde::Serialize;
+
+/// The flag that compiles the same engines in.
+const FEATURES: &str = match (cfg!(feature = "physx"), cfg!(feature = "debian")) {
+    (true, true) => " --features physx,debian",
+    (true, false) => " --features physx",
+    (false, true) => " --features debian",
+    (false, false) => "",
+};
+
+/// The circumstances of a measurement.
+#[derive(Serialize)]
+pub struct Facts {
+    command: String,
+    machine: Machine,
+    /// Features of the CPU that engines in Rust were compiled for; ours asks at run time.
+    compiled_for: &'static str,
+    /// What else ran, in the measurer's words.
+    note: String,
+    /// Processes waiting for a CPU, one minute's mean, at the beginning and by now.
+    load: [String; 2],
+}
+
+impl Facts {
+    /// Here and now.
+    pub fn new(note: String) -> Self {
+        Self {
+            command: command(),
+            machine: Machine::here(Tier::detect()),
+            compiled_for: match (
+                cfg!(target_feature = "avx512f"),
+                cfg!(target_feature = "avx2"),
+            ) {
+                (true, _) => "AVX-512",
+                (_, true) => "AVX2",
+                _ => "the architecture's baseline",
+            },
+            note,
+            load: [load(), load()],
+        }
+    }
+
+    /// Looks at the load once more.
+    pub fn look_again(&mut self) {
+        self.load[1] = load();
+    }
+}
+
+/// `sdop record`'s command where it runs this, or this one's.
+fn command() -> String {
+    std::env::var("SDOP_COMMAND").unwrap_or_else(|_| {
+        let arguments: Vec<_> = std::env::args().skip(1).map(quoted).collect();
+        let arguments = arguments.join(" ");
+        format!("cargo run --release -p sdop-peers{FEATURES} -- {arguments}")
+    })
+}
+
+/// As a list in Markdown.
+impl Display for Facts {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let [before, now] = &self.load;
+        writeln!(f, "- `{}`", self.command)?;
+        writeln!(f, "- {}", self.machine)?;
+        writeln!(
+            f,
+            "- engines in Rust are compiled for {}",
+            self.compiled_for
+        )?;
+        writeln!(
+            f,
+            "- load {before} at the beginning, {now} at the end; {}",
+            self.note
+        )
+    }
+}
+
+/// An argument as a shell takes it.
+fn quoted(argument: String) -> String {
+    if argument.contains(|c: char| c.is_whitespace() || "'\"$&|;<>()*?`\\".contains(c)) {
+        format!("'{}'", argument.replace('\'', "'\\''"))
+    } else {
+        argument
+    }
+}
+
+/// The first number of the system's load average, where a file tells it.
+fn load() -> String {
+    let text = fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    text.split(' ').next().unwrap_or("unknown").to_owned()
+}
+
+/// Serialises rows as CSV, named by their fields.
+pub fn csv(rows: &[impl Serialize]) -> miette::Result<String> {
+    let mut out = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        out.serialize(row).into_diagnostic()?;
+    }
+    String::from_utf8(out.into_inner().into_diagnostic()?).into_diagnostic()
+}
+
+/// Writes `name`.csv, .json and .md.
+pub fn write(
+    directory: &Path,
+    name: &str,
+    csv: String,
+    json: &impl Serialize,
+    page: String,
+) -> miette::Result<()> {
+    let json = serde_json::to_string_pretty(json).into_diagnostic()? + "\n";
+    let blame = || format!("writing to {}", directory.display());
+    fs::create_dir_all(directory)
+        .into_diagnostic()
+        .wrap_err_with(blame)?;
+    for (ending, text) in [("csv", csv), ("json", json), ("md", page)] {
+        sdop::files::write(&directory.join(name).with_extension(ending), text)
+            .into_diagnostic()
+            .wrap_err_with(blame)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn a_command_can_be_given_to_a_shell() {
+        assert_eq!(quoted("--out".to_owned()), "--out");
+        assert_eq!(quoted("500,10000".to_owned()), "500,10000");
+        assert_eq!(quoted("PhysX ABP".to_owned()), "'PhysX ABP'");
+        assert_eq!(quoted("it's".to_owned()), r"'it'\''s'");
+    }
+}

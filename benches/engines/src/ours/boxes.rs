@@ -1,0 +1,29 @@
+//! The culler of given boxes, as a user has it.
+
+use sdop::BoxCuller;
+
+use sdop_judge::contestant::Contestant;
+
+use crate::boxes::Frame;
+use crate::entry::Setup;
+
+/// A culler of boxes with what it has by default.
+pub struct Boxes(BoxCuller);
+
+impl Boxes {
+    /// On so many threads.
+    pub fn new(setup: &Setup<'_>) -> miette::Result<Self> {
+        Ok(Self(BoxCuller::builder().threads(setup.threads).build()?))
+    }
+}
+
+impl Contestant<Frame> for Boxes {
+    fn frame(&mut self, frame: &Frame) {
+        let pairs = self.0.cull(&frame.corners);
+        assert!(pairs.is_ok(), "{pairs:?}: frames have boxes");
+    }
+
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        self.0.pairs().iter().collect()
+    }
+}

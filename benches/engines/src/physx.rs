@@ -1,0 +1,220 @@
+//! PhysX's broad phases, driven alone through their low-level interface: automatic box pruning (ABP), multi box pruning
+//! (MBP, sixteen regions by its own helper) and incremental sweep and prune (SAP).
+//!
+//! Objects are dynamic, each in a group of its own, with no contact distance. Results are what began and what ended. ABP
+//! compares ends as they are; MBP and SAP snap each end outward to the next but one multiple of sixteen steps between
+//! neighbouring f32 (`BpBroadPhaseIntegerAABB.h`), so these two report pairs that miss each other by up to twice that.
+
+#![allow(unsafe_code, reason = "PhysX is C++")]
+
+use std::ptr;
+use std::sync::OnceLock;
+
+use miette::miette;
+use physx_sys::{
+    PxBounds3, PxBroadPhase, PxBroadPhase_getRegions_mut, PxBroadPhase_release_mut,
+    PxBroadPhase_update_mut_1, PxBroadPhaseDesc_new, PxBroadPhaseExt_createRegionsFromWorldBounds,
+    PxBroadPhasePair, PxBroadPhaseRegion, PxBroadPhaseRegions_addRegion_mut, PxBroadPhaseResults,
+    PxBroadPhaseResults_new, PxBroadPhaseType, PxBroadPhaseUpdateData_new, PxVec3,
+    phys_PxCreateBroadPhase, phys_PxGetBroadPhaseDynamicFilterGroup, physx_create_foundation,
+};
+
+use sdop_judge::contestant::Contestant;
+
+use crate::boxes::{Frame, Slabs};
+use crate::changes::Changes;
+use crate::entry::{Engine, Entry, Setup, Work};
+
+const VERSION: &str = "5 (physx-sys 0.11.5)";
+
+/// Steps between neighbouring f32 by which snapping moves an end.
+const SNAP: u32 = 32;
+
+/// Three algorithms, each on one thread.
+pub const ENTRIES: [Entry; 3] = [
+    entry("PhysX ABP", 0, |setup| new(setup, PxBroadPhaseType::Abp)),
+    entry("PhysX MBP", SNAP, |setup| new(setup, PxBroadPhaseType::Mbp)),
+    entry("PhysX SAP", SNAP, |setup| new(setup, PxBroadPhaseType::Sap)),
+];
+
+const fn entry(
+    name: &'static str,
+    slack: u32,
+    new: fn(&Setup<'_>) -> miette::Result<Engine>,
+) -> Entry {
+    Entry {
+        name,
+        version: VERSION,
+        work: Work::Boxes,
+        threads: 1,
+        slack,
+        ages: true,
+        new,
+    }
+}
+
+fn new(setup: &Setup<'_>, kind: PxBroadPhaseType) -> miette::Result<Engine> {
+    Ok(Box::new(PhysX::new(setup, kind)?))
+}
+
+struct PhysX {
+    broad_phase: *mut PxBroadPhase,
+    /// One element more than there are objects: PhysX reads past the end.
+    bounds: Vec<PxBounds3>,
+    groups: Vec<u32>,
+    distances: Vec<f32>,
+    objects: Vec<u32>,
+    results: PxBroadPhaseResults,
+    changes: Changes,
+}
+
+/// The process's one foundation; `false` when PhysX refuses.
+fn has_foundation() -> bool {
+    static MADE: OnceLock<bool> = OnceLock::new();
+    // SAFETY: called once, as a singleton's constructor must be; it lives as long as the process.
+    *MADE.get_or_init(|| !unsafe { physx_create_foundation() }.is_null())
+}
+
+impl PhysX {
+    fn new(setup: &Setup<'_>, kind: PxBroadPhaseType) -> miette::Result<Self> {
+        let objects: Vec<u32> = (0..setup.first.boxes.len() as u32).collect();
+        // SAFETY: the foundation exists before anything else is asked for; descriptions are passed by value or live on.
+        let (broad_phase, groups) = unsafe {
+            let broad_phase = if has_foundation() {
+                phys_PxCreateBroadPhase(&PxBroadPhaseDesc_new(kind))
+            } else {
+                ptr::null_mut()
+            };
+            let group = |&object: &u32| phys_PxGetBroadPhaseDynamicFilterGroup(object);
+            (broad_phase, objects.iter().map(group).collect())
+        };
+        if broad_phase.is_null() {
+            return Err(miette!("PhysX makes no broad phase"));
+        }
+        // SAFETY: a plain value.
+        let results = unsafe { PxBroadPhaseResults_new() };
+        let mut physx = Self {
+            broad_phase,
+            bounds: Vec::new(),
+            groups,
+            distances: vec![0.0; objects.len() + 1],
+            objects,
+            results,
+            changes: Changes::default(),
+        };
+        physx.take(setup.first);
+        if kind == PxBroadPhaseType::Mbp {
+            physx.add_regions(setup)?;
+        }
+        physx.update(true);
+        physx.settle();
+        Ok(physx)
+    }
+
+    /// Four by four regions over the box that the bodies never leave.
+    fn add_regions(&mut self, setup: &Setup<'_>) -> miette::Result<()> {
+        let half = setup.scene.side.ok_or_else(|| miette!("MBP needs walls"))?;
+        let corner = |x| PxVec3 { x, y: x, z: x };
+        let world = PxBounds3 {
+            minimum: corner(-half),
+            maximum: corner(half),
+        };
+        let mut regions = vec![world; 16];
+        // SAFETY: sixteen regions are what 4 × 4 subdivisions fill; bounds and distances outlive the call.
+        unsafe {
+            let count =
+                PxBroadPhaseExt_createRegionsFromWorldBounds(regions.as_mut_ptr(), &world, 4, 1);
+            let list = PxBroadPhase_getRegions_mut(self.broad_phase);
+            for &bounds in regions.iter().take(count as usize) {
+                let region = PxBroadPhaseRegion {
+                    mBounds: bounds,
+                    mUserData: ptr::null_mut(),
+                };
+                PxBroadPhaseRegions_addRegion_mut(
+                    list,
+                    &region,
+                    false,
+                    self.bounds.as_ptr(),
+                    self.distances.as_ptr(),
+                );
+            }
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, frame: &Frame) {
+        self.bounds.clear();
+        self.bounds.extend(frame.boxes.iter().map(bounds));
+        self.bounds.push(bounds(&[[0.0; 2]; 3]));
+    }
+
+    fn update(&mut self, first: bool) {
+        let (all, count) = (self.objects.as_ptr(), self.objects.len() as u32);
+        let (created, updated) = if first { (count, 0) } else { (0, count) };
+        // SAFETY: the columns have as many elements as there are objects, and one more where PhysX reads past the end;
+        // they stay in place until the next call.
+        unsafe {
+            let data = PxBroadPhaseUpdateData_new(
+                all,
+                created,
+                all,
+                updated,
+                all,
+                0,
+                self.bounds.as_ptr(),
+                self.groups.as_ptr(),
+                self.distances.as_ptr(),
+                count,
+            );
+            PxBroadPhase_update_mut_1(self.broad_phase, &mut self.results, &data);
+        }
+    }
+}
+
+impl Contestant<Frame> for PhysX {
+    fn frame(&mut self, frame: &Frame) {
+        self.take(frame);
+        self.update(false);
+    }
+
+    fn settle(&mut self) {
+        let results = &self.results;
+        let lists = [
+            (results.mDeletedPairs, results.mNbDeletedPairs, false),
+            (results.mCreatedPairs, results.mNbCreatedPairs, true),
+        ];
+        for (pairs, count, begins) in lists {
+            if count > 0 {
+                // SAFETY: PhysX keeps its lists until the next update.
+                let pairs: &[PxBroadPhasePair] =
+                    unsafe { std::slice::from_raw_parts(pairs, count as usize) };
+                for pair in pairs {
+                    self.changes.note([pair.mID0, pair.mID1], begins);
+                }
+            }
+        }
+    }
+
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        self.changes.pairs()
+    }
+}
+
+impl Drop for PhysX {
+    fn drop(&mut self) {
+        // SAFETY: made by `phys_PxCreateBroadPhase` and released once.
+        unsafe { PxBroadPhase_release_mut(self.broad_phase) };
+    }
+}
+
+fn bounds(&[x, y, z]: &Slabs) -> PxBounds3 {
+    let corner = |side: usize| PxVec3 {
+        x: x[side],
+        y: y[side],
+        z: z[side],
+    };
+    PxBounds3 {
+        minimum: corner(0),
+        maximum: corner(1),
+    }
+}

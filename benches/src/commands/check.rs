@@ -1,0 +1,131 @@
+//! `sdop check`: answers that are there already, judged.
+
+use std::path::PathBuf;
+
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop_judge::answer::{Answer, Stop};
+use sdop_judge::run::examine_given;
+use sdop_judge::wire::{Said, Wire};
+use sdop_judge::{Case, Claim, Options, Subject};
+
+use super::files::ReadArgs;
+use super::judge::{ReportFormat, emit_verdict, read_case};
+use super::{Outcome, one_of};
+
+/// Judge the pairs of a record, or a program's answers to a case
+///
+/// Without --pairs the record's own pairs are judged. The exact reference decides: a pair that meets and isn't there ends
+/// in exit code 1.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples: sdop check run.ndjson --claims mesh\n          ./mine < cases/touch/vertex/0000.ndjson | sdop check cases/touch/vertex/0000.ndjson --pairs -"
+)]
+pub struct Args {
+    /// A case of `sdop cases`, or a record of `sdop run --record`
+    record: PathBuf,
+    /// The answers, one line a frame; - is standard input
+    #[arg(long, value_name = "FILE")]
+    pairs: Option<PathBuf>,
+    /// What is claimed; absent: the first that the case is about, meshes for a record
+    #[arg(long, value_name = "CLAIM", value_parser = one_of::<Claim>(Claim::NAMES))]
+    claims: Option<Claim>,
+    /// How the answers are written
+    #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES))]
+    wire: Wire,
+    #[command(flatten)]
+    files: ReadArgs,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: ReportFormat,
+}
+
+/// Answers that were given before.
+struct Given(Result<Vec<Answer>, Stop>);
+
+impl Subject for Given {
+    fn answer(&self, _case: &Case, _claim: Claim) -> Result<Vec<Answer>, Stop> {
+        self.0.clone()
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A file that can't be read.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let read = read_case(&args.record, args.files.max_bytes())?;
+    let is_record = read.case.claims == Claim::ALL;
+    let first = if is_record {
+        Claim::Mesh
+    } else {
+        read.case.claims[0]
+    };
+    let options = Options {
+        claim: args.claims.unwrap_or(first),
+        // The answers stand; no smaller case has any.
+        shrink_time: std::time::Duration::ZERO,
+        ..Options::default()
+    };
+    let answers = match &args.pairs {
+        Some(path) => {
+            let text = text(path, args.files.max_bytes())?;
+            said(args.wire, &text, read.case.frames.len())
+        }
+        None => Ok(recorded(args, read.pairs)?),
+    };
+    let verdict = examine_given(&Given(answers), &options, vec![read.case]).into_diagnostic()?;
+    emit_verdict(args.format, &verdict)?;
+    Ok(if verdict.passed() {
+        Outcome::Passed
+    } else {
+        Outcome::Failed
+    })
+}
+
+fn recorded(args: &Args, pairs: Vec<Option<Vec<[u32; 2]>>>) -> miette::Result<Vec<Answer>> {
+    let answer = |pairs: Option<Vec<[u32; 2]>>| pairs.map(|pairs| Answer { pairs, ns: None });
+    let answers: Option<Vec<Answer>> = pairs.into_iter().map(answer).collect();
+    answers.ok_or_else(|| {
+        miette!(
+            help = "give the answers with --pairs FILE",
+            "{} has frames without pairs",
+            args.record.display()
+        )
+    })
+}
+
+/// What a file holds, or standard input for `-`: at most `most` bytes.
+///
+/// # Errors
+/// It can't be read.
+pub fn text(path: &std::path::Path, most: u64) -> miette::Result<Vec<u8>> {
+    let read = if path.as_os_str() == "-" {
+        sdop::files::read_all(std::io::stdin(), most)
+    } else {
+        sdop::files::read(path, most)
+    };
+    read.into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", path.display()))
+}
+
+/// The answers in a text, one a line.
+///
+/// # Errors
+/// A line that is no answer, or more lines than frames.
+pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop> {
+    let lines = text
+        .split(|byte| *byte == b'\n')
+        .filter(|line| !line.trim_ascii().is_empty());
+    let mut answers = Vec::new();
+    for line in lines {
+        if answers.len() == frames {
+            let line = String::from_utf8_lossy(&line[..line.len().min(80)]).into_owned();
+            return Err(sdop_judge::answer::Trouble::TooMany { frames, line }.into());
+        }
+        match wire.decode(answers.len(), line)? {
+            Said::Answer(answer) => answers.push(answer),
+            Said::Skipped(why) => return Err(Stop::Skipped(why)),
+        }
+    }
+    Ok(answers)
+}

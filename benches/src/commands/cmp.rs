@@ -1,0 +1,209 @@
+//! `sdop cmp`: two records side by side.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use miette::{IntoDiagnostic as _, WrapErr as _};
+use sdop_bench::report::{Change, Code, Comparison, compare};
+use tempfile::TempDir;
+
+use super::Outcome;
+use super::output::{csv_text, print, rows};
+
+/// Compare two records: counts must be equal, times are ratios with intervals
+///
+/// Counts that differ are named. Times are listed as the second over the first, the largest change first; "same" where the intervals of
+/// both meet, "?" where a record has no intervals.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples: sdop cmp data/record/epyc-2core-avx512/reproduce data/record/xeon-2core-avx512/reproduce\n         \
+                  sdop cmp HEAD~9:data/record/here/tradeoff data/record/here/tradeoff\n\
+                  Exit codes: 0 counts are equal, 1 counts differ or a time grew by more than --fail-slower, 2 bad input."
+)]
+pub struct Args {
+    /// The first record: a directory, or COMMIT:DIRECTORY as it was in a commit of this repository
+    first: String,
+    /// The second record
+    second: String,
+    /// Exit with 1 when a time has grown by more than so many percent and its interval says so
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    fail_slower: Option<f64>,
+    /// Rows of times that are listed
+    #[arg(long, value_name = "N", default_value_t = 15)]
+    most: usize,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// How a comparison is printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people.
+    #[default]
+    Table,
+    /// One JSON value.
+    Json,
+    /// A line per time.
+    Csv,
+    /// A table for a page.
+    Markdown,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A directory that holds no whole record; two experiments.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let [first, second] = [place(&args.first)?, place(&args.second)?];
+    let comparison = compare(first.path(), second.path())?;
+    let text = match args.format {
+        Format::Table => table(&comparison, args.most),
+        Format::Markdown => markdown(&comparison, args.most),
+        Format::Json => serde_json::to_string_pretty(&comparison).into_diagnostic()?,
+        Format::Csv => csv_text(serde_json::to_value(&comparison.changes).into_diagnostic()?)?,
+    };
+    print(text.trim_end())?;
+    let slower = args
+        .fail_slower
+        .is_some_and(|percent| 100.0 * comparison.slowest() > percent);
+    if comparison.differences.is_empty() && !slower {
+        Ok(Outcome::Passed)
+    } else {
+        Ok(Outcome::Failed)
+    }
+}
+
+/// Where a record can be read.
+enum Place {
+    Directory(PathBuf),
+    /// A copy out of a commit.
+    Copy(TempDir),
+}
+
+impl Place {
+    fn path(&self) -> &Path {
+        match self {
+            Self::Directory(path) => path,
+            Self::Copy(copy) => copy.path(),
+        }
+    }
+}
+
+/// A directory, or what a commit had there.
+fn place(named: &str) -> miette::Result<Place> {
+    let directory = PathBuf::from(named);
+    match named.split_once(':') {
+        Some((commit, path)) if !directory.exists() => {
+            let copy = tempfile::tempdir().into_diagnostic()?;
+            Code::extract(Path::new("."), commit, path, copy.path())
+                .into_diagnostic()
+                .wrap_err_with(|| format!("cannot read {path} of commit {commit}"))?;
+            Ok(Place::Copy(copy))
+        }
+        _ => Ok(Place::Directory(directory)),
+    }
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(percent) if percent >= 0.0 => Ok(percent),
+        _ => Err("a number of percent, 0 or more".to_owned()),
+    }
+}
+
+fn verdict(change: &Change) -> &'static str {
+    match change.same {
+        Some(true) => "same",
+        Some(false) if change.ratio > 1.0 => "slower",
+        Some(false) => "faster",
+        None => "?",
+    }
+}
+
+fn cells(change: &Change) -> Vec<String> {
+    let interval = change
+        .interval
+        .map_or_else(String::new, |[low, high]| format!("{low:.2} to {high:.2}"));
+    vec![
+        format!("{}: {}", change.file, change.row),
+        change.column.clone(),
+        format!("{:.3}", change.ratio),
+        interval,
+        verdict(change).to_owned(),
+    ]
+}
+
+fn head(comparison: &Comparison) -> String {
+    let [a, b] = &comparison.ids;
+    let mut out = format!(
+        "{a} and {b}: {} files equal to the bit{}",
+        comparison.equal.len(),
+        if comparison.equal.is_empty() {
+            ""
+        } else {
+            ": "
+        }
+    );
+    out.push_str(&comparison.equal.join(", "));
+    out.push('\n');
+    for difference in &comparison.differences {
+        let column = difference.column.as_deref().unwrap_or("row");
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            out,
+            "DIFFERS {}: {}, {column}: {} and {}",
+            difference.file, difference.row, difference.first, difference.second
+        );
+    }
+    for note in comparison.notes.iter().take(NOTES) {
+        let _ = writeln!(out, "note: {note}");
+    }
+    if comparison.notes.len() > NOTES {
+        let _ = writeln!(out, "and {} notes more", comparison.notes.len() - NOTES);
+    }
+    out
+}
+
+/// Notes that are shown.
+const NOTES: usize = 10;
+
+/// How many times are listed of how many.
+fn tail(comparison: &Comparison, most: usize) -> String {
+    let same = comparison
+        .changes
+        .iter()
+        .filter(|change| change.same == Some(true));
+    let (all, same) = (comparison.changes.len(), same.count());
+    let listed = most.min(all);
+    format!("{all} times compared, {same} the same within their intervals, {listed} listed")
+}
+
+const HEADER: [&str; 5] = [
+    "measurement",
+    "column",
+    "second / first",
+    "interval",
+    "verdict",
+];
+
+fn table(comparison: &Comparison, most: usize) -> String {
+    let listed = &comparison.changes[..most.min(comparison.changes.len())];
+    let mut out = head(comparison);
+    if !listed.is_empty() {
+        out.push_str(&rows(&HEADER, listed, cells).to_string());
+        out.push('\n');
+    }
+    out + &tail(comparison, most)
+}
+
+fn markdown(comparison: &Comparison, most: usize) -> String {
+    let mut out = head(comparison) + "\n| " + &HEADER.join(" | ") + " |\n|---|---|--:|---|---|\n";
+    for change in comparison.changes.iter().take(most) {
+        out.push_str("| ");
+        out.push_str(&cells(change).join(" | "));
+        out.push_str(" |\n");
+    }
+    out + "\n" + &tail(comparison, most)
+}

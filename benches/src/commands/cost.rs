@@ -1,0 +1,309 @@
+//! `sdop cost`: the formula per strategy, predicted against measured.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use comfy_table::Table;
+use miette::miette;
+use sdop_bench::cost::calibrate::{self, Effort};
+use sdop_bench::cost::predict::Terms;
+use sdop_bench::cost::study::{Plan, Report, possible, study};
+use sdop_bench::cost::table::{Compared, Cost};
+use sdop_bench::measure::turns::Regime;
+use sdop_bench::reproduce::Estimate;
+use serde::Serialize;
+
+use super::files::write;
+use super::output::{Format, emit, progress, rows, table};
+use super::reproduce::draw_costs;
+use super::scene_args::{MachineArgs, SceneArgs};
+use super::{Outcome, prices};
+
+/// Frames of a pass when neither the scene nor a flag wants fewer.
+const FRAMES: u32 = 200;
+const EFFORT: Effort = Effort {
+    turns: 3,
+    builds: 9,
+};
+
+/// What each strategy costs: predicted by the formula against measured
+///
+/// T = Co + Nu·Cu + F + Nv·Cv: construction, updates, pair finding, tests. The paper's equation has no F. Counts are those of
+/// the scene's runs; prices come from other seeds, other numbers of bodies and other boxes, whose frames take turns with
+/// the scene's, so that the formula predicts. Warm frames follow one another; before a cold one other cullers ran. The
+/// residual is measured over predicted, less one. Without --strategy, every strategy is measured that the scene has
+/// settings for.
+#[derive(clap::Args)]
+#[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Passes to measure, apart in time: the scene's seed and those after it
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    seeds: u64,
+    #[command(flatten)]
+    machine: MachineArgs,
+    /// Draw the terms and the measured times into this SVG file
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// How the result is printed; CSV has a line a term
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// One number, as CSV has it.
+#[derive(Serialize)]
+struct Line<'a> {
+    scene: &'a str,
+    strategy: &'a str,
+    regime: Regime,
+    volume: &'a str,
+    term: &'static str,
+    unit: &'static str,
+    value: f64,
+    half_width: f64,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A bad scene, settings that it can't have.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let report = measure(args)?;
+    if let Some(path) = &args.plot {
+        let warm: Vec<&Cost> = of(&report, Regime::Warm).collect();
+        write(path, &draw_costs(&report.scene, &warm)?)?;
+    }
+    match args.format {
+        Format::Csv => emit(Format::Csv, &lines(&report), |_| String::new())?,
+        format => emit(format, &report, text)?,
+    }
+    Ok(Outcome::Passed)
+}
+
+fn measure(args: &Args) -> miette::Result<Report> {
+    let file = args.scene.read()?;
+    let scene = file.build()?;
+    let strategies = match args.scene.strategy() {
+        Some(strategy) if !strategy.scheme().culls() => {
+            return Err(miette!(
+                help = "leave --strategy out to compare all that do",
+                "the control culls nothing: the formula has no term for it"
+            ));
+        }
+        Some(strategy) => vec![strategy],
+        None => possible(&scene),
+    };
+    let plan = Plan {
+        strategies,
+        passes: args.seeds,
+        frames: args.scene.frames().unwrap_or(FRAMES.min(scene.frames)),
+        effort: EFFORT,
+        tier: args.machine.tier(),
+    };
+    let bar = progress(args.seeds, &scene.name);
+    let report = study(&file, &plan, || bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok(report)
+}
+
+fn of(report: &Report, regime: Regime) -> impl Iterator<Item = &Cost> {
+    report
+        .costs
+        .iter()
+        .filter(move |cost| cost.regime == regime)
+}
+
+fn text(report: &Report) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = write_text(&mut text, report);
+    text
+}
+
+fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
+    let Report {
+        scene,
+        bodies,
+        frames,
+        scene_frames,
+        seeds,
+        ..
+    } = report;
+    writeln!(
+        out,
+        "{scene}: {bodies} bodies, {} passes of {frames} frames; {}, 1 thread",
+        seeds.len(),
+        report.machine.simd
+    )?;
+    if frames < scene_frames {
+        writeln!(
+            out,
+            "The scene has {scene_frames} frames: so many of them tell the time of one; --frames takes another number."
+        )?;
+    }
+    if let Some(warning) = report.conditions.warning() {
+        writeln!(out, "{warning}")?;
+    }
+    for &regime in Regime::ALL {
+        writeln!(
+            out,
+            "\n{} frames, µs per frame\n{}",
+            title(regime),
+            strategy_rows(report, regime)
+        )?;
+    }
+    writeln!(
+        out,
+        "\nWith construction: ms for all {frames} frames, warm\n{}",
+        total_rows(report)
+    )?;
+    let warm: Vec<_> = report
+        .prices
+        .iter()
+        .filter(|price| price.regime == Regime::Warm)
+        .collect();
+    writeln!(
+        out,
+        "\nPrices for warm frames, from {} other scenes\n{}",
+        calibrate::SCENES,
+        rows(&prices::COLUMNS, &warm, |price| prices::cells(price, |e| {
+            hundredths(e.mean)
+        }))
+    )?;
+    writeln!(
+        out,
+        "F is pair finding, which the paper's equation lacks: \"paper\" is the sum without it.\n\
+         ± is a 95 % interval over passes; of the residual it holds the calibration's uncertainty as well."
+    )
+}
+
+fn title(regime: Regime) -> &'static str {
+    match regime {
+        Regime::Warm => "Warm",
+        Regime::Cold => "Cold",
+    }
+}
+
+fn strategy_rows(report: &Report, regime: Regime) -> Table {
+    let mut rows = table(&[
+        "strategy",
+        "Nu·Cu",
+        "F",
+        "Nv·Cv",
+        "sum",
+        "measured",
+        "±",
+        "quartiles",
+        "residual",
+        "±",
+        "paper",
+    ]);
+    for cost in of(report, regime) {
+        let us = |seconds: f64| hundredths(1e6 * seconds);
+        let Compared {
+            measured, residual, ..
+        } = cost.frame;
+        let mut row = vec![cost.variant.clone()];
+        row.extend([
+            us(cost.sum(|t| t.update)),
+            us(cost.sum(|t| t.finding)),
+            us(cost.sum(|t| t.test)),
+            us(cost.frame.predicted.mean),
+            us(measured.mean),
+            us(measured.half_width),
+            format!("{} to {}", us(cost.quartiles.low), us(cost.quartiles.high)),
+        ]);
+        row.extend(percents(&residual));
+        row.push(us(cost.sum(Terms::in_paper)));
+        rows.add_row(row);
+    }
+    rows
+}
+
+fn total_rows(report: &Report) -> Table {
+    let mut rows = table(&[
+        "strategy",
+        "Co predicted",
+        "Co measured",
+        "residual",
+        "±",
+        "T predicted",
+        "T measured",
+        "residual",
+        "±",
+    ]);
+    for cost in of(report, Regime::Warm) {
+        let mut row = vec![cost.variant.clone()];
+        for compared in [&cost.construct, &cost.total] {
+            row.push(hundredths(1e3 * compared.predicted.mean));
+            row.push(hundredths(1e3 * compared.measured.mean));
+            row.extend(percents(&compared.residual));
+        }
+        rows.add_row(row);
+    }
+    rows
+}
+
+fn percents(residual: &Estimate) -> [String; 2] {
+    [
+        format!("{:+.1} %", 100.0 * residual.mean),
+        format!("{:.1}", 100.0 * residual.half_width),
+    ]
+}
+
+/// Every number of the table on a line of its own.
+fn lines(report: &Report) -> Vec<Line<'_>> {
+    let mut lines = Vec::new();
+    for cost in &report.costs {
+        let mut line = |volume, term, unit, value, half_width| {
+            lines.push(Line {
+                scene: &cost.scene,
+                strategy: &cost.variant,
+                regime: cost.regime,
+                volume,
+                term,
+                unit,
+                value,
+                half_width,
+            });
+        };
+        for terms in &cost.terms {
+            let volume = terms.volume.name();
+            line(volume, "Nu", "per frame", terms.updates, 0.0);
+            line(volume, "Nv", "per frame", terms.tests, 0.0);
+            line(volume, "hits", "per frame", terms.hits, 0.0);
+            line(volume, "Nu*Cu", "s per frame", terms.update, 0.0);
+            line(volume, "F", "s per frame", terms.finding, 0.0);
+            line(volume, "Nv*Cv", "s per frame", terms.test, 0.0);
+            line(volume, "Co", "s", terms.construct, 0.0);
+        }
+        for (names, unit, compared) in [
+            (["sum", "measured", "residual"], "s per frame", &cost.frame),
+            (
+                ["Co predicted", "Co measured", "Co residual"],
+                "s",
+                &cost.construct,
+            ),
+            (
+                ["T predicted", "T measured", "T residual"],
+                "s",
+                &cost.total,
+            ),
+        ] {
+            let Compared {
+                predicted,
+                measured,
+                residual,
+            } = compared;
+            line("", names[0], unit, predicted.mean, predicted.half_width);
+            line("", names[1], unit, measured.mean, measured.half_width);
+            line("", names[2], "1", residual.mean, residual.half_width);
+        }
+    }
+    lines
+}
+
+fn hundredths(value: f64) -> String {
+    format!("{value:.2}")
+}

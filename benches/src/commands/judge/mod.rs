@@ -1,0 +1,254 @@
+//! `sdop verify --exec`: any program against the exact reference.
+
+mod print;
+
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop::files::MAX_BYTES;
+use sdop_judge::broadmark;
+use sdop_judge::process::Program;
+use sdop_judge::report::{STEM, counter_example};
+use sdop_judge::run::examine_given;
+use sdop_judge::wire::{Wire, ndjson};
+use sdop_judge::{Claim, Options, Verdict, examine};
+
+use super::output::{print as say, progress};
+use super::{Outcome, files, one_of};
+pub use print::{ReportFormat, emit as emit_verdict};
+
+/// The choices for judging a program.
+#[derive(clap::Args)]
+pub struct Outside {
+    /// Judge this program in place of the own culler: a line for the shell that reads cases and answers with pairs
+    #[arg(long, value_name = "CMD", help_heading = "Judging a program")]
+    pub exec: Option<String>,
+    /// What it claims never to miss
+    #[arg(long, value_name = "CLAIM", default_value_t = Claim::Mesh, value_parser = one_of::<Claim>(Claim::NAMES), requires = "exec", help_heading = "Judging a program")]
+    claims: Claim,
+    /// How cases are written for it
+    #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES), requires = "exec", help_heading = "Judging a program")]
+    wire: Wire,
+    /// Seconds that it has for a case, and one more for each megabyte of it
+    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = seconds, requires = "exec", help_heading = "Judging a program")]
+    timeout: f64,
+    /// Cases of these names only: * stands for any text, ? for one character
+    #[arg(
+        long,
+        value_name = "GLOB",
+        default_value = "*",
+        requires = "exec",
+        help_heading = "Judging a program"
+    )]
+    case: String,
+    /// The seed of the fresh cases, in place of the clock's
+    #[arg(
+        long,
+        value_name = "SEED",
+        requires = "exec",
+        help_heading = "Judging a program"
+    )]
+    fresh: Option<u64>,
+    /// Published cases only
+    #[arg(
+        long,
+        conflicts_with = "fresh",
+        requires = "exec",
+        help_heading = "Judging a program"
+    )]
+    no_fresh: bool,
+    /// A case from a file in place of the catalogue's
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["case", "fresh", "no_fresh"], requires = "exec", help_heading = "Judging a program")]
+    replay: Option<PathBuf>,
+    /// A file with a case's name a line: these fail, and it is an error when one of them passes
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "exec",
+        help_heading = "Judging a program"
+    )]
+    known: Option<PathBuf>,
+    /// Start no case after the first that fails
+    #[arg(long, requires = "exec", help_heading = "Judging a program")]
+    fail_fast: bool,
+    /// The most extra pairs for each required one; without it they are counted only
+    #[arg(
+        long,
+        value_name = "RATIO",
+        requires = "exec",
+        help_heading = "Judging a program"
+    )]
+    extra_limit: Option<f64>,
+}
+
+/// Seconds above zero, and not more than a day.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if seconds > 0.0 && seconds <= 86_400.0 => Ok(seconds),
+        _ => Err("a number of seconds above 0, at most 86400".to_owned()),
+    }
+}
+
+/// Judges the program.
+///
+/// # Errors
+/// A file that can't be read, no case of that name.
+pub fn run(
+    args: &Outside,
+    command: &str,
+    files: &files::ReadArgs,
+    time: Option<u64>,
+    out: &Path,
+    format: ReportFormat,
+) -> miette::Result<Outcome> {
+    let program = Program {
+        command: command.to_owned(),
+        wire: args.wire,
+        timeout: Duration::from_secs_f64(args.timeout),
+    };
+    let options = Options {
+        claim: args.claims,
+        pattern: args.case.clone(),
+        seed: args.seed(),
+        time: time.map(Duration::from_secs),
+        fail_fast: args.fail_fast,
+        extra_limit: args.extra_limit,
+        known: args
+            .known
+            .as_deref()
+            .map_or_else(|| Ok(BTreeSet::new()), known)?,
+        ..Options::default()
+    };
+    let verdict = match &args.replay {
+        Some(path) => {
+            let case = read_case(path, files.max_bytes())?.case;
+            examine_given(&program, &options, vec![case]).into_diagnostic()?
+        }
+        None => {
+            let bar = progress(0, "cases");
+            let told = |done: usize, of: usize| {
+                bar.set_length(of as u64);
+                bar.set_position(done as u64);
+            };
+            let verdict = examine(&program, &options, told).into_diagnostic()?;
+            bar.finish_and_clear();
+            verdict
+        }
+    };
+    print::emit(format, &verdict)?;
+    save(args, command, &verdict, out, format)?;
+    Ok(if verdict.passed() {
+        Outcome::Passed
+    } else {
+        Outcome::Failed
+    })
+}
+
+impl Outside {
+    /// The seed of the fresh cases: nobody can prepare for the clock's.
+    fn seed(&self) -> Option<u64> {
+        if self.no_fresh || self.replay.is_some() {
+            return None;
+        }
+        let clock = SystemTime::now()
+            .duration_since(UNIX_EPOCH)
+            .map_or(0, |since| since.as_secs());
+        Some(self.fresh.unwrap_or(clock))
+    }
+}
+
+/// Reads a case, a record or one of Broadmark's recordings (`.aabbs`) from a file. A recording, or a line of another, has at most
+/// `most` bytes.
+///
+/// # Errors
+/// A file that can't be read or is none.
+pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::Read> {
+    if path
+        .extension()
+        .is_some_and(|extension| extension == "aabbs")
+    {
+        let bytes = sdop::files::read(path, most)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot read {}", path.display()))?;
+        let case = broadmark::read(&bytes).into_diagnostic()?;
+        let pairs = vec![None; case.frames.len()];
+        return Ok(ndjson::Read { case, pairs });
+    }
+    let file = File::open(path)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", path.display()))?;
+    let read = ndjson::read(BufReader::new(file), most);
+    read.map_err(|problem| {
+        miette!(
+            help = "`sdop cases --out DIR` writes cases, `sdop run SCENE --record FILE` records",
+            "{}: {problem}",
+            path.display()
+        )
+    })
+}
+
+/// The names of a list, without comments.
+fn known(path: &Path) -> miette::Result<BTreeSet<String>> {
+    let text = sdop::files::read_text(path, MAX_BYTES)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", path.display()))?;
+    let name = |line: &str| line.split('#').next().unwrap_or("").trim().to_owned();
+    Ok(text
+        .lines()
+        .map(name)
+        .filter(|name| !name.is_empty())
+        .collect())
+}
+
+/// Writes the counter-example and says how to see the failure again.
+fn save(
+    args: &Outside,
+    command: &str,
+    verdict: &Verdict,
+    out: &Path,
+    format: ReportFormat,
+) -> miette::Result<()> {
+    let base = format!(
+        "sdop verify --exec '{}' --claims {} --wire {}",
+        command.replace('\'', "'\\''"),
+        args.claims,
+        args.wire
+    );
+    let mut lines = Vec::new();
+    if let Some(smallest) = &verdict.smallest {
+        for (name, bytes) in counter_example(smallest, args.claims).into_diagnostic()? {
+            files::write(&out.join(name), &bytes)?;
+        }
+        let stem = out.join(STEM);
+        lines.push(format!(
+            "written: {0}.toml (sdop run {0}.toml) and the case {0}.ndjson (sdop view {0}.ndjson)",
+            stem.display()
+        ));
+        lines.push(format!(
+            "again:   {base} --replay {}.ndjson",
+            stem.display()
+        ));
+    }
+    if let Some(case) = verdict
+        .cases
+        .iter()
+        .find(|case| verdict.counts_against(case))
+    {
+        let seed = case.name.rsplit_once('@').map_or_else(
+            || " --no-fresh".to_owned(),
+            |(_, seed)| format!(" --fresh {seed}"),
+        );
+        lines.push(format!("as found: {base} --case '{}'{seed}", case.name));
+    }
+    match format {
+        ReportFormat::Table if !lines.is_empty() => say(&lines.join("\n")),
+        _ => {
+            lines.iter().for_each(|line| eprintln!("{line}"));
+            Ok(())
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! A verdict printed: a table for people, JSON, CSV or JUnit's XML for programs.
+
+use clap::ValueEnum;
+use miette::miette;
+use sdop_judge::Verdict;
+use sdop_judge::report::junit;
+use sdop_judge::verdict::GroupVerdict;
+use serde::Serialize;
+
+use crate::commands::output::{self, Format, print, rows};
+
+/// How a verdict is printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ReportFormat {
+    /// For people.
+    #[default]
+    Table,
+    /// One JSON value.
+    Json,
+    /// A header, then one line a record.
+    Csv,
+    /// JUnit's XML, of a judged program alone.
+    Junit,
+}
+
+impl ReportFormat {
+    /// The format of other results than a judged program's.
+    ///
+    /// # Errors
+    /// JUnit's XML, which has no place for them.
+    pub fn plain(self) -> miette::Result<Format> {
+        match self {
+            Self::Table => Ok(Format::Table),
+            Self::Json => Ok(Format::Json),
+            Self::Csv => Ok(Format::Csv),
+            Self::Junit => Err(miette!(
+                help = "use --format json, or judge a program with --exec",
+                "JUnit's XML is for judged programs"
+            )),
+        }
+    }
+}
+
+/// All of a verdict, for programs.
+#[derive(Serialize)]
+struct Whole<'a> {
+    passed: bool,
+    groups: Vec<GroupVerdict>,
+    #[serde(flatten)]
+    verdict: &'a Verdict,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    witness: Option<&'a sdop_judge::witness::Witness>,
+}
+
+/// Prints a verdict.
+///
+/// # Errors
+/// Standard output can't be written.
+pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
+    match format {
+        ReportFormat::Junit => print(junit(verdict).trim_end()),
+        ReportFormat::Csv => output::emit(Format::Csv, &verdict.groups(), |_| String::new()),
+        ReportFormat::Json => {
+            let witness = verdict
+                .smallest
+                .as_ref()
+                .and_then(|smallest| smallest.witness.as_ref());
+            let whole = Whole {
+                passed: verdict.passed(),
+                groups: verdict.groups(),
+                verdict,
+                witness,
+            };
+            output::emit(Format::Json, &whole, |_| String::new())
+        }
+        ReportFormat::Table => print(&format!("{}\n{verdict}", table(verdict))),
+    }
+}
+
+fn table(verdict: &Verdict) -> String {
+    let header = [
+        "cases", "passed", "failed", "errors", "skipped", "judged", "required", "missed", "extra",
+    ];
+    let row = |group: &GroupVerdict| {
+        let pairs = &group.pairs;
+        let cases = [group.passed, group.failed, group.errors, group.skipped].map(u64::from);
+        let pairs = [pairs.judged, pairs.required, pairs.missed, pairs.extra];
+        let numbers = cases.into_iter().chain(pairs).map(|n| n.to_string());
+        std::iter::once(group.name.clone()).chain(numbers).collect()
+    };
+    rows(&header, &verdict.groups(), row).to_string()
+}

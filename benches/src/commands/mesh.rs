@@ -1,0 +1,222 @@
+//! `sdop mesh`: what a mesh is, how tight each volume is about it, and conversion to another format.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use sdop::mesh::decimate::decimate;
+use sdop::mesh::topology::{Topology, without_area};
+use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};
+use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
+use sdop_bench::tightness::Size;
+use serde::Serialize;
+
+use super::files::ReadArgs;
+use super::output::{Format, decimal, emit, table};
+use super::{Outcome, one_of};
+
+/// Describe a mesh and its bounding volumes, or convert it
+///
+/// Prints counts, whether the mesh is closed, its smallest enclosing ball and the size of every volume over that of the
+/// convex hull. World-aligned volumes (aabb, k-dop) are re-fitted when a body turns: theirs is the mean over 64 rotations.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples: sdop mesh data/meshes/spot.tri\n          sdop mesh model.obj --to model.tri\n          sdop mesh model.obj --triangles 4000 --to coarse.tri"
+)]
+pub struct Args {
+    /// The mesh; the extension names its format
+    file: PathBuf,
+    /// Write the mesh to this file, in the format that its extension names
+    #[arg(long, value_name = "FILE")]
+    to: Option<PathBuf>,
+    /// Collapse edges first, until the mesh has at most so many triangles
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    triangles: Option<u32>,
+    /// The dialect of a .tri file, where several fit
+    #[arg(long, value_name = "DIALECT", value_parser = one_of::<TriFormat>(TriFormat::NAMES))]
+    tri_format: Option<TriFormat>,
+    #[command(flatten)]
+    files: ReadArgs,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// What is printed.
+#[derive(Serialize)]
+struct Report {
+    name: String,
+    file: String,
+    written: Option<String>,
+    vertices: usize,
+    unused_vertices: usize,
+    triangles: usize,
+    /// Without area: a repeated index, two equal corners, or three on a line.
+    degenerate_triangles: usize,
+    components: usize,
+    closed_components: usize,
+    boundary_edges: usize,
+    non_manifold_edges: usize,
+    /// Smallest enclosing ball (x, y, z, r) in the file's coordinates, of the vertices that triangles use, as all that follows.
+    ball: [f64; 4],
+    /// Where the vertices' origin lies in them: zero unless the mesh is far from its origin.
+    offset: [f64; 3],
+    hull_vertices: usize,
+    hull_volume: f64,
+    volumes: Vec<Size>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A mesh that can't be read or written.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let options = ReadOptions {
+        tri_format: args.tri_format,
+        max_bytes: args.files.max_bytes(),
+    };
+    let mut mesh = read(&args.file, &options)?;
+    if let Some(most) = args.triangles {
+        mesh = decimate(&mesh, most as usize);
+    }
+    if let Some(path) = &args.to {
+        write(&mesh, path)?;
+    }
+    let report = describe(args, &mesh)?;
+    emit(args.format, &report, text)?;
+    Ok(Outcome::Passed)
+}
+
+fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
+    let topology = Topology::of(mesh);
+    let total = topology.total();
+    let spec = ShapeSpec {
+        origin: Origin::File,
+        ..ShapeSpec::default()
+    };
+    let shape = Shape::build(&of_used_vertices(mesh), &spec)?;
+    let hull = Hull::of(&shape.vertices);
+    let centre = shape.ball.centre.to_array();
+    let [x, y, z] = std::array::from_fn(|i| shape.offset[i] + f64::from(centre[i]));
+    Ok(Report {
+        name: mesh.name.clone(),
+        file: args.file.display().to_string(),
+        written: args.to.as_ref().map(|path| path.display().to_string()),
+        vertices: mesh.vertices.len(),
+        unused_vertices: topology.unused_vertices,
+        triangles: mesh.triangles.len(),
+        degenerate_triangles: without_area(mesh),
+        components: topology.components.len(),
+        closed_components: topology.closed_components(),
+        boundary_edges: total.boundary_edges,
+        non_manifold_edges: total.non_manifold_edges,
+        ball: [x, y, z, shape.ball.radius.into()],
+        offset: shape.offset,
+        hull_vertices: hull.corners(&shape.vertices).len(),
+        hull_volume: hull.volume(&shape.vertices),
+        volumes: Size::of_all(&shape, &hull),
+    })
+}
+
+/// The mesh without the vertices that no triangle uses: no surface of it reaches there.
+fn of_used_vertices(mesh: &TriangleMesh) -> TriangleMesh {
+    let mut used = mesh.triangles.as_flattened().to_vec();
+    used.sort_unstable();
+    used.dedup();
+    let mut new_index = vec![0; mesh.vertices.len()];
+    for (new, &old) in used.iter().enumerate() {
+        new_index[old as usize] = new as u32; // no more than there were
+    }
+    let mut mesh = mesh.clone();
+    mesh.vertices = used
+        .iter()
+        .map(|&old| mesh.vertices[old as usize])
+        .collect();
+    for index in mesh.triangles.as_flattened_mut() {
+        *index = new_index[*index as usize];
+    }
+    mesh
+}
+
+fn text(report: &Report) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = write_text(&mut text, report);
+    text
+}
+
+fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
+    let (closed, all) = (report.closed_components, report.components);
+    let state = match closed {
+        _ if closed == all => "closed".to_owned(),
+        0 => "open".to_owned(),
+        _ => format!("{closed} closed, {} open", all - closed),
+    };
+    let [x, y, z, r] = report.ball;
+    writeln!(out, "{} ({})", report.name, report.file)?;
+    writeln!(
+        out,
+        "{} vertices ({} unused), {} triangles ({} degenerate)",
+        report.vertices, report.unused_vertices, report.triangles, report.degenerate_triangles
+    )?;
+    writeln!(
+        out,
+        "components: {all}, {state}; boundary edges: {}, non-manifold edges: {}",
+        report.boundary_edges, report.non_manifold_edges
+    )?;
+    if report.unused_vertices > 0 {
+        writeln!(
+            out,
+            "ball, hull and volumes are of the vertices that triangles use; culled shapes contain all vertices"
+        )?;
+    }
+    // What is far below the ball's size is rounding.
+    let at = |x: f64| decimal(if x.abs() < 1e-6 * r { 0.0 } else { x });
+    writeln!(
+        out,
+        "smallest ball: centre ({}, {}, {}), radius {}; lengths are in the mesh's unit",
+        at(x),
+        at(y),
+        at(z),
+        decimal(r)
+    )?;
+    if report.offset != [0.0; 3] {
+        let [x, y, z] = report.offset;
+        writeln!(
+            out,
+            "far from its origin: vertices are kept about ({x}, {y}, {z})"
+        )?;
+    }
+    writeln!(
+        out,
+        "convex hull: {} vertices, volume {} unit³",
+        report.hull_vertices,
+        volume(report.hull_volume, report)
+    )?;
+    if is_flat(report.hull_volume, report) {
+        writeln!(
+            out,
+            "warning: the mesh is flat, or nearly so: its hull has no volume to compare with"
+        )?;
+    }
+    let mut rows = table(&["volume", "size, unit³", "size / hull"]);
+    for row in &report.volumes {
+        let over_hull = row.over_hull.map_or("–".to_owned(), |x| format!("{x:.3}"));
+        rows.add_row([row.name.clone(), volume(row.volume, report), over_hull]);
+    }
+    writeln!(out, "{rows}")?;
+    match &report.written {
+        Some(path) => writeln!(out, "written to {path}"),
+        None => Ok(()),
+    }
+}
+
+/// Whether a volume is nothing beside the ball's.
+fn is_flat(volume: f64, report: &Report) -> bool {
+    let radius = report.ball[3];
+    volume <= 1e-9 * radius.powi(3)
+}
+
+/// A volume; what is far below the ball's is rounding.
+fn volume(volume: f64, report: &Report) -> String {
+    decimal(if is_flat(volume, report) { 0.0 } else { volume })
+}

@@ -1,0 +1,149 @@
+//! The programs of an experiment's steps.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop_bench::report::{Experiment, Step};
+
+/// What a step's command says, when it ends well.
+pub(super) fn output(
+    experiment: &Experiment,
+    step: &Step,
+    command: &mut Command,
+) -> miette::Result<Vec<u8>> {
+    let output = command
+        .stderr(Stdio::inherit())
+        .output()
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot run {}", experiment.name))?;
+    // A planted bug must be seen.
+    let expected = if planted(step) { Some(1) } else { Some(0) };
+    if output.status.code() != expected {
+        return Err(miette!("{} failed: {}", experiment.name, output.status));
+    }
+    Ok(output.stdout)
+}
+
+fn planted(step: &Step) -> bool {
+    matches!(step, Step::Rapier(_, arguments) | Step::Bullet(_, arguments) if arguments.contains("--without-margin"))
+}
+
+/// A step's command, and the file that its output becomes.
+pub(super) fn command(step: &Step, out: &Path) -> miette::Result<(Command, Option<&'static str>)> {
+    let cargo = |arguments: &[&str]| {
+        let mut cargo = Command::new("cargo");
+        cargo.args(arguments);
+        cargo
+    };
+    let this = || Ok::<_, miette::Report>(Command::new(std::env::current_exe().into_diagnostic()?));
+    let (mut command, file) = match *step {
+        Step::Sdop(arguments) => {
+            let mut command = this()?;
+            command.args(arguments).arg("--out").arg(out);
+            (command, None)
+        }
+        Step::SdopPrints(file, arguments) => {
+            let mut command = this()?;
+            command.args(arguments);
+            (command, Some(file))
+        }
+        Step::Peers(arguments) => {
+            let mut command = cargo(&PEERS);
+            // Engines in C++ are built as their packages are.
+            command
+                .env("CXX", "g++")
+                .args(arguments)
+                .arg("--out")
+                .arg(out);
+            (command, None)
+        }
+        Step::Rapier(file, arguments) => {
+            let mut command = cargo(&RAPIER);
+            command.args(arguments.split(' '));
+            let dropped = out.with_extension("dropped");
+            if arguments.starts_with("check") {
+                command.arg("--cases").arg(dropped);
+            }
+            command.arg("--out").arg(out.join(file));
+            (command, None)
+        }
+        Step::Bullet(file, arguments) => {
+            let mut command = cargo(&BULLET);
+            command.args(arguments.split(' '));
+            command.arg("--out").arg(out.join(file));
+            (command, None)
+        }
+        Step::Bench(file, bench) => (cargo(&["bench", "--quiet", "--bench", bench]), Some(file)),
+        Step::Estimates(file, benches) => (estimates(benches, &out.join(file))?, None),
+        Step::Script(file, arguments) => {
+            let mut command = Command::new(arguments[0]);
+            command.args(&arguments[1..]);
+            (command, Some(file))
+        }
+    };
+    command.stdout(if file.is_some() {
+        Stdio::piped()
+    } else {
+        Stdio::null()
+    });
+    Ok((command, file))
+}
+
+const PEERS: [&str; 8] = [
+    "run",
+    "--release",
+    "--quiet",
+    "-p",
+    "sdop-peers",
+    "--features",
+    "physx,debian",
+    "--",
+];
+
+const RAPIER: [&str; 6] = ["run", "--release", "--quiet", "-p", "sdop-rapier", "--"];
+
+const BULLET: [&str; 8] = [
+    "run",
+    "--release",
+    "--quiet",
+    "-p",
+    "sdop-bullet",
+    "--features",
+    "debian",
+    "--",
+];
+
+/// Runs benches into a directory of their own; the command that gathers criterion's estimates from it.
+fn estimates(benches: &[&str], file: &Path) -> miette::Result<Command> {
+    let home = std::env::current_dir()
+        .into_diagnostic()?
+        .join("target/criterion-record");
+    if home.exists() {
+        std::fs::remove_dir_all(&home).into_diagnostic()?;
+    }
+    for bench in benches {
+        let status = Command::new("cargo")
+            .args(["bench", "--quiet", "--bench", bench, "--"])
+            .args("--noplot --sample-size 20 --warm-up-time 0.1 --measurement-time 0.4".split(' '))
+            .env("CRITERION_HOME", &home)
+            .stdout(Stdio::null())
+            .status()
+            .into_diagnostic()?;
+        if !status.success() {
+            return Err(miette!("the bench {bench} failed: {status}"));
+        }
+    }
+    let mut command = Command::new("cargo");
+    command.args([
+        "run",
+        "--release",
+        "--quiet",
+        "-p",
+        "sdop-peers",
+        "--",
+        "kernels",
+    ]);
+    command.arg("--from").arg(home).arg("--out").arg(file);
+    Ok(command)
+}

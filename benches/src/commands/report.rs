@@ -1,0 +1,295 @@
+//! `sdop report`: renders every page's numbers from the records, or checks that they are what the records say.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop_bench::report::{Code, Quantities, Store, pages};
+
+use super::Outcome;
+use super::files::write;
+use super::output::{print, rows};
+
+/// Pages whose numbers come from records.
+const PAGES: [&str; 17] = [
+    "README.md",
+    "paper/results.md",
+    "ARCHITECTURE.md",
+    "benches/README.md",
+    "benches/engines/BIAS.md",
+    "benches/engines/VERDICTS.md",
+    "examples/rapier/ENGINES.md",
+    "examples/rapier/README.md",
+    "examples/bullet/README.md",
+    "tests/README.md",
+    "paper/guide.md",
+    "paper/artifact.md",
+    "paper/machines.md",
+    "paper/many-ranks.md",
+    "paper/proofs/README.md",
+    "paper/report.typ",
+    "data/hard_cases/README.md",
+];
+
+/// Pages and figures that an experiment writes whole; they stand in its record, and here as copies.
+const WHOLE: [(&str, &str); 10] = [
+    ("reproduce/summary.md", "paper/summary.md"),
+    ("reproduce/figures/costs.svg", "paper/figures/costs.svg"),
+    (
+        "reproduce/figures/frame_rates.svg",
+        "paper/figures/frame_rates.svg",
+    ),
+    (
+        "reproduce/figures/residuals.svg",
+        "paper/figures/residuals.svg",
+    ),
+    ("reproduce/figures/sphere.svg", "paper/figures/sphere.svg"),
+    (
+        "reproduce/figures/useful_tests.svg",
+        "paper/figures/useful_tests.svg",
+    ),
+    ("tradeoff/tradeoff.md", "paper/tradeoff.md"),
+    (
+        "tradeoff/figures/tradeoff.svg",
+        "paper/figures/tradeoff.svg",
+    ),
+    (
+        "tradeoff/figures/tradeoff-pays.svg",
+        "paper/figures/tradeoff-pays.svg",
+    ),
+    (
+        "tradeoff/figures/tradeoff-budget.svg",
+        "paper/figures/tradeoff-budget.svg",
+    ),
+];
+
+/// Macros that pages share.
+const MACROS: &str = "paper/quantities.jinja";
+
+/// One template for each block that a page may carry, named after it.
+const TEMPLATES: &str = "paper/templates";
+
+/// Render the numbers of README and the other pages from data/record
+///
+/// A page quotes a record between markers, <!--= EXPRESSION -->3.14<!--/-->, in Typst /*= EXPRESSION */3.14/**/. Whole blocks stand
+/// between <!-- BEGIN NAME --> and <!-- END NAME -->, from the template paper/templates/NAME.md. Every record's digests are
+/// checked first, so a digit changed by hand is found wherever it stands, in a page or in a record. A number must look the same on
+/// every page. A record that is older than the code it measures must have its commit named on the pages that quote it.
+/// data/record/quoted.toml names the machine whose records are quoted.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples: sdop report\n          sdop report --check\n          sdop report --quantities"
+)]
+pub struct Args {
+    /// Change nothing; exit with 1 when a page would change, a record was changed, two pages give a number differently, or an old
+    /// record isn't called old
+    #[arg(long)]
+    check: bool,
+    /// List the numbers that stand on more than one page
+    #[arg(long)]
+    quantities: bool,
+    /// The repository
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    root: PathBuf,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A marker without a value; pages that can't be read or written.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let records = args.root.join("data/record");
+    let whole = Store::new(&records)?;
+    let names = whole.names();
+    if names.is_empty() {
+        return Err(miette!(
+            help = "run it in the root of the repository, or give --root DIR",
+            "{} holds no records",
+            records.display()
+        ));
+    }
+    let mut problems = Vec::new();
+    for name in &names {
+        if let Err(error) = whole.manifest(name) {
+            problems.push(error.to_string());
+        }
+    }
+    for (from, to) in WHOLE {
+        problems.extend(copy(args, &whole, from, to)?);
+    }
+    let quantities = Arc::new(Quantities::default());
+    let macros = std::fs::read_to_string(args.root.join(MACROS)).unwrap_or_default();
+    let templates = templates(&args.root)?;
+    let now = Code::here(&args.root);
+    let pages: Vec<&str> = PAGES
+        .into_iter()
+        .filter(|page| args.root.join(page).is_file())
+        .collect();
+    for page in &pages {
+        // A store of its own knows which records the page quotes.
+        let sources = pages::Sources {
+            store: Arc::new(Store::new(&records)?),
+            macros: macros.clone(),
+            templates: templates.clone(),
+            quantities: quantities.clone(),
+        };
+        problems.extend(one_page(args, page, &sources, now.as_ref())?);
+    }
+    let differing = quantities.given_differently();
+    problems.extend(
+        differing
+            .iter()
+            .map(|quantity| format!("two ways to give one number: {quantity}")),
+    );
+    if args.quantities {
+        list(&quantities)?;
+    }
+    if problems.is_empty() {
+        print(&format!(
+            "{} records whole, {} pages agree with them; {} numbers stand on more than one page, each the same",
+            names.len(),
+            pages.len(),
+            quantities.on_several_pages().len()
+        ))?;
+        return Ok(Outcome::Passed);
+    }
+    let table = rows(&["problem"], &problems, |problem| vec![problem.clone()]);
+    print(&table.to_string())?;
+    Ok(Outcome::Failed)
+}
+
+/// The templates of blocks, by name. A repository may have none.
+fn templates(root: &Path) -> miette::Result<BTreeMap<String, String>> {
+    let Ok(entries) = root.join(TEMPLATES).read_dir() else {
+        return Ok(BTreeMap::new());
+    };
+    let mut found = BTreeMap::new();
+    for entry in entries {
+        let path = entry.into_diagnostic()?.path();
+        let text = std::fs::read_to_string(&path)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot read {}", path.display()))?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        found.insert(name.into_owned(), text);
+    }
+    Ok(found)
+}
+
+/// The numbers that stand on more than one page.
+fn list(quantities: &Quantities) -> miette::Result<()> {
+    let found = quantities.on_several_pages();
+    let table = rows(&["number", "as", "pages"], &found, |quantity| {
+        let texts: Vec<&str> = quantity.texts.keys().map(String::as_str).collect();
+        let pages: std::collections::BTreeSet<&str> = quantity
+            .texts
+            .values()
+            .flatten()
+            .map(String::as_str)
+            .collect();
+        let pages: Vec<&str> = pages.into_iter().collect();
+        vec![
+            quantity.value.to_string(),
+            texts.join(" | "),
+            pages.join(", "),
+        ]
+    });
+    print(&table.to_string())
+}
+
+/// Copies a page or figure out of the record that is quoted, or says that the copy differs. A record of before pages
+/// were part of it has none.
+fn copy(args: &Args, store: &Store, from: &str, to: &str) -> miette::Result<Option<String>> {
+    let Ok(mut text) = store.text(from) else {
+        return Ok(None);
+    };
+    if to.ends_with(".md") {
+        text.push_str(&origin(store, from)?);
+    }
+    let path = args.root.join(to);
+    if std::fs::read_to_string(&path).is_ok_and(|copy| copy == text) {
+        return Ok(None);
+    }
+    if args.check {
+        let from = store.place(from);
+        return Ok(Some(format!("{to}: differs from {from}; run sdop report")));
+    }
+    write(&path, text)?;
+    Ok(None)
+}
+
+/// The last line of a copied page: which record it is, and of which code.
+fn origin(store: &Store, from: &str) -> miette::Result<String> {
+    let (experiment, _) = from.split_once('/').unwrap_or((from, ""));
+    let manifest = store.manifest(experiment)?;
+    let commit = manifest
+        .code
+        .as_ref()
+        .and_then(|code| code.commit.get(..7))
+        .map_or(String::new(), |commit| format!(", commit {commit}"));
+    Ok(format!(
+        "\nRecord {} of {}{commit} (`data/record/{}`).\n",
+        manifest.id(),
+        manifest.date,
+        store.place(experiment)
+    ))
+}
+
+/// Renders or checks one page; what is wrong with it.
+fn one_page(
+    args: &Args,
+    page: &str,
+    sources: &pages::Sources,
+    now: Option<&Code>,
+) -> miette::Result<Vec<String>> {
+    let path = args.root.join(page);
+    let text = std::fs::read_to_string(&path)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", path.display()))?;
+    let rendered = match pages::render(page, &text, sources) {
+        Ok(rendered) => rendered,
+        Err(error) if args.check => return Ok(vec![error.to_string()]),
+        Err(error) => return Err(error.into()),
+    };
+    let mut problems = Vec::new();
+    if rendered != text {
+        if args.check {
+            problems.push(first_difference(page, &text, &rendered));
+        } else {
+            write(&path, &rendered)?;
+        }
+    }
+    problems.extend(unnamed_age(page, &rendered, &sources.store, now));
+    Ok(problems)
+}
+
+/// Where a page first differs from its records.
+fn first_difference(page: &str, text: &str, rendered: &str) -> String {
+    let pairs = text.lines().zip(rendered.lines()).enumerate();
+    let mut differing = pairs.filter(|(_, (a, b))| a != b);
+    match differing.next() {
+        Some((index, (written, recorded))) => format!(
+            "{page}:{}: written `{}`, recorded `{}`; run sdop report",
+            index + 1,
+            written.trim(),
+            recorded.trim()
+        ),
+        None => format!("{page}: lines missing; run sdop report"),
+    }
+}
+
+/// Records used by a page that are older than the code, and whose commit the page doesn't name.
+fn unnamed_age(page: &str, text: &str, store: &Store, now: Option<&Code>) -> Vec<String> {
+    let Some(now) = now else {
+        return Vec::new();
+    };
+    let old = store.used().into_iter().filter_map(|(name, manifest)| {
+        let code = manifest.code?;
+        let commit = code.commit.get(..7)?.to_owned();
+        (code.trees != now.trees && !text.contains(&commit)).then_some((name, commit))
+    });
+    old.map(|(name, commit)| {
+        format!("{page}: {name} is older than the code: name its commit {commit} or measure again")
+    })
+    .collect()
+}

@@ -1,0 +1,335 @@
+//! The result files: each CSV file is one table, and `results.json` holds all but the two of single runs.
+//!
+//! Of those, `counts` has what is equal on every machine, and its hash stands in the summary; `times` has what is not.
+
+use miette::IntoDiagnostic as _;
+use sdop::settings::Strategy;
+use sdop_bench::cost::table::{self, Cost, PriceRow};
+use sdop_bench::measure::conditions::Conditions;
+use sdop_bench::measure::machine::Machine;
+use sdop_bench::measure::turns::Regime;
+use sdop_bench::reproduce::check::{Claim, Verdict};
+use sdop_bench::reproduce::closed_form::{probability, relative_reach};
+use sdop_bench::reproduce::rates::{self, Rate};
+use sdop_bench::reproduce::readings::{self, Cell};
+use sdop_bench::reproduce::sensitivity::Interpretation;
+use sdop_bench::reproduce::{Estimate, PaperScene, Results, Run, claims, study};
+use serde::Serialize;
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use crate::commands::output::csv_text;
+
+/// Everything that is written.
+#[derive(Serialize)]
+pub struct Tables {
+    pub command: String,
+    pub machine: Machine,
+    pub seeds: Vec<u64>,
+    pub frames: u32,
+    pub volumes_sha256: String,
+    pub counts_sha256: String,
+    pub boxes: Vec<BoxRow>,
+    pub conditions: Conditions,
+    pub prices: Vec<ScenePrice>,
+    pub table_1: Vec<Cell>,
+    pub rates: Vec<Rate>,
+    pub hidden: Vec<HiddenRow>,
+    /// Warm frames.
+    pub costs: Vec<Cost>,
+    /// Cold frames.
+    pub cold_costs: Vec<Cost>,
+    pub survival: Vec<SurvivalRow>,
+    pub claims: Vec<Claim>,
+    pub study: Vec<Claim>,
+    /// What the paper doesn't state, swept; none of a quick look.
+    pub interpretations: Vec<Interpretation>,
+    #[serde(skip)]
+    pub counts: Vec<CountRow>,
+    #[serde(skip)]
+    pub times: Vec<TimeRow>,
+}
+
+/// A price with the scene that it was calibrated for.
+#[derive(Serialize)]
+pub struct ScenePrice {
+    pub scene: &'static str,
+    #[serde(flatten)]
+    pub price: PriceRow,
+}
+
+/// A scene's bodies and box, and the share of sphere tests that hit there in the closed form.
+#[derive(Serialize)]
+pub struct BoxRow {
+    pub scene: String,
+    /// Whether it is the small box.
+    pub crowded: bool,
+    pub bodies: usize,
+    pub statics: usize,
+    pub side: f64,
+    pub radius: f64,
+    pub percent: f64,
+}
+
+/// What one strategy did in one run.
+#[derive(Serialize)]
+pub struct CountRow {
+    scene: String,
+    bodies: usize,
+    statics: usize,
+    seed: u64,
+    frames: u32,
+    strategy: &'static str,
+    sphere_updates: u64,
+    ordop_updates: u64,
+    sphere_tests: u64,
+    sphere_hits: u64,
+    ordop_tests: u64,
+    ordop_hits: u64,
+    reported: u64,
+    pairs_sha256: Option<String>,
+}
+
+/// What it took, in seconds: medians over warm frames and over cold ones, the mean, the simulation's step, and Co once.
+#[derive(Serialize)]
+pub struct TimeRow {
+    scene: String,
+    seed: u64,
+    strategy: &'static str,
+    construct: f64,
+    update: f64,
+    pair_finding: f64,
+    ordop: f64,
+    total: f64,
+    total_cold: f64,
+    mean: f64,
+    simulation_step: f64,
+}
+
+/// The F from which on two strategies' frame rates are within five percent; none where they are without any F.
+#[derive(Serialize)]
+pub struct HiddenRow {
+    pub scene: &'static str,
+    pub of: [Strategy; 2],
+    pub from: Option<Estimate>,
+}
+
+/// or-DOP hits among sphere hits.
+#[derive(Serialize)]
+pub struct SurvivalRow {
+    pub k: usize,
+    pub overlap: &'static str,
+    pub percent: Estimate,
+}
+
+/// One number behind one claim.
+#[derive(Serialize)]
+struct CheckRow<'a> {
+    source: &'a str,
+    claim: &'a str,
+    claim_verdict: Verdict,
+    quantity: &'a str,
+    value: f64,
+    half_width: f64,
+    expected: &'a str,
+    verdict: Verdict,
+}
+
+impl Tables {
+    /// All tables of the results.
+    pub fn new(results: &Results, machine: &Machine, command: String, before: Conditions) -> Self {
+        let counts: Vec<CountRow> = results.runs.iter().map(count_row).collect();
+        let survival = |row: &sdop_bench::reproduce::Survival| SurvivalRow {
+            k: row.k.k(),
+            overlap: row.overlap.name(),
+            percent: Estimate::of(&row.shares).scaled(100.0),
+        };
+        let costs = results.costs(Regime::Warm);
+        Self {
+            command,
+            machine: machine.clone(),
+            seeds: results.plan.seeds.clone(),
+            frames: results.plan.frames,
+            volumes_sha256: results.volumes_sha256.clone(),
+            counts_sha256: hash(&counts).unwrap_or_default(),
+            boxes: results
+                .plan
+                .names
+                .iter()
+                .filter_map(|&scene| results.example(scene.name()).map(|run| box_row(scene, run)))
+                .collect(),
+            conditions: before.after(costs.iter().map(|cost| cost.frame.measured)),
+            prices: prices(results),
+            table_1: readings::table(results),
+            rates: rates::table(results),
+            hidden: hidden(results),
+            costs,
+            cold_costs: results.costs(Regime::Cold),
+            survival: results.survival.iter().map(survival).collect(),
+            claims: claims::all(results),
+            study: study::all(results),
+            interpretations: results.interpretations.clone(),
+            counts,
+            times: results.runs.iter().map(time_row).collect(),
+        }
+    }
+
+    /// The CSV files: name without extension, rows.
+    pub fn files(&self) -> miette::Result<Vec<(&'static str, Value)>> {
+        let value = |rows: serde_json::Result<Value>| rows.into_diagnostic();
+        let mut files = vec![
+            ("counts", value(serde_json::to_value(&self.counts))?),
+            ("times", value(serde_json::to_value(&self.times))?),
+            ("table_1", value(serde_json::to_value(&self.table_1))?),
+            ("frame_rates", value(serde_json::to_value(&self.rates))?),
+            ("costs", value(serde_json::to_value(self.both_costs()))?),
+            ("prices", value(serde_json::to_value(&self.prices))?),
+            ("survival", value(serde_json::to_value(&self.survival))?),
+            ("claims", value(serde_json::to_value(self.checks()))?),
+        ];
+        if !self.interpretations.is_empty() {
+            let rows = value(serde_json::to_value(&self.interpretations))?;
+            files.push(("interpretations", rows));
+        }
+        Ok(files)
+    }
+
+    fn both_costs(&self) -> Vec<&Cost> {
+        self.costs.iter().chain(&self.cold_costs).collect()
+    }
+
+    /// The scenes with costs.
+    pub fn scenes(&self) -> Vec<&str> {
+        distinct(self.costs.iter().map(|cost| cost.scene.as_str()))
+    }
+
+    /// The strategies with costs.
+    pub fn strategies(&self) -> Vec<Strategy> {
+        distinct(self.costs.iter().map(|cost| cost.strategy))
+    }
+
+    fn checks(&self) -> Vec<CheckRow<'_>> {
+        let mut rows = Vec::new();
+        for claim in self.claims.iter().chain(&self.study) {
+            rows.extend(claim.checks.iter().map(|check| CheckRow {
+                source: claim.source,
+                claim: claim.claim,
+                claim_verdict: claim.verdict(),
+                quantity: &check.quantity,
+                value: check.value,
+                half_width: check.half_width,
+                expected: &check.expected,
+                verdict: check.verdict,
+            }));
+        }
+        rows
+    }
+}
+
+/// Each item once, in the order of first sight.
+pub fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut seen = Vec::new();
+    for item in items {
+        if !seen.contains(&item) {
+            seen.push(item);
+        }
+    }
+    seen
+}
+
+/// SHA-256 of the counts as their CSV file has them.
+fn hash(counts: &[CountRow]) -> miette::Result<String> {
+    let text = csv_text(serde_json::to_value(counts).into_diagnostic()?)?;
+    let digest = Sha256::digest(text);
+    Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+fn box_row(scene: PaperScene, run: &Run) -> BoxRow {
+    BoxRow {
+        scene: run.scene.clone(),
+        crowded: scene.crowded(),
+        bodies: run.bodies,
+        statics: run.statics,
+        side: run.side,
+        radius: run.radius,
+        percent: 100.0 * probability(relative_reach(run.side, run.radius)),
+    }
+}
+
+/// The pairs of strategies that the paper compares, in the scenes of 500 objects.
+fn hidden(results: &Results) -> Vec<HiddenRow> {
+    use Strategy::{None as Control, SDopBatch, SDopObjectOfInterest, SDopSequential, Sphere};
+    let compared = [
+        [SDopObjectOfInterest, Control],
+        [SDopObjectOfInterest, Sphere],
+        [SDopSequential, Sphere],
+        [SDopBatch, Sphere],
+        [Strategy::OrDop, SDopBatch],
+    ];
+    let mut rows = Vec::new();
+    for &scene in &results.plan.names {
+        if results
+            .example(scene.name())
+            .is_some_and(|run| run.bodies == 500)
+        {
+            rows.extend(compared.map(|of| HiddenRow {
+                scene: scene.name(),
+                of,
+                from: rates::hides(results, scene.name(), of, 0.95),
+            }));
+        }
+    }
+    rows
+}
+
+/// Prices for warm and for cold frames, scene by scene.
+fn prices(results: &Results) -> Vec<ScenePrice> {
+    let mut prices = Vec::new();
+    for &scene in &results.plan.names {
+        let passes = results.passes_of(scene);
+        for &regime in Regime::ALL {
+            let rows = table::prices(&passes, regime).into_iter();
+            prices.extend(rows.map(|price| ScenePrice {
+                scene: scene.name(),
+                price,
+            }));
+        }
+    }
+    prices
+}
+
+fn count_row(run: &Run) -> CountRow {
+    let counters = &run.counters;
+    CountRow {
+        scene: run.scene.clone(),
+        bodies: run.bodies,
+        statics: run.statics,
+        seed: run.seed,
+        frames: run.frames,
+        strategy: run.strategy.name(),
+        sphere_updates: counters.sphere.updates,
+        ordop_updates: counters.ordop.updates,
+        sphere_tests: counters.sphere.tests,
+        sphere_hits: counters.sphere.hits,
+        ordop_tests: counters.ordop.tests,
+        ordop_hits: counters.ordop.hits,
+        reported: counters.reported,
+        pairs_sha256: run.pairs_sha256.clone(),
+    }
+}
+
+fn time_row(run: &Run) -> TimeRow {
+    TimeRow {
+        scene: run.scene.clone(),
+        seed: run.seed,
+        strategy: run.strategy.name(),
+        construct: run.seconds.construct,
+        update: run.seconds.update,
+        pair_finding: run.seconds.pair_finding,
+        ordop: run.seconds.ordop,
+        total: run.seconds.total,
+        total_cold: run.cold,
+        mean: run.mean,
+        simulation_step: run.step,
+    }
+}

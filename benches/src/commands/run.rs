@@ -1,0 +1,414 @@
+//! `sdop run`: simulate and cull one scene, and say what it counted and cost.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use sdop::Tier;
+use sdop::counters::{Counters, Seconds};
+use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
+use sdop_bench::domain::{BorderSeconds, RankLine};
+use sdop_bench::effects::EffectReport;
+use sdop_bench::percentiles::Percentiles;
+use sdop_bench::scene::Scene;
+use sdop_bench::simulate::{Simulation, Summary};
+use sdop_bench::tradeoff::TradeoffError;
+use sdop_bench::tradeoff::truth::Judge;
+use sdop_judge::record::Recorder;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+#[cfg(feature = "mpi")]
+mod ranks;
+
+use super::Outcome;
+use super::output::{Format, emit, progress, table};
+use super::scene_args::{MachineArgs, SceneArgs};
+
+/// Simulate and cull one scene
+///
+/// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of each stage, what single frames
+/// take, and hashes.
+/// Counters and hashes depend on scene, seed and flags alone, not on the CPU or threads; with --budget-us they depend on the clock.
+/// Under mpirun, ranks share the scene and report the same pairs; built with the feature `mpi`.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
+)]
+pub struct Args {
+    /// Write every frame's poses and pairs to this file, as lines of JSON
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Have the record say, too, which meshes truly meet, decided in exact arithmetic: slow for large scenes
+    #[arg(long, requires = "record")]
+    truth: bool,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+    /// Threads that cull; nothing but time depends on their number
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: u16,
+}
+
+/// What is printed.
+#[derive(Serialize)]
+struct Report<'a> {
+    scene: &'a str,
+    seed: u64,
+    bodies: usize,
+    frames: u32,
+    strategy: &'static str,
+    pairs: &'static str,
+    finder: &'static str,
+    k: usize,
+    axes: &'static str,
+    overlap: &'static str,
+    updates: &'static str,
+    interest: Option<&'a Interest>,
+    budget: Option<Budget>,
+    simd: &'static str,
+    threads: usize,
+    counters: Map<String, Value>,
+    seconds: Terms,
+    frame_seconds: Percentiles,
+    effects: Vec<EffectLine>,
+    volumes_sha256: &'a str,
+    pairs_sha256: Option<&'a str>,
+    pairs_digest: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ranks: Option<&'a [RankLine]>,
+}
+
+/// The terms of T: those of culling, and what borders between ranks add.
+#[derive(Serialize)]
+struct Terms {
+    #[serde(flatten)]
+    culling: Seconds,
+    #[serde(flatten)]
+    border: Option<BorderSeconds>,
+}
+
+/// What ranks say besides.
+type Shared<'a> = Option<(BorderSeconds, &'a [RankLine])>;
+
+#[derive(Serialize)]
+struct EffectLine {
+    name: &'static str,
+    steps: u64,
+    seconds: f64,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A bad scene, settings that it can't have, a body that leaves the contract, a recording that can't be written.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    #[cfg(feature = "mpi")]
+    if sdop_bench::mpi::launched() > 1 {
+        return Ok(ranks::run(args));
+    }
+    let scene = args.scene.build()?;
+    let tier = args.machine.tier();
+    let mut recorder = match &args.record {
+        Some(path) => Some(Recorder::create(path, &sdop_bench::record::header(&scene))?),
+        None => None,
+    };
+    let judge = if args.truth {
+        Some(Judge::new(&scene.shapes).map_err(TradeoffError::from)?)
+    } else {
+        None
+    };
+    let bar = progress(scene.frames.into(), &scene.name);
+    let threads = usize::from(args.threads);
+    let simulation = Simulation::with_threads(&scene, tier, threads)?;
+    let summary = simulation.run(|frame| -> miette::Result<()> {
+        if let Some(recorder) = &mut recorder {
+            let mut line = sdop_bench::record::frame_line(frame, scene.cull.strategy);
+            if let Some(judge) = &judge {
+                line.meets = Some(judge.meetings(frame.bodies).map_err(TradeoffError::from)?);
+            }
+            recorder.frame(&line)?;
+        }
+        bar.inc(1);
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    if let Some(recorder) = recorder {
+        recorder.finish()?;
+    }
+    print(args, &scene, &summary, None)?;
+    Ok(Outcome::Passed)
+}
+
+/// Prints what a run says of itself.
+fn print(args: &Args, scene: &Scene, summary: &Summary, shared: Shared<'_>) -> miette::Result<()> {
+    let (tier, threads) = (args.machine.tier(), args.threads.into());
+    let report = report(scene, (tier, threads), summary, shared);
+    emit(args.format, &report, |report| text(report, scene, summary))
+}
+
+fn report<'a>(
+    scene: &'a Scene,
+    (tier, threads): (Tier, usize),
+    summary: &'a Summary,
+    shared: Shared<'a>,
+) -> Report<'a> {
+    let CullSettings {
+        strategy,
+        pairs,
+        k,
+        axes,
+        overlap,
+        updates,
+        interest,
+        budget,
+        ..
+    } = &scene.cull;
+    Report {
+        scene: &scene.name,
+        seed: scene.seed,
+        bodies: scene.share().all,
+        frames: scene.frames,
+        strategy: strategy.name(),
+        pairs: pairs.name(),
+        finder: summary.finder.name(),
+        k: k.k(),
+        axes: axes.name(),
+        overlap: overlap.name(),
+        updates: updates.name(),
+        interest: interest.as_ref(),
+        budget: *budget,
+        simd: tier.name(),
+        threads,
+        counters: counters(*strategy, &summary.counters),
+        seconds: Terms {
+            culling: summary.seconds,
+            border: shared.map(|(border, _)| border),
+        },
+        frame_seconds: summary.frame_seconds,
+        effects: summary.effects.iter().map(effect_line).collect(),
+        volumes_sha256: &summary.volumes_sha256,
+        pairs_sha256: summary.pairs_sha256.as_deref(),
+        pairs_digest: summary.pairs_digest.as_deref(),
+        ranks: shared.map(|(_, ranks)| ranks),
+    }
+}
+
+fn effect_line(effect: &EffectReport) -> EffectLine {
+    EffectLine {
+        name: effect.name,
+        steps: effect.steps,
+        seconds: effect.seconds,
+    }
+}
+
+/// The volume of a strategy that has neither spheres nor or-DOPs.
+fn other_volume(strategy: Strategy) -> Option<TestedVolume> {
+    let is_other = |volume: &_| !matches!(volume, TestedVolume::Sphere | TestedVolume::OrDop);
+    strategy.scheme().volumes().find(is_other)
+}
+
+fn counters(strategy: Strategy, counters: &Counters) -> Map<String, Value> {
+    let Counters { sphere, ordop, .. } = counters;
+    let mut map = Map::new();
+    let mut put = |name: String, value: u64| map.insert(name, value.into());
+    put("sphere_updates".into(), sphere.updates);
+    put("ordop_updates".into(), ordop.updates);
+    put("sphere_tests".into(), sphere.tests);
+    put("sphere_hits".into(), sphere.hits);
+    put("ordop_tests".into(), ordop.tests);
+    put("ordop_hits".into(), ordop.hits);
+    put("untested".into(), counters.untested);
+    put("reported".into(), counters.reported);
+    if let Some(volume) = other_volume(strategy) {
+        let counters = counters.of(volume);
+        put(format!("{volume}_updates"), counters.updates);
+        put(format!("{volume}_tests"), counters.tests);
+        put(format!("{volume}_hits"), counters.hits);
+    }
+    map
+}
+
+fn text(report: &Report<'_>, scene: &Scene, summary: &Summary) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = write_text(&mut text, report, scene, summary);
+    text
+}
+
+fn write_text(
+    out: &mut String,
+    report: &Report<'_>,
+    scene: &Scene,
+    summary: &Summary,
+) -> std::fmt::Result {
+    let pairs = if report.pairs == report.finder {
+        report.pairs.to_owned()
+    } else {
+        format!("{} ({})", report.pairs, report.finder)
+    };
+    let dynamic: usize = scene.share().moving.iter().map(|run| run.len()).sum();
+    writeln!(
+        out,
+        "{}, seed {}: {} bodies ({dynamic} dynamic), {} frames",
+        report.scene, report.seed, report.bodies, report.frames
+    )?;
+    writeln!(
+        out,
+        "{} over {}, k = {}, {} axes, {}, {} updates; {}, threads: {}",
+        report.strategy,
+        pairs,
+        report.k,
+        report.axes,
+        report.overlap,
+        report.updates,
+        report.simd,
+        report.threads
+    )?;
+    writeln!(out, "{}", stages(&report.seconds, report.frames))?;
+    let Percentiles { p50, p99, most } = report.frame_seconds;
+    let [p50, p99, most] = [p50, p99, most].map(|seconds| 1e3 * seconds);
+    writeln!(
+        out,
+        "culling a frame, ms: p50 {p50:.3}, p99 {p99:.3}, most {most:.3}"
+    )?;
+    writeln!(out, "{}", volumes(scene.cull.strategy, &summary.counters))?;
+    let Counters {
+        reported, untested, ..
+    } = summary.counters;
+    let frames = f64::from(report.frames);
+    writeln!(
+        out,
+        "reported {reported} pairs ({:.1} a frame), of which untested {untested}",
+        reported as f64 / frames
+    )?;
+    writeln!(out, "{}", effects(&summary.effects))?;
+    writeln!(out, "volumes sha256 {}", report.volumes_sha256)?;
+    let hash = match report.pairs_digest {
+        None => "– (nothing is culled)",
+        Some(_) => report
+            .pairs_sha256
+            .unwrap_or("– (too many to sort in one place)"),
+    };
+    writeln!(out, "pairs sha256   {hash}")?;
+    if let Some(digest) = report.pairs_digest {
+        writeln!(out, "pairs digest   {digest}")?;
+    }
+    match report.ranks {
+        None => Ok(()),
+        Some(ranks) => writeln!(out, "{}", rank_rows(ranks, report.frames)),
+    }
+}
+
+/// Seconds by stage. Construction happens once, so it has no time a frame.
+fn stages(seconds: &Terms, frames: u32) -> comfy_table::Table {
+    let Terms {
+        culling: seconds,
+        border,
+    } = seconds;
+    let mut rows = table(&["stage", "seconds", "ns / frame"]);
+    rows.add_row(["construct", &format!("{:.6}", seconds.construct), "once"]);
+    let border = border.iter().flat_map(|border| {
+        [
+            ("ghosts", border.ghosts),
+            ("migration", border.migration),
+            ("waiting", border.waiting),
+        ]
+    });
+    let culling = [
+        ("effects", seconds.effects),
+        ("update", seconds.update),
+        ("pair finding", seconds.pair_finding),
+        ("or-dop", seconds.ordop),
+        ("culling, total", seconds.total),
+    ];
+    for (stage, value) in culling.into_iter().chain(border) {
+        let each = 1e9 * value / f64::from(frames);
+        rows.add_row([
+            stage,
+            format!("{value:.6}").as_str(),
+            format!("{each:.0}").as_str(),
+        ]);
+    }
+    rows
+}
+
+/// What each rank had to do.
+fn rank_rows(ranks: &[RankLine], frames: u32) -> comfy_table::Table {
+    let mut rows = table(&[
+        "rank",
+        "bodies",
+        "ghosts",
+        "ghosts' bytes",
+        "migrated",
+        "renewals",
+        "cuts",
+        "peak MB",
+        "ms / frame: effects",
+        "culling",
+        "ghosts",
+        "migration",
+        "waiting",
+    ]);
+    for line in ranks {
+        let a_frame = |count: u64| (count / u64::from(frames)).to_string();
+        let ms = |seconds: f64| format!("{:.3}", 1e3 * seconds / f64::from(frames));
+        rows.add_row([
+            line.rank.to_string(),
+            line.bodies.to_string(),
+            a_frame(line.ghosts),
+            a_frame(line.ghost_bytes),
+            line.migrated.to_string(),
+            line.renewals.to_string(),
+            line.cuts.to_string(),
+            (line.peak_bytes / 1_000_000).to_string(),
+            ms(line.seconds.effects),
+            ms(line.seconds.culling),
+            ms(line.seconds.border.ghosts),
+            ms(line.seconds.border.migration),
+            ms(line.seconds.border.waiting),
+        ]);
+    }
+    rows
+}
+
+fn volumes(strategy: Strategy, counters: &Counters) -> comfy_table::Table {
+    let mut rows = table(&["volume", "updates", "tests", "hits", "hits / tests"]);
+    let used = [
+        Some(("sphere", &counters.sphere)),
+        Some(("or-dop", &counters.ordop)),
+        other_volume(strategy).map(|volume| (volume.name(), counters.of(volume))),
+    ];
+    for (name, volume) in used.into_iter().flatten() {
+        let share = match volume.tests {
+            0 => "–".to_owned(),
+            tests => format!("{:.3} %", 100.0 * volume.hits as f64 / tests as f64),
+        };
+        let [updates, tests, hits] =
+            [volume.updates, volume.tests, volume.hits].map(|count| count.to_string());
+        rows.add_row([name.to_owned(), updates, tests, hits, share]);
+    }
+    rows
+}
+
+fn effects(reports: &[EffectReport]) -> comfy_table::Table {
+    let mut rows = table(&["effect", "steps", "seconds", "ns / body"]);
+    for effect in reports {
+        if effect.listed {
+            let each = 1e9 * effect.seconds / effect.visited.max(1) as f64;
+            let seconds = format!("{:.6}", effect.seconds);
+            rows.add_row([
+                effect.name,
+                &effect.steps.to_string(),
+                &seconds,
+                &format!("{each:.2}"),
+            ]);
+        } else {
+            rows.add_row([effect.name, "not simulated", "", ""]);
+        }
+    }
+    rows
+}

@@ -1,0 +1,190 @@
+//! The arguments of every command that runs a scene: the file, and flags that override what it says.
+
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+
+use miette::Diagnostic as _;
+use sdop::Tier;
+use sdop::settings::{
+    Axes, Budget, CullSettings, Finder, Interest, Order, Overlap, Strategy, Updates,
+};
+use sdop::volume::DirectionSet;
+use sdop_bench::scene::{Scene, SceneFile};
+
+use super::files::ReadArgs;
+use super::one_of;
+
+/// A scene file and what overrides it.
+#[derive(clap::Args)]
+pub struct SceneArgs {
+    /// The scene file (TOML), for example data/scenes/paper-500.toml
+    scene: PathBuf,
+    /// Frames to cull; the first is the scene as placed
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    frames: Option<u32>,
+    /// Where all random draws start
+    #[arg(long)]
+    seed: Option<u64>,
+    #[command(flatten)]
+    files: ReadArgs,
+    #[command(flatten)]
+    cull: CullArgs,
+}
+
+/// Flags that override the scene's `[cull]` table, key by key.
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+#[command(next_help_heading = "Culling (each overrides the scene's [cull])")]
+pub struct CullArgs {
+    /// Which volumes are tested, and in which order
+    #[arg(long, value_parser = one_of::<Strategy>(Strategy::NAMES))]
+    strategy: Option<Strategy>,
+    /// Who hands candidate pairs to the first volume test
+    #[arg(long, value_name = "FINDER", value_parser = one_of::<Finder>(Finder::NAMES))]
+    pairs: Option<Finder>,
+    /// The or-DOP's half-spaces
+    #[arg(long, value_parser = one_of::<DirectionSet>(DirectionSet::NAMES))]
+    k: Option<DirectionSet>,
+    /// The or-DOP's axes
+    #[arg(long, value_parser = one_of::<Axes>(Axes::NAMES))]
+    axes: Option<Axes>,
+    /// Which separating axes the or-DOP test tries
+    #[arg(long, value_parser = one_of::<Overlap>(Overlap::NAMES))]
+    overlap: Option<Overlap>,
+    /// When or-DOP poses are updated
+    #[arg(long, value_parser = one_of::<Updates>(Updates::NAMES))]
+    updates: Option<Updates>,
+    /// Bodies of interest, as in 0,5,7, or a view cone, as in '{ body = 0, direction = [0, 0, 1], half_angle = 30 }'
+    #[arg(long, value_parser = interest)]
+    interest: Option<Interest>,
+    /// Time-critical: or-DOP tests a frame
+    #[arg(long, value_name = "TESTS", conflicts_with = "budget_us")]
+    budget_tests: Option<u64>,
+    /// Time-critical: microseconds a frame, by the clock
+    #[arg(long, value_name = "MICROSECONDS")]
+    budget_us: Option<u64>,
+    /// Time-critical: in which order the budget is spent
+    #[arg(long, value_parser = one_of::<Order>(Order::NAMES))]
+    order: Option<Order>,
+}
+
+/// How the culler uses the machine.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Machine")]
+pub struct MachineArgs {
+    /// SIMD level: scalar, sse2, avx2, avx512 or neon [default: the fastest that this CPU has]
+    #[arg(long, value_name = "LEVEL")]
+    simd: Option<Tier>,
+}
+
+impl SceneArgs {
+    /// Reads and builds the scene with the overrides in place.
+    ///
+    /// # Errors
+    /// A scene that can't be read or built, or settings that it can't have.
+    pub fn build(&self) -> miette::Result<Scene> {
+        Ok(self.read()?.build()?)
+    }
+
+    /// The most bytes that are read of a file, or of a line of a record.
+    pub fn max_bytes(&self) -> u64 {
+        self.files.max_bytes()
+    }
+
+    /// The file as named.
+    pub fn path(&self) -> &Path {
+        &self.scene
+    }
+
+    /// Reads the scene and puts the overrides in place.
+    ///
+    /// # Errors
+    /// A scene that can't be read, or settings that no scene can have.
+    pub fn read(&self) -> miette::Result<SceneFile> {
+        let mut file = SceneFile::read_within(&self.scene, self.files.max_bytes())?;
+        if let Some(frames) = self.frames.and_then(NonZeroU32::new) {
+            file.spec.frames = frames;
+        }
+        if let Some(seed) = self.seed {
+            file.spec.seed = seed;
+        }
+        self.cull.apply(&mut file.spec.cull);
+        Ok(file)
+    }
+
+    /// The seed asked for, if any.
+    pub fn seed(&self) -> Option<u64> {
+        self.seed
+    }
+
+    /// The default culling settings with the overrides in place.
+    pub fn settings(&self) -> CullSettings {
+        let mut settings = CullSettings::default();
+        self.cull.apply(&mut settings);
+        settings
+    }
+
+    /// A flag that only a scene can have, if one is given.
+    pub fn scene_only(&self) -> Option<&'static str> {
+        if self.seed.is_some() {
+            return Some("--seed");
+        }
+        (self.cull != CullArgs::default()).then_some("a culling flag")
+    }
+
+    /// The frames asked for, if any.
+    pub fn frames(&self) -> Option<u32> {
+        self.frames
+    }
+
+    /// The strategy asked for, if any.
+    pub fn strategy(&self) -> Option<Strategy> {
+        self.cull.strategy
+    }
+}
+
+impl CullArgs {
+    /// Puts the flags that were given over the settings.
+    pub fn apply(&self, cull: &mut CullSettings) {
+        fn over<T: Clone>(setting: &mut T, flag: Option<&T>) {
+            if let Some(value) = flag {
+                setting.clone_from(value);
+            }
+        }
+        over(&mut cull.strategy, self.strategy.as_ref());
+        over(&mut cull.pairs, self.pairs.as_ref());
+        over(&mut cull.k, self.k.as_ref());
+        over(&mut cull.axes, self.axes.as_ref());
+        over(&mut cull.overlap, self.overlap.as_ref());
+        over(&mut cull.updates, self.updates.as_ref());
+        over(&mut cull.order, self.order.as_ref());
+        if self.interest.is_some() {
+            cull.interest.clone_from(&self.interest);
+        }
+        let tests = self.budget_tests.map(Budget::Tests);
+        cull.budget = tests
+            .or(self.budget_us.map(Budget::Microseconds))
+            .or(cull.budget);
+    }
+}
+
+/// Reads an interest; clap shows no help text of its own for an error, so it goes into the message.
+fn interest(text: &str) -> Result<Interest, String> {
+    text.parse::<Interest>().map_err(|error| {
+        let help = error
+            .help()
+            .map_or(String::new(), |help| format!("; {help}"));
+        format!("{error}{help}")
+    })
+}
+
+impl MachineArgs {
+    /// The SIMD level: the one asked for, or the fastest.
+    pub fn tier(&self) -> Tier {
+        self.simd.unwrap_or_else(Tier::detect)
+    }
+
+    /// The SIMD level of `--simd`, if it was given.
+    pub fn asked(&self) -> Option<Tier> {
+        self.simd
+    }
+}

@@ -1,0 +1,225 @@
+//! `sdop tradeoff`: what each step of accuracy costs in time on one scene, and when it pays.
+
+mod page;
+mod plot;
+mod tables;
+
+use std::path::{Path, PathBuf};
+
+use etcetera::BaseStrategy as _;
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop_bench::measure::conditions::Conditions;
+use sdop_bench::measure::machine::Machine;
+use sdop_bench::sweep::Merged;
+pub use sdop_bench::tradeoff::units::NAME;
+use sdop_bench::tradeoff::units::{Comparison, Settings};
+use sdop_bench::tradeoff::{Findings, Plan, Tradeoff};
+use serde::{Deserialize, Serialize};
+
+use super::Outcome;
+use super::files::{self, command, write};
+use super::output::{Format, csv_text, emit};
+use super::scene_args::{MachineArgs, SceneArgs};
+use super::sweep::{self, SweepArgs};
+
+/// What accuracy costs in time, for every volume and strategy
+///
+/// Culls sample frames of the scene with every volume and strategy, compares with the exact truth about the meshes, then
+/// measures the time of frames that follow one another (warm) and of frames between which others ran (cold). Counts depend on
+/// scene and flags alone; seconds are this machine's. Given the JSON of an earlier run instead of a scene, prints and draws
+/// that.
+#[derive(clap::Args)]
+#[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
+    Examples: sdop tradeoff data/scenes/paper-500.toml --out target/tradeoff\n          \
+    mpirun -n 9 sdop tradeoff data/scenes/paper-500.toml --seeds 64 --out target/tradeoff")]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+    /// Fewer seeds, frames and pairs: wide intervals in a quarter of the time
+    #[arg(long)]
+    quick: bool,
+    /// Runs, each with a seed of its own from the scene's on [default: 5, or 2 with --quick]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    seeds: Option<u64>,
+    /// Print every table, not only the recommendation and what it rests on
+    #[arg(long)]
+    all: bool,
+    /// Write the page, the figures, JSON and CSV into this directory
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write the page and the figures into this directory instead
+    #[arg(long, value_name = "DIR", requires = "out")]
+    paper: Option<PathBuf>,
+    /// Where exact truths are kept between runs [default: sdop/truth in the user's cache directory]
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+    #[command(flatten)]
+    sweep: SweepArgs,
+}
+
+impl Args {
+    /// Whether its work is cut into units, which many can share.
+    pub fn is_sweep(&self) -> bool {
+        recorded(self.scene.path()).is_none()
+    }
+}
+
+/// A result with where it comes from.
+#[derive(Serialize, Deserialize)]
+struct Recorded {
+    command: String,
+    machine: Machine,
+    #[serde(flatten)]
+    result: Tradeoff,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A bad scene, settings that it can't have, files that can't be written.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    if let Some(path) = recorded(args.scene.path()) {
+        if let Some(flag) = args.sweep.arguments().first() {
+            miette::bail!(
+                help = format!("leave {flag} out"),
+                "{flag}: an earlier run has no work to share"
+            );
+        }
+        return args.tell(&read(path)?);
+    }
+    sweep::enter(&args.sweep)?;
+    let comparison = Comparison::new(&args.scene.read()?, &plan(args))?;
+    let before = Conditions::before();
+    let mut findings = Findings::default();
+    let mut take = |_, result: &str| findings.take(result);
+    let directory = args.out.as_deref().unwrap_or(Path::new("."));
+    let Some(finished) = args.sweep.run(&comparison, directory, &mut take)? else {
+        return Ok(Outcome::Passed);
+    };
+    let settings = comparison.settings();
+    let outcome = args.tell(&Recorded::new(command(), findings, &settings, before)?)?;
+    finished.clear()?;
+    Ok(outcome)
+}
+
+/// What merged shards give.
+///
+/// # Errors
+/// Results of another command, files that can't be written.
+pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
+    let settings: Settings = merged.header.settings().into_diagnostic()?;
+    let mut findings = Findings::default();
+    for result in merged.done.values() {
+        findings.take(result)?;
+    }
+    let (line, unknown) = (merged.header.line.clone(), Conditions::default());
+    let recorded = Recorded::new(line, findings, &settings, unknown)?;
+    write_all(out, out, &recorded)?;
+    print(&recorded, format, tables::brief)
+}
+
+impl Recorded {
+    fn new(
+        command: String,
+        findings: Findings,
+        settings: &Settings,
+        before: Conditions,
+    ) -> miette::Result<Self> {
+        let result = findings.finish(settings, before);
+        Ok(Self {
+            command,
+            machine: settings.machine.clone(),
+            result: result.ok_or_else(|| miette!("these are not the units of one comparison"))?,
+        })
+    }
+}
+
+impl Args {
+    /// Writes and prints what was asked for.
+    fn tell(&self, recorded: &Recorded) -> miette::Result<Outcome> {
+        if let Some(directory) = &self.out {
+            let paper = self.paper.as_ref().unwrap_or(directory);
+            write_all(directory, paper, recorded)?;
+        }
+        let text = if self.all {
+            tables::text
+        } else {
+            tables::brief
+        };
+        print(recorded, self.format, text)
+    }
+}
+
+fn print(
+    recorded: &Recorded,
+    format: Format,
+    text: fn(&Tradeoff) -> String,
+) -> miette::Result<Outcome> {
+    let result = &recorded.result;
+    match format {
+        // A line a variant; the rest is in the other formats.
+        Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
+        format => emit(format, recorded, |recorded| text(&recorded.result))?,
+    }
+    let failures: Vec<&str> = result.failures().collect();
+    if failures.is_empty() {
+        return Ok(Outcome::Passed);
+    }
+    eprintln!("true pairs were missed by: {}", failures.join("; "));
+    Ok(Outcome::Failed)
+}
+
+fn plan(args: &Args) -> Plan {
+    let quick = |quick, thorough| if args.quick { quick } else { thorough };
+    Plan {
+        seeds: args.seeds.unwrap_or(quick(2, 5)),
+        samples: quick(6, 20) as u32,
+        pairs: quick(8_000, 80_000) as u32,
+        window: quick(30, 120) as u32,
+        stride: 10,
+        tier: args.machine.tier(),
+        cache: args.cache.clone().or_else(cache),
+    }
+}
+
+/// Where the user's programs keep what can be made again: on Linux `$XDG_CACHE_HOME`, or `~/.cache`. None where there is no
+/// home either: then nothing is kept.
+fn cache() -> Option<PathBuf> {
+    let directories = etcetera::choose_base_strategy().ok()?;
+    Some(directories.cache_dir().join("sdop/truth"))
+}
+
+/// The argument as the JSON of an earlier run, by its name.
+fn recorded(path: &Path) -> Option<&Path> {
+    path.extension()
+        .is_some_and(|ending| ending == "json")
+        .then_some(path)
+}
+
+fn read(path: &Path) -> miette::Result<Recorded> {
+    serde_json::from_str(&files::read(path)?)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{} is no result of sdop tradeoff", path.display()))
+}
+
+/// Writes the numbers to one directory, the page and its figures to another.
+fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Result<()> {
+    let result = &recorded.result;
+    let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
+    let csv = csv_text(serde_json::to_value(&result.rows).into_diagnostic()?)?;
+    write(&numbers.join("tradeoff.json"), &json)?;
+    write(&numbers.join("tradeoff.csv"), &csv)?;
+    let figures = paper.join("figures");
+    write(&paper.join("tradeoff.md"), page::page(recorded))?;
+    write(&figures.join("tradeoff.svg"), &plot::precision(result)?)?;
+    write(
+        &figures.join("tradeoff-pays.svg"),
+        &plot::break_even(result)?,
+    )?;
+    write(&figures.join("tradeoff-budget.svg"), &plot::budget(result)?)
+}

@@ -1,0 +1,447 @@
+//! The result as tables: what a terminal shows, and what the page quotes.
+
+use comfy_table::Table;
+use sdop::settings::{Axes, Overlap};
+use sdop_bench::cost::predict::Terms;
+use sdop_bench::cost::table::Compared;
+use sdop_bench::measure::turns::median;
+use sdop_bench::tradeoff::decide::{CHECKS, Decision};
+use sdop_bench::tradeoff::pays::{Line, Standing};
+use sdop_bench::tradeoff::shapes::ShapeSurvival;
+use sdop_bench::tradeoff::{Estimate, Tradeoff, VariantResult};
+
+use crate::commands::output::{rows, table};
+
+/// For people: the recommendation, then a short table.
+pub fn brief(result: &Tradeoff) -> String {
+    let front: Vec<VariantResult> = {
+        let shown = result
+            .rows
+            .iter()
+            .filter(|row| row.standing != Standing::Beaten);
+        let mut shown: Vec<VariantResult> = shown.cloned().collect();
+        shown.sort_by(|a, b| a.seconds().mean.total_cmp(&b.seconds().mean));
+        shown
+    };
+    let header = [
+        "variant",
+        "standing",
+        "precision",
+        "µs per warm frame",
+        "false pairs",
+    ];
+    let short = rows(&header, &front, |row| {
+        vec![
+            row.name.clone(),
+            row.standing.to_string(),
+            plus_minus(&row.precision, 1.0, 3),
+            plus_minus(&row.seconds(), 1e6, 1),
+            format!("{:.1}", row.reported.mean * (1.0 - row.precision.mean)),
+        ]
+    });
+    let mut parts = vec![result.advice.clone()];
+    parts.extend(result.conditions.warning());
+    parts.extend([
+        heading(result),
+        short.to_string(),
+        "--all prints the rest.".to_owned(),
+    ]);
+    parts.join("\n\n")
+}
+
+/// Everything, for people.
+pub fn text(result: &Tradeoff) -> String {
+    let mut parts = vec![result.advice.clone()];
+    parts.extend(result.conditions.warning());
+    parts.extend([
+        heading(result),
+        "Which variant, by density, class of shapes and price of a narrow-phase check".into(),
+        decisions(result).to_string(),
+        variants(result).to_string(),
+        "Time-critical: precision against the budget of tests".into(),
+        budgets(result).to_string(),
+        "Time-critical: the clock overrun, microseconds".into(),
+        clock(result).to_string(),
+        "Object of interest".into(),
+        interest(result).to_string(),
+        "Cp (ns) above which each pays, spheres alone before it, by density".into(),
+        break_even(result).to_string(),
+        "Which variant, when one thing about the scene is changed".into(),
+        variations(result).to_string(),
+        "Survivors per sphere hit (two bodies of one shape, principal axes)".into(),
+        shapes(result).to_string(),
+        "The price of safety".into(),
+        safety(result).to_string(),
+    ]);
+    parts.join("\n\n")
+}
+
+/// A line a density and class of shapes, a column a price of a check: what to use, and what is tied with it.
+pub fn decisions(result: &Tradeoff) -> Table {
+    let checks: Vec<String> = CHECKS.iter().map(|check| nanoseconds(*check)).collect();
+    let header = [
+        &["sphere overlaps per body", "shapes"],
+        &checks.iter().map(String::as_str).collect::<Vec<_>>()[..],
+    ]
+    .concat();
+    let mut rows = table(&header);
+    for decisions in result
+        .decisions
+        .chunk_by(|a, b| (a.partners, a.class) == (b.partners, b.class))
+    {
+        let cell = |decision: &Decision| with_ties(&decision.best, &decision.tied);
+        let first = [
+            format!("{:.2}", decisions[0].partners),
+            decisions[0].class.to_string(),
+        ];
+        rows.add_row(first.into_iter().chain(decisions.iter().map(cell)));
+    }
+    rows
+}
+
+fn with_ties(best: &str, tied: &[String]) -> String {
+    match tied {
+        [] => best.to_owned(),
+        [one] => format!("{best} (tied: {one})"),
+        [one, rest @ ..] => format!("{best} (tied: {one} and {} more)", rest.len()),
+    }
+}
+
+/// A line a change of the scene, a column a price of a check: what to use, and what is tied with it.
+pub fn variations(result: &Tradeoff) -> Table {
+    let checks = CHECKS.map(nanoseconds);
+    let header = [
+        "changed",
+        "bodies",
+        "triangles per mesh",
+        "radii per frame",
+        "sphere overlaps per body",
+        "Co of an or-DOP ms",
+        "exact check µs",
+        "spheres, warm µs",
+        "best at 1000 ns, warm µs",
+    ];
+    let header = [&header[..], &checks.each_ref().map(String::as_str)].concat();
+    rows(&header, &result.variations, |varied| {
+        let construct = |line: &Line| line.ordop.map(|_| line.construct);
+        let construct = varied
+            .lines
+            .iter()
+            .filter_map(construct)
+            .fold(0.0, f64::max);
+        let changed = match varied.mix {
+            Some(mix) => format!("{}: {mix}", varied.aspect),
+            None => varied.aspect.to_string(),
+        };
+        let mut cells = vec![
+            changed,
+            varied.bodies.to_string(),
+            format!("{:.0}", varied.triangles),
+            format!("{:.3}", varied.motion),
+            format!("{:.2}", varied.partners),
+            format!("{:.1}", 1e3 * construct),
+            format!("{:.1}", 1e6 * varied.narrow_phase.miss),
+        ];
+        let best = varied.best.iter().find(|best| best.check == 1e-6);
+        let best = best.and_then(|best| varied.lines.iter().find(|line| line.name == best.name));
+        for line in [varied.lines.first(), best] {
+            cells.push(line.map_or("–".into(), |line| {
+                plus_minus(&Estimate::in_order(&line.times), 1e6, 1)
+            }));
+        }
+        cells.extend(
+            varied
+                .best
+                .iter()
+                .map(|best| with_ties(&best.name, &best.tied)),
+        );
+        cells
+    })
+}
+
+fn nanoseconds(seconds: f64) -> String {
+    format!("{:.0} ns a check", 1e9 * seconds)
+}
+
+/// What was run.
+pub fn heading(result: &Tradeoff) -> String {
+    format!(
+        "{}: {} bodies, {} of {} frames judged, seeds {:?}, {}; {} true pairs a frame, {:.2} sphere overlaps a body",
+        result.scene,
+        result.bodies,
+        result.samples,
+        result.frames,
+        result.seeds,
+        result.simd,
+        plus_minus(&result.truth, 1.0, 1),
+        result.partners,
+    )
+}
+
+/// The mean and its interval, scaled.
+pub fn plus_minus(estimate: &Estimate, scale: f64, digits: usize) -> String {
+    let (mean, half) = (scale * estimate.mean, scale * estimate.half_width);
+    if half.is_finite() {
+        format!("{mean:.digits$} ± {half:.digits$}")
+    } else {
+        format!("{mean:.digits$}")
+    }
+}
+
+/// A line a variant, with how it stands to the Pareto front.
+pub fn variants(result: &Tradeoff) -> Table {
+    let header = [
+        "variant",
+        "standing",
+        "precision",
+        "reported / true",
+        "recall",
+        "volume / hull",
+        "Nu",
+        "Nv",
+        "Nu·Cu µs",
+        "F µs",
+        "Nv·Cv µs",
+        "sum µs",
+        "warm µs",
+        "residual %",
+        "cold µs",
+        "residual %",
+        "Co ms",
+        "residual %",
+    ];
+    rows(&header, &result.rows, variant)
+}
+
+fn variant(row: &VariantResult) -> Vec<String> {
+    let terms = row.warm.as_ref().map_or(&[][..], |cost| &cost.terms);
+    let joined = |term: fn(&Terms) -> f64| {
+        let terms: Vec<String> = terms.iter().map(|t| format!("{:.0}", term(t))).collect();
+        terms.join(" + ")
+    };
+    let sum = |term: fn(&Terms) -> f64| format!("{:.1}", 1e6 * terms.iter().map(term).sum::<f64>());
+    let compared = |cost: Option<&Compared>, scale: f64| {
+        let cells = cost.map(|cost| {
+            let residual = format!("{:+.1}", 100.0 * cost.residual.mean);
+            [plus_minus(&cost.measured, scale, 1), residual]
+        });
+        cells.unwrap_or_default()
+    };
+    let mut cells = vec![
+        row.name.clone(),
+        row.standing.to_string(),
+        plus_minus(&row.precision, 1.0, 3),
+        plus_minus(&row.per_true, 1.0, 2),
+        if row.recall == 1.0 {
+            "1".into()
+        } else {
+            format!("{:.6}", row.recall)
+        },
+        row.volume_over_hull
+            .map_or("–".into(), |ratio| format!("{ratio:.2}")),
+        joined(|t| t.updates),
+        joined(|t| t.tests),
+        sum(|t| t.update),
+        sum(|t| t.finding),
+        sum(|t| t.test),
+        sum(Terms::recurring),
+    ];
+    cells.extend(compared(row.warm.as_ref().map(|cost| &cost.frame), 1e6));
+    cells.extend(compared(row.cold.as_ref().map(|cost| &cost.frame), 1e6));
+    cells.extend(compared(row.warm.as_ref().map(|cost| &cost.construct), 1e3));
+    cells
+}
+
+/// A line an order and budget.
+pub fn budgets(result: &Tradeoff) -> Table {
+    let header = [
+        "order",
+        "tests / frame",
+        "refined",
+        "precision",
+        "recall",
+        "mean age",
+        "oldest",
+    ];
+    rows(&header, &result.budgets, |row| {
+        vec![
+            row.order.to_string(),
+            row.tests.to_string(),
+            format!("{:.3}", row.refined),
+            format!("{:.3}", row.precision),
+            format!("{}", row.recall),
+            format!("{:.1}", row.mean_age),
+            row.oldest.to_string(),
+        ]
+    })
+}
+
+/// A line a clock budget.
+pub fn clock(result: &Tradeoff) -> Table {
+    let header = ["budget µs", "refined", "overrun p50", "overrun p99"];
+    rows(&header, &result.clock, |row| {
+        vec![
+            row.microseconds.to_string(),
+            format!("{:.3}", row.refined),
+            format!("{:+.1}", row.p50),
+            format!("{:+.1}", row.p99),
+        ]
+    })
+}
+
+/// A line an interest set.
+pub fn interest(result: &Tradeoff) -> Table {
+    let header = [
+        "of interest",
+        "or-DOP tests",
+        "reported",
+        "precision",
+        "recall",
+        "warm µs",
+        "lazy, warm µs",
+    ];
+    rows(&header, &result.interest, |row| {
+        vec![
+            row.bodies.to_string(),
+            format!("{:.1}", row.tests),
+            format!("{:.1}", row.reported),
+            format!("{:.3}", row.quality.precision),
+            format!("{}", row.quality.recall),
+            plus_minus(&row.seconds, 1e6, 1),
+            plus_minus(&row.lazy_seconds, 1e6, 1),
+        ]
+    })
+}
+
+/// A line a density, a column an S-DOP.
+pub fn break_even(result: &Tradeoff) -> Table {
+    let names = result.densities.first().map_or(Vec::new(), |density| {
+        density.break_even.iter().map(|b| b.name.as_str()).collect()
+    });
+    let mut header = vec!["partners", "sphere hits"];
+    header.extend(&names);
+    let mut rows = table(&header);
+    for density in &result.densities {
+        let hits = density.lines.first().map_or(0.0, |line| line.pairs);
+        let mut cells = vec![format!("{:.3}", density.partners), format!("{hits:.1}")];
+        cells.extend(names.iter().map(|name| {
+            let found = density.break_even.iter().find(|b| b.name == *name);
+            found.map_or("–".into(), |b| format!("{:.0}", 1e9 * b.cp))
+        }));
+        rows.add_row(cells);
+    }
+    rows
+}
+
+/// A line a shape: two-sided at each k beside what each other test lets through, hulls and meshes.
+pub fn shapes(result: &Tradeoff) -> Table {
+    let mut header = vec!["shape".to_owned()];
+    for &overlap in Overlap::ALL {
+        header.extend([6, 14, 18, 26].map(|k| format!("{overlap} {k}")));
+    }
+    header.extend(["hull", "mesh", "outside"].map(str::to_owned));
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let mut rows = table(&header);
+    for shape in &result.shapes {
+        let mut cells = vec![shape.shape.clone()];
+        for &overlap in Overlap::ALL {
+            let share = |k| survivors(shape, k, Axes::Principal, overlap);
+            cells.extend([6, 14, 18, 26].map(|k| share(k).map_or("–".into(), short)));
+        }
+        let outside = format!("{:.2} %", 100.0 * shape.outside);
+        cells.extend([short(&shape.hull), short(&shape.mesh), outside]);
+        rows.add_row(cells);
+    }
+    rows
+}
+
+/// Survivors per sphere hit of one kind of or-DOP.
+pub fn survivors(
+    shape: &ShapeSurvival,
+    k: usize,
+    axes: Axes,
+    overlap: Overlap,
+) -> Option<&Estimate> {
+    let fits = |s: &&sdop_bench::tradeoff::shapes::Survival| {
+        (s.k, s.axes, s.overlap) == (k, axes, overlap)
+    };
+    shape.ordops.iter().find(fits).map(|s| &s.share)
+}
+
+fn short(estimate: &Estimate) -> String {
+    plus_minus(estimate, 1.0, 3)
+}
+
+/// Mean volume over hull volume in an earlier study of 15 shapes.
+const STUDY: [(&str, f64); 6] = [
+    ("sphere", 4.65),
+    ("aabb", 1.93),
+    ("or-dop-6-principal", 2.01),
+    ("or-dop-14-principal", 1.50),
+    ("or-dop-18-principal", 1.40),
+    ("or-dop-26-principal", 1.33),
+];
+
+/// A line a shape, a column a volume, the mean and the study's below.
+pub fn sizes(result: &Tradeoff) -> Table {
+    let names: Vec<&str> = match result.shapes.first() {
+        Some(shape) => shape.sizes.iter().map(|size| size.name.as_str()).collect(),
+        None => Vec::new(),
+    };
+    let mut rows = table(&[&["shape"], names.as_slice()].concat());
+    let cell = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.2}"));
+    let mut line = |name: &str, values: Vec<Option<f64>>| {
+        let values = values.into_iter().map(cell);
+        rows.add_row(std::iter::once(name.to_owned()).chain(values));
+    };
+    for shape in &result.shapes {
+        line(
+            &shape.shape,
+            shape.sizes.iter().map(|s| s.over_hull).collect(),
+        );
+    }
+    let column = |place: usize| -> Vec<f64> {
+        let size = |shape: &ShapeSurvival| shape.sizes.get(place)?.over_hull;
+        result.shapes.iter().filter_map(size).collect()
+    };
+    let mean = |place| {
+        let column = column(place);
+        (!column.is_empty()).then(|| column.iter().sum::<f64>() / column.len() as f64)
+    };
+    line("mean", (0..names.len()).map(mean).collect());
+    let middle = |place| (!column(place).is_empty()).then(|| median(column(place)));
+    line("median", (0..names.len()).map(middle).collect());
+    let study = |name: &&str| STUDY.iter().find(|(of, _)| of == name).map(|&(_, x)| x);
+    line("study", names.iter().map(study).collect());
+    rows
+}
+
+/// A line an arithmetic and tier.
+pub fn safety(result: &Tradeoff) -> Table {
+    let header = [
+        "strategy",
+        "arithmetic",
+        "simd",
+        "reported",
+        "extra",
+        "lost",
+        "warm µs",
+        "quartiles",
+    ];
+    rows(&header, &result.safety, |row| {
+        vec![
+            row.strategy.to_string(),
+            row.arithmetic.to_string(),
+            row.simd.clone(),
+            row.reported.to_string(),
+            row.extra.to_string(),
+            row.lost.to_string(),
+            format!("{:.1}", 1e6 * row.seconds.median),
+            format!(
+                "{:.1} to {:.1}",
+                1e6 * row.seconds.low,
+                1e6 * row.seconds.high
+            ),
+        ]
+    })
+}

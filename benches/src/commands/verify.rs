@@ -1,0 +1,282 @@
+//! `sdop verify`: the optimised culler against the exact reference, on hard cases, seeded rounds and scenes.
+
+mod report;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use clap::builder::PossibleValuesParser;
+use miette::{IntoDiagnostic as _, WrapErr as _};
+use sdop::Tier;
+use sdop_bench::scene::{Scene, SceneFile};
+use sdop_bench::sweep::Merged;
+use sdop_bench::verify::shrink::Smallest;
+pub use sdop_bench::verify::units::NAME;
+use sdop_bench::verify::units::{Origin, Settings, Verification};
+use sdop_judge::ours::hard::{FILES, Group, page};
+use sdop_judge::ours::rounds::{Failure, Ledger};
+
+use super::Outcome;
+use super::files::{self, ReadArgs};
+use super::judge::{self, ReportFormat};
+use super::output::{Format, emit, print, progress};
+use super::sweep::{self, SweepArgs};
+use report::Report;
+
+/// Judge the optimised culler by the exact reference
+///
+/// Hard cases first, then seeded rounds (a probe among bodies that nearly touch it, and a random crowd, for every k and
+/// axes), then the scenes given, meshes included. Strategies, overlap tests, finders, k, axes, update modes, SIMD tiers and
+/// numbers of threads meet in every combination; the matrix at the end says how often. Each list is held against the
+/// exact answers and against that of all-pairs. Given boxes are held against their definition. A missed pair, a list that differs from all-pairs' and an empty cell of the
+/// matrix end in exit code 1, the first two with the smallest scene that shows it.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100\n          \
+    mpirun -n 64 sdop verify --seeds 10000 --out target/verify\n          \
+    sdop verify --seeds 10000 --shard 3/64 --out shards"
+)]
+pub struct Args {
+    /// Scenes to run and judge, meshes included
+    scenes: Vec<PathBuf>,
+    /// One group of hard cases instead of all; may be repeated
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FILES.iter().map(|file| file.0)))]
+    group: Vec<String>,
+    /// Seeded rounds: each judges 8,192 near and 89,400 random pairs
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(..=1_000_000))]
+    seeds: u64,
+    /// The first seed
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    first_seed: u64,
+    /// Start no round after so many seconds
+    #[arg(long, value_name = "S", conflicts_with = "shard")]
+    time: Option<u64>,
+    /// Frames of each scene
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    frames: usize,
+    /// One SIMD tier alone, instead of all that the CPU has
+    #[arg(long, value_name = "TIER")]
+    simd: Option<Tier>,
+    /// Where the scene that shows a missed pair is written, and shards and journals
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+    /// Write the hard cases' exact answers and their page into this directory, and judge nothing
+    #[arg(long, value_name = "DIR")]
+    record_hard_cases: Option<PathBuf>,
+    #[command(flatten)]
+    files: ReadArgs,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: ReportFormat,
+    #[command(flatten)]
+    sweep: SweepArgs,
+    #[command(flatten)]
+    outside: judge::Outside,
+}
+
+impl Args {
+    /// Whether its work is cut into units, which many can share.
+    pub fn is_sweep(&self) -> bool {
+        self.record_hard_cases.is_none() && self.outside.exec.is_none()
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A scene that can't be run, a directory that can't be written.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    if let Some(directory) = &args.record_hard_cases {
+        return record(directory);
+    }
+    if let Some(command) = &args.outside.exec {
+        return judge::run(
+            &args.outside,
+            command,
+            &args.files,
+            args.time,
+            &args.out,
+            args.format,
+        );
+    }
+    sweep::enter(&args.sweep)?;
+    let format = args.format.plain()?;
+    let run = verification(args)?;
+    let mut taken = Taken::default();
+    let mut take = |unit, result: &str| taken.take(&run, unit, result);
+    let Some(finished) = args.sweep.run(&run, &args.out, &mut take)? else {
+        return Ok(Outcome::Passed);
+    };
+    let outcome = taken.report(&run, finished.seconds, format, &args.out)?;
+    finished.clear()?;
+    Ok(outcome)
+}
+
+/// The report of merged shards. A scene whose frames show a failure is read again, if it is where it was.
+///
+/// # Errors
+/// Results of another command, a CPU that lacks a tier, a directory that can't be written.
+pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
+    let settings = merged.header.settings().into_diagnostic()?;
+    let run = Verification::new(settings)?;
+    let mut taken = Taken::default();
+    for (&unit, result) in &merged.done {
+        taken.take(&run, unit, result)?;
+    }
+    taken.report(&run, merged.seconds, format, out)
+}
+
+fn verification(args: &Args) -> miette::Result<Verification> {
+    let deadline = args.time.map(Duration::from_secs);
+    // A time beyond the clock's end is none.
+    let deadline = deadline.and_then(|time| Instant::now().checked_add(time));
+    // A scene that can't be built is said before the long work.
+    let most = args.files.max_bytes();
+    let build = |path: &PathBuf| SceneFile::read_within(path, most).and_then(|file| file.build());
+    let scenes = args.scenes.iter().map(build);
+    let scenes = scenes.collect::<Result<Vec<Scene>, _>>()?;
+    let tiers = match args.simd {
+        Some(tier) => vec![tier],
+        None => [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat(),
+    };
+    let name = |scene: &Scene| {
+        let (name, bodies) = (&scene.name, scene.bodies.len());
+        format!("{name}, {bodies} bodies, {} frames", args.frames)
+    };
+    let groups = match &args.group[..] {
+        [] => FILES.iter().map(|file| file.0.to_owned()).collect(),
+        named => named.to_vec(),
+    };
+    let run = Verification::new(Settings {
+        groups,
+        first_seed: args.first_seed,
+        seeds: args.seeds,
+        scenes: scenes.iter().map(name).collect(),
+        frames: args.frames,
+        tiers: tiers.iter().map(|tier| tier.name().to_owned()).collect(),
+    })?;
+    Ok(run.with_scenes(scenes, deadline))
+}
+
+/// What units have given.
+#[derive(Default)]
+struct Taken {
+    ledgers: BTreeMap<Origin, Ledger>,
+    /// The first unit of each that knows of a failure.
+    failed: BTreeMap<Origin, usize>,
+}
+
+impl Taken {
+    fn take(&mut self, run: &Verification, unit: usize, result: &str) -> miette::Result<()> {
+        for (origin, ledger, failed) in run.take(unit, result)? {
+            self.ledgers.entry(origin).or_default().add(ledger);
+            if failed {
+                self.failed.entry(origin).or_insert(unit);
+            }
+        }
+        Ok(())
+    }
+
+    /// Prints the report; a failure is looked up and shrunk.
+    fn report(
+        self,
+        run: &Verification,
+        seconds: f64,
+        format: Format,
+        out: &Path,
+    ) -> miette::Result<Outcome> {
+        let settings = run.settings();
+        let mut report = Report::new(&settings.tiers);
+        let scenes = settings.scenes.iter().enumerate();
+        let scenes = scenes.map(|(n, name)| (Origin::Scene(n), name.as_str()));
+        let rounds = [
+            (Origin::Hard, "hard cases"),
+            (Origin::Near, "near pairs"),
+            (Origin::Random, "random pairs"),
+        ];
+        for (origin, name) in rounds.into_iter().chain(scenes) {
+            let none = Ledger::default();
+            report.add(name.to_owned(), self.ledgers.get(&origin).unwrap_or(&none));
+        }
+        let none = Ledger::default();
+        let boxes = self.ledgers.get(&Origin::Boxes).unwrap_or(&none);
+        report.finish(seconds, &boxes.boxes, run.rotation());
+        emit(format, &report, Report::tables)?;
+        if report.passed() {
+            return Ok(Outcome::Passed);
+        }
+        if let Some((origin, &unit)) = self.failed.first_key_value() {
+            let judged = run.judge(unit)?.into_iter().filter(|(of, _)| of == origin);
+            let ledger = judged.map(|(_, ledger)| ledger).next().unwrap_or_default();
+            match (ledger.failures.first(), &ledger.boxes.failure) {
+                (Some(failure), _) => show(failure, out)?,
+                (None, Some(boxes)) => print(boxes)?,
+                (None, None) => print("the failure doesn't show on this machine")?,
+            }
+        }
+        Ok(Outcome::Failed)
+    }
+}
+
+/// Shrinks a failure and says where the scene is.
+fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
+    let [i, j] = failure.pair;
+    let what = format!(
+        "{} {} bodies {i} and {j} ({}, k = {}, {} axes, {}, {}, {}, {} threads)",
+        failure.settings.strategy,
+        if failure.missed {
+            "misses"
+        } else {
+            "and all-pairs differ on"
+        },
+        failure.settings.pairs,
+        failure.settings.k,
+        failure.settings.axes,
+        failure.settings.overlap,
+        failure.mode.updates,
+        failure.mode.tier,
+        failure.mode.threads
+    );
+    let Some(smallest) = Smallest::of(failure) else {
+        return print(&format!(
+            "{what}\nthe frame alone does not show it: it depends on the frames before"
+        ));
+    };
+    let (path, shown) = smallest
+        .write(out)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot write to {}", out.display()))?;
+    let how = if shown {
+        "shown by"
+    } else {
+        "not shown once its shapes are built anew, but its numbers are in"
+    };
+    print(&format!(
+        "{what}\n{} bodies are enough, {how} {}",
+        smallest.bodies.len(),
+        path.display()
+    ))
+}
+
+/// Recomputes the answers of the groups in a directory, and their page.
+fn record(directory: &Path) -> miette::Result<Outcome> {
+    let write = |name: &str, text: &str| files::write(&directory.join(name), text);
+    let bar = progress(FILES.len() as u64, "exact answers");
+    let mut texts = Vec::new();
+    for (name, _) in FILES {
+        let path = directory.join(format!("{name}.toml"));
+        let text = files::read(&path)?;
+        let mut group = Group::parse(&text).into_diagnostic()?;
+        group.record().into_diagnostic()?;
+        let head = text.split("\n[answers").next().unwrap_or(&text).trim_end();
+        let text = format!("{head}\n{}", group.answers_toml().into_diagnostic()?);
+        write(&format!("{name}.toml"), &text)?;
+        texts.push((*name, text));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let page = page(texts.iter().map(|(name, text)| (*name, text.as_str())));
+    write("README.md", &page.into_diagnostic()?)?;
+    Ok(Outcome::Passed)
+}

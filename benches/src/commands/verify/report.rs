@@ -1,0 +1,187 @@
+//! What a verification run says of itself: answers by stage and lists by strategy, one table each a source, and the matrix
+//! of what was judged.
+
+mod coverage;
+
+use sdop_judge::ours::Predicate;
+use sdop_judge::ours::boxes::BoxLedger;
+use sdop_judge::ours::matrix::Matrix;
+use sdop_judge::ours::rounds::{Judged, Ledger};
+use sdop_judge::ours::ways::Rotation;
+use serde::Serialize;
+
+use crate::commands::output::table;
+use coverage::Coverage;
+
+/// The result of `sdop verify`.
+#[derive(Serialize)]
+pub struct Report {
+    /// Tiers that took part.
+    simd: Vec<String>,
+    /// Wall time.
+    seconds: f64,
+    /// Pairs missed, over all sources.
+    missed: u64,
+    /// Pairs on which a list and that of all-pairs differ, over all sources; of given boxes, a list and their definition.
+    differ: u64,
+    sources: Vec<SourceReport>,
+    coverage: Coverage,
+    #[serde(skip)]
+    matrix: Matrix,
+}
+
+#[derive(Serialize)]
+struct SourceReport {
+    name: String,
+    answers: Vec<AnswersReport>,
+    strategies: Vec<StrategyReport>,
+}
+
+/// One predicate's answers: how many pairs, and which stage of the reference was certain.
+#[derive(Serialize)]
+struct AnswersReport {
+    name: &'static str,
+    judged: u64,
+    overlapping: u64,
+    by_filter: u64,
+    by_interval: u64,
+    exactly: u64,
+}
+
+/// One strategy's lists, over all finders and tiers.
+#[derive(Serialize)]
+struct StrategyReport {
+    name: String,
+    judged: u64,
+    required: u64,
+    reported: u64,
+    missed: u64,
+    /// On which a list and that of all-pairs differ.
+    differ: u64,
+    /// Reported although the exact volumes are apart, but not those wider by the rounding margins; per million judged.
+    margin_per_million: Option<f64>,
+    /// Reported although those are apart too, since supports are bounded from slabs; per million judged.
+    bound_per_million: Option<f64>,
+    /// Reported and rightly so, but the meshes are apart, per million pairs whose meshes were judged.
+    looseness_per_million: Option<f64>,
+}
+
+impl Report {
+    pub fn new(tiers: &[String]) -> Self {
+        Self {
+            simd: tiers.to_vec(),
+            seconds: 0.0,
+            missed: 0,
+            differ: 0,
+            sources: Vec::new(),
+            coverage: Coverage::default(),
+            matrix: Matrix::default(),
+        }
+    }
+
+    pub fn add(&mut self, name: String, ledger: &Ledger) {
+        self.missed += ledger.missed();
+        self.differ += ledger.differing();
+        self.matrix.add(&ledger.matrix);
+        let answers = ledger.predicates.iter().zip(Predicate::ALL);
+        self.sources.push(SourceReport {
+            name,
+            answers: answers
+                .filter(|((_, tally), _)| tally.total() > 0)
+                .map(|((overlapping, tally), predicate)| AnswersReport {
+                    name: predicate.name(),
+                    judged: tally.total(),
+                    overlapping: *overlapping,
+                    by_filter: tally.filter,
+                    by_interval: tally.interval,
+                    exactly: tally.exact,
+                })
+                .collect(),
+            strategies: ledger.rows.iter().map(strategy).collect(),
+        });
+    }
+
+    pub fn finish(&mut self, seconds: f64, boxes: &BoxLedger, rotation: &Rotation) {
+        self.seconds = seconds;
+        self.differ += boxes.wrong();
+        self.coverage = Coverage::of(&self.matrix, boxes, rotation);
+    }
+
+    /// Whether no pair is missed, no finder disagrees with all-pairs, and no cell of the matrix is empty.
+    pub fn passed(&self) -> bool {
+        self.missed == 0 && self.differ == 0 && self.coverage.is_full()
+    }
+
+    /// Two tables a source, and those of the matrix.
+    pub fn tables(&self) -> String {
+        let mut text = String::new();
+        for source in &self.sources {
+            let header = [
+                "exact answers",
+                "pairs",
+                "overlap",
+                "filter",
+                "interval",
+                "integers",
+            ];
+            let mut answers = table(&header);
+            for a in &source.answers {
+                let counts = [
+                    a.judged,
+                    a.overlapping,
+                    a.by_filter,
+                    a.by_interval,
+                    a.exactly,
+                ];
+                answers.add_row(
+                    [a.name.to_owned()]
+                        .into_iter()
+                        .chain(counts.map(|n| n.to_string())),
+                );
+            }
+            let header = [
+                "strategy", "judged", "required", "reported", "missed", "differ", "margin/M",
+                "bound/M", "loose/M",
+            ];
+            let mut lists = table(&header);
+            for s in &source.strategies {
+                let counts = [s.judged, s.required, s.reported, s.missed, s.differ];
+                let counts = counts.map(|n| n.to_string());
+                let rates = [
+                    s.margin_per_million,
+                    s.bound_per_million,
+                    s.looseness_per_million,
+                ]
+                .map(|rate| rate.map_or("–".to_owned(), |x| format!("{x:.1}")));
+                lists.add_row([s.name.clone()].into_iter().chain(counts).chain(rates));
+            }
+            text += &format!("{}\n{answers}\n{lists}\n\n", source.name);
+        }
+        text + &format!(
+            "{}\n\n{} missed, {} differ from all-pairs, in {:.0} s on {}",
+            self.coverage.tables(),
+            self.missed,
+            self.differ,
+            self.seconds,
+            self.simd.join(", ")
+        )
+    }
+}
+
+fn strategy((row, count): (&Judged, &sdop_judge::ours::Count)) -> StrategyReport {
+    let rate = |part: u64, of: u64| (of > 0).then(|| 1e6 * part as f64 / of as f64);
+    // What a budget leaves untested is no rounding margin.
+    let budgeted = row.strategy.scheme().has_budget();
+    let overlap = row.overlap.map(|overlap| format!(" {overlap}"));
+    StrategyReport {
+        name: format!("{}{}", row.strategy, overlap.unwrap_or_default()),
+        judged: count.judged,
+        required: count.required,
+        reported: count.reported,
+        missed: count.missed,
+        differ: count.differ,
+        margin_per_million: rate(count.margin, count.judged).filter(|_| !budgeted),
+        bound_per_million: rate(count.bound, count.judged).filter(|_| !budgeted),
+        looseness_per_million: rate(count.loose, count.meshes_judged),
+    }
+}

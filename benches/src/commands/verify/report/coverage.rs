@@ -1,0 +1,183 @@
+//! The matrix of what was judged, in two projections: thousands of cells are too many to read, and a tier, a mode or a
+//! finder that was left out shows in one of them.
+
+use sdop::settings::Strategy;
+use sdop_judge::ours::boxes::{BoxCell, BoxLedger};
+use sdop_judge::ours::matrix::{Cell, Filled, Matrix};
+use sdop_judge::ours::ways::Rotation;
+use serde::Serialize;
+
+use crate::commands::output::table;
+
+/// How full the matrix is.
+#[derive(Default, Serialize)]
+pub struct Coverage {
+    /// Cells that can be filled.
+    cells: u64,
+    /// Cells that are.
+    filled: u64,
+    /// The fewest lists judged in a cell.
+    fewest: u64,
+    /// What can't exist, and so has no cell.
+    impossible: String,
+    /// By strategy and overlap test against finder: over k, axes, updates, tiers and threads.
+    by_strategy: Vec<CoverageLine>,
+    /// By tier, updates and threads against k and axes: over strategies, overlap tests and finders.
+    by_mode: Vec<CoverageLine>,
+    /// Of given boxes: pairs that meet, over frames.
+    box_pairs: u64,
+    /// Those that a list had and shouldn't, or should have had.
+    box_wrong: u64,
+    /// Lists of given boxes: by tier and threads against finder.
+    boxes: Vec<CoverageLine>,
+    /// The cells without a list, by name.
+    empty: Vec<String>,
+}
+
+/// One line of a projection.
+#[derive(Serialize)]
+struct CoverageLine {
+    name: String,
+    parts: Vec<Part>,
+}
+
+#[derive(Serialize)]
+struct Part {
+    name: String,
+    #[serde(flatten)]
+    filled: Filled,
+}
+
+impl Coverage {
+    pub fn of(matrix: &Matrix, boxes: &BoxLedger, rotation: &Rotation) -> Self {
+        let all = matrix.fold(rotation, |_| ());
+        let all = all.first().map_or_else(Filled::default, |(_, all)| *all);
+        let unrefined = Strategy::ALL
+            .iter()
+            .filter(|strategy| !strategy.scheme().has_overlap_test());
+        let unrefined: Vec<&str> = unrefined.map(|strategy| strategy.name()).collect();
+        Self {
+            cells: all.cells,
+            filled: all.filled,
+            fewest: all.fewest,
+            impossible: format!(
+                "{} have no overlap test: one row instead of three",
+                unrefined.join(", ")
+            ),
+            by_strategy: rows(
+                matrix.fold(rotation, |cell| (strategy(cell), cell.finder.to_string())),
+            ),
+            by_mode: rows(matrix.fold(rotation, |cell| (mode(cell), variant(cell)))),
+            box_pairs: boxes.required,
+            box_wrong: boxes.wrong(),
+            boxes: rows(BoxCell::all(rotation).map(|(cell, _)| box_part(&cell, boxes))),
+            empty: {
+                let unjudged = BoxCell::all(rotation).map(|(cell, _)| cell);
+                let unjudged = unjudged.filter(|cell| boxes.lists(cell) == 0);
+                let names = matrix.empty(rotation).iter().map(name).collect::<Vec<_>>();
+                names
+                    .into_iter()
+                    .chain(unjudged.map(|cell| box_name(&cell)))
+                    .collect()
+            },
+        }
+    }
+
+    pub fn is_full(&self) -> bool {
+        self.empty.is_empty()
+    }
+
+    /// Both projections, and the empty cells.
+    pub fn tables(&self) -> String {
+        let [finders, modes] = [&self.by_strategy, &self.by_mode].map(|rows| projection(rows));
+        let mut text = format!(
+            "What was judged: {} of {} cells, each by {} lists or more ({})\n{finders}\n{modes}",
+            self.filled, self.cells, self.fewest, self.impossible
+        );
+        text += &format!(
+            "\nGiven boxes, {} pairs that meet, {} wrong in a list:\n{}",
+            self.box_pairs,
+            self.box_wrong,
+            projection(&self.boxes)
+        );
+        for cell in &self.empty {
+            text += &format!("\nempty: {cell}");
+        }
+        text
+    }
+}
+
+/// One table: filled cells of all, and the fewest lists in one.
+fn projection(rows: &[CoverageLine]) -> comfy_table::Table {
+    let columns = rows.iter().take(1).flat_map(|row| &row.parts);
+    let columns = columns.map(|part| part.name.as_str());
+    let header: Vec<&str> = ["cells with lists"].into_iter().chain(columns).collect();
+    let mut printed = table(&header);
+    for row in rows {
+        let parts = row.parts.iter().map(|Part { filled, .. }| {
+            format!("{}/{} ≥{}", filled.filled, filled.cells, filled.fewest)
+        });
+        printed.add_row([row.name.clone()].into_iter().chain(parts));
+    }
+    printed
+}
+
+/// Rows and their parts in the order of their first cells.
+fn rows(folded: impl IntoIterator<Item = ((String, String), Filled)>) -> Vec<CoverageLine> {
+    let mut rows: Vec<CoverageLine> = Vec::new();
+    for ((name, part), filled) in folded {
+        let part = Part { name: part, filled };
+        match rows.iter_mut().find(|row| row.name == name) {
+            Some(row) => row.parts.push(part),
+            None => rows.push(CoverageLine {
+                name,
+                parts: vec![part],
+            }),
+        }
+    }
+    rows
+}
+
+fn strategy(cell: &Cell) -> String {
+    let overlap = cell.overlap.map(|overlap| format!(" {overlap}"));
+    format!("{}{}", cell.strategy, overlap.unwrap_or_default())
+}
+
+fn variant(cell: &Cell) -> String {
+    format!("{} {}", cell.k, cell.axes)
+}
+
+fn mode(cell: &Cell) -> String {
+    format!("{} {} {}", cell.tier, cell.updates, threads(cell.threads))
+}
+
+fn threads(number: usize) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} thread{plural}")
+}
+
+/// The line and column of a cell of given boxes, and what it holds.
+fn box_part(cell: &BoxCell, boxes: &BoxLedger) -> ((String, String), Filled) {
+    let line = format!("{} {}", cell.tier, threads(cell.threads));
+    let lists = boxes.lists(cell);
+    let filled = Filled {
+        cells: 1,
+        filled: u64::from(lists > 0),
+        fewest: lists,
+    };
+    ((line, cell.finder.to_string()), filled)
+}
+
+fn box_name(cell: &BoxCell) -> String {
+    let threads = threads(cell.threads);
+    format!("given boxes, {}, {} {threads}", cell.finder, cell.tier)
+}
+
+fn name(cell: &Cell) -> String {
+    let (strategy, finder) = (strategy(cell), cell.finder);
+    format!(
+        "{strategy}, {finder}, k = {}, {}",
+        variant(cell),
+        mode(cell)
+    )
+}

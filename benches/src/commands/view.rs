@@ -1,0 +1,238 @@
+//! `sdop view`: a run as one HTML page that anybody can open.
+
+mod input;
+mod still;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use miette::{IntoDiagnostic as _, Report, WrapErr as _, miette};
+use sdop::files::Whole;
+use sdop::settings::{CullSettings, Strategy};
+use sdop_bench::view::{Culled, Page, Show, decide_truth};
+
+use super::Outcome;
+use super::output::{print, progress};
+use super::scene_args::{MachineArgs, SceneArgs};
+use input::Input;
+
+/// Write a page that shows a run: bodies, pairs, volumes and counts, frame by frame
+///
+/// The page holds everything it needs and opens from disk. Bodies change colour when their pair is reported, and another when
+/// their meshes truly meet; a missed pair flashes and is listed. A record shows what any program reported.
+#[derive(clap::Args)]
+#[command(
+    mut_arg("scene", |arg| arg.value_name("SCENE|RECORD|CASE").help(
+        "A scene file (TOML), a record (as `sdop run --record` writes it), a case of the judge (as `sdop cases` and a miss of `sdop verify --exec` are written), or a group of hard cases (data/hard_cases/*.toml)"
+    )),
+    after_help = "Examples: sdop view data/scenes/paper-500.toml --open\n          sdop run data/scenes/paper-50.toml --record run.ndjson && sdop view run.ndjson --beside sphere"
+)]
+pub struct Args {
+    /// The page, or with --png the picture when it ends in .png [default: the scene's name, in the current directory]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Open the page in the browser
+    #[arg(long)]
+    open: bool,
+    /// Also draw the frame with this number as a PNG beside the page, by an installed Chromium
+    #[arg(long, value_name = "FRAME")]
+    png: Option<u32>,
+    /// Width and height of the PNG in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x800", requires = "png", value_parser = still::size)]
+    size: (u32, u32),
+    /// Parameters of the page's address for the PNG, as the page keeps them: camera=…&show=spheres,ordops&body=7
+    #[arg(long, value_name = "PARAMETERS", requires = "png")]
+    with: Option<String>,
+    /// The browser that draws the PNG [default: chromium or chrome, wherever installed]
+    #[arg(long, value_name = "FILE", requires = "png")]
+    browser: Option<PathBuf>,
+    /// A second strategy on the same frames, or another record of them, side by side
+    #[arg(long, value_name = "STRATEGY|RECORD")]
+    beside: Option<String>,
+    /// What a program answered to a case (`sdop cases`) or record, one line a frame; - is standard input
+    #[arg(long, value_name = "FILE")]
+    answers: Option<PathBuf>,
+    /// Which run of a group of hard cases
+    #[arg(long, value_name = "N")]
+    run: Option<usize>,
+    /// Leave out which meshes truly meet, unless the record says: the exact decision is slow for large scenes
+    #[arg(long)]
+    no_truth: bool,
+    /// Leave out T: its prices are calibrated on this machine
+    #[arg(long)]
+    no_prices: bool,
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+}
+
+/// Runs the command. A broken record makes a page that says so, with the frames before the flaw, and is an error too.
+///
+/// # Errors
+/// A bad scene or record, settings that it can't have, a page that can't be written, no browser for a PNG.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let tier = args.machine.tier();
+    let (page, name, broken) =
+        match input::read(&args.scene, args.run, args.answers.as_deref(), tier)? {
+            Input::Show(mut show, broken) => {
+                let culled = culled(args, &show)?;
+                if !args.no_truth {
+                    let bar = progress(show.frames.len() as u64, "which meshes meet");
+                    decide_truth(&mut show, || bar.inc(1))?;
+                    bar.finish_and_clear();
+                }
+                let tier = (!args.no_prices).then_some(tier);
+                let page = Page::new(&show, &culled, tier)?;
+                (page, show.header.scene, broken)
+            }
+            Input::Broken(error) => {
+                let path = args.scene.path();
+                let stem = path.file_stem().unwrap_or(path.as_os_str());
+                (
+                    Page::broken(path, &error),
+                    stem.to_string_lossy().into_owned(),
+                    Some(error),
+                )
+            }
+        };
+    let written = write(args, &page, &name)?;
+    match broken {
+        Some(error) => Err(Report::from(error))
+            .wrap_err_with(|| format!("the page {} shows what can be read", written.display())),
+        None => Ok(Outcome::Passed),
+    }
+}
+
+/// What is shown: the pairs as recorded, and a second strategy's or record's.
+fn culled(args: &Args, show: &Show) -> miette::Result<Vec<Culled>> {
+    let mut culled = vec![show.recorded()];
+    let Some(beside) = &args.beside else {
+        return Ok(culled);
+    };
+    culled.push(match beside.parse::<Strategy>() {
+        Ok(strategy) => {
+            let settings = CullSettings {
+                strategy,
+                ..show.header.cull.clone().unwrap_or_default()
+            };
+            show.cull(&settings, args.machine.tier())?
+        }
+        Err(unknown) if !Path::new(beside).exists() => {
+            return Err(miette!(
+                help = unknown.hint,
+                "--beside: {beside:?} is neither a strategy nor a record"
+            ));
+        }
+        Err(_) => {
+            let (other, broken) = Show::record(Path::new(beside), None)?;
+            if let Some(error) = broken {
+                return Err(error.into());
+            }
+            show.culled_by(&other).map_err(|why| {
+                miette!(
+                    help = "--beside takes another record of the same bodies in the same poses",
+                    "{beside}: not the frames of {}: {why}",
+                    show.source
+                )
+            })?
+        }
+    });
+    Ok(culled)
+}
+
+/// Writes page and picture, as asked for; returns what can be opened.
+fn write(args: &Args, page: &Page, name: &str) -> miette::Result<PathBuf> {
+    let only_png = args.png.is_some() && args.out.as_deref().is_some_and(still::is_png);
+    let temporary;
+    let path = if only_png {
+        temporary = still::scratch()?;
+        temporary.path().join("page.html")
+    } else {
+        args.out
+            .clone()
+            .unwrap_or_else(|| format!("{}.html", safe(name)).into())
+    };
+    let bytes = write_page(page, &path)?;
+    if !only_png {
+        print(&format!("{}: {:.1} MB", path.display(), bytes as f64 / 1e6))?;
+    }
+    let mut written = path.clone();
+    if let Some(frame) = args.png {
+        let picture = match &args.out {
+            Some(out) if only_png => out.clone(),
+            _ => path.with_file_name(format!(
+                "{}-{frame}.png",
+                path.file_stem().unwrap_or_default().to_string_lossy()
+            )),
+        };
+        let browser = still::browser(args.browser.as_deref())?;
+        still::draw(
+            &browser,
+            &path,
+            &still::address(frame, args.with.as_deref()),
+            args.size,
+            &picture,
+        )?;
+        print(&picture.display().to_string())?;
+        if only_png {
+            written = picture;
+        }
+    }
+    if args.open {
+        open(&written)?;
+    }
+    Ok(written)
+}
+
+/// Has the desktop open a file, and doesn't wait for it.
+fn open(path: &Path) -> miette::Result<()> {
+    let opener = match std::env::consts::OS {
+        "macos" => "open",
+        "windows" => "explorer",
+        _ => "xdg-open",
+    };
+    let started = Command::new(opener)
+        .arg(path)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn();
+    started.map(drop).map_err(|cause| {
+        miette!(
+            help = "open it in any browser",
+            "--open: {opener} can't open {}: {cause}",
+            path.display()
+        )
+    })
+}
+
+fn write_page(page: &Page, path: &Path) -> miette::Result<u64> {
+    let cannot = || format!("cannot write {}", path.display());
+    let mut file = Whole::create(path)
+        .into_diagnostic()
+        .wrap_err_with(cannot)?;
+    page.write(&mut file)
+        .into_diagnostic()
+        .wrap_err_with(cannot)?;
+    file.finish().into_diagnostic().wrap_err_with(cannot)?;
+    std::fs::metadata(path)
+        .map(|found| found.len())
+        .into_diagnostic()
+        .wrap_err_with(cannot)
+}
+
+/// A scene's name as a file's: it may hold anything.
+fn safe(name: &str) -> String {
+    let plain = |c: char| {
+        if c.is_alphanumeric() || "-_.".contains(c) {
+            c
+        } else {
+            '-'
+        }
+    };
+    let name: String = name.chars().map(plain).collect();
+    match name.trim_matches(['.', '-']) {
+        "" => "run".to_owned(),
+        name => name.to_owned(),
+    }
+}

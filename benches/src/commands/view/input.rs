@@ -1,0 +1,246 @@
+//! What is to be shown: a scene is simulated, a record read, a group of hard cases made.
+
+use std::fs::File;
+use std::io::{BufReader, Read as _};
+use std::path::Path;
+
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop::Tier;
+use sdop_bench::view::Show;
+use sdop_judge::answer::{Answer, Stop, sorted};
+use sdop_judge::ours::hard::Group;
+use sdop_judge::record::RecordError;
+use sdop_judge::wire::{Wire, ndjson::Read};
+use sdop_judge::{Case, Claim};
+
+use crate::commands::check::{said, text};
+use crate::commands::judge::read_case;
+use crate::commands::output::progress;
+use crate::commands::scene_args::SceneArgs;
+
+/// What was found.
+pub enum Input {
+    /// Something to show; with a record that is broken somewhere, what is wrong.
+    Show(Box<Show>, Option<RecordError>),
+    /// A record with no frame that can be read.
+    Broken(RecordError),
+}
+
+/// Reads what the path names. A record begins with a brace, a group of hard cases has a `[recipe]`, anything else is a scene.
+///
+/// # Errors
+/// A file that can't be read; a scene or case that can't be built; flags that the kind of file can't have.
+pub fn read(
+    args: &SceneArgs,
+    run: Option<usize>,
+    answers: Option<&Path>,
+    tier: Tier,
+) -> miette::Result<Input> {
+    let (path, most) = (args.path(), args.max_bytes());
+    if is_record(path)? {
+        let claim = claim(path, most);
+        if answers.is_some() || claim.is_some() {
+            refuse(args, run, "its poses are given")?;
+            // A record is about the meshes.
+            let show = judged((path, most), claim.unwrap_or(Claim::Mesh), answers)?;
+            return Ok(Input::Show(Box::new(show), None));
+        }
+        return record(args, run);
+    }
+    if answers.is_some() {
+        return Err(miette!(
+            help = "cases are written by `sdop cases` and, for a miss, by `sdop verify --exec`",
+            "--answers is for a case or record (.ndjson); {} is none",
+            path.display()
+        ));
+    }
+    if is_case(path, most) {
+        return Ok(Input::Show(
+            Box::new(case(args, run.unwrap_or(0), tier)?),
+            None,
+        ));
+    }
+    if run.is_some() {
+        return Err(miette!(
+            help = "leave --run out",
+            "--run is for groups of hard cases; {} is a scene",
+            path.display()
+        ));
+    }
+    let scene = args.build()?;
+    let bar = progress(scene.frames.into(), &scene.name);
+    let show = Show::scene(&scene, path, tier, || bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok(Input::Show(Box::new(show), None))
+}
+
+fn is_record(path: &Path) -> miette::Result<bool> {
+    if path
+        .extension()
+        .is_some_and(|ending| ending == "ndjson" || ending == "jsonl")
+    {
+        return Ok(true);
+    }
+    let mut start = [0; 64];
+    let read = File::open(path).and_then(|mut file| file.read(&mut start));
+    let read = read
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{}: cannot be read", path.display()))?;
+    Ok(start[..read].trim_ascii_start().starts_with(b"{"))
+}
+
+/// Whether a TOML file has a recipe. What is no TOML, or can't be read, is left to the scene's reader, which says so.
+fn is_case(path: &Path, most: u64) -> bool {
+    let table = sdop::files::read_text(path, most)
+        .ok()
+        .and_then(|text| text.parse::<toml::Table>().ok());
+    table.is_some_and(|table| table.contains_key("recipe"))
+}
+
+/// The claim that a case of the judge is about: the first of those in its first line. Records have none.
+fn claim(path: &Path, most: u64) -> Option<Claim> {
+    #[derive(serde::Deserialize)]
+    struct Mark {
+        claims: Option<Vec<Claim>>,
+    }
+    let mut line = Vec::new();
+    let mut file = BufReader::new(File::open(path).ok()?);
+    sdop::files::read_line(&mut file, most, &mut line).ok()?;
+    let mark: Mark = serde_json::from_slice(&line).ok()?;
+    mark.claims?.first().copied()
+}
+
+/// A case with the pairs that its file has or that `answers` has; a line, and the answers, have at most `most` bytes.
+fn judged(
+    (path, most): (&Path, u64),
+    claim: Claim,
+    answers: Option<&Path>,
+) -> miette::Result<Show> {
+    let Read { case, pairs } = read_case(path, most)?;
+    let given = match answers {
+        None => {
+            let answer = |pairs: Option<Vec<_>>| pairs.map(|pairs| Answer { pairs, ns: None });
+            pairs.into_iter().map(answer).collect::<Option<Vec<_>>>()
+        }
+        Some(file) => Some(answered(&case, file, most)?),
+    };
+    let name = answers.unwrap_or(path).display();
+    let sort = |answers: Vec<Answer>| {
+        let frames = case.frames.iter().zip(&answers).enumerate();
+        frames
+            .map(|(number, (frame, answer))| sorted(number, frame, answer))
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|trouble| {
+                miette!(
+                    help = "a pair is two bodies of the case, the smaller number first",
+                    "{name}: {trouble}"
+                )
+            })
+    };
+    let reported = given.map(sort).transpose()?;
+    let unasked = reported.is_none();
+    let mut show = Show::case(&case, claim, reported, path)
+        .map_err(|why| miette!(help = "view another case", "{}: {why}", path.display()))?;
+    if unasked {
+        let words = "Nobody has answered this case: --answers FILE shows what a program reports.";
+        show.messages.push(words.to_owned());
+    }
+    Ok(show)
+}
+
+/// The answers in a file, in either encoding.
+fn answered(case: &Case, file: &Path, most: u64) -> miette::Result<Vec<Answer>> {
+    let text = text(file, most)?;
+    let wire = match text.trim_ascii_start().first() {
+        Some(b'{') => Wire::Ndjson,
+        _ => Wire::Text,
+    };
+    let hint = "an answer is {\"frame\":n,\"pairs\":[[i,j],…]}, a line for each frame of the case";
+    let (name, frames) = (file.display(), case.frames.len());
+    match said(wire, &text, frames) {
+        Ok(answers) if answers.len() == frames => Ok(answers),
+        Ok(answers) => Err(miette!(
+            help = hint,
+            "{name}: {} answers to {frames} frames",
+            answers.len()
+        )),
+        Err(Stop::Skipped(why)) => Err(miette!("{name}: the case was skipped: {why}")),
+        Err(Stop::Trouble(trouble)) => Err(miette!(help = hint, "{name}: {trouble}")),
+    }
+}
+
+/// Flags that what is shown as it stands can't have.
+fn refuse(args: &SceneArgs, run: Option<usize>, why: &str) -> miette::Result<()> {
+    match args.scene_only().or(run.map(|_| "--run")) {
+        None => Ok(()),
+        Some(flag) => Err(miette!(
+            help = "--beside STRATEGY culls its frames again",
+            "{}: {why}; {flag} can't change it",
+            args.path().display()
+        )),
+    }
+}
+
+fn record(args: &SceneArgs, run: Option<usize>) -> miette::Result<Input> {
+    refuse(args, run, "a record is shown as it was culled")?;
+    match Show::record(args.path(), args.frames()) {
+        Ok((show, broken)) => Ok(Input::Show(Box::new(show), broken)),
+        // Nothing there is no record that is broken.
+        Err(error @ RecordError::Unreadable { .. }) => Err(error.into()),
+        Err(error) => Ok(Input::Broken(error)),
+    }
+}
+
+fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<Show> {
+    let path = args.path();
+    let name = path.display();
+    let text = std::fs::read_to_string(path)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{name}: cannot be read"))?;
+    let group = Group::parse(&text)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{name}: no group of hard cases"))?;
+    if args.seed().is_some() {
+        return Err(miette!(
+            help = "leave --seed out",
+            "{name}: a group of hard cases has a seed of its own"
+        ));
+    }
+    let settings = args.settings();
+    let cases = group
+        .cases(settings.k, settings.axes)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{name}: can't be made"))?;
+    let frames = cases.runs.get(run).ok_or_else(|| {
+        miette!(
+            help = "runs are counted from 0",
+            "{name}: run {run} of {}",
+            cases.runs.len()
+        )
+    })?;
+    let most = args
+        .frames()
+        .map_or(frames.len(), |most| frames.len().min(most as usize));
+    let stem = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let mut show = Show::poses(
+        &stem,
+        path,
+        cases.shapes.built.clone(),
+        &frames[..most],
+        &settings,
+        tier,
+    )?;
+    show.header.seed = group.seed;
+    show.messages.push(group.why.clone());
+    if cases.runs.len() > 1 {
+        show.messages.push(format!(
+            "Run {run} of {}; --run N shows another.",
+            cases.runs.len()
+        ));
+    }
+    Ok(show)
+}

@@ -1,0 +1,189 @@
+//! A pass: one run of a scene, whose frames take turns with those of its calibration, so that a drift of the machine falls
+//! on the prices and on what they predict alike. Passes lie apart in time, and each is one observation.
+
+use super::calibrate::{Calibration, build};
+use super::predict::Prices;
+use crate::measure::counts::Counts;
+use crate::measure::culling::Culling;
+use crate::measure::estimate::Estimate;
+use crate::measure::turns::{Regime, Times, Turns, median, next_turn, turn_frames};
+use crate::measure::variant::Variant;
+use crate::scene::Scene;
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::bodies::Bodies;
+use sdop::simd::Tier;
+use sdop::volume::Shape;
+
+/// What one variant did in a run.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct Culled {
+    /// Its frames' times.
+    pub times: Times,
+    /// What it counted.
+    pub counts: Counts,
+    /// Frames culled.
+    pub frames: u32,
+    /// Co: seconds to build its volumes and its culler.
+    pub construct: f64,
+}
+
+/// One pass.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+pub struct Pass {
+    /// A variant's work each.
+    pub culled: Vec<Culled>,
+    /// A variant's prices each, for warm frames and for cold ones; of none without a calibration.
+    pub prices: [Vec<Prices>; 2],
+    /// Median seconds of a simulation step.
+    pub step: f64,
+}
+
+/// The frames of a scene, turn after turn.
+pub trait Frames {
+    /// How many turns there are.
+    fn turns(&self) -> usize;
+
+    /// The poses of the next turn and the number of its first frame; `None` after the last.
+    ///
+    /// # Errors
+    /// A body that leaves the contract.
+    fn next_turn(&mut self) -> Result<Option<(u32, Vec<Bodies>)>, SimulationError>;
+
+    /// Median seconds of a simulation step, where frames are simulated.
+    fn step(&self) -> f64 {
+        0.0
+    }
+}
+
+/// The frames of a scene's run from its first.
+pub struct Simulated {
+    trajectory: Trajectory,
+    bodies: usize,
+    frames: u32,
+    steps: Vec<f64>,
+}
+
+impl Simulated {
+    /// The first `frames` frames.
+    ///
+    /// # Errors
+    /// Effects that the scene can't have.
+    pub fn new(scene: &Scene, frames: u32) -> Result<Self, SimulationError> {
+        Ok(Self {
+            trajectory: Trajectory::new(scene)?.with_frames(frames),
+            bodies: scene.bodies.len(),
+            frames,
+            steps: Vec::new(),
+        })
+    }
+}
+
+impl Frames for Simulated {
+    fn turns(&self) -> usize {
+        (self.frames as usize).div_ceil(turn_frames(self.bodies))
+    }
+
+    fn next_turn(&mut self) -> Result<Option<(u32, Vec<Bodies>)>, SimulationError> {
+        let first = self.trajectory.next_number();
+        let poses = next_turn(&mut self.trajectory, self.bodies, &mut self.steps)?;
+        Ok((!poses.is_empty()).then_some((first, poses)))
+    }
+
+    fn step(&self) -> f64 {
+        median(self.steps.clone())
+    }
+}
+
+/// Sees what cullers report, outside of the timing.
+pub trait Observer {
+    /// A variant's number, the frame and the culler, right behind it. The next frame finds what this leaves in caches and branch
+    /// predictors (hashing the pairs here made warm frames take up to a fifth more): copy, and work between turns.
+    fn frame(&mut self, number: usize, frame: u32, culling: &Culling);
+
+    /// All variants have taken their turn.
+    fn between_turns(&mut self) {}
+}
+
+/// Nobody looks.
+impl Observer for () {
+    fn frame(&mut self, _: usize, _: u32, _: &Culling) {}
+}
+
+/// Runs a pass.
+///
+/// # Errors
+/// Settings or effects that the scene can't have, a body that leaves the contract.
+pub fn pass(
+    scene: &Scene,
+    variants: &[Variant],
+    tier: Tier,
+    frames: &mut dyn Frames,
+    mut calibration: Option<&mut Calibration>,
+    observer: &mut dyn Observer,
+) -> Result<Pass, SimulationError> {
+    let mut culled = vec![Culled::default(); variants.len()];
+    let shapes: Vec<Vec<Shape>> = variants
+        .iter()
+        .map(|variant| variant.shapes(scene))
+        .collect();
+    let (mut cullers, mut built) = (Vec::new(), vec![Vec::new(); variants.len()]);
+    for (at, variant) in variants.iter().enumerate() {
+        let (culler, construct) = build(variant, &shapes[at], scene, tier)?;
+        built[at].push(construct);
+        cullers.push(culler);
+    }
+    if let Some(companion) = calibration.as_ref().and_then(|c| c.companion()) {
+        cullers.push(companion.culling(scene, tier)?);
+    }
+    let (all, mut turn, mut calibrated) = (frames.turns().max(1), 0, 0);
+    let builds = calibration
+        .as_ref()
+        .map_or(1, |calibration| calibration.builds_of_a_pass());
+    let mut turns = Turns::default();
+    while let Some((first, poses)) = frames.next_turn()? {
+        turns.round(&mut cullers, &poses, |timed| {
+            if timed.number >= variants.len() {
+                return;
+            }
+            culled[timed.number].times.push(&timed);
+            culled[timed.number].frames += 1;
+            observer.frame(timed.number, first + timed.frame as u32, timed.contestant);
+        });
+        observer.between_turns();
+        turn += 1;
+        if let Some(calibration) = &mut calibration {
+            while calibrated * all < calibration.turns_of_a_pass() * turn {
+                calibration.turn(calibrated)?;
+                calibrated += 1;
+            }
+        }
+        // Co is measured again and again between the turns, as often as wanted.
+        if built
+            .first()
+            .is_some_and(|built| built.len() * all < builds * turn)
+        {
+            for (at, variant) in variants.iter().enumerate() {
+                built[at].push(build(variant, &shapes[at], scene, tier)?.1);
+            }
+        }
+    }
+    for (culled, culler) in culled.iter_mut().zip(&cullers) {
+        culler.accepted()?;
+        culled.counts = culler.counts();
+    }
+    for (culled, built) in culled.iter_mut().zip(built) {
+        culled.construct = median(built);
+    }
+    Ok(Pass {
+        culled,
+        prices: calibration.map_or_else(Default::default, Calibration::prices),
+        step: frames.step(),
+    })
+}
+
+/// The median seconds per frame of variant number `at`, from passes in the order of time.
+#[must_use]
+pub fn medians(passes: &[Pass], at: usize, regime: Regime) -> Estimate {
+    let seconds = |pass: &Pass| pass.culled[at].times.quartiles(regime).median;
+    Estimate::in_order(&passes.iter().map(seconds).collect::<Vec<_>>())
+}

@@ -1,0 +1,26 @@
+//! How fast bodies move: what effects keep between two frames. Culling asks only where bodies are.
+
+use sdop::bodies::contract::{ContractError, check_column, check_vectors};
+
+/// Velocities as columns; index i is body i, as in [`Bodies`](sdop::bodies::Bodies).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Velocities {
+    /// Linear velocity, world frame, length units a second.
+    pub linear: Vec<[f32; 3]>,
+    /// Angular velocity ω, world frame, radians a second.
+    pub angular: Vec<[f32; 3]>,
+}
+
+impl Velocities {
+    /// Checks that there is one entry a body in both columns, every coordinate at most 2⁶⁰ in size.
+    ///
+    /// # Errors
+    /// The first body in the first column at fault.
+    pub fn check(&self, bodies: usize) -> Result<(), ContractError> {
+        for (name, column) in [("velocity", &self.linear), ("spin", &self.angular)] {
+            check_column(name, column.len(), bodies)?;
+            check_vectors(name, column, 0)?;
+        }
+        Ok(())
+    }
+}

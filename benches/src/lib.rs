@@ -1,0 +1,23 @@
+//! The laboratory: scenes, their simulation, and the studies that judge and measure the culler. An engine needs none of it.
+
+pub mod cost;
+pub mod domain;
+pub mod effects;
+pub mod hash;
+pub mod hull_test;
+pub mod measure;
+pub mod mpi;
+pub mod number;
+pub mod outsiders;
+pub mod percentiles;
+pub mod random;
+pub mod record;
+pub mod report;
+pub mod reproduce;
+pub mod scene;
+pub mod simulate;
+pub mod sweep;
+pub mod tightness;
+pub mod tradeoff;
+pub mod verify;
+pub mod view;

@@ -1,0 +1,165 @@
+//! A culler of this library as a contestant: with its stage clock, and behind it the convex hulls where they are wanted.
+
+use std::time::Instant;
+
+use super::counts::Counts;
+use super::waiting::Waiting;
+use crate::hull_test::HullTest;
+use sdop::bodies::Bodies;
+use sdop::counters::{Counters, VolumeCounters};
+use sdop::culler::{CullError, Culler};
+use sdop::settings::CullSettings;
+use sdop::simd::Tier;
+use sdop::volume::Shape;
+use sdop_judge::contestant::Contestant;
+
+/// Seconds of one frame, stage by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Stages {
+    /// World-space updates.
+    pub update: f64,
+    /// Finding candidates and the first volume test, with all that no other stage claims.
+    pub finding: f64,
+    /// The or-DOP test, with what it costs to hand pairs to it where that is timed with it.
+    pub refining: f64,
+    /// The convex hulls' test.
+    pub hulls: f64,
+}
+
+impl Stages {
+    /// All stages.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.update + self.finding + self.refining + self.hulls
+    }
+
+    /// Without some seconds of waiting: taken off the longest stage, where the interruption most likely fell.
+    #[must_use]
+    pub fn without(mut self, waited: f64) -> Self {
+        let stages = [
+            &mut self.update,
+            &mut self.finding,
+            &mut self.refining,
+            &mut self.hulls,
+        ];
+        let longest = stages.into_iter().max_by(|a, b| a.total_cmp(b));
+        if let Some(longest) = longest {
+            *longest = (*longest - waited).max(0.0);
+        }
+        self
+    }
+}
+
+/// A culler of this library with its stage clock, and behind it the convex hulls where they are wanted.
+#[derive(Debug)]
+pub struct Culling {
+    culler: Culler,
+    hulls: Option<HullTest>,
+    last: Stages,
+    construct: f64,
+    refused: Option<CullError>,
+}
+
+impl Culling {
+    /// Culls bodies by some settings.
+    ///
+    /// # Errors
+    /// Settings that can't be carried out, bodies that the culler refuses.
+    pub fn new(
+        shapes: &[Shape],
+        bodies: &Bodies,
+        settings: &CullSettings,
+        tier: Tier,
+    ) -> Result<Self, CullError> {
+        let mut waiting = Waiting::of_this_thread();
+        let (waited, start) = (waiting.seconds(), Instant::now());
+        let culler = Culler::builder().settings(settings).tier(tier);
+        let culler = culler.build(shapes, bodies)?;
+        let seconds = start.elapsed().as_secs_f64();
+        Ok(Self {
+            culler,
+            hulls: None,
+            last: Stages::default(),
+            construct: (seconds - (waiting.seconds() - waited)).max(0.0),
+            refused: None,
+        })
+    }
+
+    /// The same with each reported pair tested by its convex hulls.
+    #[must_use]
+    pub fn with_hulls(mut self, shapes: &[Shape]) -> Self {
+        let start = Instant::now();
+        self.hulls = Some(HullTest::new(shapes));
+        self.construct += start.elapsed().as_secs_f64();
+        self
+    }
+
+    /// Whether every frame so far was culled.
+    ///
+    /// # Errors
+    /// The first frame that the culler refused: none of a scene's own.
+    pub fn accepted(&self) -> Result<(), CullError> {
+        self.refused.clone().map_or(Ok(()), Err)
+    }
+
+    /// Seconds of the last frame.
+    #[must_use]
+    pub fn last(&self) -> Stages {
+        self.last
+    }
+
+    /// Seconds that making it took, its shapes' volumes not included.
+    #[must_use]
+    pub fn construct_seconds(&self) -> f64 {
+        self.construct
+    }
+
+    /// The culler's counters, summed over frames.
+    #[must_use]
+    pub fn counters(&self) -> &Counters {
+        self.culler.counters()
+    }
+
+    /// The hulls' counters, summed over frames.
+    #[must_use]
+    pub fn hull_counters(&self) -> VolumeCounters {
+        let hulls = self.hulls.as_ref();
+        hulls.map_or_else(Default::default, |hulls| hulls.counters)
+    }
+
+    /// All counters, summed over frames.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        Counts {
+            culler: *self.counters(),
+            hulls: self.hull_counters(),
+        }
+    }
+}
+
+impl Contestant for Culling {
+    fn frame(&mut self, frame: &Bodies) {
+        let before = *self.culler.seconds();
+        let start = Instant::now();
+        let answer = self.culler.cull(frame).map(drop);
+        self.refused = self.refused.take().or(answer.err());
+        let culled = start.elapsed().as_secs_f64();
+        if let Some(hulls) = &mut self.hulls {
+            hulls.cull(frame, self.culler.pairs());
+        }
+        let stages = self.culler.seconds().since(&before);
+        self.last = Stages {
+            update: stages.update,
+            finding: culled - stages.update - stages.ordop,
+            refining: stages.ordop,
+            hulls: start.elapsed().as_secs_f64() - culled,
+        };
+    }
+
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        match &self.hulls {
+            Some(hulls) => hulls.kept.iter().collect(),
+            None => self.culler.pairs().iter().collect(),
+        }
+    }
+}

@@ -1,0 +1,335 @@
+//! One protocol of timing: contestants take turns on the same frames, on one thread.
+//!
+//! In its turn a contestant takes some consecutive frames, then the next one does. Turns share out what the machine does
+//! meanwhile (other processes, clock changes) among all alike, and their order is drawn anew each time, since whoever
+//! always followed the same one would always find the caches that it leaves. The first frame of a turn is *cold*: others
+//! ran in between. Those behind it are *warm*: a culler's frames follow one another, as in a simulation. Which of the two
+//! a number is stands beside it.
+//!
+//! A machine that does other work takes the processor away in the midst of a frame, the likelier the longer the frame is:
+//! what a thread waited for a processor is taken off where the system tells it ([`Waiting`]), and counted.
+
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use super::culling::{Culling, Stages};
+use super::waiting::Waiting;
+use crate::random::Stream;
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::bodies::Bodies;
+use sdop::choice::choices;
+use sdop_judge::contestant::Contestant;
+
+/// Where the draws of the order of turns start.
+const SEED: u64 = 0x5a3e_7100_0000_0000;
+/// Bodies of the frames that are prepared at once: their poses stay in the second-level cache until they are culled.
+const PREPARED_BODIES: usize = 1 << 13;
+/// From this many seconds on, waiting is looked at before and after a frame: looking takes a microsecond or two and leaves
+/// its traces in the caches, and short frames are rarely interrupted.
+const WATCHED: f64 = 100e-6;
+/// The most frames of a turn.
+const MOST_FRAMES: usize = 8;
+
+choices! {
+    /// What a culler finds in the caches when it is timed.
+    Regime, "timing regime", {
+        /// Its own last frame: frames follow one another, as in a simulation.
+        Warm = "warm",
+        /// What others left: they ran in between.
+        Cold = "cold",
+    }
+}
+
+/// One timed frame.
+pub struct Timed<'a, C> {
+    /// Which contestant, counted as given.
+    pub number: usize,
+    /// The contestant after the frame.
+    pub contestant: &'a mut C,
+    /// Which frame of the turn.
+    pub frame: usize,
+    /// What it took, without what the thread waited for a processor.
+    pub seconds: f64,
+    /// What it waited.
+    pub waited: f64,
+    /// How the contestant came to it.
+    pub regime: Regime,
+}
+
+/// Rounds of turns.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Turns {
+    round: u64,
+}
+
+impl Turns {
+    /// Rounds whose orders are drawn from a stream of their own.
+    #[must_use]
+    pub fn from_stream(stream: u32) -> Self {
+        Self {
+            round: u64::from(stream) << 32,
+        }
+    }
+
+    /// Every contestant takes every frame of the round: all frames in one turn each. `each` sees what was timed.
+    pub fn round<Frame, C: Contestant<Frame>>(
+        &mut self,
+        contestants: &mut [C],
+        frames: &[Frame],
+        mut each: impl FnMut(Timed<'_, C>),
+    ) {
+        let mut waiting = Waiting::of_this_thread();
+        for number in self.order(contestants.len()) {
+            let contestant = &mut contestants[number];
+            let mut watched = true;
+            for (frame, bodies) in frames.iter().enumerate() {
+                let before = if watched { waiting.seconds() } else { 0.0 };
+                let start = Instant::now();
+                contestant.frame(bodies);
+                let seconds = start.elapsed().as_secs_f64();
+                let after = if watched { waiting.seconds() } else { 0.0 };
+                let waited = (after - before).clamp(0.0, seconds);
+                let seconds = seconds - waited;
+                watched = seconds > WATCHED;
+                contestant.settle();
+                let regime = if frame == 0 {
+                    Regime::Cold
+                } else {
+                    Regime::Warm
+                };
+                each(Timed {
+                    number,
+                    contestant,
+                    frame,
+                    seconds,
+                    waited,
+                    regime,
+                });
+            }
+        }
+    }
+
+    /// In which order the contestants of the next round take their turns.
+    fn order(&mut self, contestants: usize) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..contestants).collect();
+        let mut draws = Stream::new(SEED, self.round);
+        self.round += 1;
+        for last in (1..contestants).rev() {
+            order.swap(last, draws.index(last as u32 + 1) as usize);
+        }
+        order
+    }
+}
+
+/// How many consecutive frames of a scene with so many bodies make a turn: at least two, of which one is warm.
+#[must_use]
+pub fn turn_frames(bodies: usize) -> usize {
+    (PREPARED_BODIES / bodies.max(1)).clamp(2, MOST_FRAMES)
+}
+
+/// The times of one contestant's frames, in the order of their measurement.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Times {
+    warm: Vec<Stages>,
+    cold: Vec<Stages>,
+}
+
+impl Times {
+    /// Adds the last frame of a contestant, without what it waited for a processor.
+    pub fn push(&mut self, timed: &Timed<'_, Culling>) {
+        let stages = timed.contestant.last().without(timed.waited);
+        self.of_mut(timed.regime).push(stages);
+    }
+
+    /// The frames of one regime.
+    #[must_use]
+    pub fn of(&self, regime: Regime) -> &[Stages] {
+        match regime {
+            Regime::Warm => &self.warm,
+            Regime::Cold => &self.cold,
+        }
+    }
+
+    fn of_mut(&mut self, regime: Regime) -> &mut Vec<Stages> {
+        match regime {
+            Regime::Warm => &mut self.warm,
+            Regime::Cold => &mut self.cold,
+        }
+    }
+
+    /// Medians over frames, stage by stage, such that they add up to the median of whole frames: what the stages'
+    /// medians lack of it, interruptions included, counts as finding.
+    #[must_use]
+    pub fn medians(&self, regime: Regime) -> Stages {
+        let of = |stage: fn(&Stages) -> f64| median(self.of(regime).iter().map(stage).collect());
+        let (update, refining, hulls) = (of(|s| s.update), of(|s| s.refining), of(|s| s.hulls));
+        let total = of(Stages::total);
+        Stages {
+            update,
+            finding: total - update - refining - hulls,
+            refining,
+            hulls,
+        }
+    }
+
+    /// Whole frames: the median with its quartiles.
+    #[must_use]
+    pub fn quartiles(&self, regime: Regime) -> Quartiles {
+        Quartiles::of(self.of(regime).iter().map(Stages::total).collect())
+    }
+
+    /// Mean seconds of a frame of either regime.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        mean(self.warm.iter().chain(&self.cold))
+    }
+
+    /// Mean seconds of a frame of one regime.
+    #[must_use]
+    pub fn mean_of(&self, regime: Regime) -> f64 {
+        mean(self.of(regime).iter())
+    }
+}
+
+fn mean<'a>(frames: impl Iterator<Item = &'a Stages>) -> f64 {
+    let (sum, count) = frames.fold((0.0, 0_u32), |(sum, count), frame| {
+        (sum + frame.total(), count + 1)
+    });
+    sum / f64::from(count)
+}
+
+/// A median with the quartiles around it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Quartiles {
+    /// A quarter of the values lies below.
+    pub low: f64,
+    /// Half of them does.
+    pub median: f64,
+    /// Three quarters of them do.
+    pub high: f64,
+}
+
+impl Quartiles {
+    /// Of some values; 0 of none.
+    #[must_use]
+    pub fn of(mut values: Vec<f64>) -> Self {
+        values.sort_by(f64::total_cmp);
+        let at = |quarter: usize| {
+            let place = (values.len().saturating_sub(1) * quarter) as f64 / 4.0;
+            let [below, above] = [place.floor(), place.ceil()]
+                .map(|place| values.get(place as usize).copied().unwrap_or(0.0));
+            below + place.fract() * (above - below)
+        };
+        Self {
+            low: at(1),
+            median: at(2),
+            high: at(3),
+        }
+    }
+
+    /// The means of several, each of its own frames.
+    #[must_use]
+    pub fn mean(all: &[Self]) -> Self {
+        let over = |value: fn(&Self) -> f64| all.iter().map(value).sum::<f64>() / all.len() as f64;
+        Self {
+            low: over(|q| q.low),
+            median: over(|q| q.median),
+            high: over(|q| q.high),
+        }
+    }
+}
+
+/// The poses of the next turn's frames, none after the last; seconds of the steps are appended to `steps`.
+///
+/// # Errors
+/// A body that leaves the contract.
+pub fn next_turn(
+    trajectory: &mut Trajectory,
+    bodies: usize,
+    steps: &mut Vec<f64>,
+) -> Result<Vec<Bodies>, SimulationError> {
+    let mut poses = Vec::new();
+    while poses.len() < turn_frames(bodies) {
+        let stepped = trajectory.next_number() > 0;
+        let Some(bodies) = trajectory.advance()? else {
+            break;
+        };
+        poses.push(bodies.clone());
+        if stepped {
+            steps.push(trajectory.step_seconds());
+        }
+    }
+    Ok(poses)
+}
+
+/// Seconds that `work` takes: the median of `repeats` runs.
+pub fn time<T>(repeats: usize, mut work: impl FnMut() -> T) -> f64 {
+    let run = |_| {
+        let start = Instant::now();
+        std::hint::black_box(work());
+        start.elapsed().as_secs_f64()
+    };
+    median((0..repeats).map(run).collect())
+}
+
+/// The median, or the mean of the two middle values; 0 of none.
+#[must_use]
+pub fn median(values: Vec<f64>) -> f64 {
+    Quartiles::of(values).median
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn median_is_the_middle_or_the_mean_of_the_two() {
+        assert_eq!(median(vec![]), 0.0);
+        assert_eq!(median(vec![3.0]), 3.0);
+        assert_eq!(median(vec![9.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(vec![9.0, 1.0, 2.0, 4.0]), 3.0);
+        let quartiles = Quartiles::of(vec![5.0, 1.0, 2.0, 3.0, 4.0]);
+        assert_eq!((quartiles.low, quartiles.high), (2.0, 4.0));
+    }
+
+    /// Notes which frames it was given, by their numbers of bodies.
+    #[derive(Default)]
+    struct Noting(Vec<usize>);
+
+    impl Contestant for Noting {
+        fn frame(&mut self, frame: &Bodies) {
+            self.0.push(frame.len());
+        }
+
+        fn pairs(&self) -> Vec<[u32; 2]> {
+            Vec::new()
+        }
+    }
+
+    #[test]
+    fn every_contestant_takes_every_frame_in_order_and_another_begins() {
+        let frame = |bodies: usize| Bodies {
+            shape: vec![0; bodies],
+            ..Bodies::default()
+        };
+        let mut contestants: Vec<Noting> = (0..3).map(|_| Noting::default()).collect();
+        let (mut turns, mut begins) = (Turns::default(), Vec::new());
+        for round in 0..20 {
+            let mut calls = Vec::new();
+            let frames = [3 * round, 3 * round + 1, 3 * round + 2].map(frame);
+            turns.round(&mut contestants, &frames, |timed| {
+                let cold = timed.regime == Regime::Cold;
+                assert_eq!(cold, timed.frame == 0);
+                calls.push(timed.number);
+            });
+            let whole = |turn: &[usize]| turn.iter().all(|number| *number == turn[0]);
+            assert!(calls.chunks(3).all(whole), "{calls:?}");
+            begins.push(calls[0]);
+        }
+        for contestant in &contestants {
+            assert_eq!(contestant.0, (0..60).collect::<Vec<_>>());
+        }
+        assert!((0..3).all(|number| begins.contains(&number)), "{begins:?}");
+    }
+}

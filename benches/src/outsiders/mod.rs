@@ -1,0 +1,3 @@
+//! Other programs, timed on the same frames.
+
+pub mod timing;

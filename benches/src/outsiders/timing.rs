@@ -1,0 +1,207 @@
+//! A program beside ours on the same frames: first both are judged, then they take turns, and each frame has a time.
+//!
+//! Ours is timed from outside, around its call. A program is believed: what it reports as `ns` is *self-reported*, since time
+//! measured from outside would be that of its pipes and its parser.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::effects::EffectError;
+use crate::scene::Scene;
+use sdop::bodies::contract::ContractError;
+use sdop::culler::{CullError, Culler};
+use sdop::settings::Strategy;
+use sdop::volume::Shape;
+use sdop_judge::answer::{Answer, Stop};
+use sdop_judge::case::{Case, Frame};
+use sdop_judge::claim::Claim;
+use sdop_judge::ours::judged::InvalidInput;
+use sdop_judge::score::{Outcome, judge_answers};
+use sdop_judge::subject::Subject;
+
+/// Why nothing was timed.
+#[derive(Debug, thiserror::Error)]
+pub enum TimingError {
+    /// An effect that the scene can't have.
+    #[error(transparent)]
+    Effect(#[from] EffectError),
+    /// A body left the contract.
+    #[error(transparent)]
+    Contract(#[from] ContractError),
+    /// A frame that the reference refuses.
+    #[error(transparent)]
+    Input(#[from] InvalidInput),
+    /// Bodies that our culler refuses.
+    #[error(transparent)]
+    Cull(#[from] CullError),
+}
+
+/// One contestant's line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContestantTiming {
+    /// Who.
+    pub name: String,
+    /// How its answers were judged, on every frame.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+    /// Pairs reported, over all frames.
+    pub reported: u64,
+    /// Who held the clock.
+    pub clock: &'static str,
+    /// Median over all frames and rounds but the first frame of each, in nanoseconds; none for answers without a time, and for
+    /// any that are no pass.
+    pub median_ns: Option<u64>,
+}
+
+/// The frames of a scene as a case.
+///
+/// # Errors
+/// Effects that the scene can't have, a body that leaves the contract.
+pub fn frames(scene: &Scene, count: u32) -> Result<Case, TimingError> {
+    let mut effects = scene.start_effects()?;
+    let mut bodies = scene.bodies.clone();
+    let mut frames = Vec::new();
+    for number in 0..count {
+        if number > 0 {
+            effects.step(&mut bodies)?;
+        }
+        frames.push(Frame::fitted(bodies.clone(), &scene.shapes));
+    }
+    Ok(Case {
+        name: scene.name.clone(),
+        flag: String::new(),
+        source: "a scene".to_owned(),
+        claims: Claim::ALL.to_vec(),
+        shapes: scene.shapes.clone(),
+        frames,
+    })
+}
+
+/// Our strategy for a claim; none finds pairs of given boxes from poses.
+#[must_use]
+pub fn strategy(claim: Claim) -> Option<Strategy> {
+    match claim {
+        Claim::Sphere => Some(Strategy::Sphere),
+        Claim::OrDop => Some(Strategy::OrDop),
+        Claim::Hull | Claim::Mesh => Some(Strategy::SDopSequential),
+        Claim::Aabb => None,
+    }
+}
+
+/// Our culler over the frames, each with its time.
+fn ours(strategy: Strategy, shapes: &[Shape], case: &Case) -> Result<Vec<Answer>, CullError> {
+    let Some(first) = case.frames.first() else {
+        return Ok(Vec::new());
+    };
+    let mut culler = Culler::builder()
+        .strategy(strategy)
+        .build(shapes, &first.bodies)?;
+    let mut answers = Vec::new();
+    for frame in &case.frames {
+        let start = Instant::now();
+        culler.cull(&frame.bodies)?;
+        let ns = start.elapsed().as_nanos() as u64;
+        answers.push(Answer {
+            pairs: culler.pairs().sorted(),
+            ns: Some(ns),
+        });
+    }
+    Ok(answers)
+}
+
+/// Judges both on every frame, then has them take turns for so many rounds.
+///
+/// # Errors
+/// A frame that the reference or our culler refuses.
+pub fn compare(
+    name: &str,
+    subject: &dyn Subject,
+    case: &Case,
+    claim: Claim,
+    rounds: u32,
+) -> Result<Vec<ContestantTiming>, TimingError> {
+    let strategy = strategy(claim);
+    let mut theirs = Timed::new(name.to_owned(), "self-reported");
+    let mut own =
+        strategy.map(|strategy| Timed::new(format!("sdop {strategy}"), "wall, around the call"));
+    for round in 0..rounds {
+        if let (Some(own), Some(strategy)) = (&mut own, strategy) {
+            own.add(
+                case,
+                claim,
+                Ok(ours(strategy, &case.shapes, case)?),
+                round == 0,
+            )?;
+        }
+        if theirs.outcome == Outcome::Pass {
+            theirs.add(case, claim, subject.answer(case, claim), true)?;
+        }
+    }
+    Ok(own.into_iter().chain([theirs]).map(Timed::timing).collect())
+}
+
+/// A contestant between its turns.
+struct Timed {
+    name: String,
+    clock: &'static str,
+    outcome: Outcome,
+    reported: u64,
+    times: Vec<u64>,
+}
+
+impl Timed {
+    fn new(name: String, clock: &'static str) -> Self {
+        Self {
+            name,
+            clock,
+            outcome: Outcome::Pass,
+            reported: 0,
+            times: Vec::new(),
+        }
+    }
+
+    fn add(
+        &mut self,
+        case: &Case,
+        claim: Claim,
+        answers: Result<Vec<Answer>, Stop>,
+        judged: bool,
+    ) -> Result<(), InvalidInput> {
+        let answers = match answers {
+            Ok(answers) => answers,
+            Err(Stop::Skipped(why)) => {
+                self.outcome = Outcome::Skipped { why };
+                return Ok(());
+            }
+            Err(Stop::Trouble(trouble)) => {
+                self.outcome = Outcome::Error { trouble };
+                return Ok(());
+            }
+        };
+        if judged {
+            self.outcome = judge_answers(case, claim, &answers)?.outcome;
+        }
+        self.reported = answers.iter().map(|answer| answer.pairs.len() as u64).sum();
+        // The first frame builds what later ones keep.
+        self.times
+            .extend(answers.iter().skip(1).filter_map(|answer| answer.ns));
+        Ok(())
+    }
+
+    fn timing(mut self) -> ContestantTiming {
+        self.times.sort_unstable();
+        let passed = self.outcome == Outcome::Pass;
+        ContestantTiming {
+            median_ns: self
+                .times
+                .get(self.times.len() / 2)
+                .copied()
+                .filter(|_| passed),
+            name: self.name,
+            outcome: self.outcome,
+            reported: self.reported,
+            clock: self.clock,
+        }
+    }
+}

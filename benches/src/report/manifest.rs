@@ -1,0 +1,356 @@
+//! `record.json`: what a directory of measurements says of itself.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+
+use super::clock::today;
+use super::provenance::{Code, Load, caches};
+use crate::hash::hex;
+use crate::measure::machine::Machine;
+
+/// The manifest's name in every record.
+pub const FILE: &str = "record.json";
+
+/// The version of the format that this program writes and reads.
+const VERSION: u32 = 1;
+
+/// A record's description. Digests are SHA-256 in hexadecimal.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// `sdop-measurement`.
+    pub format: String,
+    /// 1.
+    pub version: u32,
+    /// The experiment's name.
+    pub experiment: String,
+    /// The command that makes these files again.
+    pub command: String,
+    /// Day of the measurement, `YYYY-MM-DD`, UTC.
+    pub date: String,
+    /// The code that was measured; absent where no repository was at hand.
+    pub code: Option<Code>,
+    /// The machine; absent in records taken up from files that don't say.
+    pub machine: Option<Machine>,
+    /// Data caches of one core, smallest first, as the system names them.
+    #[serde(default)]
+    pub caches: Vec<String>,
+    /// Load averages before and after.
+    pub load: Option<[Load; 2]>,
+    /// What a reader should know besides, for example that the files are older than this manifest.
+    #[serde(default)]
+    pub note: Option<String>,
+    /// Digests of the scenes and meshes that were read, by their paths.
+    #[serde(default)]
+    pub inputs: BTreeMap<String, String>,
+    /// Files that must be the same bytes on every machine.
+    pub deterministic: Vec<String>,
+    /// Digest of every file of the record but this one.
+    pub files: BTreeMap<String, String>,
+    /// Digest of this manifest without this line: the record's identifier is its first twelve digits.
+    #[serde(default)]
+    pub digest: String,
+}
+
+/// What is wrong with a record.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum ManifestError {
+    /// A file can't be read.
+    #[error("{}: {source}", path.display())]
+    #[diagnostic(help("a record is a directory with a record.json, as `sdop record` makes it"))]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The manifest is none.
+    #[error("{}: {source}", path.display())]
+    #[diagnostic(help("record.json is written by `sdop record`; make the record again"))]
+    Form {
+        /// The manifest.
+        path: PathBuf,
+        /// Where it breaks the format.
+        source: serde_json::Error,
+    },
+    /// A manifest of another format or version.
+    #[error("{}: format {format} version {version}, expected sdop-measurement version {VERSION}", path.display())]
+    #[diagnostic(help("make the record again with this version of sdop"))]
+    Version {
+        /// The manifest.
+        path: PathBuf,
+        /// Its format.
+        format: String,
+        /// Its version.
+        version: u32,
+    },
+    /// A digest that doesn't fit.
+    #[error("{}: changed since it was recorded", path.display())]
+    #[diagnostic(help("restore the file, or measure again with the command in record.json"))]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file that the manifest doesn't know, or one that is missing.
+    #[error("{}: {problem}", path.display())]
+    #[diagnostic(help("a record's files are those that record.json lists; make the record again"))]
+    Files {
+        /// The file.
+        path: PathBuf,
+        /// What is the matter with it.
+        problem: &'static str,
+    },
+}
+
+impl Manifest {
+    /// Describes the files now in `directory`, measured on this machine.
+    ///
+    /// # Errors
+    /// A file that can't be read.
+    pub fn describe(
+        directory: &Path,
+        experiment: &str,
+        command: String,
+        deterministic: &[&str],
+    ) -> Result<Self, ManifestError> {
+        let files = digests(directory)?;
+        let known = |name: &&&str| files.contains_key(**name);
+        Ok(Self {
+            format: "sdop-measurement".to_owned(),
+            version: VERSION,
+            experiment: experiment.to_owned(),
+            command,
+            date: today(),
+            code: Code::here(Path::new(".")),
+            machine: None,
+            caches: caches(),
+            load: None,
+            note: None,
+            inputs: BTreeMap::new(),
+            deterministic: deterministic
+                .iter()
+                .filter(known)
+                .map(|&name| name.to_owned())
+                .collect(),
+            files,
+            digest: String::new(),
+        })
+    }
+
+    /// Adds the digests of some scenes and of the meshes beside them, by their paths below `root`.
+    ///
+    /// # Errors
+    /// A file that can't be read.
+    pub fn add_inputs(&mut self, root: &Path, scenes: &[&str]) -> Result<(), ManifestError> {
+        let mut inputs: Vec<PathBuf> = scenes.iter().map(PathBuf::from).collect();
+        for mesh in ["spot", "teapot", "bunny-4k", "bunny"] {
+            inputs.push(Path::new("data/meshes").join(mesh).with_extension("tri"));
+        }
+        for input in inputs {
+            let path = root.join(&input);
+            let bytes =
+                std::fs::read(&path).map_err(|source| ManifestError::Io { path, source })?;
+            self.inputs
+                .insert(input.display().to_string(), sha256(&bytes));
+        }
+        Ok(())
+    }
+
+    /// The manifest as text, with its digest.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let sealed = Self {
+            digest: self.own_digest(),
+            ..self.clone()
+        };
+        // Plain data: no map with keys that aren't text.
+        serde_json::to_string_pretty(&sealed).unwrap_or_default() + "\n"
+    }
+
+    /// Reads the manifest of `directory` and checks every digest.
+    ///
+    /// # Errors
+    /// What is missing, new or changed.
+    pub fn read(directory: &Path) -> Result<Self, ManifestError> {
+        let path = directory.join(FILE);
+        let text = std::fs::read_to_string(&path).map_err(|source| ManifestError::Io {
+            path: path.clone(),
+            source,
+        })?;
+        let manifest: Self = serde_json::from_str(&text).map_err(|source| ManifestError::Form {
+            path: path.clone(),
+            source,
+        })?;
+        let Self {
+            format, version, ..
+        } = &manifest;
+        if format != "sdop-measurement" || *version != VERSION {
+            return Err(ManifestError::Version {
+                path,
+                format: format.clone(),
+                version: *version,
+            });
+        }
+        if manifest.digest != manifest.own_digest() {
+            return Err(ManifestError::Changed { path });
+        }
+        manifest.check_files(directory)?;
+        Ok(manifest)
+    }
+
+    /// The first twelve digits of its digest: what a report cites.
+    #[must_use]
+    pub fn id(&self) -> &str {
+        self.digest.get(..12).unwrap_or(&self.digest)
+    }
+
+    fn check_files(&self, directory: &Path) -> Result<(), ManifestError> {
+        let now = digests(directory)?;
+        let problem = |name: &str, problem| {
+            Err(ManifestError::Files {
+                path: directory.join(name),
+                problem,
+            })
+        };
+        for (name, digest) in &self.files {
+            match now.get(name) {
+                None => return problem(name, "missing"),
+                Some(other) if other != digest => {
+                    return Err(ManifestError::Changed {
+                        path: directory.join(name),
+                    });
+                }
+                Some(_) => {}
+            }
+        }
+        match now.keys().find(|name| !self.files.contains_key(*name)) {
+            Some(name) => problem(name, "not among the record's files"),
+            None => Ok(()),
+        }
+    }
+
+    fn own_digest(&self) -> String {
+        let open = Self {
+            digest: String::new(),
+            ..self.clone()
+        };
+        sha256(serde_json::to_string(&open).unwrap_or_default().as_bytes())
+    }
+}
+
+/// SHA-256 in hexadecimal.
+pub(super) fn sha256(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
+/// The digest of every file in `directory` and in its directories, the manifest excepted. A directory with a manifest of its own is
+/// another record.
+fn digests(directory: &Path) -> Result<BTreeMap<String, String>, ManifestError> {
+    let mut digests = BTreeMap::new();
+    add_digests(directory, "", &mut digests)?;
+    Ok(digests)
+}
+
+fn add_digests(
+    directory: &Path,
+    prefix: &str,
+    digests: &mut BTreeMap<String, String>,
+) -> Result<(), ManifestError> {
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        move |source| ManifestError::Io { path, source }
+    };
+    for entry in std::fs::read_dir(directory).map_err(failed(directory))? {
+        let path = entry.map_err(failed(directory))?.path();
+        let own = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = format!("{prefix}{own}");
+        if path.is_dir() && !path.join(FILE).is_file() {
+            add_digests(&path, &format!("{name}/"), digests)?;
+        } else if path.is_file() && name != FILE {
+            let bytes = std::fs::read(&path).map_err(failed(&path))?;
+            digests.insert(name, sha256(&bytes));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    fn record() -> (tempfile::TempDir, Manifest) {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("counts.csv"), "a,b\n1,2\n").unwrap();
+        let manifest = Manifest::describe(
+            directory.path(),
+            "test",
+            "sdop test".to_owned(),
+            &["counts.csv"],
+        );
+        let manifest = manifest.unwrap();
+        std::fs::write(directory.path().join(FILE), manifest.text()).unwrap();
+        (directory, manifest)
+    }
+
+    #[test]
+    fn a_record_reads_back_as_it_was_described() {
+        let (directory, manifest) = record();
+        let read = Manifest::read(directory.path()).unwrap();
+        assert_eq!(read.files, manifest.files);
+        assert_eq!(read.deterministic, ["counts.csv"]);
+        assert_eq!(read.id().len(), 12);
+    }
+
+    #[test]
+    fn one_digit_changed_by_hand_is_seen() {
+        let (directory, _) = record();
+        std::fs::write(directory.path().join("counts.csv"), "a,b\n1,3\n").unwrap();
+        let error = Manifest::read(directory.path()).unwrap_err();
+        assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
+        let (directory, manifest) = record();
+        let text = manifest.text().replace("sdop test", "sdop best");
+        std::fs::write(directory.path().join(FILE), text).unwrap();
+        let error = Manifest::read(directory.path()).unwrap_err();
+        assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
+    }
+
+    #[test]
+    fn figures_below_are_part_of_a_record_and_records_below_are_not() {
+        let directory = tempfile::tempdir().unwrap();
+        let place = directory.path();
+        for (name, text) in [
+            ("figures/a.svg", "1"),
+            ("other/b.csv", "2"),
+            ("other/record.json", "{}"),
+        ] {
+            std::fs::create_dir_all(place.join(name).parent().unwrap()).unwrap();
+            std::fs::write(place.join(name), text).unwrap();
+        }
+        let manifest = Manifest::describe(place, "test", "sdop test".to_owned(), &[]).unwrap();
+        assert_eq!(manifest.files.keys().collect::<Vec<_>>(), ["figures/a.svg"]);
+        std::fs::write(place.join(FILE), manifest.text()).unwrap();
+        std::fs::write(place.join("figures/a.svg"), "3").unwrap();
+        let error = Manifest::read(place).unwrap_err();
+        assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
+    }
+
+    #[test]
+    fn a_file_more_or_less_is_seen() {
+        let (directory, _) = record();
+        std::fs::write(directory.path().join("extra.csv"), "a\n1\n").unwrap();
+        assert!(matches!(
+            Manifest::read(directory.path()).unwrap_err(),
+            ManifestError::Files { .. }
+        ));
+        let (directory, _) = record();
+        std::fs::remove_file(directory.path().join("counts.csv")).unwrap();
+        assert!(matches!(
+            Manifest::read(directory.path()).unwrap_err(),
+            ManifestError::Files { .. }
+        ));
+    }
+}

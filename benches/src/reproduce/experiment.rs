@@ -1,0 +1,336 @@
+//! The runs: every scene with every seed, all strategies side by side on the same frames.
+
+use std::path::{Path, PathBuf};
+
+use miette::Diagnostic;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::immediate::Immediacy;
+use super::sensitivity::Interpretation;
+use super::survival::Survival;
+use super::units::Experiments;
+use crate::cost::calibrate::{Calibration, Effort};
+use crate::cost::pass::{Culled, Observer, Pass, Simulated, pass};
+use crate::cost::table::{self, Cost};
+use crate::hash::PairsHash;
+use crate::measure::culling::Culling;
+use crate::measure::turns::Regime;
+use crate::measure::variant::Variant;
+use crate::scene::{Scene, SceneError};
+use crate::simulate::SimulationError;
+use sdop::choice::choices;
+use sdop::counters::{Counters, Seconds};
+use sdop::settings::Strategy;
+use sdop::simd::Tier;
+use sdop_judge::contestant::Contestant;
+
+/// The paper's strategies, in the order of frame rates that it claims.
+pub const STRATEGIES: [Strategy; 6] = [
+    Strategy::None,
+    Strategy::Sphere,
+    Strategy::SDopObjectOfInterest,
+    Strategy::SDopSequential,
+    Strategy::SDopBatch,
+    Strategy::OrDop,
+];
+
+choices! {
+    /// The paper's scenes: its numbers of objects (350 in the text, 300 in Table 1) in one box, and 500 in a small box.
+    PaperScene, "scene of the paper", {
+        /// 50 objects.
+        Paper50 = "paper-50",
+        /// 150 objects.
+        Paper150 = "paper-150",
+        /// 300 objects, as in Table 1.
+        Paper300 = "paper-300",
+        /// 350 objects, as in the text.
+        Paper350 = "paper-350",
+        /// 500 objects.
+        Paper500 = "paper-500",
+        /// 500 objects in a small box.
+        Crowded500 = "crowded-500",
+    }
+}
+
+impl PaperScene {
+    /// Whether it is the small box, for which Table 1 has no column.
+    #[must_use]
+    pub const fn crowded(self) -> bool {
+        matches!(self, Self::Crowded500)
+    }
+}
+
+/// The scene whose or-DOPs are compared by k.
+pub(super) const COMPARED: PaperScene = PaperScene::Paper500;
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Where the scene files are.
+    pub scenes: PathBuf,
+    /// Which of them.
+    pub names: Vec<PaperScene>,
+    /// One run of each scene a seed.
+    pub seeds: Vec<u64>,
+    /// Frames a run.
+    pub frames: u32,
+    /// How long to calibrate.
+    pub effort: Effort,
+    /// The tier that culls.
+    pub tier: Tier,
+}
+
+/// One strategy in one run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// The scene's name.
+    pub scene: String,
+    /// N.
+    pub bodies: usize,
+    /// How many of them are static.
+    pub statics: usize,
+    /// The box's side.
+    pub side: f64,
+    /// The mean radius of the bodies' spheres.
+    pub radius: f64,
+    /// The seed.
+    pub seed: u64,
+    /// Frames culled.
+    pub frames: u32,
+    /// The strategy.
+    pub strategy: Strategy,
+    /// Sums over frames.
+    pub counters: Counters,
+    /// Medians over warm frames, such that the stages add up to the total; `construct` is Co of the strategy's volumes and
+    /// its culler, built once for this run.
+    pub seconds: Seconds,
+    /// Median seconds of a cold frame.
+    pub cold: f64,
+    /// Mean seconds of a frame, interruptions by other processes included.
+    pub mean: f64,
+    /// Median seconds of a simulation step.
+    pub step: f64,
+    /// Hash of all reported pairs; `None` for the control.
+    pub pairs_sha256: Option<String>,
+}
+
+/// All that was run.
+#[derive(Clone, Debug)]
+pub struct Results {
+    /// The plan.
+    pub plan: Plan,
+    /// One run a seed, scene and strategy.
+    pub runs: Vec<Run>,
+    /// One pass a seed and scene, with its calibration: what the runs were taken from.
+    pub passes: Vec<(PaperScene, Pass)>,
+    /// The paper's sequential algorithm to the letter, a seed and scene of the most objects each.
+    pub immediacies: Vec<Immediacy>,
+    /// The strategies as variants, scene by scene.
+    pub variants: Vec<(PaperScene, Vec<Variant>)>,
+    /// One an or-DOP and test.
+    pub survival: Vec<Survival>,
+    /// What the paper doesn't state, swept; of none unless that was asked for.
+    pub interpretations: Vec<Interpretation>,
+    /// Hash of the calibrated scene's volumes.
+    pub volumes_sha256: String,
+}
+
+/// Why an experiment can't be run.
+#[derive(Debug, Error, Diagnostic)]
+pub enum ReproduceError {
+    /// A scene file that can't be read or built.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneError),
+    /// A scene that can't be simulated or culled.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+impl Plan {
+    /// The paper's scenes in the directory `scenes`, with seeds 1 … `seeds`.
+    #[must_use]
+    pub fn new(scenes: &Path, seeds: u64, frames: u32, effort: Effort, tier: Tier) -> Self {
+        Self {
+            scenes: scenes.to_owned(),
+            names: PaperScene::ALL.to_vec(),
+            seeds: (1..=seeds).collect(),
+            frames,
+            effort,
+            tier,
+        }
+    }
+
+    /// How many times [`Plan::run`] reports progress.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        (self.names.len() + 1) * self.seeds.len()
+    }
+
+    /// Runs everything but the interpretations, here. `done` is called as often as [`Plan::steps`] says.
+    ///
+    /// # Errors
+    /// Scene files that can't be read or don't suit the strategies.
+    pub fn run(&self, mut done: impl FnMut()) -> Result<Results, ReproduceError> {
+        let experiments = Experiments::new(self, false)?;
+        let mut results = experiments.nothing_yet();
+        for unit in 0..experiments.units() {
+            results.add(experiments.find(unit)?);
+            done();
+        }
+        Ok(results)
+    }
+}
+
+/// The strategies as variants of the scene's settings.
+pub(super) fn variants(scene: &Scene, strategies: &[Strategy]) -> Vec<Variant> {
+    let variant = |&strategy: &Strategy| Variant::strategy(&scene.cull, strategy);
+    strategies.iter().map(variant).collect()
+}
+
+/// Runs the first `frames` frames of one scene with all `strategies` side by side.
+///
+/// # Errors
+/// Strategies or effects that the scene can't have.
+pub fn run_scene(
+    scene: &Scene,
+    strategies: &[Strategy],
+    frames: u32,
+    tier: Tier,
+) -> Result<Vec<Run>, SimulationError> {
+    let variants = variants(scene, strategies);
+    run_pass(scene, &variants, frames, tier, None).map(|(runs, _)| runs)
+}
+
+/// Hashes what each variant reports, between turns.
+struct Hashing {
+    hashes: Vec<PairsHash>,
+    /// Variant, frame and pairs.
+    reported: Vec<(usize, u32, Vec<[u32; 2]>)>,
+}
+
+impl Observer for Hashing {
+    fn frame(&mut self, number: usize, frame: u32, culling: &Culling) {
+        self.reported.push((number, frame, culling.pairs()));
+    }
+
+    fn between_turns(&mut self) {
+        for (number, frame, mut pairs) in self.reported.drain(..) {
+            pairs.sort_unstable();
+            self.hashes[number].frame(frame, &pairs);
+        }
+    }
+}
+
+/// The same as a pass, with its calibration.
+pub(super) fn run_pass(
+    scene: &Scene,
+    variants: &[Variant],
+    frames: u32,
+    tier: Tier,
+    calibration: Option<&mut Calibration>,
+) -> Result<(Vec<Run>, Pass), SimulationError> {
+    let mut hashing = Hashing {
+        hashes: vec![PairsHash::default(); variants.len()],
+        reported: Vec::new(),
+    };
+    let mut simulated = Simulated::new(scene, frames)?;
+    let pass = pass(
+        scene,
+        variants,
+        tier,
+        &mut simulated,
+        calibration,
+        &mut hashing,
+    )?;
+    let bodies = &scene.bodies;
+    let radius = |&shape: &u32| f64::from(scene.shapes[shape as usize].ball.radius);
+    let run = |((variant, culled), hash): ((&Variant, &Culled), PairsHash)| {
+        let strategy = variant.settings.strategy;
+        let warm = culled.times.medians(Regime::Warm);
+        Run {
+            scene: scene.name.clone(),
+            bodies: bodies.len(),
+            statics: bodies.dynamic.iter().filter(|&&dynamic| !dynamic).count(),
+            side: f64::from(scene.side.unwrap_or(f32::INFINITY)),
+            radius: bodies.shape.iter().map(radius).sum::<f64>() / bodies.len() as f64,
+            seed: scene.seed,
+            frames,
+            strategy,
+            counters: culled.counts.culler,
+            seconds: Seconds {
+                construct: culled.construct,
+                effects: 0.0,
+                update: warm.update,
+                pair_finding: warm.finding,
+                ordop: warm.refining,
+                total: warm.total(),
+            },
+            cold: culled.times.medians(Regime::Cold).total(),
+            mean: culled.times.mean(),
+            step: pass.step,
+            pairs_sha256: strategy.scheme().culls().then(|| hash.finish()),
+        }
+    };
+    let runs = variants
+        .iter()
+        .zip(&pass.culled)
+        .zip(hashing.hashes)
+        .map(run)
+        .collect();
+    Ok((runs, pass))
+}
+
+impl Results {
+    /// One value a seed of a strategy in a scene, in the order of seeds.
+    #[must_use]
+    pub fn by_seed(
+        &self,
+        scene: &str,
+        strategy: Strategy,
+        value: impl Fn(&Run) -> f64,
+    ) -> Vec<f64> {
+        let of = |run: &&Run| run.scene == scene && run.strategy == strategy;
+        self.runs.iter().filter(of).map(value).collect()
+    }
+
+    /// Any run of a scene, for what all of them share.
+    #[must_use]
+    pub fn example(&self, scene: &str) -> Option<&Run> {
+        self.runs.iter().find(|run| run.scene == scene)
+    }
+
+    /// Every scene.
+    pub fn scenes(&self) -> impl Iterator<Item = &'static str> + '_ {
+        self.plan.names.iter().map(|scene| scene.name())
+    }
+
+    /// The scenes that share the paper's one box, by number of bodies.
+    pub fn paper_scenes(&self) -> impl Iterator<Item = &'static str> + '_ {
+        let usual = self.plan.names.iter().filter(|scene| !scene.crowded());
+        usual.map(|scene| scene.name())
+    }
+
+    /// A scene's passes in the order of time.
+    #[must_use]
+    pub fn passes_of(&self, scene: PaperScene) -> Vec<&Pass> {
+        let passes = self.passes.iter().filter(|(name, _)| *name == scene);
+        passes.map(|(_, pass)| pass).collect()
+    }
+
+    /// The cost of every strategy in every scene; the control costs nothing that the formula has a term for.
+    #[must_use]
+    pub fn costs(&self, regime: Regime) -> Vec<Cost> {
+        let mut costs = Vec::new();
+        for (scene, variants) in &self.variants {
+            let bodies = self.example(scene.name()).map_or(0, |run| run.bodies);
+            let passes = self.passes_of(*scene);
+            for of in variants.iter().enumerate() {
+                costs.extend(table::cost((scene.name(), bodies), of, &passes, regime));
+            }
+        }
+        costs
+    }
+}

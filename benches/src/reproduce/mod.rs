@@ -1,0 +1,40 @@
+//! The paper's experiments: the same seeded trajectories culled by each of its strategies, for each of its numbers of
+//! objects, and what that says of its results and of our own reading of them.
+//!
+//! > [`Plan`] → [`Run`]s → Table 1 ([`readings`]), frame rates ([`rates`]), T ([`Results::costs`]), [`claims`], [`study`]
+//!
+//! Everything behind the runs is a pure function of them, so that runs made elsewhere can be joined. Counts and hashes
+//! are equal on every CPU; seconds are this machine's.
+
+pub mod check;
+pub mod claims;
+pub mod closed_form;
+mod experiment;
+pub mod immediate;
+pub mod paper;
+pub mod rates;
+pub mod readings;
+pub mod sensitivity;
+pub mod study;
+mod survival;
+pub mod units;
+
+pub use crate::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};
+pub use experiment::{PaperScene, Plan, ReproduceError, Results, Run, STRATEGIES, run_scene};
+pub use survival::Survival;
+
+use sdop::settings::Strategy;
+
+/// What the paper calls a strategy in its tables and figures.
+#[must_use]
+pub const fn paper_name(strategy: Strategy) -> &'static str {
+    match strategy {
+        Strategy::None => "No BV",
+        Strategy::Sphere => "Sphere",
+        Strategy::OrDop => "or-DOPs",
+        Strategy::SDopSequential => "Seq S-DOP",
+        Strategy::SDopBatch => "ALL S-DOP",
+        Strategy::SDopObjectOfInterest => "OoI S-DOP",
+        other => other.name(),
+    }
+}

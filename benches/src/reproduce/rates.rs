@@ -1,0 +1,85 @@
+//! Frame rates (Figs 12 and 13): fps = 1/(F + t) with t the culling of a frame and F all else that a frame costs.
+//!
+//! The paper's frames included rendering at an unknown price, so rates are shown for stated F: none, and a whole
+//! frame of 60 Hz, which hides all but the slowest culling.
+
+use serde::Serialize;
+
+use super::Estimate;
+use super::experiment::{Results, STRATEGIES};
+use sdop::settings::Strategy;
+
+/// Per-frame costs F of everything else, in seconds.
+pub const ELSEWHERE: [f64; 2] = [0.0, 16.7e-3];
+/// A frame of 60 Hz, in seconds.
+pub const FRAME_60_HZ: f64 = 1.0 / 60.0;
+
+/// One strategy's frame rate.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rate {
+    /// The scene.
+    pub scene: String,
+    /// N.
+    pub bodies: usize,
+    /// The strategy.
+    pub strategy: Strategy,
+    /// F in seconds.
+    pub elsewhere: f64,
+    /// t in seconds: the median over frames, averaged over seeds.
+    pub culling: Estimate,
+    /// Frames a second.
+    pub fps: Estimate,
+    /// Frame rate over the control's.
+    pub to_control: Estimate,
+    /// t as a share of a 60 Hz frame, percent.
+    pub share: Estimate,
+}
+
+/// All frame rates: F by F, scene by scene, strategy by strategy.
+#[must_use]
+pub fn table(results: &Results) -> Vec<Rate> {
+    let mut rates = Vec::new();
+    for elsewhere in ELSEWHERE {
+        for scene in results.scenes() {
+            rates.extend(STRATEGIES.map(|strategy| rate(results, scene, strategy, elsewhere)));
+        }
+    }
+    rates
+}
+
+fn rate(results: &Results, scene: &str, strategy: Strategy, elsewhere: f64) -> Rate {
+    let culling = results.by_seed(scene, strategy, |run| run.seconds.total);
+    let fps: Vec<f64> = culling.iter().map(|t| 1.0 / (elsewhere + t)).collect();
+    Rate {
+        scene: scene.to_owned(),
+        bodies: results.example(scene).map_or(0, |run| run.bodies),
+        strategy,
+        elsewhere,
+        culling: Estimate::of(&culling),
+        fps: Estimate::of(&fps),
+        to_control: ratio(results, scene, [strategy, Strategy::None], elsewhere),
+        share: Estimate::of(&culling).scaled(100.0 / FRAME_60_HZ),
+    }
+}
+
+/// Frame rate of the first strategy over that of the second, seed by seed: what both share of a seed cancels.
+#[must_use]
+pub fn ratio(results: &Results, scene: &str, of: [Strategy; 2], elsewhere: f64) -> Estimate {
+    let [one, other] = of.map(|strategy| results.by_seed(scene, strategy, |run| run.seconds.total));
+    let ratios: Vec<f64> = one
+        .iter()
+        .zip(&other)
+        .map(|(one, other)| (elsewhere + other) / (elsewhere + one))
+        .collect();
+    Estimate::of(&ratios)
+}
+
+/// The F at which the frame rate of the first strategy becomes `share` of the second's: (F + t₂)/(F + t₁) = share. Above
+/// it everything else hides the difference. `None` where it is so without anything else.
+#[must_use]
+pub fn hides(results: &Results, scene: &str, of: [Strategy; 2], share: f64) -> Option<Estimate> {
+    let [one, other] = of.map(|strategy| results.by_seed(scene, strategy, |run| run.seconds.total));
+    let f = |(one, other): (&f64, &f64)| (share * one - other) / (1.0 - share);
+    let f = Estimate::in_order(&one.iter().zip(&other).map(f).collect::<Vec<_>>());
+    (f.mean > 0.0).then_some(f)
+}

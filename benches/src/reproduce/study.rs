@@ -1,0 +1,268 @@
+//! Our own reading of Table 1, checked: what its rows can and cannot be.
+
+use super::check::{Check, Claim};
+use super::closed_form::{inverse, probability, relative_reach};
+use super::experiment::Results;
+use super::readings::Reading;
+use super::{Estimate, paper};
+use sdop::settings::{Overlap, Strategy};
+
+use Strategy::{OrDop, SDopBatch as All, SDopSequential as Seq, Sphere};
+
+/// Where these claims come from.
+const SOURCE: &str = "own study";
+/// The additional tests a frame that reconcile the ALL row, as a multiple of N.
+const EXTRA_TESTS: f64 = 0.28;
+
+/// All of them.
+#[must_use]
+pub fn all(results: &Results) -> Vec<Claim> {
+    let claim = |claim, checks| Claim {
+        source: SOURCE,
+        claim,
+        checks,
+    };
+    vec![
+        claim(
+            "The sphere percentage is the closed form's for the box, 100·P(2r/L), whatever N.",
+            closed_form(results),
+        ),
+        claim(
+            "The paper's sphere row corresponds to 2r/L from .128 to .144.",
+            paper_reach(),
+        ),
+        claim(
+            "A fixed box can't show the sphere row's rise with N.",
+            no_trend(results),
+        ),
+        claim(
+            "Sequential S-DOP is or-DOP hits over or-DOP tests: with sphere tests among the tests it can't exceed the sphere row.",
+            sequential(results),
+        ),
+        claim(
+            "43 to 52 % fits an or-DOP of k = 18 on compact meshes.",
+            survival(results),
+        ),
+        claim(
+            "ALL S-DOP counts list entries as tests, and up to .28·N tests a frame more.",
+            list(results),
+        ),
+        claim(
+            "The paper's or-DOP row contradicts its others: it should be sphere × sequential and can't exceed the sphere row.",
+            ordop_row(),
+        ),
+        claim(
+            "Measured, or-DOP hits over tests are sphere × sequential.",
+            product(results),
+        ),
+    ]
+}
+
+fn percent(results: &Results, scene: &str, strategy: Strategy, reading: Reading) -> Vec<f64> {
+    results.by_seed(scene, strategy, |run| {
+        reading.percentage(strategy, &run.counters, run.frames, run.bodies)
+    })
+}
+
+fn closed_form(results: &Results) -> Vec<Check> {
+    let family = results.plan.names.len();
+    let check = |scene: &'static str| {
+        let run = results.example(scene)?;
+        let s = relative_reach(run.side, run.radius);
+        let measured = Estimate::of(&percent(results, scene, Sphere, Reading::OwnTests));
+        let quantity = format!("Sphere, {scene}, 2r/L = {s:.4}, %");
+        Some(Check::equal(
+            quantity,
+            measured,
+            100.0 * probability(s),
+            family,
+        ))
+    };
+    results.scenes().filter_map(check).collect()
+}
+
+fn paper_reach() -> Vec<Check> {
+    let columns = paper::TABLE_1_BODIES.iter().zip(paper::TABLE_1[0].1);
+    let check = |(n, percent)| {
+        Check::computed(
+            format!("2r/L of the paper's sphere row, N = {n}"),
+            inverse(0.01 * percent),
+            [0.1275, 0.1445],
+        )
+    };
+    columns.map(check).collect()
+}
+
+/// The difference between the most and the fewest objects, and the chance of the paper's row in a fixed box.
+fn no_trend(results: &Results) -> Vec<Check> {
+    let scenes: Vec<&str> = results.paper_scenes().collect();
+    let mut checks = Vec::new();
+    if let (Some(first), Some(last)) = (scenes.first(), scenes.last().filter(|_| scenes.len() > 1))
+    {
+        let [few, many] =
+            [first, last].map(|scene| percent(results, scene, Sphere, Reading::OwnTests));
+        let rises: Vec<f64> = few
+            .iter()
+            .zip(&many)
+            .map(|(few, many)| many - few)
+            .collect();
+        let [first_paper, .., last_paper] = paper::TABLE_1[0].1;
+        let quantity = format!(
+            "Sphere, {last} − {first}, points (the paper: {:.2})",
+            last_paper - first_paper
+        );
+        checks.push(Check::equal(quantity, Estimate::of(&rises), 0.0, 1));
+    }
+    let (_, p, _) = paper::constant_row(&paper::TABLE_1[0].1, &paper::pairs());
+    checks.push(Check::computed(
+        "probability of the paper's sphere row in a fixed box, single-frame counts".to_owned(),
+        p,
+        [0.0, 0.05],
+    ));
+    checks
+}
+
+fn sequential(results: &Results) -> Vec<Check> {
+    let mut checks = Vec::new();
+    if let (Some(sphere), Some(sequential)) = (paper::row(Sphere), paper::row(Seq)) {
+        for ((n, sphere), sequential) in paper::TABLE_1_BODIES.iter().zip(sphere).zip(sequential) {
+            let quantity = format!("the paper's sequential over its sphere row, N = {n}");
+            checks.push(Check::computed(
+                quantity,
+                sequential / sphere,
+                [1.0, f64::INFINITY],
+            ));
+        }
+    }
+    checks.extend(results.scenes().map(|scene| {
+        let [all, sphere] = [(Seq, Reading::AllTests), (Sphere, Reading::OwnTests)]
+            .map(|(strategy, reading)| percent(results, scene, strategy, reading));
+        let ratios: Vec<f64> = all
+            .iter()
+            .zip(&sphere)
+            .map(|(all, sphere)| all / sphere)
+            .collect();
+        let quantity = format!("Seq by hits/all tests over Sphere, {scene}");
+        Check::between(quantity, Estimate::of(&ratios), [f64::NEG_INFINITY, 1.0])
+    }));
+    checks
+}
+
+fn survival(results: &Results) -> Vec<Check> {
+    let [lo, .., hi] = paper::row(Seq).copied().unwrap_or_default();
+    let mut checks: Vec<Check> = results
+        .scenes()
+        .map(|scene| {
+            let measured = Estimate::of(&percent(results, scene, Seq, Reading::OwnTests));
+            Check::between(
+                format!("Seq, {}, {scene}, %", Reading::OwnTests),
+                measured,
+                [lo, hi],
+            )
+        })
+        .collect();
+    let two_sided = results
+        .survival
+        .iter()
+        .filter(|row| row.overlap == Overlap::TwoSided && row.k.k() == 18);
+    checks.extend(two_sided.map(|row| {
+        let share = Estimate::of(&row.shares).scaled(100.0);
+        Check::between(
+            format!(
+                "or-DOP hits among sphere hits, k = {}, {}, %",
+                row.k, row.overlap
+            ),
+            share,
+            [lo, hi],
+        )
+    }));
+    checks
+}
+
+/// The ALL row from the paper's other rows, and ours with the additional tests.
+fn list(results: &Results) -> Vec<Check> {
+    let extra = paper::extra_tests_of_all().unwrap_or_default();
+    let check = |(n, extra): (&usize, f64)| {
+        Check::computed(
+            format!("additional tests a frame over N in the paper's ALL row, N = {n}"),
+            extra,
+            [0.0, 0.3],
+        )
+    };
+    let mut checks: Vec<Check> = paper::TABLE_1_BODIES.iter().zip(extra).map(check).collect();
+    for scene in results.paper_scenes() {
+        let Some(paper) = results
+            .example(scene)
+            .and_then(|run| paper::percentage(All, run.bodies))
+        else {
+            continue;
+        };
+        let values = results.by_seed(scene, All, |run| {
+            let extra = EXTRA_TESTS * run.bodies as f64 * f64::from(run.frames);
+            let tests = (run.counters.ordop.tests + run.counters.sphere.hits) as f64;
+            100.0 * run.counters.ordop.hits as f64 / (tests + extra)
+        });
+        let quantity =
+            format!("ALL with list entries and .28·N more tests, {scene}, % (the paper: {paper})");
+        checks.push(Check::between(
+            quantity,
+            Estimate::of(&values),
+            [0.9 * paper, 1.1 * paper],
+        ));
+    }
+    checks
+}
+
+fn ordop_row() -> Vec<Check> {
+    let [Some(sphere), Some(sequential), Some(ordop)] = [Sphere, Seq, OrDop].map(paper::row) else {
+        return Vec::new();
+    };
+    let mut checks = Vec::new();
+    for (i, n) in paper::TABLE_1_BODIES.iter().enumerate() {
+        let product = 0.01 * sphere[i] * sequential[i];
+        let quantity = format!(
+            "the paper's or-DOP percentage over its sphere × sequential ({product:.2} %), N = {n}"
+        );
+        checks.push(Check::computed(
+            quantity,
+            ordop[i] / product,
+            [1.1, f64::INFINITY],
+        ));
+    }
+    let exceeds = |i: &usize| ordop[*i] > sphere[*i];
+    let columns = (0..4).filter(exceeds).count() as f64;
+    checks.push(Check::computed(
+        "columns in which the paper's or-DOP row exceeds its sphere row".to_owned(),
+        columns,
+        [1.0, 4.0],
+    ));
+    checks
+}
+
+fn product(results: &Results) -> Vec<Check> {
+    let mut checks = Vec::new();
+    for scene in results.scenes() {
+        let [ordop, sphere, sequential] = [OrDop, Sphere, Seq]
+            .map(|strategy| percent(results, scene, strategy, Reading::OwnTests));
+        let ratios: Vec<f64> = (0..ordop.len())
+            .map(|i| ordop[i] / (0.01 * sphere[i] * sequential[i]))
+            .collect();
+        let quantity = format!("or-DOPs over Sphere × Seq, {scene}");
+        checks.push(Check::between(
+            quantity,
+            Estimate::of(&ratios),
+            [0.95, 1.05],
+        ));
+        let below: Vec<f64> = ordop
+            .iter()
+            .zip(&sphere)
+            .map(|(ordop, sphere)| ordop / sphere)
+            .collect();
+        checks.push(Check::between(
+            format!("or-DOPs over Sphere, {scene}"),
+            Estimate::of(&below),
+            [f64::NEG_INFINITY, 1.0],
+        ));
+    }
+    checks
+}

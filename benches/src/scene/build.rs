@@ -1,0 +1,337 @@
+//! From a scene file to a scene: each group is checked, its shapes are made, its bodies are placed by the seed.
+
+use std::ops::Range;
+
+use toml::Spanned;
+
+use super::density::PowerSums;
+use super::error::SceneError;
+use super::file::{Placement, SceneFile};
+use super::group::{Draws, Group, Purpose};
+use super::library::{Form, Library};
+use super::placement::Placer;
+use super::{Scene, Share};
+use crate::effects::{Velocities, world_centre};
+use crate::number::{Interval, Positive};
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::{ContractError, check_bodies};
+
+impl SceneFile {
+    /// Builds the scene: reads meshes, builds shapes, places bodies.
+    ///
+    /// # Errors
+    /// Everything that a value can't show alone: exclusive keys, missing or broken meshes, a box too small, bodies
+    /// outside of the contract, effects or culling that the scene can't have.
+    pub fn build(&self) -> Result<Scene, SceneError> {
+        self.build_share(0, 1)
+    }
+
+    /// Builds the share of rank `rank` of `ranks`: the same scene with a part of its bodies, each as in the whole.
+    ///
+    /// Shapes are made for all bodies, so that all ranks number them alike. With
+    /// [`Seeding::ByBody`](super::file::Seeding::ByBody) a rank draws poses and velocities of its own bodies alone.
+    ///
+    /// # Errors
+    /// As [`Self::build`]; what is wrong with a body alone, only the rank that holds it finds.
+    pub fn build_share(&self, rank: usize, ranks: usize) -> Result<Scene, SceneError> {
+        let groups = self.groups(ranks)?;
+        let share = share_of(&groups, rank, ranks);
+        let mut library = Library::default();
+        let (mut bodies, mut velocities) = (Bodies::default(), Velocities::default());
+        let mut sizes = Sizes::default();
+        for (group, run) in runs(&groups) {
+            let held = share.within(&run);
+            self.add_shapes(group, held, &mut library, &mut bodies, &mut sizes)?;
+        }
+        let side = self.side(&groups, &sizes)?;
+        for ((group, run), widest) in runs(&groups).zip(&sizes.widest) {
+            let held = share.within(&run);
+            self.add_poses(group, held.clone(), (side, *widest), &library, &mut bodies)?;
+            self.add_velocities(group, held, &mut velocities);
+        }
+        let (shapes, construct_seconds) = library.into_shapes();
+        check_bodies(&bodies, &shapes)
+            .and_then(|()| velocities.check(bodies.len()))
+            .map_err(|error| self.contract_error(&groups, &error.numbered(share.held.start)))?;
+        self.spec.cull.check(share.all)?;
+        let scene = Scene {
+            name: self.spec.name.clone(),
+            seed: self.spec.seed,
+            frames: self.spec.frames.get(),
+            dt: self.spec.dt.0,
+            side,
+            shapes,
+            bodies,
+            share: (ranks > 1).then_some(share),
+            velocities,
+            effects: self.spec.effects.clone(),
+            cull: self.spec.cull.clone(),
+            construct_seconds,
+        };
+        match scene.start_effects() {
+            Ok(_) => Ok(scene),
+            Err(error) => Err(self.wrong(error.span.clone(), &error.to_string(), error.hint)),
+        }
+    }
+
+    /// Draws the radii of all the group's bodies, makes their shapes, and adds one shape and dynamic entry a body held.
+    fn add_shapes(
+        &self,
+        group: &Group<'_>,
+        held: Range<usize>,
+        library: &mut Library,
+        bodies: &mut Bodies,
+        sizes: &mut Sizes,
+    ) -> Result<(), SceneError> {
+        let mesh = library.mesh(self, group)?;
+        let mut draws = group.draws(Purpose::Radius);
+        let range = group.spec.radius.as_ref().map(|range| *range.get_ref());
+        let uniform = group.is_uniform();
+        let mut widest = 0.0_f32;
+        let mut last = None;
+        for index in 0..group.bodies {
+            let radius = match range {
+                Some(range) if range.min < range.max => Some(draws.of(index).radius(range)),
+                Some(range) => Some(range.min),
+                None => None,
+            };
+            let shape = match last {
+                Some((known, shape)) if known == radius => Ok(shape),
+                _ => library.shape(mesh, group.origin, radius, &self.spec.cull),
+            };
+            let shape = shape.map_err(|(message, hint)| {
+                let span = match group.form {
+                    Form::File(name) | Form::Procedural(name, _) => name.span(),
+                };
+                self.source.error(
+                    group.spec.radius.as_ref().map_or(span, Spanned::span),
+                    message,
+                    hint,
+                )
+            })?;
+            last = Some((radius, shape));
+            let radius = library.get(shape).ball.radius;
+            widest = widest.max(radius);
+            if uniform {
+                sizes.uniform.add(radius);
+            }
+            if held.contains(&index) {
+                bodies.shape.push(shape);
+                bodies.dynamic.push(!group.spec.fixed);
+            }
+        }
+        sizes.widest.push(widest);
+        Ok(())
+    }
+
+    /// The box's side: given, or from the seeded bodies' radii and the wished density.
+    fn side(&self, groups: &[Group<'_>], sizes: &Sizes) -> Result<Option<f32>, SceneError> {
+        let Some(bounds) = &self.spec.bounds else {
+            return Ok(None);
+        };
+        let wrong = |span, message, hint| Err(self.wrong(span, message, hint));
+        let partners = match (&bounds.get_ref().side, &bounds.get_ref().partners) {
+            (Some(side), None) => return Ok(Some(side.get_ref().0)),
+            (None, Some(partners)) => partners,
+            (Some(_), Some(partners)) => {
+                return wrong(
+                    partners.span(),
+                    "`side` and `partners` exclude each other",
+                    "keep one of them",
+                );
+            }
+            (None, None) => {
+                return wrong(
+                    bounds.span(),
+                    "a box without a size",
+                    "add side = … or partners = …",
+                );
+            }
+        };
+        for group in groups.iter().filter(|group| group.spec.poses.is_none()) {
+            if let (Some(placement), false) = (&group.spec.placement, group.is_uniform()) {
+                let hint = "give the side instead of partners";
+                return wrong(
+                    placement.span(),
+                    "`partners` is the density of uniform placement",
+                    hint,
+                );
+            }
+        }
+        let Positive(wished) = *partners.get_ref();
+        let side = sizes.uniform.side(wished);
+        if side > 0.0 {
+            return Ok(Some(side));
+        }
+        wrong(
+            partners.span(),
+            "`partners` needs two seeded bodies that have an extent",
+            "give the side instead",
+        )
+    }
+
+    /// Adds the poses of the bodies held; the second pair is the box's side and the radius of the group's largest ball.
+    fn add_poses(
+        &self,
+        group: &Group<'_>,
+        held: Range<usize>,
+        (side, widest): (Option<f32>, f32),
+        library: &Library,
+        bodies: &mut Bodies,
+    ) -> Result<(), SceneError> {
+        let Some(poses) = &group.spec.poses else {
+            return self.place(group, held, (side, widest), library, bodies);
+        };
+        for pose in &poses.get_ref()[held] {
+            let [qx, qy, qz, qw, tx, ty, tz] = *pose.get_ref();
+            bodies.rotation.push([qx, qy, qz, qw]);
+            bodies.translation.push([tx, ty, tz]);
+        }
+        Ok(())
+    }
+
+    fn place(
+        &self,
+        group: &Group<'_>,
+        held: Range<usize>,
+        (side, widest): (Option<f32>, f32),
+        library: &Library,
+        bodies: &mut Bodies,
+    ) -> Result<(), SceneError> {
+        let first = bodies.translation.len();
+        let count_span = group.spec.count.as_ref().map_or(0..0, Spanned::span);
+        let Some(side) = side else {
+            return Err(self.wrong(
+                count_span,
+                "seeded bodies need a box",
+                "add [box] with side = … or partners = …",
+            ));
+        };
+        let half = 0.5 * side;
+        if half < widest {
+            let bounds = self.spec.bounds.as_ref().map_or(count_span, Spanned::span);
+            let message =
+                format!("a box of side {side} is too small for bodies of radius {widest}");
+            let hint = format!(
+                "the side must be at least {}, for room to move well above",
+                2.0 * widest
+            );
+            return Err(self.wrong(bounds, &message, &hint));
+        }
+        let wished = group.spec.placement.as_ref();
+        let placement = wished.map_or(Placement::Uniform, |placement| *placement.get_ref());
+        let mut centres = group.draws(Purpose::Centre);
+        let placer = Placer::new(placement, group.bodies, half, widest, centres.common());
+        let placer = placer.map_err(|(message, hint)| {
+            self.wrong(wished.map_or(count_span, Spanned::span), &message, &hint)
+        })?;
+        let mut turns = group.draws(Purpose::Rotation);
+        for index in centres.visited(&held) {
+            let (turns, centres) = (turns.of(index), centres.of(index));
+            let rotation = turns.rotation();
+            if !held.contains(&index) {
+                placer.centre(0.0, centres);
+                continue;
+            }
+            let shape = bodies.shape[first + index - held.start];
+            let ball = library.get(shape).ball;
+            let centre = placer.centre(ball.radius, centres);
+            // The ball's centre is placed: t is what brings it there, the ball's centre itself for origin = "ball".
+            let offset = world_centre(ball.centre.to_array(), &rotation, &[0.0; 3]);
+            bodies.rotation.push(rotation);
+            bodies
+                .translation
+                .push([0, 1, 2].map(|axis| centre[axis] - offset[axis]));
+        }
+        Ok(())
+    }
+
+    /// Draws or copies velocities, and the angular velocities of dynamic bodies where the scene lists `spin`.
+    fn add_velocities(&self, group: &Group<'_>, held: Range<usize>, velocities: &mut Velocities) {
+        let (spec, all) = (group.spec, velocities.linear.len() + held.len());
+        let (linear, angular) = (&mut velocities.linear, &mut velocities.angular);
+        if let Some(given) = &spec.velocities {
+            linear.extend(given.get_ref()[held.clone()].iter().map(|v| *v.get_ref()));
+        } else if let Some(speed) = &spec.speed {
+            let draws = group.draws(Purpose::Velocity);
+            linear.extend(vectors(draws, *speed.get_ref(), &held));
+        } else {
+            linear.resize(all, [0.0; 3]);
+        }
+        match &self.spec.effects.spin {
+            Some(spin) if !spec.fixed => {
+                let draws = group.draws(Purpose::Spin);
+                angular.extend(vectors(draws, spin.get_ref().rate, &held));
+            }
+            _ => angular.resize(all, [0.0; 3]),
+        }
+    }
+
+    /// Points at what the file says of the body: its velocity, its pose, or its group.
+    fn contract_error(&self, groups: &[Group<'_>], error: &ContractError) -> SceneError {
+        let mut first = 0;
+        let mut span = 0..0;
+        for (group, table) in groups.iter().zip(&self.spec.bodies) {
+            if (first..first + group.bodies).contains(&error.body) {
+                let at = error.body - first;
+                let pose = group
+                    .spec
+                    .poses
+                    .as_ref()
+                    .map(|poses| poses.get_ref()[at].span());
+                let velocity = group
+                    .spec
+                    .velocities
+                    .as_ref()
+                    .map(|list| list.get_ref()[at].span());
+                let narrow = if error.quantity == "velocity" {
+                    velocity
+                } else {
+                    pose
+                };
+                span = narrow.unwrap_or(table.span());
+            }
+            first += group.bodies;
+        }
+        self.wrong(span, &error.to_string(), error.hint)
+    }
+}
+
+/// What is known of radii once all shapes are made.
+#[derive(Default)]
+struct Sizes {
+    /// Of bodies that are spread uniformly.
+    uniform: PowerSums,
+    /// The largest of each group.
+    widest: Vec<f32>,
+}
+
+/// Each group with its run of bodies in the whole scene.
+fn runs<'a, 'b>(
+    groups: &'b [Group<'a>],
+) -> impl Iterator<Item = (&'b Group<'a>, Range<usize>)> + use<'a, 'b> {
+    groups.iter().scan(0, |next, group| {
+        let first = *next;
+        *next += group.bodies;
+        Some((group, first..*next))
+    })
+}
+
+fn share_of(groups: &[Group<'_>], rank: usize, ranks: usize) -> Share {
+    let moving = runs(groups).filter(|(group, _)| !group.spec.fixed);
+    let moving = moving.map(|(_, run)| run).collect();
+    let all = groups.iter().map(|group| group.bodies).sum();
+    Share::of_rank(rank, ranks, all, moving)
+}
+
+/// Drawn vectors of the bodies held.
+fn vectors(
+    mut draws: Draws,
+    length: Interval,
+    held: &Range<usize>,
+) -> impl Iterator<Item = [f32; 3]> {
+    draws.visited(held).filter_map(move |index| {
+        let vector = draws.of(index).vector(length);
+        held.contains(&index).then_some(vector)
+    })
+}

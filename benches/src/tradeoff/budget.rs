@@ -1,0 +1,237 @@
+//! Time-critical culling: precision against the budget, for each order of refinement.
+//!
+//! A budget of tests gives reproducible counts; one of microseconds shows by how much the clock is overrun. A pair that
+//! spheres report and the budget doesn't reach is starved: its age counts the frames since it was last refined, or
+//! since its spheres first met.
+
+use std::collections::HashMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::TradeoffError;
+use super::counts::{share, shared};
+use super::interest::spread;
+use super::truth::{Judge, Sample};
+use super::variant::Variant;
+use crate::cost::pass::{Culled, Simulated, pass};
+use crate::measure::turns::{Regime, median};
+use crate::percentiles::Percentiles;
+use crate::scene::Scene;
+use sdop::culler::Culler;
+use sdop::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
+use sdop::simd::Tier;
+
+/// Budgets as shares of what refining everything takes.
+const SHARES: [f64; 7] = [0.0, 0.125, 0.25, 0.5, 0.75, 1.0, 1.25];
+
+/// One order under one budget of tests.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BudgetRow {
+    /// Order of refinement.
+    pub order: Order,
+    /// Tests a frame.
+    pub tests: u64,
+    /// Refined pairs / pairs whose spheres overlap.
+    pub refined: f64,
+    /// True pairs / reported pairs, on the frames with a truth.
+    pub precision: f64,
+    /// True pairs found / true pairs.
+    pub recall: f64,
+    /// Mean age, in frames, of the pairs that are not refined in a frame.
+    pub mean_age: f64,
+    /// The oldest.
+    pub oldest: u32,
+}
+
+/// How far a budget by the clock is overrun.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ClockRow {
+    /// The budget, microseconds a frame, from the start of the strategy.
+    pub microseconds: u64,
+    /// Refined pairs / pairs whose spheres overlap.
+    pub refined: f64,
+    /// Median of the time past the budget, microseconds; negative when it is not used up.
+    pub p50: f64,
+    /// 99th percentile of it.
+    pub p99: f64,
+}
+
+/// Poses of consecutive frames, some with the truth.
+#[derive(Clone, Copy, Debug)]
+pub struct Window<'a> {
+    /// Consecutive frames.
+    pub frames: &'a [Sample],
+    /// Every so many frames are judged.
+    pub stride: usize,
+}
+
+/// Every order under every budget. `tests` is the mean number of sphere hits a frame.
+///
+/// # Errors
+/// What culling or judging may meet.
+pub fn by_tests(
+    scene: &Scene,
+    tier: Tier,
+    window: Window<'_>,
+    judge: &Judge,
+    cache: Option<&std::path::Path>,
+    tests: f64,
+) -> Result<Vec<BudgetRow>, TradeoffError> {
+    let judged: Vec<Sample> = window
+        .frames
+        .iter()
+        .step_by(window.stride)
+        .cloned()
+        .collect();
+    let truth = judge.truth(&judged, cache)?;
+    let mut rows = Vec::new();
+    for &order in Order::ALL {
+        for share in SHARES {
+            let budget = (share * tests).round() as u64;
+            let settings = settings(scene, Budget::Tests(budget), order);
+            rows.push(row(scene, &settings, tier, window, &truth)?);
+        }
+    }
+    Ok(rows)
+}
+
+fn settings(scene: &Scene, budget: Budget, order: Order) -> CullSettings {
+    let own = &scene.cull;
+    // A tenth of the bodies: with one alone, a few pairs of a thousand would come first, and no row would show it.
+    let bodies = scene.bodies.len();
+    CullSettings {
+        strategy: Strategy::SDopTimeCritical,
+        updates: Updates::Eager,
+        budget: Some(budget),
+        interest: Some(Interest::Bodies(spread(bodies, bodies.div_ceil(10)))),
+        order,
+        ..own.clone()
+    }
+}
+
+fn row(
+    scene: &Scene,
+    settings: &CullSettings,
+    tier: Tier,
+    window: Window<'_>,
+    truth: &[Vec<[u32; 2]>],
+) -> Result<BudgetRow, TradeoffError> {
+    let mut culler = Culler::builder()
+        .settings(settings)
+        .tier(tier)
+        .build(&scene.shapes, &scene.bodies)?;
+    let mut starved = Starvation::default();
+    let (mut reported, mut found, mut true_pairs) = (0, 0, 0);
+    let mut truth = truth.iter();
+    for (number, sample) in window.frames.iter().enumerate() {
+        let before = culler.counters().untested;
+        let pairs = culler.cull(&sample.bodies)?;
+        if number % window.stride == 0
+            && let Some(truth) = truth.next()
+        {
+            let pairs = pairs.sorted();
+            reported += pairs.len() as u64;
+            found += shared(&pairs, truth);
+            true_pairs += truth.len() as u64;
+        }
+        let untested = (culler.counters().untested - before) as usize;
+        starved.frame(sample.frame, culler.potentially_colliding(), untested);
+    }
+    let counters = culler.counters();
+    Ok(BudgetRow {
+        order: settings.order,
+        tests: match settings.budget {
+            Some(Budget::Tests(tests)) => tests,
+            _ => 0,
+        },
+        refined: share(counters.ordop.tests, counters.sphere.hits),
+        precision: share(found, reported),
+        recall: share(found, true_pairs),
+        mean_age: starved.sum as f64 / starved.count.max(1) as f64,
+        oldest: starved.oldest,
+    })
+}
+
+/// Ages of unrefined pairs.
+#[derive(Default)]
+struct Starvation {
+    /// For each pair of the last frame: when it was last refined, or first listed.
+    since: HashMap<[u32; 2], u32>,
+    sum: u64,
+    count: u64,
+    oldest: u32,
+}
+
+impl Starvation {
+    /// Takes one frame's pairs in the order of refinement; the last `untested` were not refined.
+    fn frame(
+        &mut self,
+        frame: u32,
+        pairs: impl ExactSizeIterator<Item = [u32; 2]>,
+        untested: usize,
+    ) {
+        let refined = pairs.len() - untested;
+        let before = std::mem::take(&mut self.since);
+        for (place, pair) in pairs.enumerate() {
+            let since = if place < refined {
+                frame
+            } else {
+                before.get(&pair).copied().unwrap_or(frame)
+            };
+            if place >= refined {
+                // A pair first listed now has waited for this frame.
+                let age = frame - since + 1;
+                self.sum += u64::from(age);
+                self.count += 1;
+                self.oldest = self.oldest.max(age);
+            }
+            self.since.insert(pair, since);
+        }
+    }
+}
+
+/// Clock budgets: shares of the median seconds that culling without a budget takes after its updates. All budgets take
+/// turns on the scene's first `frames` frames. No rows where a run is too short for a warm frame.
+///
+/// # Errors
+/// Settings that can't be carried out.
+pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>, TradeoffError> {
+    let variant = |budget| Variant::of(String::new(), settings(scene, budget, Order::AsFound));
+    let culled = |budgets: &[Budget]| -> Result<Vec<Culled>, TradeoffError> {
+        let variants: Vec<Variant> = budgets.iter().copied().map(variant).collect();
+        let mut frames = Simulated::new(scene, frames)?;
+        let pass = pass(scene, &variants, tier, &mut frames, None, &mut ())?;
+        Ok(pass.culled)
+    };
+    let spent = |culled: &Culled| -> Vec<f64> {
+        let warm = culled.times.of(Regime::Warm).iter();
+        warm.map(|s| 1e6 * (s.finding + s.refining)).collect()
+    };
+    let whole = median(
+        culled(&[Budget::Tests(u64::MAX)])?
+            .iter()
+            .flat_map(spent)
+            .collect(),
+    );
+    let microseconds = SHARES.map(|share| (share * whole).round() as u64);
+    let row = |(microseconds, culled): (u64, Culled)| {
+        let times = spent(&culled);
+        if times.is_empty() {
+            return None;
+        }
+        let Percentiles { p50, p99, .. } = Percentiles::of(times);
+        let counters = culled.counts.culler;
+        Some(ClockRow {
+            microseconds,
+            refined: counters.ordop.tests as f64 / counters.sphere.hits.max(1) as f64,
+            p50: p50 - microseconds as f64,
+            p99: p99 - microseconds as f64,
+        })
+    };
+    let culled = culled(&microseconds.map(Budget::Microseconds))?;
+    Ok(microseconds
+        .into_iter()
+        .zip(culled)
+        .filter_map(row)
+        .collect())
+}

@@ -1,0 +1,201 @@
+//! The same scene in other boxes: how the break-even of S-DOP moves with density.
+//!
+//! Crowding raises Np in proportion while finding pairs stays what it is, so an or-DOP test pays the sooner the denser a
+//! scene. Only counts of reported pairs and times are needed here, no truth.
+
+use serde::{Deserialize, Serialize};
+
+use super::TradeoffError;
+use super::counts::Tally;
+use super::pays::{Line, OrDopKind, Stretch, break_even, envelope};
+use super::timing::{PASSES, measure};
+use super::truth::{Sample, samples};
+use super::variant::{Variant, s_dops};
+use crate::cost::pass::{Pass, Simulated, pass};
+use crate::measure::turns::{Regime, Times, median};
+use crate::number::Positive;
+use crate::scene::{Scene, SceneError, SceneFile};
+use sdop::settings::{CullSettings, Overlap, Strategy};
+use sdop::simd::Tier;
+
+/// Densities as multiples of the scene's.
+pub(super) const FACTORS: [f32; 7] = [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
+/// Bodies times frames of a timed run, about.
+const RUN_BODIES: usize = 500_000;
+/// Frames of a timed run whose pairs are counted.
+const RUN_SAMPLES: u32 = 6;
+
+/// Break-evens at one density.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Density {
+    /// Multiple of the scene's own density.
+    pub factor: f32,
+    /// Mean sphere overlaps a body.
+    pub partners: f64,
+    /// T and Np of every variant that takes part.
+    pub lines: Vec<Line>,
+    /// The cheapest variant as Cp grows.
+    pub cheapest: Vec<Stretch>,
+    /// For each S-DOP that takes part: the Cp, in seconds, above which it is cheaper than spheres alone.
+    pub break_even: Vec<BreakEven>,
+}
+
+/// Where an S-DOP begins to pay.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BreakEven {
+    /// The variant.
+    pub name: String,
+    /// Seconds a pair.
+    pub cp: f64,
+}
+
+/// Runs the scene at a multiple of its density; `None` where its box has no room for that, or it has no box.
+///
+/// # Errors
+/// What running a scene may meet.
+pub fn at(
+    file: &SceneFile,
+    factor: f32,
+    tier: Tier,
+    count: u32,
+) -> Result<Option<Density>, TradeoffError> {
+    let scene = crowded(file, factor).map(|file| built_if_possible(&file));
+    let Some(scene) = scene.transpose()?.flatten() else {
+        return Ok(None);
+    };
+    let lines = lines(&scene, &variants(&scene.cull), tier, count)?;
+    Ok(Some(density(factor, scene.bodies.len(), lines)))
+}
+
+/// The scene of a file whose values were changed; `None` where it can't have them, such as spheres larger than its box.
+///
+/// # Errors
+/// Whatever else is wrong with it: files that can't be read, bodies outside of the contract.
+pub(super) fn built_if_possible(file: &SceneFile) -> Result<Option<Scene>, SceneError> {
+    match file.build() {
+        Ok(scene) => Ok(Some(scene)),
+        Err(SceneError::Text(_)) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+/// Time, passes apart, and pairs per frame of some variants on a scene's sample frames.
+///
+/// # Errors
+/// Settings that can't be carried out, a body that leaves the contract.
+pub fn lines(
+    scene: &Scene,
+    variants: &[Variant],
+    tier: Tier,
+    count: u32,
+) -> Result<Vec<Line>, TradeoffError> {
+    let passes = measure(scene, variants, tier, count)?;
+    let median = |times: &Times| times.quartiles(Regime::Warm).median;
+    lines_of(
+        (scene, variants, tier),
+        &samples(scene, count)?,
+        &passes,
+        median,
+    )
+}
+
+/// The same on frames that follow one another from the scene's first on, by the mean of warm ones: a finder may do more in
+/// some of them than in others.
+///
+/// # Errors
+/// Settings that can't be carried out, a body that leaves the contract.
+pub fn lines_of_a_run(
+    scene: &Scene,
+    variants: &[Variant],
+    tier: Tier,
+) -> Result<Vec<Line>, TradeoffError> {
+    let frames = scene
+        .frames
+        .min((RUN_BODIES / scene.bodies.len().max(1)).clamp(24, 80) as u32);
+    let mut passes = Vec::new();
+    for _ in 0..PASSES {
+        let mut run = Simulated::new(scene, frames)?;
+        passes.push(pass(scene, variants, tier, &mut run, None, &mut ())?);
+    }
+    let first = Scene {
+        frames,
+        ..scene.clone()
+    };
+    let mean = |times: &Times| times.mean_of(Regime::Warm);
+    lines_of(
+        (scene, variants, tier),
+        &samples(&first, RUN_SAMPLES)?,
+        &passes,
+        mean,
+    )
+}
+
+/// A line a variant: times from passes, pairs from sample frames.
+fn lines_of(
+    (scene, variants, tier): (&Scene, &[Variant], Tier),
+    samples: &[Sample],
+    passes: &[Pass],
+    statistic: impl Fn(&Times) -> f64,
+) -> Result<Vec<Line>, TradeoffError> {
+    let mut lines = Vec::new();
+    for (at, variant) in variants.iter().enumerate() {
+        let tally = Tally::unjudged(scene, variant, tier, samples)?;
+        let of = |value: &dyn Fn(&Pass) -> f64| passes.iter().map(value).collect::<Vec<f64>>();
+        lines.push(Line {
+            name: variant.name.clone(),
+            decides: variant.decides(),
+            ordop: OrDopKind::of(variant),
+            times: of(&|pass| statistic(&pass.culled[at].times)),
+            construct: median(of(&|pass| pass.culled[at].construct)),
+            pairs: tally.reported_a_frame(),
+        });
+    }
+    Ok(lines)
+}
+
+fn density(factor: f32, bodies: usize, lines: Vec<Line>) -> Density {
+    let spheres = &lines[0];
+    Density {
+        factor,
+        partners: 2.0 * spheres.pairs / bodies as f64,
+        cheapest: envelope(&lines),
+        break_even: lines
+            .iter()
+            .filter(|line| line.pairs < spheres.pairs && line.ordop.is_some())
+            .map(|line| BreakEven {
+                name: line.name.clone(),
+                cp: break_even(spheres, line),
+            })
+            .collect(),
+        lines,
+    }
+}
+
+/// The scene at another density: the volume of its box, or its partners, scaled.
+fn crowded(file: &SceneFile, factor: f32) -> Option<SceneFile> {
+    let mut file = file.clone();
+    let bounds = file.spec.bounds.as_mut()?.get_mut();
+    if let Some(side) = &mut bounds.side {
+        side.get_mut().0 /= libm::cbrtf(factor);
+    }
+    if let Some(Positive(partners)) = bounds.partners.as_mut().map(toml::Spanned::get_mut) {
+        *partners *= factor;
+    }
+    Some(file)
+}
+
+/// Spheres first, boxes, S-DOP at each k with the scene's axes, and hulls.
+#[must_use]
+pub fn variants(own: &CullSettings) -> Vec<Variant> {
+    let boxes = CullSettings {
+        strategy: Strategy::Aabb,
+        ..own.clone()
+    };
+    let mut list = vec![Variant::spheres(own), Variant::of("aabb".into(), boxes)];
+    list.extend(s_dops(own).into_iter().filter(|variant| {
+        let CullSettings { axes, overlap, .. } = variant.settings;
+        axes == own.axes && overlap != Overlap::Full
+    }));
+    list.push(Variant::hulls(own));
+    list
+}

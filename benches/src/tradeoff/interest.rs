@@ -1,0 +1,118 @@
+//! Object of interest: precision and cost as the interest set grows from one body to all.
+
+use serde::{Deserialize, Serialize};
+
+use super::counts::{Quality, Tally};
+use super::timing::measure;
+use super::truth::{Sample, Truth};
+use super::variant::Variant;
+use super::{Estimate, TradeoffError};
+use crate::cost::pass::medians;
+use crate::measure::turns::Regime;
+use crate::scene::Scene;
+use sdop::settings::{CullSettings, Interest, Strategy, Updates};
+use sdop::simd::Tier;
+
+/// Parts of the bodies that are of interest; the first is one body.
+const SHARES: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0];
+
+/// One size of the interest set.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InterestRow {
+    /// Bodies of interest.
+    pub bodies: usize,
+    /// or-DOP tests a frame.
+    pub tests: f64,
+    /// Pairs reported a frame.
+    pub reported: f64,
+    /// Precision and recall.
+    #[serde(flatten)]
+    pub quality: Quality,
+    /// Median seconds of a warm frame, all or-DOP poses updated.
+    pub seconds: Estimate,
+    /// Median seconds of a warm frame, poses updated where a pair needs them.
+    pub lazy_seconds: Estimate,
+}
+
+/// What an interest set of some size counts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Counted {
+    /// Bodies of interest.
+    bodies: usize,
+    /// On the sample frames.
+    tally: Tally,
+}
+
+/// Sizes of the interest set, growing.
+fn sizes(scene: &Scene) -> Vec<usize> {
+    let n = scene.bodies.len();
+    let size = |share: f64| ((share * n as f64).round() as usize).clamp(1, n);
+    let mut sizes = SHARES.map(size).to_vec();
+    sizes.dedup();
+    sizes
+}
+
+/// A set of so many bodies, evenly spread.
+fn variant(scene: &Scene, size: usize, updates: Updates) -> Variant {
+    let settings = CullSettings {
+        strategy: Strategy::SDopObjectOfInterest,
+        updates,
+        interest: Some(Interest::Bodies(spread(scene.bodies.len(), size))),
+        ..scene.cull.clone()
+    };
+    Variant::of(format!("{size} of interest"), settings)
+}
+
+/// Counts with every size.
+///
+/// # Errors
+/// Settings that can't be carried out.
+pub fn counts(
+    scene: &Scene,
+    tier: Tier,
+    samples: &[Sample],
+    truth: &Truth,
+) -> Result<Vec<Counted>, TradeoffError> {
+    let counted = |bodies: usize| {
+        let variant = variant(scene, bodies, Updates::Eager);
+        let tally = Tally::of(scene, &variant, tier, samples, truth)?;
+        Ok(Counted { bodies, tally })
+    };
+    sizes(scene).into_iter().map(counted).collect()
+}
+
+/// Median seconds of a warm frame with every size: all or-DOP poses updated, and those that a pair needs.
+///
+/// # Errors
+/// Settings that can't be carried out.
+pub fn times(scene: &Scene, tier: Tier, count: u32) -> Result<Vec<[Estimate; 2]>, TradeoffError> {
+    let sizes = sizes(scene);
+    let all = |updates| sizes.iter().map(move |&size| variant(scene, size, updates));
+    let both: Vec<Variant> = all(Updates::Eager).chain(all(Updates::Lazy)).collect();
+    let passes = measure(scene, &both, tier, count)?;
+    let seconds = |at: usize| medians(&passes, at, Regime::Warm);
+    let of = |at: usize| [seconds(at), seconds(sizes.len() + at)];
+    Ok((0..sizes.len()).map(of).collect())
+}
+
+/// Counts and times together.
+pub(super) fn rows(counts: &[Counted], times: &[[Estimate; 2]]) -> Vec<InterestRow> {
+    let row = |(counted, times): (&Counted, &[Estimate; 2])| {
+        let Counted { bodies, tally } = counted;
+        InterestRow {
+            bodies: *bodies,
+            tests: tally.counters.ordop.tests as f64 / f64::from(tally.frames),
+            reported: tally.reported_a_frame(),
+            quality: tally.quality(),
+            seconds: times[0],
+            lazy_seconds: times[1],
+        }
+    };
+    counts.iter().zip(times).map(row).collect()
+}
+
+/// `size` of `n` bodies, evenly spread over their numbers, so that every group of bodies has its part.
+pub(super) fn spread(n: usize, size: usize) -> Vec<u32> {
+    (0..size).map(|i| (i * n / size) as u32).collect()
+}

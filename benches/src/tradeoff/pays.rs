@@ -1,0 +1,254 @@
+//! When a cull pays: the full cost T + Np·Cp (Gottschalk, Lin & Manocha 1996), Np the pairs handed to a narrow phase.
+//!
+//! In Cp each variant's cost is a line with the intercept T and the slope Np, so the cheapest variant as Cp grows is their
+//! lower envelope. All break-evens lie between neighbours on it. The pairs by which two variants differ are false ones:
+//! the Cp that counts is that of a pair that doesn't meet.
+
+use serde::{Deserialize, Serialize};
+
+use super::truth::NarrowPhase;
+use crate::measure::counts::Volume;
+use crate::measure::estimate::Estimate;
+use crate::measure::variant::Variant;
+use sdop::choice::choices;
+use sdop::settings::{Axes, Overlap};
+
+/// One variant's cost a frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Line {
+    /// The variant.
+    pub name: String,
+    /// The volume that decides last.
+    pub decides: Option<Volume>,
+    /// Its or-DOP, where that decides behind spheres.
+    pub ordop: Option<OrDopKind>,
+    /// T, seconds per warm frame, of each pass in the order of time.
+    pub times: Vec<f64>,
+    /// Np, pairs per frame.
+    pub pairs: f64,
+    /// Co, seconds once.
+    pub construct: f64,
+}
+
+/// One kind of or-DOP.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OrDopKind {
+    /// Half-spaces.
+    pub k: usize,
+    /// Its axes.
+    pub axes: Axes,
+    /// Its overlap test.
+    pub overlap: Overlap,
+}
+
+impl OrDopKind {
+    /// The or-DOP of an S-DOP variant; `None` of others.
+    #[must_use]
+    pub fn of(variant: &Variant) -> Option<Self> {
+        let settings = &variant.settings;
+        (variant.volumes() == [Volume::Sphere, Volume::OrDop]).then(|| Self {
+            k: settings.k.k(),
+            axes: settings.axes,
+            overlap: settings.overlap,
+        })
+    }
+}
+
+impl Line {
+    /// T, seconds per frame.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.times.iter().sum::<f64>() / self.times.len() as f64
+    }
+
+    /// By how much this one takes longer than the other in a frame when a narrow-phase check takes `cp` seconds, each
+    /// having `pairs` pairs checked: pass by pass, so that what both share cancels.
+    #[must_use]
+    pub fn beyond(&self, other: &Self, cp: f64, pairs: [f64; 2]) -> Estimate {
+        let checks = cp * (pairs[0] - pairs[1]);
+        let passes = self.times.iter().zip(&other.times);
+        let differences = passes.map(|(own, other)| own - other + checks);
+        Estimate::in_order(&differences.collect::<Vec<_>>())
+    }
+}
+
+/// A stretch of Cp in which one variant is the cheapest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stretch {
+    /// The cheapest variant.
+    pub name: String,
+    /// Where the stretch begins, seconds a pair; it ends where the next begins.
+    pub from: f64,
+}
+
+/// The lower envelope of the lines over Cp ≥ 0, by rising Cp.
+#[must_use]
+pub fn envelope(lines: &[Line]) -> Vec<Stretch> {
+    let cheapest = |at: f64| {
+        let cost = |line: &&Line| (line.time() + at * line.pairs, line.pairs);
+        lines.iter().min_by(|a, b| {
+            let (a, b) = (cost(a), cost(b));
+            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })
+    };
+    let mut stretches = Vec::new();
+    let (mut current, mut from) = (cheapest(0.0), 0.0);
+    while let Some(line) = current {
+        stretches.push(Stretch {
+            name: line.name.clone(),
+            from,
+        });
+        // The next to undercut it is the flatter line that it meets first; of those, the flattest.
+        let next = lines
+            .iter()
+            .filter(|other| other.pairs < line.pairs)
+            .map(|other| (break_even(line, other), other))
+            .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.pairs.total_cmp(&b.1.pairs)));
+        current = next.map(|(_, other)| other);
+        from = next.map_or(from, |(at, _)| at);
+    }
+    stretches
+}
+
+/// The Cp above which `flat`, which leaves fewer pairs, is the cheaper one.
+#[must_use]
+pub fn break_even(steep: &Line, flat: &Line) -> f64 {
+    ((flat.time() - steep.time()) / (steep.pairs - flat.pairs)).max(0.0)
+}
+
+/// One line: which variant to take, by what a narrow-phase check costs.
+#[must_use]
+pub fn advice(cheapest: &[Stretch], narrow_phase: &NarrowPhase) -> String {
+    let parts: Vec<String> = cheapest
+        .iter()
+        .map(|stretch| match stretch.from {
+            0.0 => stretch.name.clone(),
+            from => format!("{} above {:.0} ns", stretch.name, 1e9 * from),
+        })
+        .collect();
+    let own = cheapest.iter().rfind(|s| s.from <= narrow_phase.miss);
+    format!(
+        "Cheapest at this density, by the price of a narrow-phase check: {}. The exact reference takes {:.0} ns to find two \
+         meshes apart: with it, take {}.",
+        parts.join("; "),
+        1e9 * narrow_phase.miss,
+        own.map_or("nothing", |s| s.name.as_str())
+    )
+}
+
+choices! {
+    /// How a variant stands to the Pareto front of time and precision.
+    Standing, "standing", {
+        /// Nothing is as precise in less time, or more precise in the same.
+        Front = "front",
+        /// Something is by its mean, but the interval of the difference doesn't say so.
+        Tied = "tied",
+        /// Something is, and the interval of the difference says so.
+        Beaten = "beaten",
+    }
+}
+
+/// One variant's times, pass by pass, and precisions, seed by seed.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Seconds per frame.
+    pub times: Vec<f64>,
+    /// True pairs / reported pairs.
+    pub precisions: Vec<f64>,
+}
+
+/// Where each variant stands.
+#[must_use]
+pub fn standings(points: &[Point]) -> Vec<Standing> {
+    let differences = |a: &[f64], b: &[f64]| {
+        let differences = a.iter().zip(b).map(|(a, b)| a - b);
+        Estimate::in_order(&differences.collect::<Vec<_>>())
+    };
+    let standing = |own: &Point| {
+        let mut standing = Standing::Front;
+        for other in points {
+            let slower = differences(&own.times, &other.times);
+            let finer = differences(&other.precisions, &own.precisions);
+            let by_mean = slower.mean >= 0.0 && finer.mean >= 0.0 && slower.mean + finer.mean > 0.0;
+            if by_mean {
+                let [least_slower, least_finer] = [slower, finer].map(|d| d.interval()[0]);
+                let surely = (least_slower > 0.0 && least_finer >= 0.0)
+                    || (least_slower >= 0.0 && least_finer > 0.0);
+                standing = standing.max(if surely {
+                    Standing::Beaten
+                } else {
+                    Standing::Tied
+                });
+            }
+        }
+        standing
+    };
+    points.iter().map(standing).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(name: &str, time: f64, pairs: f64) -> Line {
+        Line {
+            name: name.into(),
+            decides: None,
+            ordop: None,
+            times: vec![time],
+            pairs,
+            construct: 0.0,
+        }
+    }
+
+    #[test]
+    fn the_envelope_is_the_cheapest_at_every_price() {
+        let lines = [
+            line("coarse", 1.0, 10.0),
+            line("dominated", 4.0, 9.0),
+            line("middle", 3.0, 6.0),
+            line("fine", 9.0, 4.0),
+            line("useless", 20.0, 5.0),
+        ];
+        let stretches = envelope(&lines);
+        let names: Vec<_> = stretches
+            .iter()
+            .map(|s| (s.name.as_str(), s.from))
+            .collect();
+        assert_eq!(names, [("coarse", 0.0), ("middle", 0.5), ("fine", 3.0)]);
+        for step in 0..100 {
+            let price = f64::from(step) * 0.05;
+            let least = lines.iter().map(|l| l.time() + price * l.pairs);
+            let least = least.fold(f64::INFINITY, f64::min);
+            let chosen = stretches.iter().rfind(|s| s.from <= price);
+            let chosen = chosen.and_then(|s| lines.iter().find(|l| l.name == s.name));
+            let cost = chosen.map_or(f64::NAN, |l| l.time() + price * l.pairs);
+            assert!((cost - least).abs() < 1e-12, "at {price}");
+        }
+    }
+
+    #[test]
+    fn the_front_needs_intervals() {
+        let point = |times: [f64; 3], precision: f64| Point {
+            times: times.to_vec(),
+            precisions: vec![precision; 3],
+        };
+        let points = [
+            point([1.00, 1.01, 0.99], 0.1),
+            // Slower and no finer, and surely so.
+            point([2.00, 2.01, 1.99], 0.1),
+            // Slower by the mean alone: the second pass says otherwise.
+            point([1.10, 0.90, 1.15], 0.1),
+            point([3.00, 3.01, 2.99], 0.5),
+        ];
+        let expected = [
+            Standing::Front,
+            Standing::Beaten,
+            Standing::Tied,
+            Standing::Front,
+        ];
+        assert_eq!(standings(&points), expected);
+        let alike = point([1.0, 1.1, 0.9], 0.1);
+        assert_eq!(standings(&[alike.clone(), alike]), [Standing::Front; 2]);
+    }
+}

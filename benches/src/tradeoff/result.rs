@@ -1,0 +1,128 @@
+//! What the comparison of one scene finds.
+
+use serde::{Deserialize, Serialize};
+
+use super::Estimate;
+use super::budget::{BudgetRow, ClockRow};
+use super::decide::Decision;
+use super::density::Density;
+use super::interest::InterestRow;
+use super::pays::{Standing, Stretch};
+use super::safety::SafetyRow;
+use super::shapes::ShapeSurvival;
+use super::truth::NarrowPhase;
+use super::vary::Variation;
+use crate::cost::table::{Cost, PriceRow};
+use crate::measure::conditions::Conditions;
+use crate::measure::counts::Volume;
+use sdop::settings::{Axes, Overlap, Strategy};
+
+/// One variant's result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VariantResult {
+    /// What tables call it.
+    pub name: String,
+    /// The strategy.
+    pub strategy: Strategy,
+    /// Whether hulls stand behind it.
+    pub hulls: bool,
+    /// The volume that decides last.
+    pub volume: Option<Volume>,
+    /// Half-spaces, where the strategy has or-DOPs or k-DOPs.
+    pub k: Option<usize>,
+    /// The or-DOP's axes, where it has or-DOPs.
+    pub axes: Option<Axes>,
+    /// The overlap test, where it has or-DOPs.
+    pub overlap: Option<Overlap>,
+    /// Pairs reported a frame.
+    pub reported: Estimate,
+    /// True pairs / reported pairs.
+    pub precision: Estimate,
+    /// The same, a seed each.
+    pub precisions: Vec<f64>,
+    /// Reported pairs / true pairs.
+    pub per_true: Estimate,
+    /// True pairs found / true pairs, over all seeds.
+    pub recall: f64,
+    /// Mean volume over hull volume; none when a hull is flat.
+    pub volume_over_hull: Option<f64>,
+    /// The formula beside the clock, warm frames.
+    pub warm: Option<Cost>,
+    /// The same, cold frames.
+    pub cold: Option<Cost>,
+    /// Seconds of a warm frame, a pass each in the order of time.
+    pub times: Vec<f64>,
+    /// How it stands to the Pareto front of time and precision.
+    pub standing: Standing,
+    /// The hash of the pairs reported on the sample frames, a seed.
+    pub pairs_sha256: Vec<String>,
+}
+
+impl VariantResult {
+    /// Seconds of a warm frame, construction not included.
+    #[must_use]
+    pub fn seconds(&self) -> Estimate {
+        Estimate::in_order(&self.times)
+    }
+}
+
+/// Everything about one scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tradeoff {
+    /// The scene.
+    pub scene: String,
+    /// Its bodies.
+    pub bodies: usize,
+    /// Frames of its run.
+    pub frames: u32,
+    /// Judged frames of each run.
+    pub samples: usize,
+    /// The runs' seeds.
+    pub seeds: Vec<u64>,
+    /// The SIMD tier.
+    pub simd: String,
+    /// True pairs a frame.
+    pub truth: Estimate,
+    /// Sphere overlaps a body.
+    pub partners: f64,
+    /// The exact reference as narrow phase.
+    pub narrow_phase: NarrowPhase,
+    /// Every variant.
+    pub rows: Vec<VariantResult>,
+    /// The cheapest variant as Cp grows.
+    pub cheapest: Vec<Stretch>,
+    /// The scene at other densities.
+    pub densities: Vec<Density>,
+    /// The scene with other numbers of bodies, triangles, motion and shapes.
+    pub variations: Vec<Variation>,
+    /// Time-critical culling by tests.
+    pub budgets: Vec<BudgetRow>,
+    /// Time-critical culling by the clock.
+    pub clock: Vec<ClockRow>,
+    /// Interest sets.
+    pub interest: Vec<InterestRow>,
+    /// The scene's shapes and some of known form, each against itself.
+    pub shapes: Vec<ShapeSurvival>,
+    /// Margins, arithmetic and tiers.
+    pub safety: Vec<SafetyRow>,
+    /// Prices of every variant's volumes, warm and cold.
+    pub prices: Vec<PriceRow>,
+    /// Which variant for which density, class of shapes and price of a check.
+    pub decisions: Vec<Decision>,
+    /// What else the machine did.
+    pub conditions: Conditions,
+    /// What to do.
+    pub advice: String,
+}
+
+impl Tradeoff {
+    /// The variants that missed a true pair.
+    pub fn failures(&self) -> impl Iterator<Item = &str> {
+        let rows = self.rows.iter().filter(|row| row.recall != 1.0);
+        let budgets = self.budgets.iter().filter(|row| row.recall != 1.0);
+        let interest = self.interest.iter().filter(|row| row.quality.recall != 1.0);
+        rows.map(|row| row.name.as_str())
+            .chain(budgets.map(|row| row.order.name()))
+            .chain(interest.map(|_| "s-dop of interest"))
+    }
+}

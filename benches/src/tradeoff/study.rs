@@ -1,0 +1,214 @@
+//! What the units of a comparison found, put together.
+
+use std::path::PathBuf;
+
+use super::Estimate;
+use super::budget::{BudgetRow, ClockRow};
+use super::counts::{Tally, share};
+use super::decide;
+use super::density::Density;
+use super::interest;
+use super::pays::{self, Line, Point, Standing};
+use super::result::{Tradeoff, VariantResult};
+use super::safety::SafetyRow;
+use super::shapes::ShapeSurvival;
+use super::truth::NarrowPhase;
+use super::units::{Compared, Counts, Found, Settings};
+use super::variant::Variant;
+use super::vary::Variation;
+use crate::cost::pass::Pass;
+use crate::cost::table;
+use crate::measure::conditions::Conditions;
+use crate::measure::counts::Volume;
+use crate::measure::turns::Regime;
+use sdop::simd::Tier;
+
+/// How much is done.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Seeds from the scene's on; a run each.
+    pub seeds: u64,
+    /// Judged frames a run.
+    pub samples: u32,
+    /// Random pairs a shape.
+    pub pairs: u32,
+    /// Consecutive frames for time-critical culling.
+    pub window: u32,
+    /// Every so many of them are judged.
+    pub stride: usize,
+    /// The SIMD tier.
+    pub tier: Tier,
+    /// Where truths are kept.
+    pub cache: Option<PathBuf>,
+}
+
+/// What units have found so far.
+#[derive(Debug, Default)]
+pub struct Findings {
+    compared: Option<Compared>,
+    seeds: Vec<Counts>,
+    budgets: Vec<BudgetRow>,
+    shapes: Vec<ShapeSurvival>,
+    passes: Vec<Pass>,
+    narrow_phase: NarrowPhase,
+    clock: Vec<ClockRow>,
+    interest: Vec<[Estimate; 2]>,
+    densities: Vec<Density>,
+    variations: Vec<Variation>,
+    safety: Vec<SafetyRow>,
+}
+
+impl Findings {
+    /// Takes up what a unit found; units come in their order.
+    pub(super) fn add(&mut self, found: Found) {
+        match found {
+            Found::Compared(compared) => self.compared = Some(compared),
+            Found::Seed(counts) => self.seeds.push(counts),
+            Found::Budgets(rows) => self.budgets = rows,
+            Found::Shape(shape) => self.shapes.push(shape),
+            Found::Pass(pass) => self.passes.push(pass),
+            Found::NarrowPhase(seconds) => self.narrow_phase = seconds,
+            Found::Clock(rows) => self.clock = rows,
+            Found::Interest(times) => self.interest = times,
+            Found::Density(density) => self.densities.extend(density),
+            Found::Variation(variation) => self.variations.extend(variation),
+            Found::Safety(rows) => self.safety = rows,
+        }
+    }
+
+    /// The comparison; `None` where units are missing or are those of another. `before` is what the machine was like.
+    #[must_use]
+    pub fn finish(self, settings: &Settings, before: Conditions) -> Option<Tradeoff> {
+        let Compared {
+            hits,
+            variants,
+            volumes,
+        } = self.compared?;
+        let of_all = |tallies: &[Tally]| tallies.len() == variants.len();
+        let first = self.seeds.first()?;
+        let samples = first.tallies.first()?.frames as usize;
+        let fits = self.seeds.iter().all(|seed| of_all(&seed.tallies))
+            && self
+                .passes
+                .iter()
+                .all(|pass| pass.culled.len() == variants.len())
+            && volumes.len() == variants.len();
+        if !fits {
+            return None;
+        }
+        let measured = Measured {
+            scene: (settings.scene.as_str(), settings.bodies),
+            seeds: &self.seeds,
+            passes: self.passes.iter().collect(),
+        };
+        let rows = measured.rows(&variants, &volumes);
+        let prices = Regime::ALL.iter();
+        let prices = prices.flat_map(|&regime| table::prices(&measured.passes, regime));
+        let cheapest = pays::envelope(&rows.iter().map(line).collect::<Vec<Line>>());
+        Some(Tradeoff {
+            decisions: decide::table(&self.densities, &self.shapes),
+            prices: prices.collect(),
+            conditions: before.after(rows.iter().map(VariantResult::seconds)),
+            scene: settings.scene.clone(),
+            bodies: settings.bodies,
+            frames: settings.frames,
+            samples,
+            seeds: settings.seeds.clone(),
+            simd: settings.machine.simd.clone(),
+            truth: measured.true_pairs(),
+            partners: 2.0 * hits / settings.bodies as f64,
+            advice: pays::advice(&cheapest, &self.narrow_phase),
+            narrow_phase: self.narrow_phase,
+            interest: interest::rows(&first.interest, &self.interest),
+            rows,
+            cheapest,
+            densities: self.densities,
+            variations: self.variations,
+            budgets: self.budgets,
+            clock: self.clock,
+            shapes: self.shapes,
+            safety: self.safety,
+        })
+    }
+}
+
+/// Counts a seed and times a pass of every variant.
+struct Measured<'a> {
+    /// Its name and the number of its bodies.
+    scene: (&'a str, usize),
+    seeds: &'a [Counts],
+    passes: Vec<&'a Pass>,
+}
+
+impl Measured<'_> {
+    fn rows(&self, variants: &[Variant], volumes: &[Option<f64>]) -> Vec<VariantResult> {
+        let mut rows: Vec<VariantResult> = variants
+            .iter()
+            .zip(volumes)
+            .enumerate()
+            .map(|(at, (variant, volume))| self.row(at, variant, *volume))
+            .collect();
+        let point = |row: &VariantResult| Point {
+            times: row.times.clone(),
+            precisions: row.precisions.clone(),
+        };
+        let points: Vec<Point> = rows.iter().map(point).collect();
+        for (row, standing) in rows.iter_mut().zip(pays::standings(&points)) {
+            row.standing = standing;
+        }
+        rows
+    }
+
+    fn row(&self, at: usize, variant: &Variant, volume_over_hull: Option<f64>) -> VariantResult {
+        let tallies = || self.seeds.iter().map(|seed| &seed.tallies[at]);
+        let over_seeds =
+            |value: fn(&Tally) -> f64| Estimate::of(&tallies().map(value).collect::<Vec<_>>());
+        let total = |count: fn(&Tally) -> u64| tallies().map(count).sum::<u64>();
+        let settings = &variant.settings;
+        let volume = variant.decides();
+        let ordop = volume == Some(Volume::OrDop);
+        let cost = |regime| table::cost(self.scene, (at, variant), &self.passes, regime);
+        let time = |pass: &&Pass| pass.culled[at].times.quartiles(Regime::Warm).median;
+        VariantResult {
+            name: variant.name.clone(),
+            strategy: settings.strategy,
+            hulls: variant.hulls,
+            volume,
+            k: (ordop || volume == Some(Volume::KDop)).then(|| settings.k.k()),
+            axes: ordop.then_some(settings.axes),
+            overlap: ordop.then_some(settings.overlap),
+            reported: over_seeds(Tally::reported_a_frame),
+            precision: over_seeds(|t| t.quality().precision),
+            precisions: tallies().map(|t| t.quality().precision).collect(),
+            per_true: over_seeds(|t| t.quality().per_true),
+            recall: share(total(|t| t.found), total(|t| t.truth)),
+            volume_over_hull,
+            warm: cost(Regime::Warm),
+            cold: cost(Regime::Cold),
+            times: self.passes.iter().map(time).collect(),
+            standing: Standing::Front,
+            pairs_sha256: tallies().map(|t| t.pairs_sha256.clone()).collect(),
+        }
+    }
+
+    /// Pairs a frame whose meshes meet.
+    fn true_pairs(&self) -> Estimate {
+        let tallies = self.seeds.iter().filter_map(|seed| seed.tallies.first());
+        let a_frame = |tally: &Tally| tally.truth as f64 / f64::from(tally.frames);
+        Estimate::of(&tallies.map(a_frame).collect::<Vec<_>>())
+    }
+}
+
+fn line(row: &VariantResult) -> Line {
+    Line {
+        name: row.name.clone(),
+        decides: row.volume,
+        ordop: None,
+        times: row.times.clone(),
+        pairs: row.reported.mean,
+        construct: row
+            .warm
+            .as_ref()
+            .map_or(0.0, |cost| cost.construct.measured.mean),
+    }
+}

@@ -1,0 +1,67 @@
+//! Time: the formula's prices for each variant, and its seconds per frame measured beside all others.
+//!
+//! Each sample frame with those that follow it is a turn. Turns of the judged scene take turns with those of its
+//! calibration ([`pass`](crate::cost::pass)): the same protocol as everywhere.
+
+use super::truth::windows;
+use crate::cost::pass::{Frames, Pass, pass};
+use crate::measure::turns::turn_frames;
+use crate::measure::variant::Variant;
+use crate::scene::Scene;
+use crate::simulate::SimulationError;
+use sdop::bodies::Bodies;
+use sdop::simd::Tier;
+
+/// The fewest passes behind a number, each apart in time.
+pub const PASSES: usize = 3;
+
+/// Sample frames, each with those that follow it.
+#[derive(Clone, Debug)]
+pub struct Windows {
+    windows: Vec<(u32, Vec<Bodies>)>,
+    next: usize,
+}
+
+impl Windows {
+    /// So many windows of a scene's run, at equal distances.
+    ///
+    /// # Errors
+    /// Effects that the scene can't have, a body that leaves the contract.
+    pub fn new(scene: &Scene, count: u32) -> Result<Self, SimulationError> {
+        Ok(Self {
+            windows: windows(scene, count, turn_frames(scene.bodies.len()))?,
+            next: 0,
+        })
+    }
+}
+
+impl Frames for Windows {
+    fn turns(&self) -> usize {
+        self.windows.len()
+    }
+
+    fn next_turn(&mut self) -> Result<Option<(u32, Vec<Bodies>)>, SimulationError> {
+        let window = self.windows.get(self.next).cloned();
+        self.next += 1;
+        Ok(window)
+    }
+}
+
+/// Times variants on a scene's windows in passes apart in time, without a calibration.
+///
+/// # Errors
+/// Settings that can't be carried out, a body that leaves the contract.
+pub fn measure(
+    scene: &Scene,
+    variants: &[Variant],
+    tier: Tier,
+    count: u32,
+) -> Result<Vec<Pass>, SimulationError> {
+    let windows = Windows::new(scene, count)?;
+    let mut passes = Vec::new();
+    for _ in 0..PASSES {
+        let frames = &mut windows.clone();
+        passes.push(pass(scene, variants, tier, frames, None, &mut ())?);
+    }
+    Ok(passes)
+}

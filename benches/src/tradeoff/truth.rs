@@ -1,0 +1,361 @@
+//! The truth: which pairs' meshes meet, decided by the exact reference on sample frames of a run.
+//!
+//! A precision needs a denominator that no culler had a hand in. Candidates are therefore all pairs whose bodies' reaches
+//! overlap, found here in f64 from the poses alone, and [`sdop_reference::exact::meeting`] decides each. That takes a
+//! thousand times as long as culling, so answers are kept in a file named by the hash of everything that they depend on.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use rayon::prelude::*;
+use sdop_reference::exact::{meeting, mesh::Mesh};
+use sdop_reference::{InvalidInput, Pose};
+use sha2::{Digest, Sha256};
+
+use super::TradeoffError;
+use super::variant::Variant;
+use crate::hash::{PairsHash, hex};
+use crate::scene::Scene;
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::bodies::Bodies;
+use sdop::culler::Culler;
+use sdop::files;
+use sdop::simd::Tier;
+use sdop::volume::Shape;
+
+/// First word of a cache file; the number changes with its layout.
+const HEADER: &str = "sdop-truth-1";
+
+/// One frame that was kept.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// Its number in the run.
+    pub frame: u32,
+    /// Its poses.
+    pub bodies: Bodies,
+}
+
+/// The pairs i < j, sorted, whose meshes meet, sample by sample.
+pub type Truth = Vec<Vec<[u32; 2]>>;
+
+/// Simulates the scene and keeps `count` frames (all, if it has fewer) at equal distances.
+///
+/// # Errors
+/// Effects that the scene can't have, a body that leaves the contract.
+pub fn samples(scene: &Scene, count: u32) -> Result<Vec<Sample>, SimulationError> {
+    let windows = windows(scene, count, 1)?.into_iter();
+    let sample = |(frame, mut poses): (u32, Vec<Bodies>)| {
+        let bodies = poses.pop()?;
+        Some(Sample { frame, bodies })
+    };
+    Ok(windows.filter_map(sample).collect())
+}
+
+/// The frames that [`samples`] keeps, by number, each with those that follow it: `length` frames, as far as the scene has
+/// so many.
+///
+/// # Errors
+/// As [`samples`].
+pub fn windows(
+    scene: &Scene,
+    count: u32,
+    length: usize,
+) -> Result<Vec<(u32, Vec<Bodies>)>, SimulationError> {
+    let count = count.clamp(1, scene.frames);
+    let wanted = |i: u32| (u64::from(i) * u64::from(scene.frames) / u64::from(count)) as u32;
+    let last = wanted(count - 1) as usize + length;
+    let mut trajectory = Trajectory::new(scene)?.with_frames(scene.frames.min(last as u32));
+    let mut kept: Vec<(u32, Vec<Bodies>)> = Vec::new();
+    loop {
+        let frame = trajectory.next_number();
+        let Some(bodies) = trajectory.advance()? else {
+            return Ok(kept);
+        };
+        if (kept.len() as u32) < count && frame == wanted(kept.len() as u32) {
+            kept.push((frame, Vec::new()));
+        }
+        let open = kept.iter_mut().filter(|(_, poses)| poses.len() < length);
+        open.for_each(|(_, poses)| poses.push(bodies.clone()));
+    }
+}
+
+/// A scene's meshes, prepared for exact judgement.
+#[derive(Debug)]
+pub struct Judge {
+    meshes: Vec<Mesh>,
+    reaches: Vec<f64>,
+    key: Sha256,
+}
+
+impl Judge {
+    /// Prepares the shapes' meshes.
+    ///
+    /// # Errors
+    /// A mesh that the reference refuses; none that [`Shape::build`] made is.
+    pub fn new(shapes: &[Shape]) -> Result<Self, InvalidInput> {
+        let mut key = Sha256::new_with_prefix(HEADER);
+        let mut meshes = Vec::new();
+        for shape in shapes {
+            let vertices: Vec<_> = shape.vertices.iter().map(|v| v.to_array()).collect();
+            key.update((vertices.len() as u64).to_le_bytes());
+            key.update((shape.triangles.len() as u64).to_le_bytes());
+            vertices
+                .iter()
+                .flatten()
+                .for_each(|x| key.update(x.to_le_bytes()));
+            let corners = shape.triangles.iter().flatten();
+            corners.for_each(|i| key.update(i.to_le_bytes()));
+            meshes.push(Mesh::new(&vertices, &shape.triangles)?);
+        }
+        let reaches = shapes.iter().map(|shape| f64::from(shape.reach)).collect();
+        Ok(Self {
+            meshes,
+            reaches,
+            key,
+        })
+    }
+
+    /// The meetings of every sample, from the file in `cache` when an earlier call left one there.
+    ///
+    /// # Errors
+    /// A pose that the reference refuses; a cache that can't be written.
+    pub fn truth(&self, samples: &[Sample], cache: Option<&Path>) -> Result<Truth, TradeoffError> {
+        let file = cache.map(|directory| directory.join(self.file_name(samples)));
+        if let Some(truth) = file.as_deref().and_then(|file| read(file, samples)) {
+            return Ok(truth);
+        }
+        let truth = samples
+            .par_iter()
+            .map(|sample| self.meetings(&sample.bodies))
+            .collect::<Result<Truth, _>>()?;
+        if let Some(file) = file {
+            write(&file, samples, &truth)
+                .map_err(|source| TradeoffError::Cache { file, source })?;
+        }
+        Ok(truth)
+    }
+
+    /// The pairs, not both static, whose meshes meet.
+    ///
+    /// # Errors
+    /// A pose that the reference refuses.
+    pub fn meetings(&self, bodies: &Bodies) -> Result<Vec<[u32; 2]>, InvalidInput> {
+        let poses = poses(bodies)?;
+        let mut pairs = self.candidates(bodies);
+        pairs.retain(|&[i, j]| self.meet(bodies, &poses, i as usize, j as usize));
+        Ok(pairs)
+    }
+
+    /// The pairs i < j, sorted, that [`Self::near`] can't exclude and that aren't both static. Bodies are swept in the order of
+    /// their x, so that ten thousand of them don't make fifty million pairs.
+    fn candidates(&self, bodies: &Bodies) -> Vec<[u32; 2]> {
+        let x = |body: usize| f64::from(bodies.translation[body][0]);
+        let reach = |body: usize| self.reaches[bodies.shape[body] as usize];
+        let farthest = (0..bodies.len()).map(reach).fold(0.0, f64::max);
+        let mut order: Vec<usize> = (0..bodies.len()).collect();
+        order.sort_by(|&a, &b| x(a).total_cmp(&x(b)));
+        let mut pairs = Vec::new();
+        for (at, &i) in order.iter().enumerate() {
+            // Twice the slack of `near`, so that the sweep never ends before it.
+            let end = 1.000_002 * (reach(i) + farthest);
+            for &j in order[at + 1..].iter().take_while(|&&j| x(j) - x(i) <= end) {
+                let moving = bodies.dynamic[i] || bodies.dynamic[j];
+                if moving && self.near(bodies, i, j) {
+                    pairs.push([i.min(j) as u32, i.max(j) as u32]);
+                }
+            }
+        }
+        pairs.sort_unstable();
+        pairs
+    }
+
+    /// How many of the listed pairs' meshes meet.
+    ///
+    /// # Errors
+    /// A pose that the reference refuses.
+    pub fn count(
+        &self,
+        bodies: &Bodies,
+        pairs: impl Iterator<Item = [u32; 2]>,
+    ) -> Result<usize, InvalidInput> {
+        let poses = poses(bodies)?;
+        let meet = |&[i, j]: &[u32; 2]| self.meet(bodies, &poses, i as usize, j as usize);
+        Ok(pairs.filter(meet).count())
+    }
+
+    /// Mean seconds of an exact narrow phase, for pairs that meet and for pairs that don't: Cp. At most `most` pairs are
+    /// timed, one after the other.
+    ///
+    /// # Errors
+    /// A pose that the reference refuses.
+    pub fn price(
+        &self,
+        bodies: &Bodies,
+        pairs: impl Iterator<Item = [u32; 2]>,
+        most: usize,
+    ) -> Result<NarrowPhase, InvalidInput> {
+        let poses = poses(bodies)?;
+        let mut sums = [(0.0, 0_u32); 2];
+        for [i, j] in pairs.take(most) {
+            let start = Instant::now();
+            let meets = self.meet(bodies, &poses, i as usize, j as usize);
+            let (seconds, count) = &mut sums[usize::from(meets)];
+            *seconds += start.elapsed().as_secs_f64();
+            *count += 1;
+        }
+        let [miss, hit] = sums.map(|(seconds, count)| seconds / f64::from(count.max(1)));
+        Ok(NarrowPhase { miss, hit })
+    }
+
+    /// [`price`](Self::price) of pairs whose spheres overlap.
+    ///
+    /// # Errors
+    /// A body that leaves the contract.
+    pub fn price_of_spheres(
+        &self,
+        scene: &Scene,
+        bodies: &Bodies,
+        tier: Tier,
+        most: usize,
+    ) -> Result<NarrowPhase, TradeoffError> {
+        let settings = Variant::spheres(&scene.cull).settings;
+        let mut culler = Culler::builder()
+            .settings(&settings)
+            .tier(tier)
+            .build(&scene.shapes, bodies)?;
+        Ok(self.price(bodies, culler.cull(bodies)?.iter(), most)?)
+    }
+
+    fn meet(&self, bodies: &Bodies, poses: &[Pose], i: usize, j: usize) -> bool {
+        let posed = |body: usize| (&self.meshes[bodies.shape[body] as usize], &poses[body]);
+        meeting::meet(posed(i), posed(j)).meets
+    }
+
+    /// Both meshes lie within their reaches of the body origins; the slack is far above f64's rounding.
+    fn near(&self, bodies: &Bodies, i: usize, j: usize) -> bool {
+        let [a, b] = [i, j].map(|body| bodies.translation[body].map(f64::from));
+        let squared: f64 = a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum();
+        let reach: f64 = [i, j]
+            .iter()
+            .map(|&body| self.reaches[bodies.shape[body] as usize])
+            .sum();
+        squared <= (1.000_001 * reach).powi(2)
+    }
+
+    fn file_name(&self, samples: &[Sample]) -> PathBuf {
+        let mut key = self.key.clone();
+        for sample in samples {
+            let Bodies {
+                shape,
+                dynamic,
+                rotation,
+                translation,
+            } = &sample.bodies;
+            key.update(sample.frame.to_le_bytes());
+            for body in 0..shape.len() {
+                key.update(shape[body].to_le_bytes());
+                key.update([u8::from(dynamic[body])]);
+                rotation[body]
+                    .iter()
+                    .chain(&translation[body])
+                    .for_each(|x| key.update(x.to_le_bytes()));
+            }
+        }
+        format!("{}.pairs", hex(&key.finalize())).into()
+    }
+}
+
+/// Cp: seconds that the exact narrow phase takes for a pair.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct NarrowPhase {
+    /// A pair that doesn't meet: what culling saves.
+    pub miss: f64,
+    /// A pair that meets.
+    pub hit: f64,
+}
+
+fn poses(bodies: &Bodies) -> Result<Vec<Pose>, InvalidInput> {
+    let pose = |(q, t): (&[f32; 4], &[f32; 3])| Pose::new(*q, *t);
+    bodies
+        .rotation
+        .iter()
+        .zip(&bodies.translation)
+        .map(pose)
+        .collect()
+}
+
+/// Header, a line of numbers a sample, the hash of all pairs. Anything else in the file counts as no file.
+fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
+    let text = files::read_text(file, files::MAX_BYTES).ok()?;
+    let mut lines = text.lines();
+    if lines.next()? != HEADER {
+        return None;
+    }
+    let mut truth = Truth::new();
+    for _ in samples {
+        let numbers: Vec<u32> = lines
+            .next()?
+            .split_whitespace()
+            .map(|number| number.parse().ok())
+            .collect::<Option<_>>()?;
+        truth.push(numbers.as_chunks().0.to_vec());
+    }
+    (lines.next()? == hash(samples, &truth)).then_some(truth)
+}
+
+/// Written whole, so that nobody reads half a file.
+fn write(file: &Path, samples: &[Sample], truth: &Truth) -> io::Result<()> {
+    let mut text = format!("{HEADER}\n");
+    for pairs in truth {
+        let numbers: Vec<String> = pairs.iter().flatten().map(u32::to_string).collect();
+        text += &format!("{}\n", numbers.join(" "));
+    }
+    text += &hash(samples, truth);
+    if let Some(directory) = file.parent() {
+        fs::create_dir_all(directory)?;
+    }
+    files::write(file, text)
+}
+
+fn hash(samples: &[Sample], truth: &Truth) -> String {
+    let mut hash = PairsHash::default();
+    for (sample, pairs) in samples.iter().zip(truth) {
+        hash.frame(sample.frame, pairs);
+    }
+    hash.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Stream;
+
+    #[test]
+    fn the_sweep_lists_what_all_pairs_would() {
+        let judge = Judge {
+            meshes: Vec::new(),
+            reaches: vec![0.05, 0.4, 6.0],
+            key: Sha256::new(),
+        };
+        let mut random = Stream::new(7, 0);
+        let mut bodies = Bodies::default();
+        for body in 0..300 {
+            let at = [(); 3].map(|()| random.between(-4.0, 4.0));
+            let shape = if body == 150 { 2 } else { body % 2 };
+            bodies.push(shape, body % 3 > 0, [0.0, 0.0, 0.0, 1.0], at);
+        }
+        let mut all = Vec::new();
+        for i in 0..bodies.len() {
+            for j in i + 1..bodies.len() {
+                let moving = bodies.dynamic[i] || bodies.dynamic[j];
+                if moving && judge.near(&bodies, i, j) {
+                    all.push([i as u32, j as u32]);
+                }
+            }
+        }
+        assert!((30..3000).contains(&all.len()), "{}", all.len());
+        assert_eq!(judge.candidates(&bodies), all);
+    }
+}

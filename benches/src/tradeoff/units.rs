@@ -1,0 +1,397 @@
+//! A comparison cut into units: what depends on the scene alone, and can be counted anywhere; and what is timed, which has a
+//! machine to itself. Joined in their order they are the results of one process: counts to the bit, times as whoever
+//! measured them found them.
+
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+use miette::IntoDiagnostic as _;
+use serde::{Deserialize, Serialize};
+
+use super::budget::{self, BudgetRow, ClockRow, Window};
+use super::counts::Tally;
+use super::density::{self, Density};
+use super::interest;
+use super::safety::{self, SafetyRow};
+use super::shapes::{self, ShapeSurvival};
+use super::study::{Findings, Plan};
+use super::timing::{PASSES, Windows};
+use super::truth::{Judge, NarrowPhase, Sample, samples};
+use super::variant::{self, Variant};
+use super::vary::{self, Change, Variation};
+use super::{Estimate, TradeoffError};
+use crate::cost::calibrate::{Calibration, Effort};
+use crate::cost::pass::{Pass, pass};
+use crate::measure::machine::Machine;
+use crate::scene::{Scene, SceneFile};
+use crate::sweep::{Header, Sweep, digest};
+use sdop::volume::Shape;
+
+/// What its files are called.
+pub const NAME: &str = "tradeoff";
+
+/// Pairs on which the narrow phase is timed.
+const CHECKED: usize = 2000;
+/// Sample frames of a scene with something changed.
+const CHANGED_SAMPLES: u32 = 6;
+/// What calibrates a pass.
+const EFFORT: Effort = Effort {
+    turns: 1,
+    builds: 5,
+};
+
+/// What is compared and how thoroughly, and on what kind of machine: times of different ones don't go together.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// The scene's name.
+    pub scene: String,
+    /// Its bodies.
+    pub bodies: usize,
+    /// Frames of its run.
+    pub frames: u32,
+    /// The runs' seeds.
+    pub seeds: Vec<u64>,
+    samples: u32,
+    pairs: u32,
+    window: u32,
+    stride: usize,
+    /// The machine.
+    pub machine: Machine,
+}
+
+/// A comparison, ready to run.
+pub struct Comparison {
+    file: SceneFile,
+    plan: Plan,
+    /// That of the first seed.
+    scene: Scene,
+    /// Mean sphere hits a frame.
+    hits: f64,
+    variants: Vec<Variant>,
+    /// The scene's and some of known form.
+    shapes: Vec<Shape>,
+    units: Vec<Unit>,
+    /// From the first pass in this process on.
+    calibration: Mutex<Option<Calibration>>,
+}
+
+/// One unit.
+#[derive(Clone, Copy, Debug)]
+enum Unit {
+    /// What the variants are.
+    Compared,
+    /// The truth of a seed's run, and every variant's counts.
+    Seed(u64),
+    /// Time-critical culling by tests.
+    Budgets,
+    /// A shape against itself, by its number.
+    Shape(usize),
+    /// Every variant timed once, on the run of a seed.
+    Pass(u64),
+    /// What the exact narrow phase takes.
+    NarrowPhase,
+    /// Time-critical culling by the clock.
+    Clock,
+    /// Culling of interest.
+    Interest,
+    /// The scene at a multiple of its density.
+    Density(f32),
+    /// The scene with something changed.
+    Variation(Change),
+    /// Margins, arithmetic and tiers.
+    Safety,
+}
+
+/// What a unit found.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) enum Found {
+    Compared(Compared),
+    Seed(Counts),
+    Budgets(Vec<BudgetRow>),
+    Shape(ShapeSurvival),
+    Pass(Pass),
+    NarrowPhase(NarrowPhase),
+    Clock(Vec<ClockRow>),
+    /// Eager and lazy.
+    Interest(Vec<[Estimate; 2]>),
+    Density(Option<Density>),
+    Variation(Option<Variation>),
+    Safety(Vec<SafetyRow>),
+}
+
+/// What is compared.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Compared {
+    /// Mean sphere hits a frame.
+    pub(super) hits: f64,
+    pub(super) variants: Vec<Variant>,
+    /// Of each variant, over the hulls'.
+    pub(super) volumes: Vec<Option<f64>>,
+}
+
+/// Counts of one seed.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Counts {
+    /// A variant each.
+    pub(super) tallies: Vec<Tally>,
+    /// Of interest sets, with the first seed alone.
+    pub(super) interest: Vec<interest::Counted>,
+}
+
+impl Comparison {
+    /// Builds the scene and says what there is to compare.
+    ///
+    /// # Errors
+    /// A scene that can't be built, run or culled.
+    pub fn new(file: &SceneFile, plan: &Plan) -> Result<Self, TradeoffError> {
+        let scene = Scene {
+            construct_seconds: 0.0,
+            ..file.build()?
+        };
+        let spheres = Variant::spheres(&scene.cull);
+        let samples = samples(&scene, plan.samples)?;
+        let hits = Tally::unjudged(&scene, &spheres, plan.tier, &samples)?.reported_a_frame();
+        let shapes: Vec<Shape> = distinct(&scene)
+            .cloned()
+            .chain(shapes::builtin()?)
+            .collect();
+        Ok(Self {
+            file: file.clone(),
+            plan: plan.clone(),
+            variants: variant::all(&scene, hits.round() as u64),
+            units: units(&seeds(file, plan), shapes.len()),
+            scene,
+            hits,
+            shapes,
+            calibration: Mutex::default(),
+        })
+    }
+
+    /// The settings, of this machine.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        let Plan {
+            samples,
+            pairs,
+            window,
+            stride,
+            tier,
+            ..
+        } = self.plan;
+        Settings {
+            scene: self.scene.name.clone(),
+            bodies: self.scene.bodies.len(),
+            frames: self.scene.frames,
+            seeds: seeds(&self.file, &self.plan),
+            samples,
+            pairs,
+            window,
+            stride,
+            machine: Machine::here(tier),
+        }
+    }
+
+    fn find(&self, unit: Unit) -> Result<Found, TradeoffError> {
+        let (file, scene, tier) = (&self.file, &self.scene, self.plan.tier);
+        Ok(match unit {
+            Unit::Compared => Found::Compared(self.compared()),
+            Unit::Seed(seed) => Found::Seed(self.counts(seed)?),
+            Unit::Budgets => Found::Budgets(self.budgets()?),
+            Unit::Shape(number) => {
+                let shape = &self.shapes[number];
+                Found::Shape(shapes::survival(shape, self.plan.pairs, tier)?)
+            }
+            Unit::Pass(seed) => Found::Pass(self.pass(seed)?),
+            Unit::NarrowPhase => {
+                let judge = Judge::new(&scene.shapes)?;
+                Found::NarrowPhase(judge.price_of_spheres(scene, &scene.bodies, tier, CHECKED)?)
+            }
+            Unit::Clock => {
+                let frames = self.plan.window.min(scene.frames);
+                Found::Clock(budget::by_clock(scene, tier, frames)?)
+            }
+            Unit::Interest => Found::Interest(interest::times(scene, tier, self.plan.samples)?),
+            Unit::Density(factor) => {
+                Found::Density(density::at(file, factor, tier, self.samples_of_changed())?)
+            }
+            Unit::Variation(change) => {
+                Found::Variation(vary::varied(file, change, tier, self.samples_of_changed())?)
+            }
+            Unit::Safety => Found::Safety(safety::compare(scene, self.plan.samples)?),
+        })
+    }
+
+    fn samples_of_changed(&self) -> u32 {
+        self.plan.samples.min(CHANGED_SAMPLES)
+    }
+
+    fn compared(&self) -> Compared {
+        let volume = |own| variant::tightness(own, &self.scene);
+        Compared {
+            hits: self.hits,
+            variants: self.variants.clone(),
+            volumes: self.variants.iter().map(volume).collect(),
+        }
+    }
+
+    fn counts(&self, seed: u64) -> Result<Counts, TradeoffError> {
+        let scene = with_seed(&self.file, seed)?;
+        let samples = samples(&scene, self.plan.samples)?;
+        let truth = Judge::new(&scene.shapes)?.truth(&samples, self.plan.cache.as_deref())?;
+        let tally = |variant| Tally::of(&scene, variant, self.plan.tier, &samples, &truth);
+        let interest = if seed == self.scene.seed {
+            interest::counts(&scene, self.plan.tier, &samples, &truth)?
+        } else {
+            Vec::new()
+        };
+        Ok(Counts {
+            tallies: self.variants.iter().map(tally).collect::<Result<_, _>>()?,
+            interest,
+        })
+    }
+
+    fn budgets(&self) -> Result<Vec<BudgetRow>, TradeoffError> {
+        let Plan {
+            window,
+            stride,
+            tier,
+            ref cache,
+            ..
+        } = self.plan;
+        let judge = Judge::new(&self.scene.shapes)?;
+        let frames = first_frames(&self.scene, window)?;
+        let window = Window {
+            frames: &frames,
+            stride,
+        };
+        budget::by_tests(
+            &self.scene,
+            tier,
+            window,
+            &judge,
+            cache.as_deref(),
+            self.hits,
+        )
+    }
+
+    fn pass(&self, seed: u64) -> Result<Pass, TradeoffError> {
+        let tier = self.plan.tier;
+        let held = self.calibration.lock();
+        let mut held = held.unwrap_or_else(PoisonError::into_inner);
+        let mut calibration = match held.take() {
+            Some(calibration) => calibration,
+            None => Calibration::new(&self.scene, &self.variants, tier, EFFORT)?,
+        };
+        let scene = with_seed(&self.file, seed)?;
+        let mut frames = Windows::new(&scene, self.plan.samples)?;
+        let own = Some(&mut calibration);
+        let pass = pass(&scene, &self.variants, tier, &mut frames, own, &mut ())?;
+        *held = Some(calibration);
+        Ok(pass)
+    }
+}
+
+/// All units: first what is counted, then what is timed.
+fn units(seeds: &[u64], shapes: usize) -> Vec<Unit> {
+    // One pass a seed, and not too few.
+    let passes = seeds.iter().cycle().take(seeds.len().max(PASSES));
+    let once = [Unit::NarrowPhase, Unit::Clock, Unit::Interest];
+    let mut units = vec![Unit::Compared];
+    units.extend(seeds.iter().copied().map(Unit::Seed));
+    units.push(Unit::Budgets);
+    units.extend((0..shapes).map(Unit::Shape));
+    units.extend(passes.copied().map(Unit::Pass));
+    units.extend(once);
+    units.extend(density::FACTORS.map(Unit::Density));
+    units.extend(vary::changes().into_iter().map(Unit::Variation));
+    units.push(Unit::Safety);
+    units
+}
+
+/// The runs' seeds, from the scene's own on.
+fn seeds(file: &SceneFile, plan: &Plan) -> Vec<u64> {
+    let seed = |number| file.spec.seed.wrapping_add(number);
+    (0..plan.seeds.max(1)).map(seed).collect()
+}
+
+fn with_seed(file: &SceneFile, seed: u64) -> Result<Scene, TradeoffError> {
+    let mut file = file.clone();
+    file.spec.seed = seed;
+    Ok(file.build()?)
+}
+
+/// Consecutive frames from the first on.
+fn first_frames(scene: &Scene, count: u32) -> Result<Vec<Sample>, TradeoffError> {
+    let scene = Scene {
+        frames: count.min(scene.frames),
+        ..scene.clone()
+    };
+    Ok(samples(&scene, count)?)
+}
+
+/// One shape a mesh name: sizes of one mesh let the same shares through.
+fn distinct(scene: &Scene) -> impl Iterator<Item = &Shape> {
+    let shapes = &scene.shapes;
+    let first = |name: &str| shapes.iter().position(|shape| shape.name == name);
+    shapes
+        .iter()
+        .enumerate()
+        .filter(move |(at, shape)| first(&shape.name) == Some(*at))
+        .map(|(_, shape)| shape)
+}
+
+impl Sweep for Comparison {
+    fn header(&self) -> miette::Result<Header> {
+        let scene = ("scene".to_owned(), digest(&(&self.file.spec, &self.scene)));
+        let inputs = BTreeMap::from([scene]);
+        Header::new(NAME, &self.settings(), inputs, self.units.len()).into_diagnostic()
+    }
+
+    fn name(&self, unit: usize) -> String {
+        match self.units[unit] {
+            Unit::Compared => "what is compared".to_owned(),
+            Unit::Seed(seed) => format!("truth and counts of seed {seed}"),
+            Unit::Budgets => "budgets of tests".to_owned(),
+            Unit::Shape(number) => format!("shape {}", self.shapes[number].name),
+            Unit::Pass(seed) => format!("times on seed {seed}"),
+            Unit::NarrowPhase => "times of the narrow phase".to_owned(),
+            Unit::Clock => "budgets of time".to_owned(),
+            Unit::Interest => "times of interest sets".to_owned(),
+            Unit::Density(factor) => format!("{factor} times the density"),
+            Unit::Variation(change) => change.to_string(),
+            Unit::Safety => "the price of safety".to_owned(),
+        }
+    }
+
+    fn run(&self, unit: usize) -> miette::Result<String> {
+        serde_json::to_string(&self.find(self.units[unit])?).into_diagnostic()
+    }
+
+    fn timed(&self, unit: usize) -> bool {
+        match self.units[unit] {
+            Unit::Compared | Unit::Seed(_) | Unit::Budgets | Unit::Shape(_) => false,
+            Unit::Pass(_)
+            | Unit::NarrowPhase
+            | Unit::Clock
+            | Unit::Interest
+            | Unit::Density(_)
+            | Unit::Variation(_)
+            | Unit::Safety => true,
+        }
+    }
+}
+
+impl Findings {
+    /// Takes a unit's result up; units come in their order.
+    ///
+    /// # Errors
+    /// Text that no unit of a comparison gives.
+    pub fn take(&mut self, result: &str) -> miette::Result<()> {
+        self.add(serde_json::from_str(result).into_diagnostic()?);
+        Ok(())
+    }
+}

@@ -1,0 +1,88 @@
+//! A scene's run judged frame by frame, end to end: every mesh pair that meets exactly must be in every strategy's list.
+
+use std::ops::Range;
+
+use miette::Diagnostic;
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::scene::Scene;
+use crate::simulate::{SimulationError, Trajectory};
+use sdop::bodies::Bodies;
+use sdop_judge::ours::answers::{Answers, Predicate};
+use sdop_judge::ours::judged::Shapes;
+use sdop_judge::ours::rounds::{Ledger, RoundError, Run};
+use sdop_judge::ours::ways::{Rotation, rows};
+
+/// Frames that are judged at once, to bound memory. A culler lives for one block, and each block is a turn of the rotation:
+/// a hundred frames show every way in twenty modes.
+const BLOCK: usize = 5;
+
+/// How many blocks so many frames have.
+#[must_use]
+pub const fn blocks(frames: usize) -> usize {
+    frames.div_ceil(BLOCK)
+}
+
+/// The frames of a block.
+#[must_use]
+pub fn frames_of(block: usize, frames: usize) -> Range<usize> {
+    block * BLOCK..frames.min((block + 1) * BLOCK)
+}
+
+/// Why a scene can't be judged.
+#[derive(Debug, Error, Diagnostic)]
+pub enum JudgeError {
+    /// Culling or the reference refuses it.
+    #[error(transparent)]
+    Round(#[from] RoundError),
+    /// The scene can't be run on.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+/// Runs a scene of `frames` frames up to the end of a block, judges every pair of the block by every predicate, meshes
+/// included, and culls its frames in every way, in the modes whose turn it is.
+///
+/// # Errors
+/// A scene that can't be run or judged.
+pub fn block(
+    scene: &Scene,
+    frames: usize,
+    block: usize,
+    rotation: &Rotation,
+) -> Result<Ledger, JudgeError> {
+    let shapes = Shapes::new(scene.shapes.clone()).map_err(RoundError::from)?;
+    let rows = rows((scene.cull.k, scene.cull.axes));
+    let trajectory = Trajectory::new(scene).map_err(SimulationError::from)?;
+    let mut trajectory = trajectory.with_frames(frames as u32);
+    let mut ledger = Ledger::default();
+    let which = frames_of(block, frames);
+    for _ in 0..which.start {
+        trajectory.advance()?;
+    }
+    let bodies = trajectory.take(which.len());
+    let bodies = bodies.collect::<Result<Vec<Bodies>, _>>()?;
+    let judge = |frame| Answers::judge(&shapes, frame, scene.cull.k, &Predicate::ALL);
+    let answers: Result<Vec<_>, _> = bodies.par_iter().map(judge).collect();
+    let answers = answers.map_err(RoundError::from)?;
+    answers.iter().for_each(|frame| ledger.note(frame));
+    let modes = rotation.turn(block as u64);
+    let run = Run {
+        shapes: &shapes,
+        frames: &bodies,
+        answers: &answers,
+    };
+    let culled: Result<Vec<_>, _> = rows
+        .par_iter()
+        .enumerate()
+        .map(|(n, row)| {
+            let mut part = Ledger::default();
+            run.check_row(n, row, &modes, &mut part)?;
+            Ok::<_, RoundError>(part)
+        })
+        .collect();
+    culled?.into_iter().for_each(|part| ledger.add(part));
+    Ok(ledger)
+}

@@ -1,0 +1,335 @@
+//! A verification run cut into units: a group of hard cases for one or-DOP, a seed's rounds for one or-DOP, a block of a
+//! scene's frames. Ledgers travel as text, without the frames that failed: a unit that has some can be done again.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use miette::{IntoDiagnostic as _, miette};
+use sdop_reference::exact::Tally;
+use serde::{Deserialize, Serialize};
+
+use super::scenes::{block, blocks, frames_of};
+use crate::scene::Scene;
+use crate::sweep::{Header, Sweep, digest};
+use sdop::settings::{Axes, DirectionSet, Overlap, Strategy};
+use sdop::simd::Tier;
+use sdop_judge::ours::answers::Predicate;
+use sdop_judge::ours::boxes::BoxCell;
+use sdop_judge::ours::compare::Count;
+use sdop_judge::ours::hard::{FILES, Group};
+use sdop_judge::ours::matrix::Cell;
+use sdop_judge::ours::rounds::{Judged, Ledger, Source, boxes, group, round};
+use sdop_judge::ours::ways::{Rotation, variants};
+
+/// What its files are called.
+pub const NAME: &str = "verify";
+
+/// What a verification run is asked for: enough to take its results, not to make them.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Groups of hard cases, by name.
+    pub groups: Vec<String>,
+    /// The first seed.
+    pub first_seed: u64,
+    /// How many.
+    pub seeds: u64,
+    /// Scenes: what the report calls each.
+    pub scenes: Vec<String>,
+    /// Frames of each scene.
+    pub frames: usize,
+    /// The SIMD tiers.
+    pub tiers: Vec<String>,
+}
+
+/// A verification run.
+pub struct Verification {
+    settings: Settings,
+    groups: Vec<(usize, Group)>,
+    scenes: Vec<Scene>,
+    variants: Vec<(DirectionSet, Axes)>,
+    rotation: Rotation,
+    cells: Vec<Cell>,
+    places: BTreeMap<Cell, usize>,
+    box_cells: Vec<BoxCell>,
+    /// After which no round is started.
+    deadline: Option<Instant>,
+}
+
+/// One unit.
+enum Unit {
+    /// A group of hard cases, by its place among those chosen.
+    Hard(usize, (DirectionSet, Axes)),
+    /// A seed's rounds.
+    Rounds(u64, (DirectionSet, Axes)),
+    /// A scene's block of frames.
+    Frames(usize, usize),
+}
+
+/// What reports tell apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Origin {
+    /// Hard cases.
+    Hard,
+    /// Rounds of near pairs.
+    Near,
+    /// Rounds of random pairs.
+    Random,
+    /// Given boxes.
+    Boxes,
+    /// A scene, by its number.
+    Scene(usize),
+}
+
+impl Verification {
+    /// The run of these settings.
+    ///
+    /// # Errors
+    /// A group that isn't there, a tier that this CPU lacks.
+    pub fn new(settings: Settings) -> miette::Result<Self> {
+        let tier = |name: &String| {
+            let known = [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat();
+            known
+                .into_iter()
+                .find(|tier| tier.name() == name)
+                .ok_or_else(|| {
+                    miette!(
+                        help = "take its results on a CPU like those that gave them",
+                        "this CPU has no {name}"
+                    )
+                })
+        };
+        let tiers = settings.tiers.iter().map(tier);
+        let rotation = Rotation::new(&tiers.collect::<miette::Result<Vec<Tier>>>()?);
+        let group = |name: &String| {
+            let place = FILES.iter().position(|file| file.0 == name);
+            let place = place.ok_or_else(|| miette!("there is no group `{name}` of hard cases"))?;
+            Ok((place, Group::parse(FILES[place].1).into_diagnostic()?))
+        };
+        let groups = settings.groups.iter().map(group);
+        let cells: Vec<Cell> = Cell::all(&rotation).collect();
+        Ok(Self {
+            groups: groups.collect::<miette::Result<_>>()?,
+            scenes: Vec::new(),
+            variants: variants().collect(),
+            places: cells.iter().copied().zip(0..).collect(),
+            box_cells: BoxCell::all(&rotation).map(|(cell, _)| cell).collect(),
+            cells,
+            rotation,
+            settings,
+            deadline: None,
+        })
+    }
+
+    /// With the scenes that the settings name, so that units can be done, and a time after which no round is started.
+    #[must_use]
+    pub fn with_scenes(self, scenes: Vec<Scene>, deadline: Option<Instant>) -> Self {
+        Self {
+            scenes,
+            deadline,
+            ..self
+        }
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Which modes take turns.
+    #[must_use]
+    pub fn rotation(&self) -> &Rotation {
+        &self.rotation
+    }
+
+    /// How many units there are.
+    #[must_use]
+    pub fn units(&self) -> usize {
+        let (variants, scenes) = (self.variants.len(), self.settings.scenes.len());
+        let rounds = self.settings.seeds as usize * variants;
+        self.groups.len() * variants + rounds + scenes * blocks(self.settings.frames)
+    }
+
+    fn unit(&self, unit: usize) -> Unit {
+        let variants = self.variants.len();
+        let hard = self.groups.len() * variants;
+        let rounds = hard + self.settings.seeds as usize * variants;
+        if unit < hard {
+            return Unit::Hard(unit / variants, self.variants[unit % variants]);
+        }
+        if unit < rounds {
+            let (n, variant) = ((unit - hard) / variants, (unit - hard) % variants);
+            let seed = self.settings.first_seed.wrapping_add(n as u64);
+            return Unit::Rounds(seed, self.variants[variant]);
+        }
+        let (n, blocks) = (unit - rounds, blocks(self.settings.frames));
+        Unit::Frames(n / blocks, n % blocks)
+    }
+
+    /// Does a unit: its ledgers, by what reports tell apart.
+    ///
+    /// # Errors
+    /// Culling or the reference refuses it, or its scene isn't there.
+    pub fn judge(&self, unit: usize) -> miette::Result<Vec<(Origin, Ledger)>> {
+        let rotation = &self.rotation;
+        match self.unit(unit) {
+            Unit::Hard(n, variant) => {
+                let (number, cases) = &self.groups[n];
+                let judged = group(*number, cases, variant, rotation).into_diagnostic()?;
+                let boxes = boxes(!(unit as u64), rotation).into_diagnostic()?;
+                Ok(vec![(Origin::Hard, judged), (Origin::Boxes, boxes)])
+            }
+            Unit::Rounds(seed, variant) => {
+                let judge = |source| round(source, seed, variant, rotation).into_diagnostic();
+                let draw = self.variants.iter().position(|&known| known == variant);
+                let draw = draw.map_or(0, |at| seed.wrapping_mul(64).wrapping_add(at as u64));
+                Ok(vec![
+                    (Origin::Near, judge(Source::Near)?),
+                    (Origin::Random, judge(Source::Random)?),
+                    (Origin::Boxes, boxes(draw, rotation).into_diagnostic()?),
+                ])
+            }
+            Unit::Frames(n, number) => {
+                let scene = self.scenes.get(n);
+                let scene = scene.ok_or_else(|| miette!("its scene was not read"))?;
+                let judged = block(scene, self.settings.frames, number, rotation)?;
+                Ok(vec![(Origin::Scene(n), judged)])
+            }
+        }
+    }
+
+    /// Takes a unit's result up: ledgers without failures, and which of them had some.
+    ///
+    /// # Errors
+    /// Text that is no result of this unit.
+    pub fn take(&self, unit: usize, result: &str) -> miette::Result<Vec<(Origin, Ledger, bool)>> {
+        let texts: Vec<LedgerText> = serde_json::from_str(result).into_diagnostic()?;
+        let origins = match self.unit(unit) {
+            Unit::Hard(..) => vec![Origin::Hard, Origin::Boxes],
+            Unit::Rounds(..) => vec![Origin::Near, Origin::Random, Origin::Boxes],
+            Unit::Frames(n, _) => vec![Origin::Scene(n)],
+        };
+        let wrong = || miette!("the result of unit {unit} is none of `sdop verify`");
+        if texts.len() != origins.len() {
+            return Err(wrong());
+        }
+        let ledgers = origins.into_iter().zip(texts).map(|(origin, text)| {
+            let failed = text.failures > 0;
+            Some((origin, self.ledger(text)?, failed))
+        });
+        ledgers.collect::<Option<_>>().ok_or_else(wrong)
+    }
+
+    fn text(&self, ledger: &Ledger) -> LedgerText {
+        let cells = ledger.matrix.filled();
+        LedgerText {
+            predicates: ledger
+                .predicates
+                .map(|(overlaps, tally)| [overlaps, tally.filter, tally.interval, tally.exact]),
+            rows: (ledger.rows.iter())
+                .map(|(row, count)| (row.strategy, row.overlap, *count))
+                .collect(),
+            cells: cells
+                .map(|(cell, lists)| (self.places[cell], lists))
+                .collect(),
+            boxes: (self.box_cells.iter().enumerate())
+                .filter_map(|(place, cell)| Some((place, *ledger.boxes.cells.get(cell)?)))
+                .collect(),
+            box_pairs: ledger.boxes.required,
+            failures: ledger.failures.len() + usize::from(ledger.boxes.failure.is_some()),
+        }
+    }
+
+    fn ledger(&self, text: LedgerText) -> Option<Ledger> {
+        let mut ledger = Ledger::default();
+        let predicates = ledger.predicates.iter_mut().zip(text.predicates);
+        for (mine, [overlaps, filter, interval, exact]) in predicates {
+            *mine = (
+                overlaps,
+                Tally {
+                    filter,
+                    interval,
+                    exact,
+                },
+            );
+        }
+        for (strategy, overlap, count) in text.rows {
+            ledger.rows.insert(Judged { strategy, overlap }, count);
+        }
+        for (place, lists) in text.cells {
+            ledger.matrix.fill(*self.cells.get(place)?, lists);
+        }
+        for (place, judged) in text.boxes {
+            ledger
+                .boxes
+                .cells
+                .insert(*self.box_cells.get(place)?, judged);
+        }
+        ledger.boxes.required = text.box_pairs;
+        Some(ledger)
+    }
+}
+
+/// A ledger as a unit's result.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LedgerText {
+    /// Pairs that overlap, and which stage decided.
+    predicates: [[u64; 4]; Predicate::ALL.len()],
+    rows: Vec<(Strategy, Option<Overlap>, Count)>,
+    /// Lists judged, by a cell's place among all.
+    cells: Vec<(usize, u64)>,
+    /// Lists of given boxes and wrong pairs in them, by a cell's place among all of those.
+    boxes: Vec<(usize, [u64; 2])>,
+    /// Pairs of given boxes that meet.
+    box_pairs: u64,
+    /// How many are known in full to who did the unit.
+    failures: usize,
+}
+
+impl Sweep for Verification {
+    fn header(&self) -> miette::Result<Header> {
+        let inputs = self.settings.scenes.iter().zip(&self.scenes);
+        let inputs = inputs.zip(1..).map(|((name, scene), number)| {
+            let untimed = Scene {
+                construct_seconds: 0.0,
+                ..scene.clone()
+            };
+            (format!("scene {number} ({name})"), digest(&untimed))
+        });
+        Header::new(NAME, &self.settings, inputs.collect(), self.units()).into_diagnostic()
+    }
+
+    fn name(&self, unit: usize) -> String {
+        let variant = |(k, axes): (DirectionSet, Axes)| format!("k = {k}, {axes} axes");
+        match self.unit(unit) {
+            Unit::Hard(n, or_dop) => {
+                let name = &self.settings.groups[n];
+                format!("hard cases {name}, {}", variant(or_dop))
+            }
+            Unit::Rounds(seed, or_dop) => format!("seed {seed}, {}", variant(or_dop)),
+            Unit::Frames(scene, block) => {
+                let frames = frames_of(block, self.settings.frames);
+                let name = &self.settings.scenes[scene];
+                format!("{name}: frames {} to {}", frames.start, frames.end - 1)
+            }
+        }
+    }
+
+    fn run(&self, unit: usize) -> miette::Result<String> {
+        let judged = self.judge(unit)?;
+        let texts = judged.iter().map(|(_, ledger)| self.text(ledger));
+        serde_json::to_string(&texts.collect::<Vec<_>>()).into_diagnostic()
+    }
+
+    /// A block's frames are judged on all threads, since the answers of several blocks are too many to hold.
+    fn alone(&self, unit: usize) -> bool {
+        matches!(self.unit(unit), Unit::Frames(..))
+    }
+
+    fn starts(&self, unit: usize) -> bool {
+        let rounds = matches!(self.unit(unit), Unit::Rounds(..));
+        !rounds || self.deadline.is_none_or(|end| Instant::now() < end)
+    }
+}

@@ -1,0 +1,355 @@
+//! What is to be shown, whatever it comes from: shapes, bodies, frames, and who reported which pairs.
+
+use std::path::Path;
+
+use miette::Diagnostic as _;
+
+use crate::measure::counts::Volume;
+use crate::record;
+use crate::scene::Scene;
+use crate::simulate::{Simulation, SimulationError};
+use sdop::bodies::Bodies;
+use sdop::culler::{CullError, Culler};
+use sdop::settings::{CullSettings, Strategy};
+use sdop::simd::Tier;
+use sdop::volume::Shape;
+use sdop_judge::record::{FrameLine, Header, Reader, RecordError, VolumeLine};
+use sdop_judge::{Case, Claim, truth::Truth};
+
+/// A run in memory.
+#[derive(Clone, Debug)]
+pub struct Show {
+    /// Where it comes from, as the page names it.
+    pub source: String,
+    /// The first line of its record.
+    pub header: Header,
+    /// The shapes.
+    pub shapes: Vec<Shape>,
+    /// The bodies, in no particular frame.
+    pub bodies: Bodies,
+    /// The frames.
+    pub frames: Vec<FrameLine>,
+    /// What `meets` says of a frame's pairs.
+    pub claim: Claim,
+    /// What the page has to say of them.
+    pub messages: Vec<String>,
+}
+
+/// The pairs that one strategy reported, frame by frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Culled {
+    /// What the page calls it.
+    pub name: String,
+    /// How it culled, in words.
+    pub detail: String,
+    /// How it culled, where it was a strategy of this program.
+    pub settings: Option<CullSettings>,
+    /// Sorted.
+    pub pairs: Vec<Vec<[u32; 2]>>,
+    /// What was counted, with the same volumes in every frame.
+    pub counters: Option<Vec<Vec<VolumeLine>>>,
+}
+
+impl Show {
+    /// Reads a record, or as many of its frames. With a record that is broken somewhere, the frames before that are shown, the
+    /// page says so, and the error is returned too.
+    ///
+    /// # Errors
+    /// A first line that can't be read.
+    pub fn record(
+        path: &Path,
+        most: Option<u32>,
+    ) -> Result<(Self, Option<RecordError>), RecordError> {
+        let mut reader = Reader::open(path)?;
+        let (mut frames, mut broken) = (Vec::new(), None);
+        while most.is_none_or(|most| frames.len() < most as usize) {
+            match reader.next_frame() {
+                Ok(Some(frame)) => frames.push(frame),
+                Ok(None) => break,
+                Err(error) => {
+                    broken = Some(error);
+                    break;
+                }
+            }
+        }
+        let mut show = Self {
+            source: file_name(path),
+            header: reader.header().clone(),
+            shapes: reader.shapes().to_vec(),
+            bodies: reader.bodies().clone(),
+            frames,
+            claim: Claim::Mesh,
+            messages: Vec::new(),
+        };
+        if let Some(error) = &broken {
+            show.messages.push(match show.frames.len() {
+                0 => in_words(error),
+                whole => format!(
+                    "The record is broken. {} The {whole} frames before that are shown.",
+                    in_words(error)
+                ),
+            });
+        }
+        Ok((show, broken))
+    }
+
+    /// Simulates and culls a scene. `done` is called once per frame.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`] and [`Simulation::next_frame`].
+    pub fn scene(
+        scene: &Scene,
+        source: &Path,
+        tier: Tier,
+        mut done: impl FnMut(),
+    ) -> Result<Self, SimulationError> {
+        let mut frames = Vec::new();
+        let mut simulation = Simulation::new(scene, tier)?;
+        while let Some(frame) = simulation.next_frame()? {
+            frames.push(record::frame_line(&frame, scene.cull.strategy));
+            done();
+        }
+        Ok(Self {
+            source: file_name(source),
+            header: record::header(scene),
+            shapes: scene.shapes.clone(),
+            bodies: scene.bodies.clone(),
+            frames,
+            claim: Claim::Mesh,
+            messages: Vec::new(),
+        })
+    }
+
+    /// Culls these poses, frame after frame, as hard cases have them.
+    ///
+    /// # Errors
+    /// Settings that can't be carried out.
+    pub fn poses(
+        name: &str,
+        source: &Path,
+        shapes: Vec<Shape>,
+        frames: &[Bodies],
+        settings: &CullSettings,
+        tier: Tier,
+    ) -> Result<Self, CullError> {
+        let bodies = frames.first().cloned().unwrap_or_default();
+        let line = |(number, bodies): (usize, &Bodies)| FrameLine {
+            frame: number as u32,
+            poses: FrameLine::poses(bodies),
+            ..FrameLine::default()
+        };
+        let mut show = Self {
+            source: file_name(source),
+            header: Header::new(name, 0, &shapes, &bodies),
+            frames: frames.iter().enumerate().map(line).collect(),
+            claim: Claim::Mesh,
+            messages: Vec::new(),
+            shapes,
+            bodies,
+        };
+        show.header.cull = Some(settings.clone());
+        let Culled {
+            pairs, counters, ..
+        } = show.cull(settings, tier)?;
+        let counters = counters.into_iter().flatten();
+        for ((frame, pairs), counters) in show.frames.iter_mut().zip(pairs).zip(counters) {
+            (frame.pairs, frame.counters) = (pairs, Some(counters));
+        }
+        Ok(show)
+    }
+
+    /// A case of the judge, and the pairs that a program reported of each frame, sorted; none where it wasn't asked. A pair meets
+    /// when the claim holds of it.
+    ///
+    /// # Errors
+    /// In words: a set of bodies that changes, no frames, numbers that the exact reference refuses.
+    pub fn case(
+        case: &Case,
+        claim: Claim,
+        reported: Option<Vec<Vec<[u32; 2]>>>,
+        source: &Path,
+    ) -> Result<Self, String> {
+        let bodies = case
+            .frames
+            .first()
+            .ok_or("it has no frames")?
+            .bodies
+            .clone();
+        if let Some(n) = case.frames.iter().position(|frame| frame.was.is_some()) {
+            return Err(format!(
+                "its bodies change in frame {n}, and a page shows one set"
+            ));
+        }
+        let truth = Truth::new(claim, &case.shapes).map_err(|error| error.to_string())?;
+        let mut header = Header::new(&case.name, 0, &case.shapes, &bodies);
+        header.program = Some("the program".to_owned());
+        if reported.is_none() {
+            // Nobody was asked, so nothing is missed.
+            header.cull = Some(CullSettings {
+                strategy: Strategy::None,
+                ..CullSettings::default()
+            });
+        }
+        let mut reported = reported.into_iter().flatten();
+        let mut frames = Vec::new();
+        for (number, frame) in case.frames.iter().enumerate() {
+            frames.push(FrameLine {
+                frame: number as u32,
+                poses: FrameLine::poses(&frame.bodies),
+                pairs: reported.next().unwrap_or_default(),
+                counters: None,
+                meets: Some(truth.pairs(frame).map_err(|error| error.to_string())?),
+            });
+        }
+        Ok(Self {
+            source: file_name(source),
+            header,
+            shapes: case.shapes.clone(),
+            bodies,
+            frames,
+            claim,
+            messages: Vec::from_iter((!case.flag.is_empty()).then(|| case.flag.clone())),
+        })
+    }
+
+    /// The pairs as the record has them.
+    #[must_use]
+    pub fn recorded(&self) -> Culled {
+        let settings = self.header.cull.clone();
+        let name = match (&settings, &self.header.program) {
+            (Some(cull), _) => cull.strategy.name().to_owned(),
+            (None, Some(program)) => program.clone(),
+            (None, None) => "as recorded".to_owned(),
+        };
+        Culled {
+            name,
+            detail: settings.as_ref().map_or(String::new(), detail),
+            settings,
+            pairs: self
+                .frames
+                .iter()
+                .map(|frame| frame.pairs.clone())
+                .collect(),
+            counters: counters(&self.frames),
+        }
+    }
+
+    /// Culls the frames with these settings.
+    ///
+    /// # Errors
+    /// Settings that can't be carried out.
+    pub fn cull(&self, settings: &CullSettings, tier: Tier) -> Result<Culled, CullError> {
+        let mut bodies = self.bodies.clone();
+        if let Some(first) = self.frames.first() {
+            first.pose(&mut bodies);
+        }
+        let builder = Culler::builder().settings(settings).tier(tier);
+        let mut culler = builder.build(&self.shapes, &bodies)?;
+        let (mut pairs, mut counters) = (Vec::new(), Vec::new());
+        for frame in &self.frames {
+            frame.pose(&mut bodies);
+            let before = *culler.counters();
+            pairs.push(culler.cull(&bodies)?.sorted());
+            counters.push(record::volume_lines(
+                settings.strategy,
+                &culler.counters().since(&before),
+            ));
+        }
+        Ok(Culled {
+            name: settings.strategy.name().to_owned(),
+            detail: detail(settings),
+            settings: Some(settings.clone()),
+            pairs,
+            counters: Some(counters),
+        })
+    }
+
+    /// The same frames as culled by another: its record must have the same bodies in the same poses.
+    ///
+    /// # Errors
+    /// The first difference, in words.
+    pub fn culled_by(&self, other: &Self) -> Result<Culled, String> {
+        if self.header.bodies != other.header.bodies {
+            return Err("its bodies are others".to_owned());
+        }
+        if self.header.shapes != other.header.shapes {
+            return Err("its shapes are others".to_owned());
+        }
+        for (at, frame) in self.frames.iter().enumerate() {
+            match other.frames.get(at) {
+                None => return Err(format!("it ends before frame {}", frame.frame)),
+                Some(same) if same.frame != frame.frame => {
+                    return Err(format!(
+                        "it has frame {} in place of frame {}",
+                        same.frame, frame.frame
+                    ));
+                }
+                Some(same) if same.poses != frame.poses => {
+                    return Err(format!("frame {} has other poses", frame.frame));
+                }
+                Some(_) => {}
+            }
+        }
+        let mut culled = other.recorded();
+        culled.pairs.truncate(self.frames.len());
+        if let Some(counters) = &mut culled.counters {
+            counters.truncate(self.frames.len());
+        }
+        Ok(culled)
+    }
+
+    /// The pairs whose spheres overlap: the potentially colliding set of the paper.
+    pub(super) fn spheres(&self) -> Result<Culled, CullError> {
+        let settings = CullSettings {
+            strategy: Strategy::Sphere,
+            pairs: sdop::settings::Finder::Auto,
+            ..CullSettings::default()
+        };
+        self.cull(&settings, Tier::detect())
+    }
+}
+
+/// An error and its remedy.
+pub(super) fn in_words(error: &RecordError) -> String {
+    let help = error
+        .help()
+        .map_or(String::new(), |help| format!(" Remedy: {help}."));
+    format!("{error}.{help}")
+}
+
+/// The counters of all frames; none where a frame lacks them or counts other volumes.
+fn counters(frames: &[FrameLine]) -> Option<Vec<Vec<VolumeLine>>> {
+    let all: Vec<Vec<VolumeLine>> = frames
+        .iter()
+        .map(|frame| frame.counters.clone())
+        .collect::<Option<_>>()?;
+    let names = |lines: &[VolumeLine]| {
+        lines
+            .iter()
+            .map(|line| line.volume.clone())
+            .collect::<Vec<_>>()
+    };
+    let first = names(all.first()?);
+    all.iter().all(|lines| names(lines) == first).then_some(all)
+}
+
+fn detail(settings: &CullSettings) -> String {
+    let CullSettings {
+        pairs,
+        k,
+        axes,
+        overlap,
+        strategy,
+        ..
+    } = settings;
+    if Volume::of(*strategy).is_empty() {
+        return "nothing is culled".to_owned();
+    }
+    format!("pairs from {pairs}, k = {k}, {axes} axes, {overlap}")
+}
+
+/// A path's last part: the page goes to other machines.
+pub(super) fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
+}

@@ -1,0 +1,107 @@
+//! T = Nu·Cu + F + Nv·Cv, frame by frame: a run's counters at prices calibrated for its shapes.
+
+use super::{Culled, Show};
+use crate::cost::calibrate::{Calibration, Effort};
+use crate::cost::predict::Prices;
+use crate::effects::{EffectsSpec, Velocities};
+use crate::measure::counts::{Counts, Volume};
+use crate::measure::variant::Variant;
+use crate::scene::Scene;
+use crate::simulate::SimulationError;
+use sdop::settings::{CullSettings, Strategy};
+use sdop::simd::Tier;
+use sdop_judge::record::VolumeLine;
+
+/// Enough for a picture: one pass, in a fraction of a second for hundreds of bodies.
+const EFFORT: Effort = Effort {
+    turns: 1,
+    builds: 1,
+};
+
+/// Seconds per frame by term, and once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TermCourse {
+    /// Co.
+    pub construct: f64,
+    /// Nu·Cu, F, Nv·Cv of each frame.
+    pub frames: Vec<[f64; 3]>,
+}
+
+/// Calibrates the prices of what `culled` tested, on this machine, for frames whose data are in the caches.
+///
+/// # Errors
+/// Settings that can't be carried out.
+pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>, SimulationError> {
+    let culls = |cull: &CullSettings| cull.strategy != Strategy::None;
+    let Some(cull) = culled.settings.clone().filter(culls) else {
+        return Ok(None);
+    };
+    let mut bodies = show.bodies.clone();
+    if let Some(first) = show.frames.first() {
+        first.pose(&mut bodies);
+    }
+    let variant = Variant::of(culled.name.clone(), cull.clone());
+    let at_rest = vec![[0.0; 3]; bodies.len()];
+    let scene = Scene {
+        name: show.header.scene.clone(),
+        seed: show.header.seed,
+        frames: 1,
+        dt: 0.0,
+        side: show.header.side,
+        shapes: show.shapes.clone(),
+        velocities: Velocities {
+            linear: at_rest.clone(),
+            angular: at_rest,
+        },
+        bodies,
+        share: None,
+        effects: EffectsSpec::default(),
+        cull,
+        construct_seconds: 0.0,
+    };
+    let mut calibration = Calibration::new(&scene, &[variant], tier, EFFORT)?;
+    for turn in 0..calibration.turns_of_a_pass() {
+        calibration.turn(turn)?;
+    }
+    let [warm, _cold] = calibration.prices();
+    Ok(warm.into_iter().next())
+}
+
+impl TermCourse {
+    /// T by its terms; none where the counters are of volumes that have no price.
+    pub fn predict(show: &Show, culled: &Culled, prices: &Prices) -> Option<Self> {
+        let counters = culled.counters.as_ref()?;
+        let bodies = show.bodies.len();
+        let mut course = Self {
+            construct: 0.0,
+            frames: Vec::new(),
+        };
+        for lines in counters {
+            let terms = prices.predict(&counts(lines)?, 1, bodies);
+            course.construct = terms.iter().map(|term| term.construct).sum();
+            course.frames.push([
+                terms.iter().map(|term| term.update).sum(),
+                terms.iter().map(|term| term.finding).sum(),
+                terms.iter().map(|term| term.test).sum(),
+            ]);
+        }
+        Some(course)
+    }
+}
+
+/// The counters of a frame; none where a volume is none of ours.
+fn counts(lines: &[VolumeLine]) -> Option<Counts> {
+    let mut counts = Counts::default();
+    for VolumeLine { volume, counters } in lines {
+        let place = match volume.parse().ok()? {
+            Volume::Sphere => &mut counts.culler.sphere,
+            Volume::OrDop => &mut counts.culler.ordop,
+            Volume::Aabb => &mut counts.culler.aabb,
+            Volume::KDop => &mut counts.culler.kdop,
+            Volume::Obb => &mut counts.culler.obb,
+            Volume::Hull => &mut counts.hulls,
+        };
+        *place = *counters;
+    }
+    Some(counts)
+}

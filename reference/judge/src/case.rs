@@ -1,0 +1,139 @@
+//! A case: shapes, and a few frames of bodies with the boxes that belong to them.
+
+use super::claim::Claim;
+use crate::contestant::WorldBox;
+use sdop::bodies::Bodies;
+use sdop::rounding::pose::{COORDINATE_ERROR, rotation, transform};
+use sdop::rounding::{down, up};
+use sdop::volume::Shape;
+
+/// One frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// The bodies.
+    pub bodies: Bodies,
+    /// A box for each of them.
+    pub boxes: Vec<WorldBox>,
+    /// When the set of bodies is another than in the frame before: each one's former number, `None` for a new body.
+    pub was: Option<Vec<Option<u32>>>,
+}
+
+impl Frame {
+    /// The frame of these bodies, each in the box that its posed mesh needs, rounded outward.
+    #[must_use]
+    pub fn fitted(bodies: Bodies, shapes: &[Shape]) -> Self {
+        let boxes = (0..bodies.len()).map(|i| fit(&bodies, shapes, i)).collect();
+        Self {
+            bodies,
+            boxes,
+            was: None,
+        }
+    }
+}
+
+/// A box around a posed mesh: it contains every vertex exactly.
+fn fit(bodies: &Bodies, shapes: &[Shape], i: usize) -> WorldBox {
+    let (r, t) = (rotation(bodies.rotation[i]), bodies.translation[i]);
+    let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for vertex in &shapes[bodies.shape[i] as usize].vertices {
+        let size = vertex
+            .abs()
+            .max_element()
+            .max(t.iter().fold(0.0, |m: f32, x| m.max(x.abs())));
+        // Above the bound by its half, for the addition's own rounding.
+        let error = 1.5 * COORDINATE_ERROR * f64::from(size);
+        for (axis, x) in transform(&r, vertex.to_array(), t).into_iter().enumerate() {
+            lo[axis] = lo[axis].min(x - error);
+            hi[axis] = hi[axis].max(x + error);
+        }
+    }
+    let ([x0, y0, z0], [x1, y1, z1]) = (lo.map(down), hi.map(up));
+    [x0, y0, z0, x1, y1, z1]
+}
+
+/// A case to be judged by.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Its stable name, such as `touch/edge-edge/0017`.
+    pub name: String,
+    /// The bug it looks for.
+    pub flag: String,
+    /// Where it comes from.
+    pub source: String,
+    /// The claims that it is about.
+    pub claims: Vec<Claim>,
+    /// What the bodies look like.
+    pub shapes: Vec<Shape>,
+    /// The frames, one process or culler for all of them.
+    pub frames: Vec<Frame>,
+}
+
+impl Case {
+    /// The group: the name without its number.
+    #[must_use]
+    pub fn group(&self) -> &str {
+        self.name
+            .rsplit_once('/')
+            .map_or(&self.name, |(group, _)| group)
+    }
+
+    /// Pairs of bodies over all frames, not both static.
+    #[must_use]
+    pub fn pairs(&self) -> u64 {
+        self.frames
+            .iter()
+            .map(|frame| {
+                let n = frame.bodies.len() as u64;
+                let fixed = frame.bodies.dynamic.iter().filter(|d| !**d).count() as u64;
+                (n * n.saturating_sub(1) - fixed * fixed.saturating_sub(1)) / 2
+            })
+            .sum()
+    }
+}
+
+/// Whether a name matches a pattern in which `*` stands for any text, `/` included, and `?` for one character.
+#[must_use]
+pub fn matches(pattern: &str, name: &str) -> bool {
+    let (pattern, name): (Vec<char>, Vec<char>) =
+        (pattern.chars().collect(), name.chars().collect());
+    let (mut p, mut n) = (0, 0);
+    // Where the last star stands, and how much of the name it has taken.
+    let mut star: Option<(usize, usize)> = None;
+    while n < name.len() {
+        if p < pattern.len() && pattern[p] == '*' {
+            star = Some((p, n));
+            p += 1;
+        } else if p < pattern.len() && (pattern[p] == '?' || pattern[p] == name[n]) {
+            p += 1;
+            n += 1;
+        } else if let Some((at, taken)) = star {
+            star = Some((at, taken + 1));
+            (p, n) = (at + 1, taken + 1);
+        } else {
+            return false;
+        }
+    }
+    pattern[p..].iter().all(|c| *c == '*')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_match_whole_names() {
+        for (pattern, name, expected) in [
+            ("touch/*", "touch/edge-edge/0017", true),
+            ("*/0017", "touch/edge-edge/0017", true),
+            ("touch/*/00?7", "touch/edge-edge/0017", true),
+            ("touch", "touch/edge-edge/0017", false),
+            ("*edge*edge*", "touch/edge-edge/0017", true),
+            ("*edge*edge*edge*", "touch/edge-edge/0017", false),
+            ("", "", true),
+            ("*", "", true),
+            ("?", "", false),
+        ] {
+            assert_eq!(matches(pattern, name), expected, "{pattern} {name}");
+        }
+    }
+}

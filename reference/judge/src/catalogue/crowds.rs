@@ -1,0 +1,236 @@
+//! Crowds of bodies, and what happens to them from frame to frame.
+
+use rand::{Rng, RngExt};
+
+use super::Drawn;
+use super::contacts::forms;
+use crate::case::Frame;
+use crate::ours::draw::{crowd as uniform, rotation};
+use crate::ours::forms::{self, Form, FormError};
+use crate::ours::judged::Shapes;
+use sdop::bodies::Bodies;
+use sdop::volume::{Axes, DirectionSet, Shape};
+
+/// What happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing: one frame.
+    Still,
+    /// Bodies drift and turn.
+    Moving,
+    /// One frame of radii from 2⁻⁶ to 4.
+    Sizes,
+    /// Few pairs, then all, then few.
+    Growth,
+    /// One body touches all others.
+    Hub,
+    /// Frames come again.
+    Repeated,
+    /// The same bodies in another order.
+    Renumbered,
+    /// Bodies exchange places.
+    Swap,
+    /// Bodies jump far away and back.
+    Teleport,
+    /// Bodies come and go.
+    InsertRemove,
+}
+
+/// Draws a crowd.
+pub fn crowd(kind: Kind, rng: &mut impl Rng) -> Result<Drawn, FormError> {
+    let shapes = shapes(kind, rng)?;
+    let bodies = match kind {
+        Kind::Growth => dense(&shapes.built, 96, rng),
+        Kind::Hub => hub(&shapes.built, 384, rng),
+        Kind::Sizes => fix_some(uniform(&shapes, 96, 4.0, rng)),
+        _ => fix_some(uniform(&shapes, 40, 4.0, rng)),
+    };
+    let (bodies, was): (Vec<Bodies>, Vec<_>) = match kind {
+        Kind::InsertRemove => changing(bodies, rng),
+        _ => frames(kind, bodies, rng)
+            .into_iter()
+            .map(|frame| (frame, None))
+            .unzip(),
+    };
+    let frame = |(bodies, was)| Frame {
+        was,
+        ..Frame::fitted(bodies, &shapes.built)
+    };
+    let frames = bodies.into_iter().zip(was).map(frame).collect();
+    Ok(Drawn {
+        shapes: shapes.built,
+        frames,
+    })
+}
+
+fn shapes(kind: Kind, rng: &mut impl Rng) -> Result<Shapes, FormError> {
+    let forms = match kind {
+        Kind::Growth => vec![Form::of("tetrahedron", [0.0, 0.0])],
+        Kind::Hub => vec![
+            Form::of("tetrahedron", [-6.0, -6.0]),
+            Form::of("box", [4.0, 4.0]),
+        ],
+        Kind::Sizes => forms(rng, 5)
+            .into_iter()
+            .map(|form| Form {
+                radius: Some([-6.0, 2.0]),
+                ..form
+            })
+            .collect(),
+        _ => forms(rng, 3),
+    };
+    forms::build(&forms, 1, DirectionSet::K18, Axes::Principal, rng)
+}
+
+/// Every fifth body becomes static.
+fn fix_some(mut bodies: Bodies) -> Bodies {
+    for (i, dynamic) in bodies.dynamic.iter_mut().enumerate() {
+        *dynamic = i % 5 != 4;
+    }
+    bodies
+}
+
+/// All bodies about one point.
+fn dense(shapes: &[Shape], count: usize, rng: &mut impl Rng) -> Bodies {
+    let mut bodies = Bodies::default();
+    let reach = shapes[0].ball.radius / 16.0;
+    for _ in 0..count {
+        let t = std::array::from_fn(|_| rng.random_range(-reach..reach));
+        bodies.push(0, true, rotation(rng), t);
+    }
+    bodies
+}
+
+/// Small bodies inside of a large one: the first form is small, the second large.
+fn hub(shapes: &[Shape], count: usize, rng: &mut impl Rng) -> Bodies {
+    let mut bodies = Bodies::default();
+    let reach = shapes[1].ball.radius / 4.0;
+    bodies.push(1, true, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
+    for _ in 0..count {
+        let t = std::array::from_fn(|_| rng.random_range(-reach..reach));
+        bodies.push(0, false, rotation(rng), t);
+    }
+    bodies
+}
+
+fn frames(kind: Kind, first: Bodies, rng: &mut impl Rng) -> Vec<Bodies> {
+    match kind {
+        Kind::Moving => {
+            let velocities: Vec<[f32; 3]> = (0..first.len())
+                .map(|_| std::array::from_fn(|_| rng.random_range(-0.08..0.08)))
+                .collect();
+            let step = |n: u16| {
+                let mut frame = first.clone();
+                for i in (0..first.len()).filter(|i| first.dynamic[*i]) {
+                    for axis in 0..3 {
+                        frame.translation[i][axis] += f32::from(n) * velocities[i][axis];
+                        frame.rotation[i][axis] += f32::from(n) * velocities[i][(axis + 1) % 3];
+                    }
+                }
+                frame
+            };
+            (0..10).map(step).collect()
+        }
+        Kind::Growth => {
+            let spread = |by: f32| {
+                let mut frame = first.clone();
+                for (i, t) in frame.translation.iter_mut().enumerate() {
+                    *t = std::array::from_fn(|axis| {
+                        t[axis] + by * (i / 5_usize.pow(axis as u32) % 5) as f32
+                    });
+                }
+                frame
+            };
+            vec![spread(1.5), spread(0.5), first.clone(), spread(1.5), first]
+        }
+        Kind::Repeated => {
+            let second = permuted_places(&first, rng);
+            vec![
+                first.clone(),
+                first.clone(),
+                second.clone(),
+                first.clone(),
+                second.clone(),
+                second,
+            ]
+        }
+        Kind::Renumbered => vec![renumbered(&first, rng)],
+        Kind::Swap => {
+            let mut frames = vec![first];
+            for _ in 0..5 {
+                let next = permuted_places(&frames[frames.len() - 1], rng);
+                frames.push(next);
+            }
+            frames
+        }
+        Kind::Teleport => {
+            let mut away = first.clone();
+            for i in (0..first.len()).filter(|i| first.dynamic[*i] && i % 3 != 0) {
+                away.translation[i][i % 2] += (1_u64 << 30) as f32;
+            }
+            vec![first.clone(), away.clone(), first.clone(), first, away]
+        }
+        _ => vec![first],
+    }
+}
+
+/// Dynamic bodies in one another's places.
+fn permuted_places(bodies: &Bodies, rng: &mut impl Rng) -> Bodies {
+    let mut next = bodies.clone();
+    let movable: Vec<usize> = (0..bodies.len()).filter(|i| bodies.dynamic[*i]).collect();
+    for (to, from) in movable.iter().zip(permutation(movable.len(), rng)) {
+        next.translation[*to] = bodies.translation[movable[from]];
+        next.rotation[*to] = bodies.rotation[movable[from]];
+    }
+    next
+}
+
+/// The same bodies under other numbers.
+fn renumbered(bodies: &Bodies, rng: &mut impl Rng) -> Bodies {
+    picked(bodies, &permutation(bodies.len(), rng))
+}
+
+/// The bodies of these numbers, in this order.
+pub fn picked(bodies: &Bodies, which: &[usize]) -> Bodies {
+    let mut all = Bodies::default();
+    for &i in which {
+        all.push(
+            bodies.shape[i],
+            bodies.dynamic[i],
+            bodies.rotation[i],
+            bodies.translation[i],
+        );
+    }
+    all
+}
+
+/// 0 … n − 1 in any order (Fisher and Yates).
+fn permutation(n: usize, rng: &mut impl Rng) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..n).collect();
+    for last in (1..n).rev() {
+        order.swap(last, rng.random_range(0..=last));
+    }
+    order
+}
+
+/// The former number of each body of a frame, where it was there; `None` for a frame in which nothing changed.
+type FormerNumbers = Option<Vec<Option<u32>>>;
+
+/// Some bodies go, others come, numbers change: each frame's former numbers.
+fn changing(all: Bodies, rng: &mut impl Rng) -> (Vec<Bodies>, Vec<FormerNumbers>) {
+    let (mut frames, mut changes) = (Vec::new(), Vec::new());
+    let mut before: Vec<usize> = (0..all.len() / 2).collect();
+    frames.push(picked(&all, &before));
+    changes.push(None);
+    for _ in 0..5 {
+        let now: Vec<usize> = permutation(all.len(), rng)
+            .into_iter()
+            .filter(|i| i % 7 != frames.len() % 7)
+            .collect();
+        let former = |body: &usize| before.iter().position(|i| i == body).map(|i| i as u32);
+        changes.push(Some(now.iter().map(former).collect()));
+        frames.push(picked(&all, &now));
+        before = now;
+    }
+    (frames, changes)
+}

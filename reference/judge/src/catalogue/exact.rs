@@ -1,0 +1,134 @@
+//! Cubes and octahedra that touch exactly: all coordinates are short binary numbers, so nothing rounds.
+
+use glam::Vec3;
+use rand::{Rng, RngExt};
+
+use super::{CatalogueError, Drawn};
+use crate::case::Frame;
+use sdop::bodies::Bodies;
+use sdop::mesh::TriangleMesh;
+use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
+
+/// What touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Touch {
+    /// Faces of two cubes.
+    Faces,
+    /// Edges of two cubes.
+    Edges,
+    /// Corners of two cubes.
+    Corners,
+    /// An octahedron's tip and a cube's face.
+    TipOnFace,
+    /// Tips of two octahedra.
+    Tips,
+}
+
+/// A cube with corners (±s, ±s, ±s) and an octahedron with tips at ±s on the axes.
+pub fn solids(size: f32) -> Result<[Shape; 2], CatalogueError> {
+    let corner = |n: u32| Vec3::from([0, 1, 2].map(|i| if n >> i & 1 == 1 { size } else { -size }));
+    let quads = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    let cube = TriangleMesh::new(
+        "cube",
+        (0..8).map(corner).collect(),
+        quads.into_iter().flat_map(halves).collect(),
+    )?;
+    let tips = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z].map(|tip| tip * size);
+    let sides = [
+        [0, 2, 4],
+        [2, 1, 4],
+        [1, 3, 4],
+        [3, 0, 4],
+        [2, 0, 5],
+        [1, 2, 5],
+        [3, 1, 5],
+        [0, 3, 5],
+    ];
+    let octahedron = TriangleMesh::new("octahedron", tips.to_vec(), sides.to_vec())?;
+    let spec = ShapeSpec {
+        origin: Origin::File,
+        radius: None,
+        directions: DirectionSet::K18,
+        axes: Axes::Model,
+    };
+    Ok([
+        Shape::build(&cube, &spec)?,
+        Shape::build(&octahedron, &spec)?,
+    ])
+}
+
+/// Rotations that map the two solids onto themselves, exactly.
+const TURNS: [[f32; 4]; 5] = [
+    [0.0, 0.0, 0.0, 1.0],
+    [1.0, 0.0, 0.0, 1.0],
+    [0.0, 2.0, 0.0, -2.0],
+    [0.5, 0.5, 0.5, 0.5],
+    [0.0, 0.0, 3.0, 0.0],
+];
+
+/// A dynamic body at a lattice point with partners that touch it; every third one is an ulp further out or in.
+pub fn touching(
+    touch: Touch,
+    number: u32,
+    partners: usize,
+    rng: &mut impl Rng,
+) -> Result<Drawn, CatalogueError> {
+    let size = 2_f32.powi(rng.random_range(-12..=12));
+    let shapes = solids(size)?.to_vec();
+    let (first, second) = match touch {
+        Touch::Faces | Touch::Edges | Touch::Corners => (0, 0),
+        Touch::TipOnFace => (0, 1),
+        Touch::Tips => (1, 1),
+    };
+    let at: [f32; 3] = std::array::from_fn(|_| rng.random_range(-512..=512) as f32);
+    let mut bodies = Bodies::default();
+    let turn = |rng: &mut _| TURNS[RngExt::random_range(rng, 0..TURNS.len())];
+    for n in 0..partners {
+        if n == partners / 2 {
+            bodies.push(first, true, turn(rng), at.map(|x| x * size));
+        }
+        let (offset, axis) = offset(touch, rng);
+        let mut t: [f32; 3] = std::array::from_fn(|i| (at[i] + offset[i]) * size);
+        if (n + number as usize) % 3 == 2 {
+            t[axis] = if rng.random_range(0..2) == 0 {
+                t[axis].next_up()
+            } else {
+                t[axis].next_down()
+            };
+        }
+        bodies.push(second, false, turn(rng), t);
+    }
+    let frames = vec![Frame::fitted(bodies, &shapes)];
+    Ok(Drawn { shapes, frames })
+}
+
+/// Where the partner is, in half sizes, and an axis along which the contact ends.
+fn offset(touch: Touch, rng: &mut impl Rng) -> ([f32; 3], usize) {
+    let axis = rng.random_range(0..3);
+    let sign = |rng: &mut _| {
+        if RngExt::random_range(rng, 0..2) == 0 {
+            2.0
+        } else {
+            -2.0
+        }
+    };
+    let beside = |rng: &mut _| RngExt::random_range(rng, -8..=8) as f32 / 8.0;
+    let mut offset: [f32; 3] = match touch {
+        Touch::Tips => [0.0; 3],
+        Touch::Corners => std::array::from_fn(|_| sign(rng)),
+        _ => std::array::from_fn(|_| beside(rng)),
+    };
+    offset[axis] = sign(rng);
+    if touch == Touch::Edges {
+        offset[(axis + 1) % 3] = sign(rng);
+    }
+    (offset, axis)
+}

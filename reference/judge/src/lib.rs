@@ -1,0 +1,57 @@
+//! Any culler, in any language, against the exact reference.
+//!
+//! A culler states a [`Claim`]: what it never misses. The [`catalogue`] has the cases for it; a [`subject`] answers them, be it
+//! a Rust type ([`judge`]) or a program ([`process`], over a [`wire`]); a case's answers are held against the exact [`truth`],
+//! and a missed pair becomes the smallest scene that shows it ([`shrink`]), with a certificate ([`witness`]).
+//!
+//! ```
+//! use sdop::bodies::Bodies;
+//! use sdop_judge::{Claim, Contestant, Scene, judge};
+//!
+//! /// Reports every pair: slow, and it misses none.
+//! struct Everything(usize);
+//!
+//! impl Contestant for Everything {
+//!     fn frame(&mut self, bodies: &Bodies) {
+//!         self.0 = bodies.len();
+//!     }
+//!     fn pairs(&self) -> Vec<[u32; 2]> {
+//!         let n = self.0 as u32;
+//!         (0..n).flat_map(|j| (0..j).map(move |i| [i, j])).collect()
+//!     }
+//! }
+//!
+//! let trial = judge(|scene: &Scene| Everything(scene.bodies.len())).claims(Claim::Mesh).cases("exact/*");
+//! assert!(trial.run()?.passed());
+//! assert!(!trial.extra_limit(0.0).run()?.passed(), "but it culls nothing");
+//! # Ok::<(), sdop_judge::JudgeError>(())
+//! ```
+
+pub mod answer;
+pub mod broadmark;
+pub mod case;
+pub mod catalogue;
+pub mod claim;
+pub mod contestant;
+pub mod ours;
+pub mod process;
+pub mod record;
+pub mod report;
+pub mod run;
+pub mod score;
+pub mod shrink;
+pub mod stamp;
+pub mod subject;
+pub mod truth;
+pub mod vectors;
+pub mod verdict;
+pub mod wire;
+pub mod witness;
+
+pub use crate::contestant::{Contestant, WorldBox};
+pub use case::{Case, Frame};
+pub use claim::Claim;
+pub use run::{Judge, JudgeError, Options, examine, judge, judge_pair_test};
+pub use score::{Count, Miss, Outcome};
+pub use subject::{PairTest, Scene, Subject};
+pub use verdict::Verdict;

@@ -1,0 +1,206 @@
+//! Given boxes against their definition: by every finder, in every tier, on any number of threads exactly those are listed
+//! that have a point in common. Ends are compared one by one, which rounds nothing.
+
+use std::collections::BTreeMap;
+
+use super::compare::difference;
+use super::ways::{Mode, Rotation};
+use sdop::bodies::Aabb;
+use sdop::boxes::BoxCuller;
+use sdop::culler::CullError;
+use sdop::settings::{Finder, Updates};
+
+/// Sides of boxes, in halves of a unit: cubes, of any aspect, of many sizes, without a length on an axis or two.
+const SIDES: [&[[f32; 3]]; 4] = [
+    &[[2.0, 2.0, 2.0]],
+    &[[0.25, 2.0, 16.0], [16.0, 0.25, 2.0], [2.0, 16.0, 0.25]],
+    &[
+        [0.002, 0.002, 0.002],
+        [1.0, 1.5, 1.25],
+        [900.0, 700.0, 900.0],
+    ],
+    &[[0.0, 3.0, 3.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+];
+
+/// Exponents of units: of the least, where nothing underflows, up to the greatest.
+const UNITS: [i32; 4] = [-70, 0, 0, 100];
+
+/// Which list of boxes: all that decides how it is made, and nothing that decides what it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct BoxCell {
+    /// Who finds the candidates.
+    pub finder: Finder,
+    /// The tier's name.
+    pub tier: &'static str,
+    /// The number of threads.
+    pub threads: usize,
+}
+
+impl BoxCell {
+    /// Every cell, and a mode of it: given boxes have no update mode.
+    pub fn all(rotation: &Rotation) -> impl Iterator<Item = (Self, Mode)> {
+        let modes = rotation.modes().iter();
+        let modes = modes.filter(|mode| mode.updates == Updates::Eager);
+        modes.flat_map(|&mode| {
+            let cell = move |&finder| Self {
+                finder,
+                tier: mode.tier.name(),
+                threads: mode.threads,
+            };
+            Finder::ALL.iter().map(move |finder| (cell(finder), mode))
+        })
+    }
+}
+
+/// What was judged: sums over frames.
+#[derive(Clone, Debug, Default)]
+pub struct BoxLedger {
+    /// Lists by cell, and pairs that a list had and shouldn't, or should have had.
+    pub cells: BTreeMap<BoxCell, [u64; 2]>,
+    /// Pairs that meet, over frames.
+    pub required: u64,
+    /// The first wrong pair, with all that is needed to see it again.
+    pub failure: Option<String>,
+}
+
+impl BoxLedger {
+    /// Adds another one.
+    pub fn add(&mut self, other: Self) {
+        for (cell, [lists, wrong]) in other.cells {
+            let mine = self.cells.entry(cell).or_default();
+            (mine[0], mine[1]) = (mine[0] + lists, mine[1] + wrong);
+        }
+        self.required += other.required;
+        self.failure = self.failure.take().or(other.failure);
+    }
+
+    /// Wrong pairs in all.
+    #[must_use]
+    pub fn wrong(&self) -> u64 {
+        self.cells.values().map(|[_, wrong]| wrong).sum()
+    }
+
+    /// Lists judged in a cell.
+    #[must_use]
+    pub fn lists(&self, cell: &BoxCell) -> u64 {
+        self.cells.get(cell).map_or(0, |[lists, _]| *lists)
+    }
+}
+
+/// Frames of boxes that are hard to tell apart: each begins where another ends, or a few last places before or behind, or lies
+/// anywhere; then all move, and some begin at another one's end again. `below(n)` draws a number below n.
+pub fn draw(below: &mut impl FnMut(u32) -> u32) -> Vec<Vec<Aabb>> {
+    let unit = 2.0_f32.powi(UNITS[below(UNITS.len() as u32) as usize]);
+    let sides = SIDES[below(SIDES.len() as u32) as usize];
+    let sides = |below: &mut dyn FnMut(u32) -> u32| {
+        sides[below(sides.len() as u32) as usize].map(|side| side * unit)
+    };
+    // In the narrowest space each meets most others.
+    let space = unit * [4.0, 12.0, 30.0, 4000.0][below(4) as usize];
+    let count = 2 + below(230) as usize;
+    let mut boxes: Vec<Aabb> = Vec::with_capacity(count);
+    for _ in 0..count {
+        let sides = sides(below);
+        let free = Aabb::new([0, 1, 2].map(|_| space * share(below)), [0.0; 3]);
+        let placed = Aabb::new(free.min, [0, 1, 2].map(|axis| free.min[axis] + sides[axis]));
+        let partner =
+            (!boxes.is_empty() && below(2) == 0).then(|| boxes[below(boxes.len() as u32) as usize]);
+        boxes.push(partner.map_or(placed, |partner| beside(&partner, sides, below)));
+    }
+    let frames = [1, 2, 12][below(3) as usize];
+    let step = unit * [0.0, 0.01, 0.3, 5.0][below(4) as usize];
+    let mut all = vec![boxes.clone()];
+    for _ in 1..frames {
+        for aabb in &mut boxes {
+            for axis in 0..3 {
+                let by = step * (share(below) - 0.5);
+                (aabb.min[axis], aabb.max[axis]) = (aabb.min[axis] + by, aabb.max[axis] + by);
+            }
+        }
+        for _ in 0..below(4) {
+            let [one, other] = [0, 1].map(|_| below(count as u32) as usize);
+            boxes[one] = beside(&boxes[other].clone(), sides(below), below);
+        }
+        all.push(boxes.clone());
+    }
+    all
+}
+
+/// A number from 0 to 1.
+fn share(below: &mut impl FnMut(u32) -> u32) -> f32 {
+    below(1 << 16) as f32 / (1 << 16) as f32
+}
+
+/// A box that begins where another one ends on some axis, or ends where that begins, give or take three last places.
+fn beside(other: &Aabb, sides: [f32; 3], below: &mut impl FnMut(u32) -> u32) -> Aabb {
+    let (mut min, at) = (other.min, below(3) as usize);
+    let off = below(7) as i32 - 3;
+    let shifted = |end: f32| {
+        let step = if off < 0 {
+            f32::next_down
+        } else {
+            f32::next_up
+        };
+        (0..off.abs()).fold(end, |end, _| step(end))
+    };
+    let is_behind = below(2) == 0;
+    if is_behind {
+        min[at] = shifted(other.max[at]);
+    }
+    let mut max = [0, 1, 2].map(|axis| min[axis] + sides[axis]);
+    if !is_behind {
+        max[at] = shifted(other.min[at]);
+        min[at] = max[at] - sides[at];
+    }
+    Aabb::new(min, max)
+}
+
+/// The pairs that have a point in common, by the definition.
+#[must_use]
+pub fn meeting(boxes: &[Aabb]) -> Vec<[u32; 2]> {
+    let on =
+        |a: &Aabb, b: &Aabb, axis: usize| a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis];
+    let mut pairs = Vec::new();
+    for (i, a) in boxes.iter().enumerate() {
+        for (j, b) in boxes.iter().enumerate().skip(i + 1) {
+            if (0..3).all(|axis| on(a, b, axis)) {
+                pairs.push([i as u32, j as u32]);
+            }
+        }
+    }
+    pairs
+}
+
+/// Culls the frames in every cell and holds each list against the definition.
+///
+/// # Errors
+/// Threads that the system refuses, boxes that are none.
+pub fn judge(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<BoxLedger, CullError> {
+    let wanted: Vec<Vec<[u32; 2]>> = frames.iter().map(|boxes| meeting(boxes)).collect();
+    let mut ledger = BoxLedger {
+        required: wanted.iter().map(|pairs| pairs.len() as u64).sum(),
+        ..BoxLedger::default()
+    };
+    for (cell, mode) in BoxCell::all(rotation) {
+        let of = BoxCuller::builder().finder(cell.finder);
+        let of = of.tier(mode.tier).threads(mode.threads).worth_waking(0);
+        let mut culler = of.build()?;
+        let mut wrong = 0;
+        for (n, (boxes, wanted)) in frames.iter().zip(&wanted).enumerate() {
+            let differing = difference(&culler.cull(boxes)?.sorted(), wanted);
+            wrong += differing.len() as u64;
+            if let (Some(&[i, j]), None) = (differing.first(), &ledger.failure) {
+                let [one, other] = [i, j].map(|body| boxes[body as usize]);
+                ledger.failure = Some(format!(
+                    "given boxes {i} and {j} of {}, frame {n}: {one:?} and {other:?} ({}, {}, {} threads)",
+                    boxes.len(),
+                    cell.finder,
+                    cell.tier,
+                    cell.threads
+                ));
+            }
+        }
+        ledger.cells.insert(cell, [frames.len() as u64, wrong]);
+    }
+    Ok(ledger)
+}

@@ -1,0 +1,175 @@
+//! The corpus of hard cases: groups stored by recipe and seed, each with its exact answers.
+//!
+//! A group's file says what is drawn and, for every or-DOP (k, axes), which pairs overlap by each predicate: one bit a
+//! pair, hexadecimal, in the order of runs, frames and sorted pairs. The answers were computed by the exact reference
+//! when they were recorded and are checked against it ever after.
+
+use std::collections::BTreeMap;
+
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+
+use super::answers::{Answers, Predicate};
+use super::draw::ContactSpec;
+use super::forms::{Form, FormError};
+use super::judged::InvalidInput;
+use super::naive::Misses;
+use super::ways::variants;
+use sdop::volume::{Axes, DirectionSet};
+
+mod readme;
+pub mod recipe;
+
+pub use readme::page;
+pub use recipe::{Cases, Recipe};
+
+/// The text of each group's file, by name.
+pub use sdop_data::HARD_CASES as FILES;
+
+/// One group of hard cases.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Group {
+    /// What breaks here.
+    pub why: String,
+    /// Where all draws start.
+    pub seed: u64,
+    /// Predicates that hold for every pair of a dynamic and a static body by construction, whatever the reference says.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub known: Vec<String>,
+    /// How bodies are arranged.
+    pub recipe: Recipe,
+    /// How they touch.
+    #[serde(default)]
+    pub contacts: ContactSpec,
+    /// What they look like.
+    pub forms: Vec<Form>,
+    /// By or-DOP ("18 principal"), by predicate: one bit a pair.
+    #[serde(default)]
+    pub answers: BTreeMap<String, BTreeMap<String, String>>,
+}
+
+/// A group that can't be made.
+#[derive(Debug, thiserror::Error)]
+pub enum GroupError {
+    /// The file.
+    #[error("{0}")]
+    File(#[from] toml::de::Error),
+    /// A form.
+    #[error(transparent)]
+    Form(#[from] FormError),
+    /// Numbers that the reference refuses.
+    #[error(transparent)]
+    Input(#[from] InvalidInput),
+}
+
+impl Group {
+    /// Reads a group's file.
+    ///
+    /// # Errors
+    /// Text that is no group.
+    pub fn parse(text: &str) -> Result<Self, GroupError> {
+        Ok(toml::from_str(text)?)
+    }
+
+    /// Makes the cases for one or-DOP.
+    ///
+    /// # Errors
+    /// Forms that can't be had.
+    pub fn cases(&self, k: DirectionSet, axes: Axes) -> Result<Cases, GroupError> {
+        let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
+        Ok(self
+            .recipe
+            .cases(&self.forms, &self.contacts, (k, axes), &mut rng)?)
+    }
+
+    /// The exact answers for one or-DOP, one a frame, run by run.
+    ///
+    /// # Errors
+    /// Poses outside the contract.
+    pub fn judge(&self, cases: &Cases, k: DirectionSet) -> Result<Vec<Vec<Answers>>, GroupError> {
+        let judge = |frame| Answers::judge(&cases.shapes, frame, k, &Predicate::ALL);
+        let runs = cases.runs.iter();
+        let judged = runs.map(|run| run.iter().map(judge).collect::<Result<_, _>>());
+        Ok(judged.collect::<Result<_, _>>()?)
+    }
+
+    /// Recomputes the answers.
+    ///
+    /// # Errors
+    /// As [`Group::cases`] and [`Group::judge`].
+    pub fn record(&mut self) -> Result<(), GroupError> {
+        self.answers.clear();
+        for (k, axes) in variants() {
+            let judged = self.judge(&self.cases(k, axes)?, k)?;
+            self.answers.insert(variant_name(k, axes), spell(&judged));
+        }
+        Ok(())
+    }
+
+    /// The answers as the end of the group's file.
+    ///
+    /// # Errors
+    /// None that a map of texts has.
+    pub fn answers_toml(&self) -> Result<String, toml::ser::Error> {
+        let mut text = String::new();
+        for (variant, answers) in &self.answers {
+            text += &format!("\n[answers.{variant:?}]\n{}", toml::to_string(answers)?);
+        }
+        Ok(text)
+    }
+}
+
+/// What naive f32 tests miss in a group, with k = 18 along principal axes, and of how many pairs.
+///
+/// # Errors
+/// As [`Group::cases`] and [`Group::judge`].
+pub fn naive_misses(group: &Group) -> Result<(Misses, u64), GroupError> {
+    let (mut misses, mut pairs) = (Misses::default(), 0);
+    let cases = group.cases(DirectionSet::K18, Axes::Principal)?;
+    let judged = group.judge(&cases, DirectionSet::K18)?;
+    for (frame, answers) in cases.runs.iter().flatten().zip(judged.iter().flatten()) {
+        misses.add(&Misses::count(&cases.shapes, frame, answers)?);
+        pairs += answers.pairs.len() as u64;
+    }
+    Ok((misses, pairs))
+}
+
+/// How files name an or-DOP.
+#[must_use]
+pub fn variant_name(k: DirectionSet, axes: Axes) -> String {
+    format!("{k} {axes}")
+}
+
+/// The answers as a file spells them.
+#[must_use]
+pub fn spell(judged: &[Vec<Answers>]) -> BTreeMap<String, String> {
+    let bits = |predicate: Predicate| {
+        let all = judged.iter().flatten().flat_map(|a| a.of(predicate));
+        hexadecimal(all.copied())
+    };
+    let spelled = |p: &Predicate| (p.name().replace("or-dop ", ""), bits(*p));
+    Predicate::ALL.iter().map(spelled).collect()
+}
+
+/// Four bits a digit, the first the highest; the last digit is filled with zeros.
+fn hexadecimal(bits: impl Iterator<Item = bool>) -> String {
+    let bits: Vec<bool> = bits.collect();
+    let digit = |four: &[bool]| {
+        let bit = |i: usize| u32::from(four.get(i) == Some(&true)) << (3 - i);
+        char::from_digit((0..4).map(bit).sum(), 16).unwrap_or('0')
+    };
+    bits.chunks(4).map(digit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_spelled_from_the_left() {
+        let bits = [true, false, false, true, false, true];
+        assert_eq!(hexadecimal(bits.into_iter()), "94");
+    }
+}

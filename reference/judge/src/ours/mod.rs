@@ -1,0 +1,26 @@
+//! The optimised culler against the exact reference: `optimised ⊇ reference predicate ⊇ exact mesh intersection`.
+//!
+//! [`answers`] are the reference's, pair by pair; [`compare()`] holds a culler's list against them. What is judged comes
+//! from seeds ([`draw`]: random crowds, and contacts put together on purpose), from the corpus of [`hard`] cases, and
+//! from scenes. Given [`boxes`] are held against their definition.
+
+pub mod answers;
+#[cfg(feature = "proptest")]
+pub mod arbitrary;
+pub mod borders;
+pub mod boxes;
+pub mod compare;
+pub mod contact;
+pub mod draw;
+pub mod forms;
+pub mod hard;
+pub mod judged;
+pub mod matrix;
+pub mod naive;
+pub mod rounds;
+pub mod ways;
+
+pub use answers::{Answers, Predicate};
+pub use compare::{Count, compare};
+pub use contact::Contact;
+pub use judged::Shapes;

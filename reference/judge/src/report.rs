@@ -1,0 +1,125 @@
+//! A verdict as files: the smallest scene of a miss, and JUnit's XML for programs that collect test results.
+
+use std::fmt::Write as _;
+
+use super::claim::Claim;
+use super::score::Outcome;
+use super::shrink::Smallest;
+use super::verdict::Verdict;
+use super::wire::ndjson;
+use sdop::bodies::Bodies;
+use sdop::mesh::{MeshFormat, TriangleMesh, write_bytes};
+use sdop::volume::Shape;
+
+/// A file's name and what is in it.
+pub type Named = (String, Vec<u8>);
+
+/// The stem of a counter-example's files.
+pub const STEM: &str = "missed-pair";
+
+/// A counter-example as a case file (`.ndjson`, with the pairs that were reported, for `sdop view` and `sdop check`) and as a scene that `sdop run` takes (`.toml`, and its meshes).
+///
+/// # Errors
+/// A mesh that can't be written: none that was read.
+pub fn counter_example(smallest: &Smallest, claim: Claim) -> std::io::Result<Vec<Named>> {
+    let case = ndjson::encode(&smallest.case, claim, &smallest.pairs)?;
+    let mut files = vec![(format!("{STEM}.ndjson"), case)];
+    let shapes = &smallest.case.shapes;
+    files.push((
+        format!("{STEM}.toml"),
+        scene(&smallest.case.frames[smallest.miss.frame].bodies, shapes).into_bytes(),
+    ));
+    for (number, shape) in shapes.iter().enumerate() {
+        let mesh = TriangleMesh {
+            name: shape.name.clone(),
+            vertices: shape.vertices.clone(),
+            triangles: shape.triangles.clone(),
+            ..TriangleMesh::default()
+        };
+        let bytes = write_bytes(&mesh, MeshFormat::Obj);
+        files.push((format!("{STEM}-{number}.obj"), bytes));
+    }
+    Ok(files)
+}
+
+/// A frame as a scene file. Formatting into a String cannot fail.
+fn scene(bodies: &Bodies, shapes: &[Shape]) -> String {
+    let mut text = format!("name = \"{STEM}\"\nframes = 1\n");
+    for i in 0..bodies.len() {
+        let shape = bodies.shape[i] as usize;
+        let pose = [&bodies.rotation[i][..], &bodies.translation[i]].concat();
+        let numbers: Vec<String> = pose.iter().map(|x| format!("{x:?}")).collect();
+        let _ = write!(
+            text,
+            "\n[[bodies]] # {i}: {}\nmesh = \"{STEM}-{shape}.obj\"\norigin = \"file\"\nposes = [[{}]]\nstatic = {}\n",
+            shapes[shape].name.escape_default(),
+            numbers.join(", "),
+            !bodies.dynamic[i]
+        );
+    }
+    text.push_str("\n[cull]\nstrategy = \"s-dop-sequential\"\n");
+    text
+}
+
+/// JUnit's XML: a suite for each group, a test for each case.
+#[must_use]
+pub fn junit(verdict: &Verdict) -> String {
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
+    for group in verdict.groups() {
+        let tests = group.passed + group.failed + group.skipped + group.errors;
+        let _ = writeln!(
+            text,
+            "  <testsuite name=\"{}\" tests=\"{tests}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\">",
+            escaped(&group.name),
+            group.failed,
+            group.errors,
+            group.skipped
+        );
+        for case in verdict
+            .cases
+            .iter()
+            .filter(|case| case.group() == group.name)
+        {
+            let _ = write!(
+                text,
+                "    <testcase classname=\"{}\" name=\"{}\"",
+                escaped(&group.name),
+                escaped(&case.name)
+            );
+            let _ = match &case.outcome {
+                Outcome::Pass => writeln!(text, "/>"),
+                Outcome::Fail { why } => {
+                    writeln!(text, "><failure message=\"{}\"/></testcase>", escaped(why))
+                }
+                Outcome::Skipped { why } => {
+                    writeln!(text, "><skipped message=\"{}\"/></testcase>", escaped(why))
+                }
+                Outcome::Error { trouble } => writeln!(
+                    text,
+                    "><error message=\"{}\"/></testcase>",
+                    escaped(&trouble.to_string())
+                ),
+            };
+        }
+        text.push_str("  </testsuite>\n");
+    }
+    text.push_str("</testsuites>\n");
+    text
+}
+
+/// Text in an attribute; XML has no way to write most control characters.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\n' | '\t' => escaped.push(' '),
+            c if c.is_control() => escaped.push('\u{fffd}'),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}

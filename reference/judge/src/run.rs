@@ -1,0 +1,278 @@
+//! Runs a culler over the cases of its claim.
+
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+use super::case::{Case, matches};
+use super::catalogue::{CatalogueError, Group, select};
+use super::claim::Claim;
+use super::score::{Judged, Outcome, judge_case};
+use super::shrink::shrink;
+use super::subject::{Made, PairTest, Pairwise, Scene, Subject};
+use super::verdict::{CaseVerdict, Verdict};
+use crate::contestant::Contestant;
+use crate::ours::judged::InvalidInput;
+
+/// Why nothing could be judged.
+#[derive(Debug, thiserror::Error)]
+pub enum JudgeError {
+    /// A case that can't be drawn.
+    #[error(transparent)]
+    Catalogue(#[from] CatalogueError),
+    /// A case that the reference refuses.
+    #[error(transparent)]
+    Input(#[from] InvalidInput),
+    /// No case's name matches.
+    #[error("no case of the claim {claim} matches `{pattern}`")]
+    NoCase {
+        /// The claim.
+        claim: Claim,
+        /// The pattern.
+        pattern: String,
+    },
+}
+
+/// What is run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The claim.
+    pub claim: Claim,
+    /// Which cases, by name.
+    pub pattern: String,
+    /// Fresh cases of this seed on top of the published ones.
+    pub seed: Option<u64>,
+    /// Start no case after so long.
+    pub time: Option<Duration>,
+    /// Start no case after a failure.
+    pub fail_fast: bool,
+    /// The most extra pairs for each required one.
+    pub extra_limit: Option<f64>,
+    /// Cases that are known to fail.
+    pub known: BTreeSet<String>,
+    /// How long a failing case is made smaller.
+    pub shrink_time: Duration,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            claim: Claim::Mesh,
+            pattern: "*".to_owned(),
+            seed: None,
+            time: None,
+            fail_fast: false,
+            extra_limit: None,
+            known: BTreeSet::new(),
+            shrink_time: Duration::from_secs(4),
+        }
+    }
+}
+
+/// A culler's trial being prepared; [`judge`] begins one.
+pub struct Judge<S> {
+    subject: S,
+    options: Options,
+}
+
+/// Judges a Rust culler, made anew for each case by `make`.
+pub fn judge<F, C>(make: F) -> Judge<Made<F>>
+where
+    F: Fn(&Scene<'_>) -> C + Sync,
+    C: Contestant,
+{
+    Judge {
+        subject: Made(make),
+        options: Options::default(),
+    }
+}
+
+/// Judges a test of single pairs, made anew for each case by `make`.
+pub fn judge_pair_test<F, T>(make: F) -> Judge<Made<impl Fn(&Scene<'_>) -> Pairwise<T> + Sync>>
+where
+    F: Fn(&Scene<'_>) -> T + Sync,
+    T: PairTest,
+{
+    judge(move |scene: &Scene<'_>| Pairwise::new(make(scene)))
+}
+
+impl<S: Subject> Judge<S> {
+    /// What the culler claims never to miss; meshes, unless said otherwise.
+    #[must_use]
+    pub fn claims(mut self, claim: Claim) -> Self {
+        self.options.claim = claim;
+        self
+    }
+
+    /// The cases of these names: `*` stands for any text, `?` for one character.
+    #[must_use]
+    pub fn cases(mut self, pattern: &str) -> Self {
+        pattern.clone_into(&mut self.options.pattern);
+        self
+    }
+
+    /// Adds cases that this seed draws.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.options.seed = Some(seed);
+        self
+    }
+
+    /// The most extra pairs for each required one; without it they are counted only.
+    #[must_use]
+    pub fn extra_limit(mut self, limit: f64) -> Self {
+        self.options.extra_limit = Some(limit);
+        self
+    }
+
+    /// Runs the cases.
+    ///
+    /// # Errors
+    /// No such case, or one that can't be made.
+    pub fn run(&self) -> Result<Verdict, JudgeError> {
+        examine(&self.subject, &self.options, |_, _| {})
+    }
+
+    /// As [`Judge::assert`], but content when the claim has no such case, or the culler skips all of them.
+    ///
+    /// # Panics
+    /// When the verdict is no pass.
+    pub fn assert_if_any(&self) {
+        match self.run() {
+            Err(JudgeError::NoCase { .. }) => {}
+            Err(error) => panic!("{error}"),
+            Ok(verdict) if verdict.cases.iter().all(is_skipped) => {}
+            Ok(verdict) => verdict.assert_passed(),
+        }
+    }
+
+    /// Runs the cases and panics unless the verdict is a pass: what a test calls.
+    ///
+    /// # Panics
+    /// When the verdict is no pass, or there is no such case.
+    pub fn assert(&self) {
+        match self.run() {
+            Ok(verdict) => verdict.assert_passed(),
+            Err(error) => panic!("{error}"),
+        }
+    }
+}
+
+/// Runs the cases of a claim; `progress` is told how many are done, and of how many.
+///
+/// # Errors
+/// As [`Judge::run`].
+pub fn examine(
+    subject: &dyn Subject,
+    options: &Options,
+    progress: impl Fn(usize, usize) + Sync,
+) -> Result<Verdict, JudgeError> {
+    let (claim, pattern) = (options.claim, &options.pattern);
+    let mut jobs: Vec<(Group, u32, Option<u64>)> = Vec::new();
+    for seed in [None, options.seed]
+        .into_iter()
+        .take(1 + usize::from(options.seed.is_some()))
+    {
+        jobs.extend(
+            select(claim, pattern, seed)?
+                .into_iter()
+                .map(|(group, n)| (group, n, seed)),
+        );
+    }
+    if jobs.is_empty() {
+        let pattern = pattern.clone();
+        return Err(JudgeError::NoCase { claim, pattern });
+    }
+    let deadline = options
+        .time
+        .and_then(|time| Instant::now().checked_add(time));
+    let stop = AtomicBool::new(false);
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let run = |(group, number, seed): &(Group, u32, Option<u64>)| -> Result<Option<(Case, CaseVerdict)>, JudgeError> {
+        if stop.load(Ordering::Relaxed) || deadline.is_some_and(|end| Instant::now() >= end) {
+            return Ok(None);
+        }
+        let case = group.case(*number, *seed)?;
+        // Every group's first case runs twice: the same input has the same answer.
+        let judged = judge_case(subject, &case, claim, *number == 0)?;
+        let verdict = line(&case, &judged, &options.known);
+        let failed = matches!(verdict.outcome, Outcome::Fail { .. } | Outcome::Error { .. });
+        stop.fetch_or(options.fail_fast && failed && !verdict.known, Ordering::Relaxed);
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
+        Ok(Some((case, verdict)))
+    };
+    let ran: Vec<Option<(Case, CaseVerdict)>> =
+        jobs.par_iter().map(run).collect::<Result<_, _>>()?;
+    Ok(conclude(subject, options, ran))
+}
+
+/// Runs cases that are given, such as a counter-example from a file; their names don't matter.
+///
+/// # Errors
+/// A case that the reference refuses.
+pub fn examine_given(
+    subject: &dyn Subject,
+    options: &Options,
+    cases: Vec<Case>,
+) -> Result<Verdict, JudgeError> {
+    let run = |case: Case| -> Result<Option<(Case, CaseVerdict)>, JudgeError> {
+        let judged = judge_case(subject, &case, options.claim, true)?;
+        let verdict = line(&case, &judged, &options.known);
+        Ok(Some((case, verdict)))
+    };
+    let ran = cases.into_iter().map(run).collect::<Result<_, _>>()?;
+    Ok(conclude(subject, options, ran))
+}
+
+/// Makes the verdict, and the smallest scene of a miss.
+fn conclude(
+    subject: &dyn Subject,
+    options: &Options,
+    ran: Vec<Option<(Case, CaseVerdict)>>,
+) -> Verdict {
+    let not_run = ran.iter().filter(|one| one.is_none()).count();
+    let ran: Vec<(Case, CaseVerdict)> = ran.into_iter().flatten().collect();
+    // The case with the fewest pairs has the shortest way to a small one.
+    let missed = ran
+        .iter()
+        .filter(|(_, verdict)| verdict.miss.is_some() && !verdict.known);
+    let first = missed.min_by_key(|(case, _)| case.pairs());
+    let smallest =
+        first.and_then(|(case, _)| shrink(subject, case, options.claim, options.shrink_time));
+    let cases: Vec<CaseVerdict> = ran.into_iter().map(|(_, verdict)| verdict).collect();
+    Verdict {
+        claim: options.claim,
+        seed: options.seed,
+        stale: stale(options, &cases, not_run),
+        cases,
+        not_run,
+        extra_limit: options.extra_limit,
+        smallest,
+    }
+}
+
+fn line(case: &Case, judged: &Judged, known: &BTreeSet<String>) -> CaseVerdict {
+    CaseVerdict {
+        name: case.name.clone(),
+        flag: case.flag.clone(),
+        outcome: judged.outcome.clone(),
+        pairs: judged.count,
+        miss: judged.miss,
+        known: known.contains(&case.name),
+    }
+}
+
+fn is_skipped(case: &CaseVerdict) -> bool {
+    matches!(case.outcome, Outcome::Skipped { .. })
+}
+
+/// Known failures that pass, and those within the pattern that were to be run and are no case.
+fn stale(options: &Options, cases: &[CaseVerdict], not_run: usize) -> Vec<String> {
+    let is_stale = |name: &&String| match cases.iter().find(|case| case.name == **name) {
+        Some(case) => case.outcome == Outcome::Pass,
+        None => not_run == 0 && matches(&options.pattern, name),
+    };
+    options.known.iter().filter(is_stale).cloned().collect()
+}

@@ -1,0 +1,333 @@
+//! The smallest case that a culler still fails: frames, bodies, triangles and digits are removed for as long as it misses a
+//! pair.
+
+use std::time::{Duration, Instant};
+
+use glam::Vec3;
+
+use super::case::{Case, Frame};
+use super::catalogue::picked;
+use super::claim::Claim;
+use super::score::{Miss, judge_answers};
+use super::subject::Subject;
+use super::witness::Witness;
+use sdop::mesh::TriangleMesh;
+use sdop::volume::{Origin, Shape, ShapeSpec};
+
+/// A small case that shows a missed pair.
+#[derive(Clone, Debug)]
+pub struct Smallest {
+    /// The case.
+    pub case: Case,
+    /// What is reported of it, frame by frame, sorted.
+    pub pairs: Vec<Vec<[u32; 2]>>,
+    /// What is missed.
+    pub miss: Miss,
+    /// Why it should not be.
+    pub witness: Option<Witness>,
+}
+
+/// Makes a failing case smaller, for so long at most. `None` when it doesn't fail again.
+pub fn shrink(
+    subject: &dyn Subject,
+    case: &Case,
+    claim: Claim,
+    time: Duration,
+) -> Option<Smallest> {
+    let mut search = Search {
+        subject,
+        claim,
+        deadline: Instant::now() + time,
+        miss: Miss {
+            frame: 0,
+            pair: [0, 0],
+        },
+        case: case.clone(),
+        pairs: Vec::new(),
+    };
+    if !search.try_case(case.clone()) {
+        return None;
+    }
+    search.fewer_frames();
+    search.fewer_bodies();
+    search.fewer_shapes();
+    search.fewer_triangles();
+    search.fewer_digits();
+    let Search {
+        case, pairs, miss, ..
+    } = search;
+    let witness = Witness::of(claim, &case.shapes, &case.frames[miss.frame], miss.pair);
+    Some(Smallest {
+        case,
+        pairs,
+        miss,
+        witness,
+    })
+}
+
+struct Search<'a> {
+    subject: &'a dyn Subject,
+    claim: Claim,
+    deadline: Instant,
+    case: Case,
+    pairs: Vec<Vec<[u32; 2]>>,
+    miss: Miss,
+}
+
+impl Search<'_> {
+    /// Takes over a case if the culler misses a pair of it.
+    fn try_case(&mut self, case: Case) -> bool {
+        if Instant::now() > self.deadline {
+            return false;
+        }
+        let Ok(answers) = self.subject.answer(&case, self.claim) else {
+            return false;
+        };
+        let Ok(judged) = judge_answers(&case, self.claim, &answers) else {
+            return false;
+        };
+        let Some(miss) = judged.miss else {
+            return false;
+        };
+        self.case = case;
+        self.pairs = judged.lists;
+        self.miss = miss;
+        true
+    }
+
+    /// The frame of the miss alone, or without as many of the others as can be.
+    fn fewer_frames(&mut self) {
+        let with = |case: &Case, kept: &[usize]| Case {
+            frames: kept
+                .iter()
+                .map(|&n| Frame {
+                    was: None,
+                    ..case.frames[n].clone()
+                })
+                .collect(),
+            ..case.clone()
+        };
+        let alone = with(&self.case, &[self.miss.frame]);
+        if self.case.frames.len() == 1 || self.try_case(alone) {
+            return;
+        }
+        self.case.frames.truncate(self.miss.frame + 1);
+        self.pairs.truncate(self.miss.frame + 1);
+        // A changing set of bodies has its frames in a chain.
+        if self.case.frames.iter().any(|frame| frame.was.is_some()) {
+            return;
+        }
+        let mut n = 0;
+        while n < self.case.frames.len() {
+            let kept: Vec<usize> = (0..self.case.frames.len()).filter(|m| *m != n).collect();
+            if !self.try_case(with(&self.case, &kept)) {
+                n += 1;
+            }
+        }
+    }
+
+    /// The pair alone, or without as many of the others as can be, half of them at a time.
+    fn fewer_bodies(&mut self) {
+        if self.case.frames.iter().any(|frame| frame.was.is_some()) {
+            return;
+        }
+        let pair = self.miss.pair.map(|body| body as usize);
+        let alone = with_bodies(&self.case, &pair);
+        if self.try_case(alone) {
+            return;
+        }
+        let bodies = |search: &Self| search.case.frames[0].bodies.len();
+        let mut chunk = bodies(self).div_ceil(2);
+        while chunk > 0 {
+            let mut start = 0;
+            while start < bodies(self) {
+                let kept: Vec<usize> = (0..bodies(self))
+                    .filter(|i| !(start..start + chunk).contains(i))
+                    .collect();
+                let smaller = with_bodies(&self.case, &kept);
+                if kept.len() < 2 || !self.try_case(smaller) {
+                    start += chunk;
+                }
+            }
+            chunk /= 2;
+        }
+    }
+
+    /// Without shapes that no body has.
+    fn fewer_shapes(&mut self) {
+        let mut case = self.case.clone();
+        let used = |shape: u32| {
+            self.case
+                .frames
+                .iter()
+                .any(|frame| frame.bodies.shape.contains(&shape))
+        };
+        let kept: Vec<u32> = (0..case.shapes.len() as u32)
+            .filter(|shape| used(*shape))
+            .collect();
+        case.shapes = kept
+            .iter()
+            .map(|&shape| self.case.shapes[shape as usize].clone())
+            .collect();
+        for shape in case
+            .frames
+            .iter_mut()
+            .flat_map(|frame| &mut frame.bodies.shape)
+        {
+            *shape = kept.iter().position(|kept| kept == shape).unwrap_or(0) as u32;
+        }
+        if kept.len() < self.case.shapes.len() {
+            self.try_case(case);
+        }
+    }
+
+    /// Without triangles, one at a time, for claims about meshes. Volumes are built anew around what is left.
+    fn fewer_triangles(&mut self) {
+        if !matches!(self.claim, Claim::Hull | Claim::Mesh) {
+            return;
+        }
+        for shape in 0..self.case.shapes.len() {
+            let mut t = 0;
+            while t < self.case.shapes[shape].triangles.len() && Instant::now() <= self.deadline {
+                let smaller = without_triangle(&self.case, shape, t);
+                if !smaller.is_some_and(|case| self.try_case(case)) {
+                    t += 1;
+                }
+            }
+        }
+    }
+
+    /// Poses, or boxes, of fewer binary digits.
+    fn fewer_digits(&mut self) {
+        for frame in 0..self.case.frames.len() {
+            for body in 0..self.case.frames[frame].bodies.len() {
+                if self.claim == Claim::Aabb {
+                    for n in 0..6 {
+                        self.shorten(frame, &|frame| &mut frame.boxes[body][n]);
+                    }
+                    continue;
+                }
+                let mut unturned = self.case.clone();
+                unturned.frames[frame].bodies.rotation[body] = [0.0, 0.0, 0.0, 1.0];
+                refit(&mut unturned, frame);
+                if !self.try_case(unturned) {
+                    for n in 0..4 {
+                        self.shorten(frame, &|frame| &mut frame.bodies.rotation[body][n]);
+                    }
+                }
+                for n in 0..3 {
+                    self.shorten(frame, &|frame| &mut frame.bodies.translation[body][n]);
+                }
+            }
+        }
+    }
+
+    /// The shortest form of one number with which the pair is still missed.
+    fn shorten(&mut self, frame: usize, number: &dyn Fn(&mut Frame) -> &mut f32) {
+        let mut case = self.case.clone();
+        let full = *number(&mut case.frames[frame]);
+        for digits in [0, 2, 4, 8, 12, 16, 20] {
+            let short = rounded(full, digits);
+            if short == full {
+                return;
+            }
+            *number(&mut case.frames[frame]) = short;
+            let ordered = |ends: &[f32; 6]| (0..3).all(|axis| ends[axis] <= ends[axis + 3]);
+            let rotations = &case.frames[frame].bodies.rotation;
+            let sound = rotations.iter().all(|q| *q != [0.0; 4])
+                && case.frames[frame].boxes.iter().all(ordered);
+            if self.claim != Claim::Aabb && sound {
+                refit(&mut case, frame);
+            }
+            if sound && self.try_case(case.clone()) {
+                return;
+            }
+        }
+    }
+}
+
+/// A number with so many binary digits; none is zero.
+fn rounded(x: f32, digits: u32) -> f32 {
+    match digits {
+        0 => 0.0,
+        _ => {
+            // 24 digits in all, the first is implied; a carry goes into the exponent, as it should.
+            let cut = 24 - digits;
+            let half = 1_u32 << (cut - 1);
+            let bits = x.to_bits();
+            let rounded = f32::from_bits((bits.saturating_add(half)) & !((1 << cut) - 1));
+            if rounded.is_finite() { rounded } else { x }
+        }
+    }
+}
+
+fn refit(case: &mut Case, frame: usize) {
+    let bodies = case.frames[frame].bodies.clone();
+    let was = case.frames[frame].was.take();
+    case.frames[frame] = Frame {
+        was,
+        ..Frame::fitted(bodies, &case.shapes)
+    };
+}
+
+fn with_bodies(case: &Case, kept: &[usize]) -> Case {
+    let frame = |frame: &Frame| Frame {
+        bodies: picked(&frame.bodies, kept),
+        boxes: kept.iter().map(|&i| frame.boxes[i]).collect(),
+        was: None,
+    };
+    Case {
+        frames: case.frames.iter().map(frame).collect(),
+        ..case.clone()
+    }
+}
+
+/// The case with one triangle of a shape less, and without the vertices that then belong to none.
+fn without_triangle(case: &Case, shape: usize, triangle: usize) -> Option<Case> {
+    let old = &case.shapes[shape];
+    let mut triangles = old.triangles.clone();
+    if triangles.len() < 2 {
+        return None;
+    }
+    triangles.remove(triangle);
+    let mut vertices: Vec<Vec3> = Vec::new();
+    let mut number = vec![None; old.vertices.len()];
+    for corner in triangles.iter_mut().flatten() {
+        let vertex = *corner as usize;
+        *corner = *number[vertex].get_or_insert_with(|| {
+            vertices.push(old.vertices[vertex]);
+            vertices.len() as u32 - 1
+        });
+    }
+    let mesh = TriangleMesh::new(old.name.clone(), vertices, triangles).ok()?;
+    let mut smaller = case.clone();
+    smaller.shapes[shape] = rebuilt(&mesh, old)?;
+    for frame in 0..smaller.frames.len() {
+        refit(&mut smaller, frame);
+    }
+    Some(smaller)
+}
+
+/// A mesh's shape in the body frame that it is in, with the directions and the basis of another.
+fn rebuilt(mesh: &TriangleMesh, like: &Shape) -> Option<Shape> {
+    let spec = ShapeSpec {
+        origin: Origin::File,
+        directions: like.ordop.directions,
+        ..ShapeSpec::default()
+    };
+    Shape::build(mesh, &spec).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded;
+
+    #[test]
+    fn numbers_lose_digits_and_keep_their_size() {
+        assert_eq!(rounded(1.999_999_9, 2), 2.0);
+        assert_eq!(rounded(-0.3, 0), 0.0);
+        assert_eq!(rounded(1.3, 4), 1.25);
+        assert_eq!(rounded(-1.3, 4), -1.25);
+        assert_eq!(rounded(f32::MAX, 4), f32::MAX);
+    }
+}

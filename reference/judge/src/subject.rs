@@ -1,0 +1,136 @@
+//! Who is judged: a Rust culler, a test of single pairs, or (in [`super::process`]) a program.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::answer::{Answer, Stop, Trouble};
+use super::case::Case;
+use super::claim::Claim;
+use crate::contestant::{Contestant, WorldBox};
+use sdop::bodies::Bodies;
+use sdop::volume::Shape;
+
+/// What a culler is made for: the first frame of a case.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    /// What it is judged by.
+    pub claim: Claim,
+    /// What the bodies look like.
+    pub shapes: &'a [Shape],
+    /// The bodies of the first frame.
+    pub bodies: &'a Bodies,
+    /// Their boxes.
+    pub boxes: &'a [WorldBox],
+}
+
+/// Answers cases.
+pub trait Subject: Sync {
+    /// One answer a frame.
+    ///
+    /// # Errors
+    /// A case that it skips, or its failure.
+    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop>;
+}
+
+/// A maker of Rust cullers, one for each case.
+pub struct Made<F>(pub F);
+
+impl<F, C> Subject for Made<F>
+where
+    F: Fn(&Scene<'_>) -> C + Sync,
+    C: Contestant,
+{
+    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
+        let mut answers = Vec::new();
+        let run = catch_unwind(AssertUnwindSafe(|| self.run(case, claim, &mut answers)));
+        match run {
+            Ok(Ok(())) => Ok(answers),
+            Ok(Err(stop)) => Err(stop),
+            Err(payload) => {
+                let text = payload.downcast_ref::<String>().map(String::as_str);
+                let text = text.or(payload.downcast_ref::<&str>().copied());
+                Err(Stop::Trouble(Trouble::Crashed {
+                    how: format!("panicked: {}", text.unwrap_or("without a message")),
+                    answered: answers.len(),
+                    said: String::new(),
+                }))
+            }
+        }
+    }
+}
+
+impl<F, C> Made<F>
+where
+    F: Fn(&Scene<'_>) -> C + Sync,
+    C: Contestant,
+{
+    fn run(&self, case: &Case, claim: Claim, answers: &mut Vec<Answer>) -> Result<(), Stop> {
+        let Some(first) = case.frames.first() else {
+            return Ok(());
+        };
+        let mut culler = (self.0)(&Scene {
+            claim,
+            shapes: &case.shapes,
+            bodies: &first.bodies,
+            boxes: &first.boxes,
+        });
+        for frame in &case.frames {
+            if let Some(was) = &frame.was
+                && !culler.change(&frame.bodies, was)
+            {
+                return Err(Stop::Skipped("its set of bodies can't change".to_owned()));
+            }
+            culler.boxes(&frame.boxes);
+            culler.frame(&frame.bodies);
+            culler.settle();
+            answers.push(Answer {
+                pairs: culler.pairs(),
+                ns: None,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// A test of single pairs.
+pub trait PairTest {
+    /// Whether two bodies of the frame overlap, as far as this test can tell.
+    fn overlap(&mut self, bodies: &Bodies, i: u32, j: u32) -> bool;
+}
+
+/// A pair test run over all pairs, which makes a culler of it.
+pub struct Pairwise<T> {
+    test: T,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl<T: PairTest> Pairwise<T> {
+    /// All pairs by this test.
+    pub fn new(test: T) -> Self {
+        Self {
+            test,
+            pairs: Vec::new(),
+        }
+    }
+}
+
+impl<T: PairTest> Contestant for Pairwise<T> {
+    fn frame(&mut self, bodies: &Bodies) {
+        self.pairs.clear();
+        for j in 0..bodies.len() as u32 {
+            for i in 0..j {
+                let moves = bodies.dynamic[i as usize] || bodies.dynamic[j as usize];
+                if moves && self.test.overlap(bodies, i, j) {
+                    self.pairs.push([i, j]);
+                }
+            }
+        }
+    }
+
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        self.pairs.clone()
+    }
+
+    fn change(&mut self, _bodies: &Bodies, _was: &[Option<u32>]) -> bool {
+        true // it keeps nothing between frames
+    }
+}

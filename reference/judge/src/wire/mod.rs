@@ -1,0 +1,74 @@
+//! Cases as bytes for programs, and their answers. Two encodings of one content: lines of JSON, and words.
+//!
+//! A program reads a header and then frames until its input ends, and answers each frame with one line.
+
+pub mod ndjson;
+pub mod text;
+
+use super::answer::{Answer, Trouble};
+use super::case::Case;
+use super::claim::Claim;
+use sdop::choice::choices;
+
+choices! {
+    /// How cases are written for a program.
+    Wire, "wire", {
+        /// A JSON object a line, as `sdop run --record` writes them.
+        Ndjson = "ndjson",
+        /// Words and counts, every f32 as eight hexadecimal digits: read by scanf.
+        Text = "text",
+    }
+}
+
+/// What a program says to a frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Said {
+    /// Its pairs.
+    Answer(Answer),
+    /// That it can't do this case, and why.
+    Skipped(String),
+}
+
+impl Wire {
+    /// A whole case.
+    ///
+    /// # Errors
+    /// None that the case's numbers can cause.
+    pub fn encode(self, case: &Case, claim: Claim) -> serde_json::Result<Vec<u8>> {
+        match self {
+            Self::Ndjson => ndjson::encode(case, claim, &[]),
+            Self::Text => Ok(text::encode(case, claim).into_bytes()),
+        }
+    }
+
+    /// Reads the answer to a frame.
+    ///
+    /// # Errors
+    /// A line that is none, or one about another frame.
+    pub fn decode(self, expected: usize, line: &[u8]) -> Result<Said, Trouble> {
+        match self {
+            Self::Ndjson => ndjson::decode(expected, line),
+            Self::Text => text::decode(expected, line),
+        }
+    }
+}
+
+/// The beginning of a line, for messages.
+pub(super) fn beginning(line: &[u8]) -> String {
+    let text = String::from_utf8_lossy(&line[..line.len().min(240)]);
+    let short: String = text.trim_end().chars().take(80).collect();
+    if short.len() < line.trim_ascii_end().len() {
+        format!("{short}…")
+    } else {
+        short
+    }
+}
+
+/// A line that is no answer.
+pub(super) fn malformed(frame: usize, line: &[u8], why: impl Into<String>) -> Trouble {
+    Trouble::Malformed {
+        frame,
+        why: why.into(),
+        line: beginning(line),
+    }
+}

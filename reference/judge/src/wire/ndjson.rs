@@ -1,0 +1,254 @@
+//! Cases as lines of JSON: `sdop-record`, version 1, with what a case has on top. Unknown keys are ignored by readers.
+//!
+//! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claim `aabb`, and `bodies` when the set
+//! changes, each with its former number as `was` (null for a new body).
+
+use std::io::BufRead;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::{Said, malformed};
+use crate::answer::{Answer, Trouble};
+use crate::case::{Case, Frame};
+use crate::claim::Claim;
+use crate::contestant::WorldBox;
+use crate::record::{BodyLine, FORMAT, FrameLine, Header, ShapeLine, VERSION};
+use sdop::bodies::Bodies;
+use sdop::bodies::contract::check_bodies;
+use sdop::files::read_line;
+use sdop::volume::Shape;
+
+/// A record's first line with what a case has on top.
+#[derive(Serialize, Deserialize)]
+struct CaseHeader {
+    #[serde(flatten)]
+    record: Header,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    flag: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    source: String,
+    /// The claim that is asked about, then the others that the case is about.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    claims: Vec<Claim>,
+}
+
+/// A body of a changed set.
+#[derive(Serialize, Deserialize)]
+struct ChangedBody {
+    #[serde(flatten)]
+    body: BodyLine,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    was: Option<u32>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct CaseFrame {
+    frame: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    bodies: Option<Vec<ChangedBody>>,
+    poses: Vec<[f32; 7]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    boxes: Option<Vec<WorldBox>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pairs: Option<Vec<[u32; 2]>>,
+}
+
+/// A whole case for one claim; with the pairs that were reported of each frame, where there are any.
+pub(crate) fn encode(
+    case: &Case,
+    claim: Claim,
+    reported: &[Vec<[u32; 2]>],
+) -> serde_json::Result<Vec<u8>> {
+    let empty = Bodies::default();
+    let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
+    let others = case.claims.iter().copied().filter(|other| *other != claim);
+    let header = CaseHeader {
+        record: Header::new(&case.name, 0, &case.shapes, first),
+        flag: case.flag.clone(),
+        source: case.source.clone(),
+        claims: std::iter::once(claim).chain(others).collect(),
+    };
+    let mut bytes = serde_json::to_vec(&header)?;
+    bytes.push(b'\n');
+    for (number, frame) in case.frames.iter().enumerate() {
+        let line = CaseFrame {
+            frame: number as u32,
+            bodies: frame.was.as_deref().map(|was| changed(&frame.bodies, was)),
+            poses: FrameLine::poses(&frame.bodies),
+            boxes: (claim == Claim::Aabb).then(|| frame.boxes.clone()),
+            pairs: reported.get(number).cloned(),
+        };
+        serde_json::to_writer(&mut bytes, &line)?;
+        bytes.push(b'\n');
+    }
+    Ok(bytes)
+}
+
+fn changed(bodies: &Bodies, was: &[Option<u32>]) -> Vec<ChangedBody> {
+    let lines = BodyLine::all(bodies).into_iter().zip(was);
+    lines
+        .map(|(body, &was)| ChangedBody { body, was })
+        .collect()
+}
+
+/// A case as read from a file, with the pairs that its frames have.
+pub struct Read {
+    /// The case.
+    pub case: Case,
+    /// The pairs of each frame that has some.
+    pub pairs: Vec<Option<Vec<[u32; 2]>>>,
+}
+
+/// Reads a case or a record whose lines have at most `most` bytes.
+///
+/// # Errors
+/// A line that is none, with its number and what is wrong.
+pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
+    let lines = std::iter::from_fn(|| {
+        let mut line = Vec::new();
+        match read_line(&mut input, most, &mut line) {
+            Ok(0) => None,
+            read => Some(read.map(|_| line)),
+        }
+    });
+    let mut lines = (1..)
+        .zip(lines)
+        .filter(|(_, line)| !matches!(line, Ok(line) if line.trim_ascii().is_empty()));
+    let Some((_, first)) = lines.next() else {
+        return Err("no line in it: the first has the shapes and bodies".to_owned());
+    };
+    let CaseHeader {
+        record: header,
+        flag,
+        source,
+        claims,
+    } = parse(1, first)?;
+    if header.format != FORMAT || header.version != VERSION {
+        return Err(format!(
+            "line 1: {} {} is not {FORMAT} {VERSION}",
+            header.format, header.version
+        ));
+    }
+    let shapes: Vec<Shape> = header
+        .shapes
+        .iter()
+        .map(ShapeLine::built)
+        .collect::<Result<_, _>>()
+        .map_err(|e| format!("line 1: {e}"))?;
+    let (mut bodies, mut frames, mut pairs) = (header.bodies, Vec::new(), Vec::new());
+    for (number, line) in lines {
+        let at = |problem: String| format!("line {number}: {problem}");
+        let line: CaseFrame = parse(number, line)?;
+        let was = line.bodies.map(|changed| {
+            let (set, was) = changed
+                .into_iter()
+                .map(|line| (line.body, line.was))
+                .unzip();
+            bodies = set;
+            was
+        });
+        if line.poses.len() != bodies.len() {
+            return Err(at(format!(
+                "{} poses for {} bodies",
+                line.poses.len(),
+                bodies.len()
+            )));
+        }
+        let mut posed = Bodies::default();
+        for (body, &[x, y, z, w, tx, ty, tz]) in bodies.iter().zip(&line.poses) {
+            posed.push(body.shape, !body.fixed, [x, y, z, w], [tx, ty, tz]);
+        }
+        check_bodies(&posed, &shapes).map_err(|e| at(format!("{e}; {}", e.hint)))?;
+        let mut frame = Frame::fitted(posed, &shapes);
+        if let Some(boxes) = line.boxes {
+            frame.boxes = checked(boxes, bodies.len()).map_err(at)?;
+        }
+        frame.was = was;
+        frames.push(frame);
+        pairs.push(line.pairs);
+    }
+    let case = Case {
+        name: header.scene,
+        flag,
+        source,
+        claims: if claims.is_empty() {
+            Claim::ALL.to_vec()
+        } else {
+            claims
+        },
+        shapes,
+        frames,
+    };
+    Ok(Read { case, pairs })
+}
+
+fn parse<T: for<'a> Deserialize<'a>>(
+    number: usize,
+    line: std::io::Result<Vec<u8>>,
+) -> Result<T, String> {
+    let line = line.map_err(|e| format!("line {number}: {e}"))?;
+    serde_json::from_slice(&line).map_err(|e| format!("line {number}: {e}"))
+}
+
+fn checked(boxes: Vec<WorldBox>, bodies: usize) -> Result<Vec<WorldBox>, String> {
+    if boxes.len() != bodies {
+        return Err(format!("{} boxes for {bodies} bodies", boxes.len()));
+    }
+    let sound = |ends: &WorldBox| {
+        ends.iter().all(|x| x.is_finite()) && (0..3).all(|axis| ends[axis] <= ends[axis + 3])
+    };
+    match boxes.iter().position(|ends| !sound(ends)) {
+        Some(at) => Err(format!(
+            "box {at}, {:?}, isn't finite with lower ends first",
+            boxes[at]
+        )),
+        None => Ok(boxes),
+    }
+}
+
+#[derive(Deserialize)]
+struct AnswerLine {
+    frame: u64,
+    pairs: Vec<[u32; 2]>,
+    #[serde(default)]
+    ns: Option<u64>,
+}
+
+pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
+    match serde_json::from_slice::<AnswerLine>(line) {
+        Ok(AnswerLine { frame, pairs, ns }) if frame == expected as u64 => {
+            Ok(Said::Answer(Answer { pairs, ns }))
+        }
+        Ok(AnswerLine { frame, .. }) => Err(Trouble::OutOfTurn {
+            expected,
+            found: frame,
+        }),
+        Err(error) => diagnose(expected, line, &error),
+    }
+}
+
+/// Says what is wrong with a line, or that it skips the case.
+fn diagnose(expected: usize, line: &[u8], error: &serde_json::Error) -> Result<Said, Trouble> {
+    let value: Value = match serde_json::from_slice(line) {
+        Ok(value) => value,
+        Err(_)
+            if line
+                .windows(3)
+                .any(|word| word.eq_ignore_ascii_case(b"nan")) =>
+        {
+            return Err(malformed(expected, line, "NaN is no number of a body"));
+        }
+        Err(error) => return Err(malformed(expected, line, format!("no JSON ({error})"))),
+    };
+    if let Some(why) = value.get("skipped") {
+        return Ok(Said::Skipped(
+            why.as_str().map_or_else(|| why.to_string(), str::to_owned),
+        ));
+    }
+    Err(malformed(
+        expected,
+        line,
+        format!("no answer ({error}); one is {{\"frame\":{expected},\"pairs\":[[i,j],…]}}"),
+    ))
+}

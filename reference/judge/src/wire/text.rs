@@ -1,0 +1,197 @@
+//! Cases as words between white space: every count stands before what it counts, every f32 is its bits in eight hexadecimal
+//! digits. The page in `examples/judge` has the grammar.
+
+use std::fmt::Write as _;
+
+use super::{Said, malformed};
+use crate::answer::{Answer, Trouble};
+use crate::case::{Case, Frame};
+use crate::claim::Claim;
+use sdop::bodies::Bodies;
+use sdop::volume::Shape;
+
+/// A whole case for one claim. Formatting into a String cannot fail.
+pub(super) fn encode(case: &Case, claim: Claim) -> String {
+    let mut text = format!("sdop 1 claim {claim} case {}\n", word(&case.name));
+    let _ = writeln!(text, "shapes {}", case.shapes.len());
+    for shape in &case.shapes {
+        write_shape(&mut text, shape);
+    }
+    let empty = Bodies::default();
+    let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
+    let _ = writeln!(text, "bodies {}", first.len());
+    for i in 0..first.len() {
+        let _ = writeln!(text, "{} {}", first.shape[i], u32::from(!first.dynamic[i]));
+    }
+    for (number, frame) in case.frames.iter().enumerate() {
+        write_frame(&mut text, claim, number, frame);
+    }
+    text
+}
+
+fn write_shape(text: &mut String, shape: &Shape) {
+    let (vertices, triangles, slabs) = (&shape.vertices, &shape.triangles, &shape.ordop);
+    let _ = writeln!(
+        text,
+        "shape {} {} {} {}",
+        word(&shape.name),
+        vertices.len(),
+        triangles.len(),
+        slabs.lo.len()
+    );
+    let mut line = |name: &str, numbers: &[f32]| {
+        text.push_str(name);
+        hex(text, numbers);
+    };
+    let [x, y, z] = shape.ball.centre.to_array();
+    line("ball", &[x, y, z, shape.ball.radius]);
+    line(
+        "basis",
+        slabs
+            .basis
+            .columns
+            .map(|column| column.to_array())
+            .as_flattened(),
+    );
+    line("lo", &slabs.lo);
+    line("hi", &slabs.hi);
+    for vertex in vertices {
+        line("v", &vertex.to_array());
+    }
+    for [a, b, c] in triangles {
+        let _ = writeln!(text, "t {a} {b} {c}");
+    }
+}
+
+/// Numbers after a word, to the end of the line.
+fn hex(text: &mut String, numbers: &[f32]) {
+    for x in numbers {
+        let _ = write!(text, " {:08x}", x.to_bits());
+    }
+    text.push('\n');
+}
+
+fn write_frame(text: &mut String, claim: Claim, number: usize, frame: &Frame) {
+    let bodies = &frame.bodies;
+    if let Some(was) = &frame.was {
+        let _ = writeln!(text, "change {}", bodies.len());
+        for (i, was) in was.iter().enumerate() {
+            let was = was.map_or(-1, i64::from);
+            let _ = writeln!(
+                text,
+                "{} {} {was}",
+                bodies.shape[i],
+                u32::from(!bodies.dynamic[i])
+            );
+        }
+    }
+    let _ = writeln!(text, "frame {number} {}", bodies.len());
+    for i in 0..bodies.len() {
+        text.push('p');
+        let pose = [&bodies.rotation[i][..], &bodies.translation[i]].concat();
+        match claim {
+            Claim::Aabb => hex(text, &[&pose[..], &frame.boxes[i]].concat()),
+            _ => hex(text, &pose),
+        }
+    }
+}
+
+/// A name as one word.
+fn word(name: &str) -> String {
+    let fill = |c: char| if c.is_whitespace() { '_' } else { c };
+    if name.is_empty() {
+        "_".to_owned()
+    } else {
+        name.chars().map(fill).collect()
+    }
+}
+
+/// `frame N COUNT I J …`, with `ns TIME` at the end if it likes, or `skip REASON`.
+pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
+    let wrong = |why: String| malformed(expected, line, why);
+    let text = str::from_utf8(line).map_err(|e| wrong(e.to_string()))?;
+    let mut words = text.split_whitespace();
+    match words.next() {
+        Some("skip") => return Ok(Said::Skipped(words.collect::<Vec<_>>().join(" "))),
+        Some("frame") => {}
+        _ => {
+            return Err(wrong(format!(
+                "no answer; one is `frame {expected} COUNT I J …`"
+            )));
+        }
+    }
+    let mut number = |what: &str| -> Result<u64, Trouble> {
+        let word = words
+            .next()
+            .ok_or_else(|| wrong(format!("ends before {what}")))?;
+        word.parse()
+            .map_err(|_| wrong(format!("`{word}` is no {what}")))
+    };
+    let found = number("frame number")?;
+    if found != expected as u64 {
+        return Err(Trouble::OutOfTurn { expected, found });
+    }
+    let count = number("count of pairs")?;
+    let mut pairs = Vec::new();
+    for _ in 0..count {
+        let mut body = || -> Result<u32, Trouble> {
+            let id = number("body")?;
+            u32::try_from(id).map_err(|_| wrong(format!("`{id}` is no body")))
+        };
+        pairs.push([body()?, body()?]);
+    }
+    let ns = match words.next() {
+        None => None,
+        Some("ns") => words.next().and_then(|word| word.parse().ok()),
+        Some(word) => return Err(wrong(format!("`{word}` follows the {count} pairs"))),
+    };
+    Ok(Said::Answer(Answer { pairs, ns }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_are_read_and_what_is_none_is_refused() {
+        let pairs = |line: &str| decode(3, line.as_bytes());
+        let answer = |pairs: &[[u32; 2]], ns| {
+            Ok(Said::Answer(Answer {
+                pairs: pairs.to_vec(),
+                ns,
+            }))
+        };
+        assert_eq!(pairs("frame 3 0"), answer(&[], None));
+        assert_eq!(
+            pairs("frame 3 2 0 1 4 5 ns 77\n"),
+            answer(&[[0, 1], [4, 5]], Some(77))
+        );
+        assert_eq!(
+            pairs("skip no such thing"),
+            Ok(Said::Skipped("no such thing".to_owned()))
+        );
+        assert_eq!(
+            pairs("frame 2 0"),
+            Err(Trouble::OutOfTurn {
+                expected: 3,
+                found: 2
+            })
+        );
+        for line in [
+            "",
+            "frame",
+            "frame 3",
+            "frame 3 1 0",
+            "frame 3 1 0 -1",
+            "frame 3 1 nan 1",
+            "frame 3 0 1 2",
+            "pairs 3 0",
+            "frame 3 1 0 99999999999",
+        ] {
+            assert!(
+                matches!(pairs(line), Err(Trouble::Malformed { frame: 3, .. })),
+                "{line}"
+            );
+        }
+    }
+}
