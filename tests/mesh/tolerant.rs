@@ -76,6 +76,24 @@ fn line_ends_and_blanks_do_not_matter() {
     }
 }
 
+/// As some Windows programs save text.
+#[test]
+fn marked_utf16_is_text() {
+    let off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for (format, text) in [
+        (MeshFormat::Obj, OBJ),
+        (MeshFormat::Stl, STL),
+        (MeshFormat::Off, off),
+    ] {
+        for order in [u16::to_be_bytes, u16::to_le_bytes] {
+            let units = format!("\u{feff}{text}").replace("NAME", "étoile ★");
+            let bytes: Vec<u8> = units.encode_utf16().flat_map(order).collect();
+            assert_triangles(format, &bytes, ONE);
+            assert_triangles(format, &bytes[..bytes.len() - 1], ONE);
+        }
+    }
+}
+
 #[test]
 fn numbers_are_those_of_c_and_fortran() {
     let text = OBJ.replace("v 1 0 0", "v +1.d0 .5 5.E-1");

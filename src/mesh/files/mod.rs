@@ -4,6 +4,7 @@ mod obj;
 mod off;
 mod parts;
 mod ply;
+mod ply_header;
 mod read;
 mod stl;
 mod text;

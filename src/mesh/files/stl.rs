@@ -27,8 +27,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     if size == Some(bytes.len() as u64) {
         return binary(&bytes[HEADER_BYTES..]);
     }
-    // Text has no byte 0, where the count of any file below 800 megabytes has one.
-    if bytes.get(83) != Some(&0) {
+    // Text has no byte 0 (but in UTF-16), where the count of any file below 800 megabytes has one.
+    if bytes.get(83) != Some(&0) || text::utf16(bytes).is_some() {
         let text = text::decode(bytes);
         let tokens = text::tokens(&text);
         if let Some(facets) = start_of_text(&tokens) {

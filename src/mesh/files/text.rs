@@ -2,7 +2,7 @@
 //!
 //! | what | how |
 //! |---|---|
-//! | bytes | UTF-8, lossily: bytes of another encoding stand in names and comments, which decide nothing; a mark at the start is dropped |
+//! | bytes | UTF-8, or UTF-16 after its byte-order mark, lossily: bytes of other encodings are in names and comments, which decide nothing |
 //! | lines | end with LF, CR LF or CR |
 //! | words | are separated by blanks and tabs; keywords in either case |
 //! | numbers | as C and Fortran print them: `1.`, `.5`, `+1e3`, `1.0D+05`, `inf`, `-nan(ind)`, `1.#QNAN` |
@@ -60,9 +60,22 @@ pub(super) fn excerpt(text: &str) -> String {
     format!("{short:?}{dots}")
 }
 
-/// The bytes as text without a byte-order mark. What is not UTF-8 becomes U+FFFD, of which no number and no keyword is made.
+/// The bytes as text without a byte-order mark. What is no text becomes U+FFFD, of which no number and no keyword is made.
 pub(super) fn decode(bytes: &[u8]) -> Cow<'_, str> {
-    String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))
+    match utf16(bytes) {
+        Some(units) => String::from_utf16_lossy(&units).into(),
+        None => String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)),
+    }
+}
+
+/// The units of UTF-16, if its byte-order mark begins the bytes.
+pub(super) fn utf16(bytes: &[u8]) -> Option<Vec<u16>> {
+    let (unit, text): (fn([u8; 2]) -> u16, _) = match bytes {
+        [0xfe, 0xff, text @ ..] => (u16::from_be_bytes, text),
+        [0xff, 0xfe, text @ ..] => (u16::from_le_bytes, text),
+        _ => return None,
+    };
+    Some(text.as_chunks().0.iter().map(|&pair| unit(pair)).collect())
 }
 
 /// The refusal of a file in which a text format's reader found nothing, if it has a byte that text never has.
@@ -133,7 +146,10 @@ pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<[f64; 3], Faul
 
 /// The number as an f64 that rounds to the f32 that is nearest to the text. Where an f64 lies in the middle of two f32, the
 /// text may lie on either side of it, and is read once more, by `nearest`.
-pub(super) fn between_f32<E>(number: f64, nearest: impl FnOnce() -> Result<f32, E>) -> Result<f64, E> {
+pub(super) fn between_f32<E>(
+    number: f64,
+    nearest: impl FnOnce() -> Result<f32, E>,
+) -> Result<f64, E> {
     let rounded = number as f32;
     let [below, above] = [rounded.next_down(), rounded.next_up()];
     let middle = |other: f32| f64::from(rounded) + f64::from(other) == 2.0 * number;
