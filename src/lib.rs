@@ -70,7 +70,7 @@
 //! |---|---|
 //! | none | boxes alone: [`BoxCuller`], [`BoxWorld`] |
 //! | `shapes` (default) | meshes, hulls and or-DOPs, and what culls them: all of the above |
-//! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
+//! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, OFF, `.tri` |
 //! | `serde` | settings, choices and counters as serde's data; snapshots of worlds that can be stored and sent |
 //!
 //! Every error has a `help` method: how to mend what it reports.

@@ -81,6 +81,12 @@ pub enum Problem {
         /// The offending coordinate.
         value: f32,
     },
+    /// A scale that leaves nothing of the mesh, or no numbers.
+    #[error("the scale {scale:?} has a factor that is zero or not finite")]
+    Scale {
+        /// The factors of x, y and z.
+        scale: [f64; 3],
+    },
     /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle} names vertex {index}, but the vertices are {first} to {last}")]
     IndexOutOfRange {
@@ -120,7 +126,7 @@ impl Problem {
             Self::TooLong { .. } => {
                 "is it the file you mean? If so, raise the limit: --max-file-size, or `ReadOptions::max_bytes`"
             }
-            Self::UnknownFormat { .. } => "use .tri, .obj, .stl or .ply",
+            Self::UnknownFormat { .. } => "use .tri, .obj, .stl, .ply or .off",
             Self::NoVertices => "give at least one vertex; the file may be empty or cut off",
             Self::NoTriangles => "give at least one triangle; a single point is the triangle 0 0 0",
             Self::TooMany { .. } => "split the mesh",
@@ -131,6 +137,9 @@ impl Problem {
                 return format!(
                     "scale the mesh down: coordinates up to {MAX_COORDINATE:e} (2^60) are allowed"
                 );
+            }
+            Self::Scale { .. } => {
+                "give one factor, or three as [x, y, z]; negative ones mirror"
             }
             Self::IndexOutOfRange { .. } => {
                 "check the vertex count and whether the file's indices start at 0 or at 1"

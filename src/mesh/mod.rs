@@ -11,12 +11,14 @@ mod error;
 mod far;
 #[cfg(feature = "readers")]
 mod files;
+mod scale;
 pub mod shapes;
 pub mod topology;
 
 pub use error::{MeshError, Problem};
 #[cfg(feature = "readers")]
 pub use files::{MeshFormat, ReadOptions, TriFormat, read, read_bytes, write, write_bytes};
+pub use scale::Scale;
 pub use shapes::ProceduralShape;
 
 use glam::DVec3;

@@ -11,6 +11,7 @@
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use super::flat_hull;
 use crate::mesh::in_f64;
 
 /// The convex hull of a shape's vertices.
@@ -50,6 +51,16 @@ impl Hull {
         self.vertices.iter().map(position).collect()
     }
 
+    /// Indices of the vertices that span the hull, ascending: of a flat hull, too, whose `vertices` are all there are.
+    #[must_use]
+    pub fn corners(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Vec<u32> {
+        if !self.facets.is_empty() {
+            return self.vertices.clone();
+        }
+        let points: Vec<_> = vertices.iter().map(|&v| coordinates(v.into())).collect();
+        flat_hull::corners(&points)
+    }
+
     /// The hull's volume, from the shape's vertices.
     #[must_use]
     pub fn volume(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> f64 {
@@ -71,9 +82,10 @@ impl Hull {
         let position = |i: u32| in_f64(&vertices[i as usize].into());
         let origin = self.vertices.first().map_or(DVec3::ZERO, |&i| position(i));
         let facets = self.facets.iter();
+        // From 0, since the sum of no floats is −0.
         facets
             .map(|f| measure(f.map(|i| position(i) - origin)))
-            .sum()
+            .fold(0.0, |sum, part| sum + part)
     }
 }
 

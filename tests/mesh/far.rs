@@ -6,11 +6,12 @@ use sdop::mesh::topology::Topology;
 use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes, write_bytes};
 use sdop::volume::{Hull, Shape, ShapeSpec};
 
-const FORMATS: [MeshFormat; 4] = [
+const FORMATS: [MeshFormat; 5] = [
     MeshFormat::Tri,
     MeshFormat::Obj,
     MeshFormat::Stl,
     MeshFormat::Ply,
+    MeshFormat::Off,
 ];
 
 fn read(format: MeshFormat, text: impl AsRef<[u8]>) -> TriangleMesh {
@@ -63,6 +64,7 @@ fn file(format: MeshFormat, real: &str, points: &[[String; 3]], triangles: &[[u3
             lines(""),
             faces("3 ", 0)
         ),
+        MeshFormat::Off => format!("OFF\n{n} {t} 0\n{}{}", lines(""), faces("3 ", 0)),
         MeshFormat::Stl => {
             let facet = |t: &[u32; 3]| {
                 let corners = t.map(|i| points[i as usize].join(" "));

@@ -4,9 +4,12 @@
 mod decimate;
 mod far;
 mod obj;
+mod off;
 mod prop;
+mod scale;
 mod shapes;
 mod stl_ply;
+mod tolerant;
 mod topology;
 mod tri;
 

@@ -4,11 +4,12 @@ use glam::Vec3;
 use proptest::prelude::*;
 use sdop::mesh::{MeshFormat, ReadOptions, TriFormat, TriangleMesh, read_bytes, write_bytes};
 
-const FORMATS: [MeshFormat; 4] = [
+const FORMATS: [MeshFormat; 5] = [
     MeshFormat::Tri,
     MeshFormat::Obj,
     MeshFormat::Stl,
     MeshFormat::Ply,
+    MeshFormat::Off,
 ];
 
 /// Any finite f32 up to 2⁶⁰: both zeros, subnormals, and every exponent as often as the others.
@@ -82,7 +83,7 @@ fn word() -> impl Strategy<Value = String> {
                  element vertex|element face|element x|property float x|property double y|property uchar z|\
                  property list uchar int vertex_indices|property list int uint vertex_index|\
                  property list float char q|end_header|comment|v|vn|vt|f|l|o|g|usemtl|mtllib|1//2|-1/-1/-1|\
-                 1//6148914691236517206|#|-|0x|solid|endsolid|facet normal 0 0 1|outer loop|vertex|endloop|endfacet|\u{feff}|\u{0}";
+                 1//6148914691236517206|#|-|0x|solid|endsolid|facet normal 0 0 1|outer loop|vertex|endloop|endfacet|end|OFF|4OFF|element tristrips|nan(ind)|1.#QNAN|1d5|\\|\u{feff}|\u{0}";
     let words: Vec<String> = words
         .split('|')
         .map(|word| word.trim_start().to_owned())
@@ -106,7 +107,7 @@ fn damaged_file() -> impl Strategy<Value = Vec<u8>> {
     let changes = prop::collection::vec(change, 0..4);
     (
         mesh(),
-        0..4_usize,
+        0..=FORMATS.len(),
         changes,
         any::<Option<prop::sample::Index>>(),
     )
@@ -147,7 +148,7 @@ proptest! {
     #[test]
     fn indexed_formats_keep_every_bit(mesh in mesh()) {
         let binary = (MeshFormat::Ply, binary_ply(&mesh));
-        let written = [MeshFormat::Tri, MeshFormat::Obj, MeshFormat::Ply];
+        let written = [MeshFormat::Tri, MeshFormat::Obj, MeshFormat::Ply, MeshFormat::Off];
         for (format, bytes) in written.map(|f| (f, write_bytes(&mesh, f))).into_iter().chain([binary]) {
             let back = read_bytes("mesh", format, &bytes, &ReadOptions::default()).unwrap();
             prop_assert_eq!(bits(&back), bits(&mesh), "{:?}", format);

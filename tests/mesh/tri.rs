@@ -197,7 +197,7 @@ fn bad_files_are_refused_with_their_line() {
         ),
         (
             b"1 1\n0 0 0\n\n\x80\n".to_vec(),
-            "data/a.tri:4: this is not text: byte 0x80 at offset 11",
+            "data/a.tri:4: triangle 0 of 1 should be 3 numbers on a line, found 1",
         ),
         (
             replace("0 1 3\n", "").into(),

@@ -6,7 +6,7 @@ use super::{build, changed, posed, refusal};
 fn unknown_keys_and_names_suggest_the_nearest() {
     assert_eq!(
         changed("radius", "raduis"),
-        "a.toml:8:1: unknown field `raduis`, expected one of `mesh`, `shape`, `sizes`, `count`, `poses`, `radius`, \
+        "a.toml:8:1: unknown field `raduis`, expected one of `mesh`, `shape`, `sizes`, `scale`, `count`, `poses`, `radius`, \
          `origin`, `static`, `speed`, `velocities`, `placement` | did you mean `radius`?"
     );
     assert_eq!(

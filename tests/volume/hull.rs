@@ -194,3 +194,25 @@ fn the_corner_of_a_box_is_not_flat() {
     let corner = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     assert_eq!(assert_hull(&corner).facets.len(), 4);
 }
+
+/// Of a flat set `vertices` are all, but few span it: the outline's corners, the ends of a line, or a point, each once.
+#[test]
+fn flat_sets_have_corners() {
+    let point = |x: f32, y: f32| Vec3::new(x, y, 2.0 * x + y);
+    let grid: Vec<Vec3> = (0..25)
+        .map(|i| point((i % 5) as f32, (i / 5) as f32))
+        .collect();
+    let corners = |points: &[Vec3]| Hull::of(points).corners(points);
+    assert_eq!(Hull::of(&grid).vertices.len(), 25);
+    assert_eq!(corners(&grid), [0, 4, 20, 24]);
+    let wall: Vec<Vec3> = grid.iter().map(|p| Vec3::new(0.0, p.x, p.y)).collect();
+    assert_eq!(corners(&wall), [0, 4, 20, 24]);
+    assert_eq!(
+        corners(&[grid[12], grid[0], grid[24], grid[6], grid[24]]),
+        [1, 2]
+    );
+    assert_eq!(corners(&[Vec3::ZERO, -Vec3::ZERO]).len(), 1);
+    assert_eq!(Hull::of(&grid).volume(&grid).to_bits(), 0);
+    let solid = box_corners(Vec3::ONE);
+    assert_eq!(corners(&solid), Hull::of(&solid).vertices);
+}

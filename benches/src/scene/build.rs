@@ -111,7 +111,7 @@ impl SceneFile {
         bodies: &mut Bodies,
         sizes: &mut Sizes,
     ) -> Result<(), SceneError> {
-        let mesh = library.mesh(self, group.form)?;
+        let mesh = library.mesh(self, group)?;
         let mut draws = group.draws(Purpose::Radius);
         let range = group.spec.radius.as_ref().map(|range| *range.get_ref());
         let uniform = group.is_uniform();

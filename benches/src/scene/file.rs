@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue, Deserializer};
 
 use super::error::{SceneError, Source};
 use crate::effects::EffectsSpec;
-use crate::number::{Interval, Positive, Real};
+use crate::number::{Factors, Interval, Positive, Real};
 use sdop::choice::choices;
 use sdop::files;
 use sdop::settings::CullSettings;
@@ -78,6 +78,8 @@ pub struct GroupSpec {
     /// The procedural shape's sizes, where they differ from its defaults.
     #[serde(default)]
     pub sizes: BTreeMap<Spanned<String>, Spanned<Real>>,
+    /// Factors of the mesh's coordinates, before anything else; negative ones mirror.
+    pub scale: Option<Spanned<Factors>>,
     /// How many bodies, placed by the seed.
     pub count: Option<Spanned<NonZeroU32>>,
     /// Explicit poses instead: q (x, y, z, w), which are f32, then t, which are f64.

@@ -8,9 +8,12 @@ use toml::Spanned;
 
 use super::error::{SceneError, Source};
 use super::file::SceneFile;
-use crate::number::Real;
+use super::group::Group;
+use crate::number::{Factors, Real};
 use sdop::choice::suggest;
-use sdop::mesh::{ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError};
+use sdop::mesh::{
+    MeshError, ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError,
+};
 use sdop::settings::CullSettings;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 
@@ -30,8 +33,9 @@ pub(super) enum Form<'a> {
 #[derive(Default)]
 pub(super) struct Library {
     meshes: Vec<TriangleMesh>,
-    files: HashMap<PathBuf, usize>,
-    procedural: Vec<(ProceduralShape, usize)>,
+    /// By path and scale.
+    files: HashMap<(PathBuf, Option<[u64; 3]>), usize>,
+    procedural: Vec<(ProceduralShape, Option<[u64; 3]>, usize)>,
     shapes: Vec<Shape>,
     /// By mesh, origin and radius (its bits).
     built: HashMap<(usize, Origin, Option<u32>), u32>,
@@ -39,39 +43,47 @@ pub(super) struct Library {
 }
 
 impl Library {
-    /// The number of a mesh, read or made when it is the first of its kind.
-    pub(super) fn mesh(&mut self, file: &SceneFile, form: Form<'_>) -> Result<usize, SceneError> {
+    /// The number of a group's mesh, read or made when it is the first of its kind and scale.
+    pub(super) fn mesh(
+        &mut self,
+        file: &SceneFile,
+        group: &Group<'_>,
+    ) -> Result<usize, SceneError> {
         let number = self.meshes.len();
-        match form {
+        let scale = group.spec.scale.as_ref();
+        let bits = scale.map(|scale| scale.get_ref().0.map(f64::to_bits));
+        let mesh = match group.form {
             Form::File(name) => {
-                let path = file.directory.join(name.get_ref());
-                if let Some(&known) = self.files.get(&path) {
+                let key = (file.directory.join(name.get_ref()), bits);
+                if let Some(&known) = self.files.get(&key) {
                     return Ok(known);
                 }
-                let options = ReadOptions {
-                    max_bytes: file.max_bytes,
-                    ..ReadOptions::default()
-                };
-                self.meshes.push(read(&path, &options).map_err(|error| {
-                    let hint = if path.exists() {
-                        Some(error.help())
-                    } else {
-                        nearest_file(&path)
-                    };
-                    file.source.error(name.span(), error.to_string(), hint)
-                })?);
-                self.files.insert(path, number);
+                let mesh = read_mesh(file, name, &key.0)?;
+                self.files.insert(key, number);
+                mesh
             }
             Form::Procedural(name, sizes) => {
                 let (shape, mesh) = procedural(&file.source, name, sizes)?;
-                if let Some((_, known)) = self.procedural.iter().find(|(known, _)| *known == shape)
-                {
+                let known =
+                    |known: &&(ProceduralShape, _, usize)| known.0 == shape && known.1 == bits;
+                if let Some((_, _, known)) = self.procedural.iter().find(known) {
                     return Ok(*known);
                 }
-                self.procedural.push((shape, number));
-                self.meshes.push(mesh);
+                self.procedural.push((shape, bits, number));
+                mesh
             }
-        }
+        };
+        self.meshes.push(match scale {
+            None => mesh,
+            Some(scale) => {
+                let Factors(factors) = *scale.get_ref();
+                let wrong = |error: MeshError| {
+                    file.source
+                        .error(scale.span(), error.to_string(), help(&error))
+                };
+                mesh.scaled(factors).map_err(wrong)?
+            }
+        });
         Ok(number)
     }
 
@@ -116,6 +128,25 @@ impl Library {
     pub(super) fn into_shapes(self) -> (Vec<Shape>, f64) {
         (self.shapes, self.seconds)
     }
+}
+
+fn read_mesh(
+    file: &SceneFile,
+    name: &Spanned<String>,
+    path: &Path,
+) -> Result<TriangleMesh, SceneError> {
+    let options = ReadOptions {
+        max_bytes: file.max_bytes,
+        ..ReadOptions::default()
+    };
+    read(path, &options).map_err(|error| {
+        let hint = if path.exists() {
+            help(&error)
+        } else {
+            nearest_file(path)
+        };
+        file.source.error(name.span(), error.to_string(), hint)
+    })
 }
 
 fn procedural(

@@ -33,6 +33,7 @@ pub mod case;
 pub mod catalogue;
 pub mod claim;
 pub mod contestant;
+pub mod json;
 pub mod ours;
 pub mod process;
 pub mod record;
