@@ -179,7 +179,7 @@ pub(super) fn bytes(mesh: &TriangleMesh) -> Vec<u8> {
             let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize]);
             Triangle {
                 normal: stl_io::Normal::new(normal([a, b, c])),
-                vertices: [a, b, c].map(|corner| stl_io::Vertex::new(corner)),
+                vertices: [a, b, c].map(stl_io::Vertex::new),
             }
         })
         .collect();
