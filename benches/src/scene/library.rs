@@ -79,7 +79,7 @@ impl Library {
                 let Factors(factors) = *scale.get_ref();
                 let wrong = |error: MeshError| {
                     file.source
-                        .error(scale.span(), error.to_string(), help(&error))
+                        .error(scale.span(), error.to_string(), Some(error.help()))
                 };
                 mesh.scaled(factors).map_err(wrong)?
             }
@@ -141,7 +141,7 @@ fn read_mesh(
     };
     read(path, &options).map_err(|error| {
         let hint = if path.exists() {
-            help(&error)
+            Some(error.help())
         } else {
             nearest_file(path)
         };
