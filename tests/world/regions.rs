@@ -67,8 +67,8 @@ fn afresh(bodies: &[(BodyId, Body)]) -> Vec<[BodyId; 2]> {
     pairs.into_iter().map(|pair| pair.map(old)).collect()
 }
 
-/// Teleports between regions, insertions, removals, static bodies that are moved; regions that merge and split, and times
-/// when all translations are f32.
+/// Teleports between regions, insertions, removals, static bodies that are moved; regions that merge and split, translations
+/// that are f32 among others, and times when all are.
 #[test]
 fn pairs_follow_from_present_bodies() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(1));
@@ -79,21 +79,27 @@ fn pairs_follow_from_present_bodies() {
         let place = |random: &mut Random| {
             let base = [(); 3].map(|()| f64::from(random.below(3)) * far);
             let mut body = near(random, base, 2.5);
-            if frame % 11 == 10 {
+            if frame % 11 == 10 || random.below(4) == 0 {
                 body.translation = body.translation.map(|x| f64::from(x as f32));
             }
             body
         };
-        for (id, _) in world.bodies().collect::<Vec<_>>() {
-            match random.below(8) {
-                0 => world.remove(id).unwrap(),
-                1..4 => world.set(id, place(&mut random)).unwrap(),
-                _ if frame % 11 == 10 => world.set(id, place(&mut random)).unwrap(),
-                _ => {}
+        // In two of three frames dynamic bodies move and all else stays, as far as the world is told.
+        let all_change = frame % 3 == 0 || frame % 11 == 10;
+        for (id, body) in world.bodies().collect::<Vec<_>>() {
+            let draw = random.below(8);
+            if all_change && draw == 0 {
+                world.remove(id).unwrap();
+            } else if frame % 11 == 10 || (draw < 4 && (all_change || body.dynamic)) {
+                let moved = place(&mut random);
+                let dynamic = moved.dynamic || !all_change;
+                world.set(id, Body { dynamic, ..moved }).unwrap();
             }
         }
-        for _ in 0..random.below(40) {
-            world.insert(place(&mut random)).unwrap();
+        if all_change {
+            for _ in 0..random.below(70) {
+                world.insert(place(&mut random)).unwrap();
+            }
         }
         let pairs = world.cull().unwrap().sorted();
         assert_no_pair_is_missed(&world, &pairs);
@@ -114,6 +120,7 @@ fn regions_add_few_pairs() {
         let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
         let mut whole = world();
         let mut alone = 0;
+        whole.insert(Body::default()).unwrap(); // one translation is f32
         for _ in 0..regions {
             let base = [(); 3].map(|()| {
                 let unit = f64::from(random.unit());
@@ -189,17 +196,25 @@ fn refusals_follow_from_present_bodies() {
                 0 => 1.1e18 * (f64::from(random.below(3)) - 1.0),
                 _ => f64::from(random.unit()) * 2.0e16,
             }),
+            margin: [0.0, 4.0e15][random.below(2) as usize],
             ..Body::default()
         };
-        for (id, _) in world.bodies().collect::<Vec<_>>() {
-            match random.below(4) {
-                0 => world.remove(id).unwrap(),
-                1 => world.set(id, body(&mut random)).unwrap(),
-                _ => {}
+        // In two of three frames dynamic bodies change and all else stays, as far as the world is told.
+        let all_change = frame % 3 == 0;
+        for (id, was) in world.bodies().collect::<Vec<_>>() {
+            let draw = random.below(4);
+            if all_change && draw == 0 {
+                world.remove(id).unwrap();
+            } else if draw < 2 && (all_change || was.dynamic) {
+                let next = body(&mut random);
+                let dynamic = next.dynamic || !all_change;
+                world.set(id, Body { dynamic, ..next }).unwrap();
             }
         }
-        for _ in 0..random.below(3) {
-            world.insert(body(&mut random)).unwrap();
+        if all_change {
+            for _ in 0..random.below(6) {
+                world.insert(body(&mut random)).unwrap();
+            }
         }
         let bodies: Vec<(BodyId, Body)> = world.bodies().collect();
         let mut fresh = world_of_far_meshes();
@@ -224,6 +239,41 @@ fn refusals_follow_from_present_bodies() {
         seen[usize::from(found.is_err())] += 1;
     }
     assert!(seen.iter().all(|&times| times > 30), "{seen:?}");
+}
+
+/// A margin that grows in a frame that is refused counts in the next one.
+#[test]
+fn refused_frames_lose_no_change() {
+    let mut world = world_of_far_meshes();
+    let turns = [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]];
+    let at = |turn: usize, x: f64, y: f64| Body::at(0, turns[turn], [x, y, 0.0]);
+    // Two next to the world's origin, 2·10¹⁵ from each other, and two that can go beyond the contract on either side.
+    let middle = [0.0, 1.2e16].map(|y| at(0, -1.0e18, y));
+    let [a, b] = middle.map(|body| world.insert(body).unwrap());
+    let others = [0, 1].map(|turn| world.insert(at(turn, 0.0, 5.0e17)).unwrap());
+    assert_eq!(world.cull().unwrap().sorted().len(), 0);
+    let margin = 8.0e15;
+    world
+        .set(
+            a,
+            Body {
+                margin,
+                ..middle[0]
+            },
+        )
+        .unwrap();
+    for (turn, x) in [1.1e18, -1.1e18].into_iter().enumerate() {
+        world
+            .set_pose(others[turn], turns[turn], [x, 5.0e17, 0.0])
+            .unwrap();
+    }
+    assert_eq!(world.cull().err(), Some(WorldError::Apart(others[0])));
+    for turn in 0..2 {
+        world
+            .set_pose(others[turn], turns[turn], [0.0, 5.0e17, 0.0])
+            .unwrap();
+    }
+    assert_eq!(world.cull().unwrap().sorted(), [[a, b]]);
 }
 
 /// A row of touching cubes through many cells and their borders, along each diagonal, beside a body far away.

@@ -163,6 +163,11 @@ const OWN: &[Experiment] = &[
         &[Step::Bench("motion.md", "motion")],
     ),
     kernels(
+        "kernels/far",
+        "pairs and time by distance from the origin: f32, f64 and many places",
+        &[Step::Bench("far.csv", "far")],
+    ),
+    kernels(
         "kernels/roofline",
         "each kernel beside the CPU's ceilings",
         &[Step::Bench("roofline.md", "roofline")],
