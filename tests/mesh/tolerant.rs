@@ -175,6 +175,43 @@ fn unused_properties_of_ply_may_be_anything() {
     }
 }
 
+/// A comment without the word, and columns that the header does not name.
+#[test]
+fn text_ply_may_have_more_than_its_header() {
+    let unmarked = PLY.replacen("comment NAME", "Created by NAME", 1);
+    assert_triangles(MeshFormat::Ply, unmarked, ONE);
+    let longer = PLY
+        .replace("1 0 0 2\n", "1 0 0 2 7 8\n")
+        .replace("3 0 1 2\n", "3 0 1 2 9 9\n");
+    assert_triangles(MeshFormat::Ply, longer, ONE);
+    let misspelt = PLY.replacen("property float quality", "propert float quality", 1);
+    let message = read(MeshFormat::Ply, misspelt).unwrap_err().to_string();
+    assert_eq!(
+        message,
+        "a:9: this does not fit a PLY header: \"propert float quality\""
+    );
+}
+
+/// The numbers begin after the line feed if the header's other lines end with one, whatever is before it.
+#[test]
+fn binary_ply_begins_after_the_last_line_end() {
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+                  property float z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+    // The first byte of the data looks like a line end, too.
+    let first = f32::from_le_bytes([b'\n', 0, 0, 0]);
+    let points = [[first, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let numbers = points.as_flattened().iter().flat_map(|x| x.to_le_bytes());
+    let data: Vec<u8> = numbers.chain([3, 0, 1, 2]).collect();
+    for text in [
+        header.to_owned(),
+        header.replace('\n', "\r\n"),
+        header.replace('\n', "\r"),
+        header.replace("end_header\n", "end_header\r\n"),
+    ] {
+        assert_triangles(MeshFormat::Ply, [text.as_bytes(), &data].concat(), ONE);
+    }
+}
+
 /// −1 ends a strip, and each strip starts with a triangle in the order of its vertices.
 #[test]
 fn strips_of_ply_are_unrolled() {

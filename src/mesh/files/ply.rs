@@ -2,7 +2,10 @@
 //!
 //! The header names elements and their properties; all are passed over but the vertices' x, y, z and the lists of indices.
 //! Values that are passed over are not read as numbers: a NaN, or a word, in a property that nobody uses is no error.
-//! Polygons become fans; faces of one or two vertices become degenerate triangles; strips are unrolled.
+//! Polygons become fans; faces of one or two vertices become degenerate triangles; strips are unrolled. In text, an element is
+//! a line; what follows its properties there is left out, but only in a file that does not fit without.
+
+use std::iter::Peekable;
 
 use super::parts::Parts;
 use super::ply_header::{Element, Encoding, Header, Scalar, Use, malformed};
@@ -15,21 +18,26 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
         return Err((None, Problem::NoVertices));
     }
     let header = Header::read(bytes)?;
-    let text;
-    let mut body = match header.encoding {
-        Encoding::Text => {
-            text = text::decode(&bytes[header.size..]);
-            let first = header.lines;
-            let later = move |(line, text): (usize, _)| (line + first, text);
-            Body::Text(Box::new(
-                text::lines(&text).map(later).flat_map(text::words),
-            ))
-        }
-        Encoding::Binary { big_endian } => Body::Binary {
-            rest: &bytes[header.size..],
+    let data = &bytes[header.size..];
+    let Encoding::Binary { big_endian } = header.encoding else {
+        let text = text::decode(data);
+        let body = |by_line| Body::Text {
+            tokens: tokens(&text, header.lines).peekable(),
+            by_line,
+        };
+        let exact = read_body(&header, body(false));
+        return exact.or_else(|fault| read_body(&header, body(true)).map_err(|_| fault));
+    };
+    read_body(
+        &header,
+        Body::Binary {
+            rest: data,
             big_endian,
         },
-    };
+    )
+}
+
+fn read_body(header: &Header, mut body: Body) -> Result<Parts, Fault> {
     let mut mesh = Mesh::default();
     for element in &header.elements {
         mesh.add(element, &mut body)?;
@@ -38,10 +46,23 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     mesh.into_parts()
 }
 
+/// The words of a text, whose first line follows so many others.
+fn tokens(text: &str, lines_before: usize) -> Box<dyn Iterator<Item = Token<'_>> + '_> {
+    let later = move |(line, text): (usize, _)| (line + lines_before, text);
+    Box::new(text::lines(text).map(later).flat_map(text::words))
+}
+
 /// What is left of the data.
 enum Body<'a> {
-    Text(Box<dyn Iterator<Item = Token<'a>> + 'a>),
-    Binary { rest: &'a [u8], big_endian: bool },
+    Text {
+        tokens: Peekable<Box<dyn Iterator<Item = Token<'a>> + 'a>>,
+        /// Whether what an element has on its last line beyond its properties is left out.
+        by_line: bool,
+    },
+    Binary {
+        rest: &'a [u8],
+        big_endian: bool,
+    },
 }
 
 /// A value of the data and its line, if it has one.
@@ -54,7 +75,7 @@ impl Body<'_> {
     /// The next value, which is not looked at unless it is used; `None` at the end of the file.
     fn next(&mut self, scalar: Scalar, used: bool) -> Option<Result<Value, Fault>> {
         match self {
-            Self::Text(tokens) => {
+            Self::Text { tokens, .. } => {
                 let token = tokens.next()?;
                 let line = Some(token.line);
                 if !used {
@@ -81,7 +102,7 @@ impl Body<'_> {
         }
     }
 
-    /// The next value; `line` becomes that of an element's first one.
+    /// The next value; `line` becomes its line.
     fn take(
         &mut self,
         scalar: Scalar,
@@ -93,13 +114,24 @@ impl Body<'_> {
             let message = format!("the file ends in {}", what());
             (*line, malformed(message))
         })??;
-        *line = line.or(value.line);
+        *line = value.line;
         Ok(value.number)
+    }
+
+    /// Ends an element, whose last value is on this line.
+    fn end_element(&mut self, line: Option<usize>) {
+        if let Self::Text {
+            tokens,
+            by_line: true,
+        } = self
+        {
+            while tokens.next_if(|token| Some(token.line) == line).is_some() {}
+        }
     }
 
     fn check_end(&mut self) -> Result<(), Fault> {
         let (line, count, what) = match self {
-            Self::Text(tokens) => {
+            Self::Text { tokens, .. } => {
                 let first = tokens.next();
                 let count = usize::from(first.is_some()) + tokens.count();
                 (first.map(|token| token.line), count, "numbers")
@@ -155,6 +187,7 @@ impl Mesh {
                 }
                 self.add_corners(property.used_as, &list, line, &what)?;
             }
+            body.end_element(line);
             if element.name == "vertex" {
                 check_vertex(index, position).map_err(|problem| (line, problem))?;
                 self.points.push(position);

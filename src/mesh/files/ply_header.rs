@@ -118,7 +118,6 @@ impl Header {
             let fits = match lower[..] {
                 ["ply"] => header.lines == 1,
                 _ if header.lines == 1 => false,
-                [] | ["comment" | "obj_info", ..] => true,
                 ["format", name, ..] => {
                     encoding = match name {
                         "ascii" => Some(Encoding::Text),
@@ -135,7 +134,9 @@ impl Header {
                     header.encoding = encoding.ok_or_else(no_format)?;
                     return header.checked();
                 }
-                _ => false,
+                ["format" | "element", ..] => false,
+                [] | ["comment" | "obj_info", ..] => true,
+                _ => header.elements.is_empty(), // a comment without the word
             };
             if !fits {
                 let message = format!("this does not fit a PLY header: {}", excerpt(line.trim()));
@@ -148,23 +149,20 @@ impl Header {
         ))
     }
 
-    /// The next line, up to LF, CR LF or CR. Numbers may follow the last one, so an LF after a CR belongs to the end only in
-    /// a file whose first line ends so.
+    /// The next line. Lines end with LF, before which a CR is white space, or all with CR: numbers may follow the last one.
     fn next_line<'a>(&mut self, bytes: &'a [u8]) -> Option<&'a [u8]> {
         let rest = &bytes[self.size..];
         if rest.is_empty() {
             return None;
         }
-        let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
-        let first_end = bytes.iter().position(is_end);
-        let windows = first_end.is_some_and(|end| bytes[end..].starts_with(b"\r\n"));
-        let length = rest.iter().position(is_end).unwrap_or(rest.len());
-        let end = if windows && rest[length..].starts_with(b"\r\n") {
-            2
-        } else {
-            1
+        let first_end = bytes.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+        let end = match first_end.map(|end| &bytes[end..]) {
+            Some([b'\r', after @ ..]) if after.first() != Some(&b'\n') => b'\r',
+            _ => b'\n',
         };
-        self.size += (length + end).min(rest.len());
+        let length = rest.iter().position(|&byte| byte == end);
+        let length = length.unwrap_or(rest.len());
+        self.size += (length + 1).min(rest.len());
         self.lines += 1;
         Some(&rest[..length])
     }
