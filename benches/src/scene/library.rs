@@ -11,9 +11,7 @@ use super::file::SceneFile;
 use super::group::Group;
 use crate::number::{Factors, Real};
 use sdop::choice::suggest;
-use sdop::mesh::{
-    MeshError, ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError,
-};
+use sdop::mesh::{MeshError, ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError};
 use sdop::settings::CullSettings;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 
