@@ -11,7 +11,10 @@ use thiserror::Error;
 use crate::simd::{MAX_WIDTH, MOST_QUADS};
 
 #[cfg(feature = "shapes")]
-pub(crate) use poses::{balls_are_within_limit, check_columns, check_numbers, check_shape, has_sound_size, is_within_limit};
+pub(crate) use poses::{
+    balls_are_within_limit, check_columns, check_numbers, check_shape, has_sound_size,
+    is_within_limit,
+};
 #[cfg(feature = "shapes")]
 pub use poses::{check_bodies, check_pose, check_poses, check_vectors};
 

@@ -138,9 +138,7 @@ impl Problem {
                     "scale the mesh down: coordinates up to {MAX_COORDINATE:e} (2^60) are allowed"
                 );
             }
-            Self::Scale { .. } => {
-                "give one factor, or three as [x, y, z]; negative ones mirror"
-            }
+            Self::Scale { .. } => "give one factor, or three as [x, y, z]; negative ones mirror",
             Self::IndexOutOfRange { .. } => {
                 "check the vertex count and whether the file's indices start at 0 or at 1"
             }

@@ -26,7 +26,7 @@ fn scales_keep_faces_outward() {
     ] {
         let scaled = mesh.scaled(scale).unwrap();
         assert_eq!(signed_volume(&scaled), factor * volume, "{scale:?}");
-        assert_eq!(scaled.vertices[1].x, scale[0] as f32 * mesh.vertices[1].x);
+        assert_eq!(scaled.vertices[1][0], scale[0] as f32 * mesh.vertices[1][0]);
         assert_eq!(scaled.name, mesh.name);
     }
     assert_eq!(mesh.scaled(-1.0).unwrap().scaled(-1.0).unwrap(), mesh);
@@ -36,9 +36,9 @@ fn scales_keep_faces_outward() {
 #[test]
 fn products_are_rounded_once() {
     let vertices = [[123.0_f32, 456.0, 7.0], [1.0, 0.0, 0.0], [0.0, 3.0, 0.0]];
-    let mesh = TriangleMesh::from_arrays("a", vertices, vec![[0, 1, 2]]).unwrap();
+    let mesh = TriangleMesh::new("a", vertices, vec![[0, 1, 2]]).unwrap();
     let metres = mesh.scaled(0.001).unwrap();
-    assert_eq!(metres.vertices[0].to_array(), [0.123, 0.456, 0.007]);
+    assert_eq!(metres.vertices[0], [0.123, 0.456, 0.007]);
 }
 
 #[test]

@@ -98,7 +98,7 @@ fn marked_utf16_is_text() {
 fn numbers_are_those_of_c_and_fortran() {
     let text = OBJ.replace("v 1 0 0", "v +1.d0 .5 5.E-1");
     let vertex = read(MeshFormat::Obj, text).unwrap().vertices[1];
-    assert_eq!(vertex.to_array(), [1.0, 0.5, 0.5]);
+    assert_eq!(vertex, [1.0, 0.5, 0.5]);
 }
 
 #[test]

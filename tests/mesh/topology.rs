@@ -160,7 +160,7 @@ fn triangles_without_area_are_counted() {
         [3.0, 3.0, 3.0000002],
     ];
     let triangles = vec![[0, 1, 1], [0, 1, 2], [0, 3, 2], [2, 2, 2], [0, 1, 4]];
-    let mesh = TriangleMesh::from_arrays("a", vertices, triangles).unwrap();
+    let mesh = TriangleMesh::new("a", vertices, triangles).unwrap();
     assert_eq!(without_area(&mesh), 4);
     assert_eq!(Topology::of(&mesh).total().degenerate, 2);
 }

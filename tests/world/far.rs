@@ -167,7 +167,7 @@ fn decimal_meshes_are_told_the_remedy() {
         error.to_string().contains("more than 2^-20 of its size"),
         "{error}"
     );
-    let help = miette::Diagnostic::help(&error).unwrap().to_string();
+    let help = error.help();
     for remedy in ["`World`", "near its origin", "`Origin::Ball`"] {
         assert!(help.contains(remedy), "{help}");
     }

@@ -168,16 +168,16 @@ impl Mesh {
             for property in &element.properties {
                 let used = property.used_as != Use::Nothing;
                 let Some(length) = property.length else {
-                    let number = body.take(property.scalar, used, &mut line, &what)?;
+                    let number = body.take(property.scalar, used, &mut line, what)?;
                     if let Use::Coordinate(axis) = property.used_as {
                         position[axis] = number;
                     }
                     continue;
                 };
-                let length = body.take(length, true, &mut line, &what)?;
+                let length = body.take(length, true, &mut line, what)?;
                 let mut list = Vec::new();
                 for _ in 0..length as u64 {
-                    let number = body.take(property.scalar, used, &mut line, &what)?;
+                    let number = body.take(property.scalar, used, &mut line, what)?;
                     if used {
                         list.push(whole(number).ok_or_else(|| {
                             let message = format!("{} has the index {number}", what());
@@ -185,7 +185,7 @@ impl Mesh {
                         })?);
                     }
                 }
-                self.add_corners(property.used_as, &list, line, &what)?;
+                self.add_corners(property.used_as, &list, line, what)?;
             }
             body.end_element(line);
             if element.name == "vertex" {
