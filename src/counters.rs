@@ -4,6 +4,7 @@
 
 use std::ops::AddAssign;
 
+#[cfg(feature = "shapes")]
 use crate::settings::TestedVolume;
 
 /// Work done on one volume. Sums over frames.
@@ -72,7 +73,10 @@ impl Counters {
             reported: self.reported - before.reported,
         }
     }
+}
 
+#[cfg(feature = "shapes")]
+impl Counters {
     /// Those of one volume.
     #[must_use]
     pub fn of(&self, volume: TestedVolume) -> &VolumeCounters {

@@ -14,7 +14,7 @@
 //! ```
 //! use sdop::{Bodies, Culler, ProceduralShape, Shape, ShapeSpec};
 //!
-//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?; // or `TriangleMesh::from_arrays`, or a file
+//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?; // or `TriangleMesh::from_f32`, or a file
 //! let shapes = [Shape::build(&mesh, &ShapeSpec::default())?]; // ball, hull and or-DOP, once
 //!
 //! let mut bodies = Bodies::default();
@@ -68,21 +68,33 @@
 //!
 //! | feature | brings |
 //! |---|---|
-//! | none | all of the above |
-//! | `serde` | snapshots of worlds that can be stored and sent |
-//! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
-//! | `serde` | settings, choices and counters as serde's data |
+//! | none | boxes alone: [`BoxCuller`], [`BoxWorld`] |
+//! | `shapes` (default) | meshes, hulls and or-DOPs, and what culls them: all of the above |
+//! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, OFF, `.tri` |
+//! | `serde` | settings, choices and counters as serde's data; snapshots of worlds that can be stored and sent |
+//!
+//! Every error has a `help` method: how to mend what it reports.
 //!
 //! The crate `sdop-judge` judges any culler against the exact reference. `sdop-bench` has scenes, measurements, studies and
 //! the program `sdop`.
+
+#![cfg_attr(
+    not(feature = "shapes"),
+    allow(
+        rustdoc::broken_intra_doc_links,
+        reason = "this page names what boxes alone lack"
+    )
+)]
 
 pub mod bodies;
 pub mod boxes;
 pub mod counters;
 pub mod culler;
+#[cfg(feature = "shapes")]
 pub mod mesh;
 pub mod pairs;
 pub mod settings;
+#[cfg(feature = "shapes")]
 pub mod volume;
 pub mod world;
 
@@ -103,23 +115,32 @@ pub mod rounding;
 pub mod simd;
 #[doc(hidden)]
 pub mod threads;
+#[cfg(feature = "shapes")]
 #[doc(hidden)]
 pub mod update;
 
 pub use bodies::contract::ContractError;
 pub use bodies::{Aabb, Bodies, Groups};
 pub use boxes::{BoxCuller, BoxWorld};
-pub use culler::{CullError, Culler, CullerBuilder};
+pub use culler::CullError;
+#[cfg(feature = "shapes")]
+pub use culler::{Culler, CullerBuilder};
+#[cfg(feature = "shapes")]
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
 pub use pairs::PairList;
+pub use settings::Finder;
+#[cfg(feature = "shapes")]
 pub use settings::{
-    Axes, Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, SettingsError,
-    Strategy, Updates, ViewCone,
+    Axes, Budget, CullSettings, DirectionSet, Interest, Order, Overlap, SettingsError, Strategy,
+    Updates, ViewCone,
 };
 pub use simd::{Tier, TierError};
 pub use threads::ThreadsError;
+#[cfg(feature = "shapes")]
 pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
-pub use world::{Body, BodyId, Event, Events, World, WorldError};
+#[cfg(feature = "shapes")]
+pub use world::{Body, World};
+pub use world::{BodyId, Event, Events, WorldError};
 
 /// The README's example compiles and runs.
 #[cfg(all(doctest, feature = "readers"))]

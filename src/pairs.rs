@@ -123,6 +123,7 @@ impl PairList {
         (self.first.capacity() + self.second.capacity()) * size_of::<u32>()
     }
 
+    #[cfg(feature = "shapes")]
     /// Replaces every index from pair `start` on by its entry in `names`.
     pub(crate) fn rename(&mut self, start: usize, names: &[u32]) {
         for column in [&mut self.first, &mut self.second] {

@@ -98,12 +98,20 @@ pub struct Executor<'a> {
 }
 
 /// Threads that can't be started: more than [`MOST_THREADS`], or refused by the system.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, miette::Diagnostic)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot start {threads} threads: {reason}")]
-#[diagnostic(help("ask for fewer threads"))]
 pub struct ThreadsError {
     threads: usize,
     reason: String,
+}
+
+impl ThreadsError {
+    /// How to mend it.
+    #[must_use]
+    #[allow(clippy::unused_self, reason = "as of the other errors")]
+    pub fn help(&self) -> &str {
+        "ask for fewer threads"
+    }
 }
 
 impl Threads {

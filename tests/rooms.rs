@@ -31,9 +31,11 @@ const JUDGE: &[&str] = &["contestant", "record", "ours", REST];
 const BENCH: &[&str] = &[
     "number",
     "percentiles",
+    "remedy",
     "random",
     "hash",
     "mpi",
+    "network",
     "sweep",
     "tightness",
     "effects",

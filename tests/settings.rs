@@ -49,26 +49,6 @@ fn defaults_are_the_papers_sequential_culling() {
 }
 
 #[test]
-fn interest_reads_as_a_list_or_a_cone() {
-    assert_eq!(
-        "0, 5,7".parse::<Interest>().unwrap(),
-        Interest::Bodies(vec![0, 5, 7])
-    );
-    let cone = "{ body = 3, direction = [0, 0, 1], half_angle = 30 }"
-        .parse::<Interest>()
-        .unwrap();
-    let Interest::Cone(cone) = cone else {
-        panic!("a cone")
-    };
-    assert_eq!(
-        (cone.body, cone.direction, cone.half_angle, cone.range),
-        (Some(3), [0.0, 0.0, 1.0], 30.0, None)
-    );
-    let error = "0,x".parse::<Interest>().unwrap_err();
-    assert!(error.to_string().starts_with("interest: "), "{error}");
-}
-
-#[test]
 fn settings_that_cannot_be_carried_out_are_refused() {
     let problem = |change: fn(&mut CullSettings)| {
         let mut settings = CullSettings::all_pairs();
@@ -88,10 +68,8 @@ fn settings_that_cannot_be_carried_out_are_refused() {
         "interest: body 10 of a scene of 10"
     );
     let cone = |text: &str| {
-        let settings = CullSettings {
-            interest: Some(text.parse().unwrap()),
-            ..CullSettings::all_pairs()
-        };
+        let text = format!("interest = {text}");
+        let settings: CullSettings = toml::from_str(&text).unwrap();
         settings.check(10).unwrap_err().to_string()
     };
     assert_eq!(

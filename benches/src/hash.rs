@@ -13,10 +13,10 @@ pub fn volumes_sha256(shapes: &[Shape]) -> String {
     let mut hash = Sha256::new();
     let mut write = |values: &[f32]| values.iter().for_each(|v| hash.update(v.to_le_bytes()));
     for shape in shapes {
-        write(&shape.ball.centre.to_array());
+        write(&shape.ball.centre);
         write(&[shape.ball.radius]);
         for column in shape.ordop.basis.columns {
-            write(&column.to_array());
+            write(&column);
         }
         write(&shape.ordop.lo);
         write(&shape.ordop.hi);

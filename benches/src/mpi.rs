@@ -93,10 +93,16 @@ pub use started::Ranks;
 #[cfg(feature = "mpi")]
 mod started {
     use std::sync::{Mutex, PoisonError};
+    use std::thread;
+    use std::time::Duration;
 
     use mpi::Threading;
     use mpi::environment::Universe;
     use mpi::topology::{Communicator as _, SimpleCommunicator};
+    use mpi::traits::CommunicatorCollectives as _;
+
+    /// How long a rank that waits sleeps between two looks.
+    const NAP: Duration = Duration::from_micros(500);
 
     /// MPI while it runs. It can't be started twice.
     static UNIVERSE: Mutex<Option<Universe>> = Mutex::new(None);
@@ -119,6 +125,10 @@ mod started {
                 let started = mpi::initialize_with_threading(Threading::Funneled);
                 *universe = started.map(|(universe, _)| universe);
             }
+            Self::of_world()
+        }
+
+        fn of_world() -> Self {
             let world = SimpleCommunicator::world();
             Self {
                 rank: world.rank().unsigned_abs() as usize,
@@ -131,11 +141,24 @@ mod started {
         pub fn world(self) -> SimpleCommunicator {
             SimpleCommunicator::world()
         }
+
+        /// Returns when all ranks have called it. MPI's own barrier would keep a core busy until then.
+        pub fn wait(self) {
+            let mut barrier = self.world().immediate_barrier();
+            while let Err(pending) = barrier.test() {
+                barrier = pending;
+                thread::sleep(NAP);
+            }
+        }
     }
 
     pub(super) fn finish() {
         let mut universe = UNIVERSE.lock().unwrap_or_else(PoisonError::into_inner);
-        drop(universe.take());
+        if let Some(universe) = universe.take() {
+            // Rank 0 may still be at work: the others sleep until it ends, too.
+            Ranks::of_world().wait();
+            drop(universe);
+        }
     }
 
     pub(super) fn abort(code: i32) {

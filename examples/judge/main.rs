@@ -21,8 +21,7 @@ pub struct Grid {
 impl Grid {
     /// The culler of a case's bodies; with `tight`, cells are as large as the largest ball.
     pub fn new(scene: &Scene<'_>, tight: bool) -> Self {
-        let ball =
-            |shape: &sdop::Shape| (shape.ball.centre.to_array(), f64::from(shape.ball.radius));
+        let ball = |shape: &sdop::Shape| (shape.ball.centre, f64::from(shape.ball.radius));
         Self {
             balls: scene.shapes.iter().map(ball).collect(),
             tight,

@@ -3,16 +3,7 @@
 use super::contract::{ContractError, refuse};
 use crate::simd::in_default_mode;
 
-/// A closed box on the world's axes: boxes that touch meet. Its ends are finite, and no lower one is above the upper one;
-/// sides of no length are fine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub struct Aabb {
-    /// The lower corner.
-    pub min: [f32; 3],
-    /// The upper corner.
-    pub max: [f32; 3],
-}
+pub use crate::simd::Aabb;
 
 impl Aabb {
     /// The box between two corners.

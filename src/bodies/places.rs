@@ -88,6 +88,7 @@ impl Places {
         stays
     }
 
+    #[cfg(feature = "shapes")]
     /// Copies each body's shape from the user's columns.
     pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
         self.shape.resize(self.body.len(), 0);
@@ -96,6 +97,7 @@ impl Places {
         }
     }
 
+    #[cfg(feature = "shapes")]
     /// Puts the bodies in another order: `order` names the body that takes each place, by its present place or by itself,
     /// and is left with the former order.
     pub(crate) fn reorder(&mut self, bodies: &Bodies, order: &mut Vec<u32>, by_place: bool) {

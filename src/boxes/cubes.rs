@@ -2,7 +2,7 @@
 
 use crate::bodies::Aabb;
 use crate::rounding::cube::Cube;
-use crate::simd::{Kernel, Lanes, MAX_WIDTH, prefetch_ends};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, numbers_of, prefetch_ends};
 
 /// How many names ahead boxes are prefetched: neighbours in space lie anywhere in the user's list, and a core can wait for dozens
 /// of cache misses at once.
@@ -25,7 +25,7 @@ impl Kernel for Make<'_> {
             gap: l.splat(0.0),
             sound: u32::MAX,
         };
-        let numbers: &[[f32; 6]] = bytemuck::cast_slice(self.boxes);
+        let numbers = numbers_of(self.boxes);
         let mut ahead = self.ahead.chunks(MAX_WIDTH);
         let cubes = self.cubes.chunks_mut(MAX_WIDTH);
         for (cubes, names) in cubes.zip(self.names.chunks(MAX_WIDTH)) {

@@ -213,6 +213,13 @@ impl BoxCuller {
         &self.counters
     }
 
+    /// Candidates that the last frame tested to make a list of neighbours, in addition to the tests that
+    /// [`Self::counters`] count. See [`Culler::list_tests`](crate::Culler::list_tests).
+    #[must_use]
+    pub fn list_tests(&self) -> u64 {
+        self.frames.list_tests()
+    }
+
     /// Bytes that lists of pairs hold: the reported ones, and those on the way to them.
     #[must_use]
     pub fn pair_bytes(&self) -> usize {

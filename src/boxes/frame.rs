@@ -12,7 +12,7 @@ use crate::overlap::boxes::Cubes;
 use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
 use crate::simd::{Tier, dispatch, in_default_mode};
-use crate::strategy::{BoxInputs, BoxTest, Output, Scratch, list_boxes};
+use crate::strategy::{BoxInputs, BoxTest, Output, Tasks, list_boxes};
 use crate::threads::{FrameThreads, Work};
 
 /// Boxes whose cubes one thread makes at once.
@@ -45,7 +45,7 @@ pub(super) struct Frames {
     fixed_gap: f32,
     news: News,
     ends: EndSlots,
-    scratch: Scratch,
+    tasks: Tasks,
     /// Of the frame before.
     candidates: u64,
 }
@@ -73,7 +73,7 @@ impl Frames {
             fixed_gap: 0.0,
             news: News::All,
             ends: EndSlots::default(),
-            scratch: Scratch::default(),
+            tasks: Tasks::default(),
             candidates: 0,
         }
     }
@@ -100,7 +100,7 @@ impl Frames {
     /// Forgets all boxes, and gives back their memory. The next [`Self::replace`] begins anew.
     pub fn forget(&mut self) {
         (self.places, self.order) = Default::default();
-        (self.ends, self.scratch) = Default::default();
+        (self.ends, self.tasks) = Default::default();
         self.cubes = Balls::new(0);
         self.start_anew();
     }
@@ -165,7 +165,7 @@ impl Frames {
             test,
             groups,
         };
-        let mut counted = list_boxes(inputs, &mut self.scratch, output);
+        let mut counted = list_boxes(inputs, &mut self.tasks, output);
         counted.updates = self.places.moving as u64;
         self.candidates = counted.tests;
         self.finder.observe(counted.tests);
@@ -231,14 +231,19 @@ impl Frames {
         FEW * small <= all
     }
 
+    /// Candidates that the last frame tested to make a list of neighbours.
+    pub fn list_tests(&self) -> u64 {
+        self.finder.list_tests()
+    }
+
     /// Gives back the memory of lists of pairs.
     pub fn shrink_to_fit(&mut self) {
-        self.scratch.shrink_to_fit();
+        self.tasks.shrink_to_fit();
     }
 
     /// Bytes that lists of pairs hold.
     pub fn pair_bytes(&self) -> usize {
-        self.scratch.pair_bytes()
+        self.tasks.pair_bytes()
     }
 }
 

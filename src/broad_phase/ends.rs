@@ -9,7 +9,7 @@ use super::{Block, SlotTest, bytes, list_slots};
 use crate::bodies::Aabb;
 use crate::rounding::cube::SCALE;
 use crate::rounding::skin::Skin;
-use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch, quads_in_columns};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch, numbers_of, quads_in_columns};
 use crate::threads::{Executor, Threads};
 
 /// Boxes that one thread brings into slot order, or looks at, at a time.
@@ -80,7 +80,7 @@ impl EndSlots {
             quads.resize(order.len() + MAX_WIDTH, [0.0; 4]);
             &mut quads[..order.len()]
         });
-        let boxes = bytemuck::cast_slice(boxes);
+        let boxes = numbers_of(boxes);
         let Executor { tier, pool } = executor;
         pool.pieces_of_two([lower, upper], PIECE, |start, [lower, upper]| {
             let fill = Fill {
@@ -243,7 +243,7 @@ impl Kernel for Within<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> bool {
-        let numbers: &[[f32; 6]] = bytemuck::cast_slice(self.boxes);
+        let numbers = numbers_of(self.boxes);
         for start in (0..self.names.len()).step_by(L::WIDTH) {
             let left = &self.names[start..];
             let mut padded = [left[0]; MAX_WIDTH];

@@ -146,6 +146,16 @@ impl PairFinder {
         }
     }
 
+    /// Candidates that the last frame tested in search of a list of neighbours, which it doesn't hand out. A
+    /// search that was abandoned counts as its limit.
+    #[must_use]
+    pub fn list_tests(&self) -> u64 {
+        match self {
+            Self::AllPairs(_) | Self::Grid(_) | Self::Sweep(_) => 0,
+            Self::Neighbours(finder) => finder.list_tests(),
+        }
+    }
+
     /// Looks for a better order of places and writes it to `order`, as the names that take the places one after the other.
     /// Moving bodies stay in front. `balls` and `names` are those of the last frame.
     pub fn reorder(

@@ -24,8 +24,8 @@ pub(super) fn fixed(bodies: &Bodies) -> Bodies {
 }
 
 /// How to mend a shape that is far from its origin.
-pub(crate) const FAR: &str = "keep its bodies in a `World`, whose translations are f64, or build it with `Origin::Ball` and \
-                              pose it by the centre of its ball, `Shape::offset`";
+pub(crate) const FAR: &str = "keep its bodies in a `World`, whose translations are f64; or move the mesh's vertices near its \
+                              origin; or build it with `Origin::Ball` and pose it by the centre of its ball, `Shape::offset`";
 
 /// Refuses shapes that f32 poses can't place: those far from the origin that the poses refer to.
 pub(super) fn near(shapes: &[Shape]) -> Result<(), CullError> {
@@ -34,7 +34,8 @@ pub(super) fn near(shapes: &[Shape]) -> Result<(), CullError> {
         Some(shape) => Err(CullError::Shape {
             shape: shape.name.clone(),
             problem: format!(
-                "lies far from the origin of its file, about {:?}: too far for poses in f32",
+                "lies far from the origin of its file, about {:?}: in f32 its vertices would move by more than 2^-20 of its size, \
+                 and a culler's poses are f32",
                 shape.offset
             ),
             hint: FAR,

@@ -5,42 +5,55 @@
 //! A [`Culler`] is built once for a scene (the paper's Co) and then culls frame after frame. All buffers stay, so in steady
 //! state nothing is allocated.
 
+#[cfg(feature = "shapes")]
 mod builder;
+#[cfg(feature = "shapes")]
 mod check;
 mod error;
+#[cfg(feature = "shapes")]
 pub(crate) mod models;
+#[cfg(feature = "shapes")]
 mod needs;
+#[cfg(feature = "shapes")]
 mod portions;
+#[cfg(feature = "shapes")]
 mod replace;
+#[cfg(feature = "shapes")]
 mod shapes;
 
+#[cfg(feature = "shapes")]
 pub use builder::CullerBuilder;
+#[cfg(feature = "shapes")]
 pub(crate) use check::FAR;
 pub use error::CullError;
 
-use std::ops::Range;
-use std::time::Instant;
+#[cfg(feature = "shapes")]
+use std::{ops::Range, time::Instant};
 
-use self::models::Models;
-use self::needs::Needs;
-use crate::bodies::contract::{check_bodies, check_column, check_poses};
-use crate::bodies::{Bodies, Groups, Places};
-use crate::broad_phase::{Balls, PairFinder};
-use crate::counters::{Counters, Seconds};
-use crate::overlap::intervals::IntervalSlots;
-use crate::pairs::PairList;
-use crate::settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates};
-use crate::simd::{Tier, in_default_mode};
-#[cfg(feature = "serde")]
+#[cfg(feature = "shapes")]
+use self::{models::Models, needs::Needs};
+#[cfg(all(feature = "shapes", feature = "serde"))]
 use crate::strategy::Answers;
-use crate::strategy::{self, Inputs, Output, Scratch, SlotNames, Totals};
-use crate::threads::FrameThreads;
-use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
-use crate::volume::Shape;
+#[cfg(feature = "shapes")]
+use crate::{
+    bodies::contract::{check_bodies, check_column, check_poses},
+    bodies::{Bodies, Groups, Places},
+    broad_phase::{Balls, PairFinder},
+    counters::{Counters, Seconds},
+    overlap::intervals::IntervalSlots,
+    pairs::PairList,
+    settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates},
+    simd::{Tier, in_default_mode},
+    strategy::{self, Inputs, Output, Scratch, SlotNames, Totals},
+    threads::FrameThreads,
+    update::{Intervals, OrDopRows, Posed, update_spheres},
+    volume::Shape,
+};
 
 /// Culls the frames of one scene: a fixed set of bodies whose poses change.
 ///
 /// A clone culls on as the original would, on threads that it starts for itself.
+#[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 pub struct Culler {
     settings: CullSettings,
@@ -72,6 +85,7 @@ pub struct Culler {
     seconds: Seconds,
 }
 
+#[cfg(feature = "shapes")]
 impl Culler {
     /// The culler of these bodies with every default: sequential S-DOP with the two-sided test, the finder that `auto`
     /// picks, the fastest tier of this CPU, the caller's thread.
@@ -203,6 +217,14 @@ impl Culler {
     #[must_use]
     pub fn finder_bytes(&self) -> usize {
         self.finder.bytes()
+    }
+
+    /// Candidates that the last frame tested to make a list of neighbours, in addition to the tests that
+    /// [`Self::counters`] count. At most three times the candidates that the grid would test, and 48 per
+    /// body; a search that reaches this limit is abandoned and counts as the limit.
+    #[must_use]
+    pub fn list_tests(&self) -> u64 {
+        self.finder.list_tests()
     }
 
     /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the

@@ -13,7 +13,7 @@ use std::collections::{BTreeSet, BinaryHeap};
 
 use glam::{DMat3, DVec3};
 
-use super::TriangleMesh;
+use super::{TriangleMesh, in_f64};
 
 /// Collapses edges until at most `target` triangles are left, or until no edge can go without changing the surface's
 /// topology or turning a triangle over. Closed components stay closed. Unused vertices and triangles with a repeated index
@@ -150,14 +150,10 @@ struct Surface {
 impl Surface {
     fn new(mesh: &TriangleMesh) -> Self {
         let count = mesh.vertices.len();
-        let origin = mesh.vertices.first().map_or(DVec3::ZERO, |v| v.as_dvec3());
+        let origin = mesh.vertices.first().map_or(DVec3::ZERO, in_f64);
         let mut surface = Self {
             origin,
-            positions: mesh
-                .vertices
-                .iter()
-                .map(|v| v.as_dvec3() - origin)
-                .collect(),
+            positions: mesh.vertices.iter().map(|v| in_f64(v) - origin).collect(),
             quadrics: vec![Quadric::zero(); count],
             versions: vec![0; count],
             around: vec![Vec::new(); count],
@@ -359,7 +355,7 @@ impl Surface {
         for (vertex, position) in self.positions.iter().enumerate() {
             if !self.around[vertex].is_empty() {
                 new_index[vertex] = Some(vertices.len() as u32);
-                vertices.push((self.origin + position).as_vec3());
+                vertices.push((self.origin + position).as_vec3().to_array());
             }
         }
         let renumber = |triangle: [u32; 3]| {

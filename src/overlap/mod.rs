@@ -7,6 +7,9 @@
 //! A test counts when a candidate pair is handed to it; padding lanes never count.
 
 pub mod boxes;
+#[cfg(feature = "shapes")]
 pub mod intervals;
+#[cfg(feature = "shapes")]
 pub mod ordop;
+#[cfg(feature = "shapes")]
 pub mod sphere;

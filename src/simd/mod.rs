@@ -14,6 +14,7 @@
     reason = "the intrinsics of std::arch and the floating-point mode are unsafe; this room alone holds them"
 )]
 
+mod aabb;
 mod columns;
 mod fp_mode;
 mod lanes;
@@ -29,6 +30,7 @@ mod neon;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 
+pub use aabb::{Aabb, numbers_of};
 pub use columns::{quads_in_columns, turn_rows};
 pub use fp_mode::{FpMode, in_default_mode};
 pub use lanes::Lanes;

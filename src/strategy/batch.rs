@@ -7,7 +7,7 @@ use super::interest::InterestFilter;
 use super::listing::{Listed, list};
 use super::output::Output;
 use super::refine::Refiner;
-use super::tasks::Task;
+use super::tasks::Tasks;
 use super::{Inputs, Scratch, Totals};
 use crate::pairs::PairList;
 use crate::update::OrDopRows;
@@ -68,7 +68,7 @@ struct Batch<'a> {
 
 impl Batch<'_> {
     /// Appends what is reported of `candidates` to `out`, in their order; on all threads if their `tasks` are at hand.
-    fn refine(&mut self, candidates: &PairList, tasks: Option<&mut Vec<Task>>, out: &mut PairList) {
+    fn refine(&mut self, candidates: &PairList, tasks: Option<&mut Tasks>, out: &mut PairList) {
         let Some(interest) = self.interest else {
             return self.refiner.refine(candidates, tasks, out);
         };

@@ -23,6 +23,7 @@ pub(crate) enum Output<'a> {
 /// Takes a portion.
 pub(crate) type Sink<'a> = dyn FnMut(&mut PairList) + Send + 'a;
 
+#[cfg(feature = "shapes")]
 impl Output<'_> {
     pub(super) fn is_in_portions(&self) -> bool {
         matches!(self, Self::Portions(_))

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::time::Instant;
 
 use super::output::{Outlet, Output};
-use super::tasks::{Task, split_work};
+use super::tasks::{Task, Tasks, split_work};
 use super::{Inputs, Totals};
 use crate::counters::VolumeCounters;
 use crate::overlap::ordop::OrDopColumns;
@@ -129,7 +129,7 @@ impl<'a> Refiner<'a> {
     }
 
     /// Tests all pairs of a list and appends the survivors to `out`; on all threads if their `tasks` are at hand.
-    pub fn refine(&mut self, list: &PairList, tasks: Option<&mut Vec<Task>>, out: &mut PairList) {
+    pub fn refine(&mut self, list: &PairList, tasks: Option<&mut Tasks>, out: &mut PairList) {
         let Some(tasks) = tasks else {
             return self.refine_range(list, 0..list.len(), out);
         };

@@ -11,9 +11,13 @@ use super::listing::{Listed, Listing};
 use super::output::{Outlet, Output};
 use super::refine::Refine;
 use super::tasks::{Task, split_work};
-use super::{BLOCK, Inputs, Scratch, Totals};
+use super::{Inputs, Scratch, Totals};
 use crate::pairs::PairList;
 use crate::update::OrDopRows;
+
+/// Pairs that flow through the or-DOP test at once where no list is kept: few enough for the first-level cache, enough to
+/// make the clock's cost vanish.
+const BLOCK: usize = 256;
 
 /// Candidates that pass the first test, then or-DOPs block by block; with `interest`, only for pairs that have a body of
 /// interest.

@@ -93,11 +93,11 @@ impl ShapeFrame {
         let frame = Self {
             shape: 0,
             margin: shape.rounding,
-            centre: shape.ball.centre.to_array(),
+            centre: shape.ball.centre,
             radius: 0.0,
             inflated: None,
             reach: shape.reach,
-            basis: basis.columns.map(|column| column.to_array()),
+            basis: basis.columns,
         };
         frame.with_radius(shape.ball.radius)
     }
@@ -217,7 +217,7 @@ mod tests {
                 radius: 0.0,
                 inflated: None,
                 reach: 0.0,
-                basis: basis.columns.map(|column| column.to_array()),
+                basis: basis.columns,
             };
             let record = frame.record();
             assert_eq!(record[..9], *frame.basis.as_flattened());

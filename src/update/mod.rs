@@ -115,7 +115,7 @@ mod tests {
         let mut mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
         mesh.vertices
             .iter_mut()
-            .for_each(|v| *v += Vec3::from(centre));
+            .for_each(|v| *v = (Vec3::from(*v) + Vec3::from(centre)).to_array());
         let spec = ShapeSpec {
             origin: Origin::File,
             ..ShapeSpec::default()
@@ -135,7 +135,7 @@ mod tests {
             let frame = ShapeFrame::new(&shape, &shape.ordop.basis);
             let [radius, reach] = [shape.ball.radius, shape.reach];
             assert_eq!((frame.radius(), frame.reach()), (radius, reach));
-            assert_eq!(frame.centre(), shape.ball.centre.to_array());
+            assert_eq!(frame.centre(), shape.ball.centre);
             for margin in [1e-6, 0.3, 7000.0] {
                 let grown = frame.grown(margin);
                 let sum = |size: f32| f64::from(size) + f64::from(margin);

@@ -325,7 +325,9 @@ mod tests {
             .into_iter()
             .filter_map(|offset| {
                 let mut mesh = form.build().ok()?;
-                mesh.vertices.iter_mut().for_each(|v| *v += offset);
+                for vertex in &mut mesh.vertices {
+                    *vertex = (Vec3::from(*vertex) + offset).to_array();
+                }
                 let spec = ShapeSpec {
                     origin: Origin::File,
                     axes: Axes::Principal,
@@ -364,8 +366,8 @@ mod tests {
         };
         let expected = |body: usize| {
             let (shape, turn) = (body % 2, rotation(bodies.rotation[body]));
-            let basis = shapes[shape].ordop.basis.columns.map(|c| c.to_array());
-            let offset = rotate(&turn, shapes[shape].ball.centre.to_array());
+            let basis = shapes[shape].ordop.basis.columns;
+            let offset = rotate(&turn, shapes[shape].ball.centre);
             let mut row = [0.0; ROW];
             row[Q..Q + 9].copy_from_slice(world_axes(&turn, basis).as_flattened());
             row[T..T + 3].copy_from_slice(&bodies.translation[body]);

@@ -8,8 +8,11 @@
 //! that its facets change from run to run, and gives up on rotated grids.)
 //! The distances that choose the next vertex are approximate; they steer the speed only.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
+
+use super::flat_hull;
+use crate::mesh::in_f64;
 
 /// The convex hull of a shape's vertices.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,8 +26,8 @@ pub struct Hull {
 impl Hull {
     /// The hull of finite vertices.
     #[must_use]
-    pub fn of(vertices: &[Vec3]) -> Self {
-        let points: Vec<_> = vertices.iter().map(|&v| coordinates(v)).collect();
+    pub fn of(vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
+        let points: Vec<_> = vertices.iter().map(|&v| coordinates(v.into())).collect();
         let Some(simplex) = initial_simplex(&points) else {
             return Self {
                 vertices: (0..vertices.len() as u32).collect(),
@@ -43,42 +46,54 @@ impl Hull {
 
     /// The positions of the hull's vertices: all that world-aligned volumes are re-fitted from.
     #[must_use]
-    pub fn points(&self, vertices: &[Vec3]) -> Vec<Vec3> {
-        let position = |&i: &u32| vertices[i as usize];
+    pub fn points(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Vec<[f32; 3]> {
+        let position = |&i: &u32| vertices[i as usize].into();
         self.vertices.iter().map(position).collect()
+    }
+
+    /// Indices of the vertices that span the hull, ascending: of a flat hull, too, whose `vertices` are all there are.
+    #[must_use]
+    pub fn corners(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Vec<u32> {
+        if !self.facets.is_empty() {
+            return self.vertices.clone();
+        }
+        let points: Vec<_> = vertices.iter().map(|&v| coordinates(v.into())).collect();
+        flat_hull::corners(&points)
     }
 
     /// The hull's volume, from the shape's vertices.
     #[must_use]
-    pub fn volume(&self, vertices: &[Vec3]) -> f64 {
+    pub fn volume(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> f64 {
         self.fold_facets(vertices, |[p, q, r]| p.dot(q.cross(r)) / 6.0)
     }
 
     /// The hull's surface area, from the shape's vertices.
     #[must_use]
-    pub fn area(&self, vertices: &[Vec3]) -> f64 {
+    pub fn area(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> f64 {
         self.fold_facets(vertices, |[p, q, r]| (q - p).cross(r - p).length() / 2.0)
     }
 
     /// Σ over facets of a measure of its corners relative to one hull vertex.
-    fn fold_facets(&self, vertices: &[Vec3], measure: impl Fn([DVec3; 3]) -> f64) -> f64 {
-        let position = |i: u32| vertices[i as usize].as_dvec3();
+    fn fold_facets(
+        &self,
+        vertices: &[impl Into<[f32; 3]> + Copy],
+        measure: impl Fn([DVec3; 3]) -> f64,
+    ) -> f64 {
+        let position = |i: u32| in_f64(&vertices[i as usize].into());
         let origin = self.vertices.first().map_or(DVec3::ZERO, |&i| position(i));
         let facets = self.facets.iter();
+        // From 0, since the sum of no floats is −0.
         facets
             .map(|f| measure(f.map(|i| position(i) - origin)))
-            .sum()
+            .fold(0.0, |sum, part| sum + part)
     }
 }
 
 type Point = Coord3D<f64>;
 
-fn coordinates(v: Vec3) -> Point {
-    Point {
-        x: v.x.into(),
-        y: v.y.into(),
-        z: v.z.into(),
-    }
+fn coordinates(vertex: [f32; 3]) -> Point {
+    let [x, y, z] = vertex.map(f64::from);
+    Point { x, y, z }
 }
 
 /// How far `p` is outside the plane of (a, b, c), counter-clockwise from outside: exact sign, approximate size.

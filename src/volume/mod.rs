@@ -5,6 +5,7 @@
 mod ball;
 mod basis;
 mod directions;
+mod flat_hull;
 mod hull;
 mod jacobi;
 mod ordop;

@@ -4,10 +4,11 @@
 //! C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. Taken over the hull's surface, not the mesh's vertices, neither
 //! interior detail nor sampling density turns the axes.
 
-use glam::{DMat3, DQuat, DVec3, Vec3};
+use glam::{DMat3, DQuat, DVec3};
 
 use super::jacobi::eigen;
 use super::{Axes, Basis, Hull};
+use crate::mesh::in_f64;
 
 /// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are whatever rounding
 /// makes of them. Far above f32 rounding (2⁻²⁴), so a symmetric mesh is seen as such after any rotation.
@@ -16,7 +17,7 @@ const TIE: f64 = 1.0 / 8192.0;
 impl Axes {
     /// The basis for these vertices; only principal axes need their hull.
     #[must_use]
-    pub fn basis(self, vertices: &[Vec3]) -> Basis {
+    pub fn basis(self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Basis {
         match self {
             Self::Principal => Basis::principal(&Hull::of(vertices), vertices),
             Self::Model => Basis::MODEL,
@@ -27,7 +28,7 @@ impl Axes {
 impl Basis {
     /// The principal axes, longest first, snapped; the model axes when they are tied or the hull is flat.
     #[must_use]
-    pub fn principal(hull: &Hull, vertices: &[Vec3]) -> Self {
+    pub fn principal(hull: &Hull, vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         surface_covariance(hull, vertices)
             .and_then(principal_rotation)
             .map_or(Self::MODEL, |rotation| {
@@ -37,9 +38,9 @@ impl Basis {
 }
 
 /// The covariance of the hull's surface, relative to its size; `None` without facets.
-fn surface_covariance(hull: &Hull, vertices: &[Vec3]) -> Option<DMat3> {
-    let origin = vertices[*hull.facets.first()?.first()? as usize].as_dvec3();
-    let corner = |i: u32| vertices[i as usize].as_dvec3() - origin;
+fn surface_covariance(hull: &Hull, vertices: &[impl Into<[f32; 3]> + Copy]) -> Option<DMat3> {
+    let origin = in_f64(&vertices[*hull.facets.first()?.first()? as usize].into());
+    let corner = |i: u32| in_f64(&vertices[i as usize].into()) - origin;
     let scale = 1.0
         / hull
             .vertices
@@ -103,7 +104,7 @@ mod tests {
                     + size * DVec3::new(3.0, 5.0, -2.0))
                 .as_vec3()
             };
-            let vertices: Vec<Vec3> = (0..8).map(corner).collect();
+            let vertices: Vec<_> = (0..8).map(corner).collect();
             let found = surface_covariance(&Hull::of(&vertices), &vertices).unwrap_or_default();
             let squared = 4.0 * (a * a + b * b + c * c);
             let wanted = DMat3::from_diagonal(DVec3::new(along(a), along(b), along(c)) / squared);

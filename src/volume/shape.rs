@@ -10,12 +10,12 @@
 //! exception to "keeps": its vertices are about a point near it, and its [`Shape::pose_offset`] says where that lies, seen from
 //! the point that poses refer to. Its volumes are grown by what rounding has moved, [`Shape::rounding`].
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, ball};
 use crate::{
     choice::choices,
-    mesh::TriangleMesh,
+    mesh::{TriangleMesh, in_f64},
     rounding::{LIMIT, exp2, up},
     simd::in_default_mode,
 };
@@ -60,7 +60,7 @@ pub struct Shape {
     /// The mesh's name.
     pub name: String,
     /// Vertices as culled, in the body frame: scale · (point of the mesh − offset), rounded to f32.
-    pub vertices: Vec<Vec3>,
+    pub vertices: Vec<[f32; 3]>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
     /// The point of the file's coordinates that is the origin of `vertices`: zero for [`Origin::File`], unless the mesh is far
@@ -94,18 +94,18 @@ impl Shape {
 
     fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
         let placement = Placement::of(mesh, spec)?;
-        let vertices: Vec<Vec3> = mesh
+        let vertices: Vec<[f32; 3]> = mesh
             .vertices
             .iter()
-            .map(|v| placement.point(v).as_vec3())
+            .map(|v| placement.point(v).as_vec3().to_array())
             .collect();
         let rounding = placement.rounding(mesh, &vertices);
         let mut ball = match spec.origin {
             Origin::File => Ball::smallest(&vertices),
-            Origin::Ball => Ball::about(Vec3::ZERO, &vertices),
+            Origin::Ball => Ball::about([0.0; 3], &vertices),
         };
         ball.radius = grown(ball.radius, rounding);
-        let reach = grown(ball::farthest_distance(Vec3::ZERO, &vertices), rounding);
+        let reach = grown(ball::farthest_distance([0.0; 3], &vertices), rounding);
         let within = reach <= LIMIT; // false for NaN; bounds the centre and the ball's radius too
         if !within {
             return Err(VolumeError::TooLarge {
@@ -164,7 +164,7 @@ impl Shape {
 }
 
 /// The or-DOP of vertices that rounding has moved.
-fn slabs(vertices: &[Vec3], basis: Basis, directions: DirectionSet, rounding: f32) -> OrDop {
+fn slabs(vertices: &[[f32; 3]], basis: Basis, directions: DirectionSet, rounding: f32) -> OrDop {
     let ordop = OrDop::build(vertices, basis, directions);
     if rounding == 0.0 {
         ordop
@@ -198,7 +198,11 @@ impl Placement {
         if mesh.vertices.is_empty() {
             return Err(VolumeError::Empty { shape: shape() });
         }
-        if let Some(vertex) = mesh.vertices.iter().position(|v| !v.is_finite()) {
+        if let Some(vertex) = mesh
+            .vertices
+            .iter()
+            .position(|v| !v.iter().all(|x| x.is_finite()))
+        {
             return Err(VolumeError::NotFinite {
                 shape: shape(),
                 vertex,
@@ -251,21 +255,21 @@ impl Placement {
     }
 
     /// A vertex before it is rounded.
-    fn point(&self, vertex: &Vec3) -> DVec3 {
-        (vertex.as_dvec3() - self.centre) * self.scale
+    fn point(&self, vertex: &[f32; 3]) -> DVec3 {
+        (in_f64(vertex) - self.centre) * self.scale
     }
 
     /// How far a vertex is at most from scale · (point of the file − offset), or with the pose's offset from scale · point: 0
     /// for a mesh that has been rounded where it is, whose own vertices count.
-    fn rounding(&self, mesh: &TriangleMesh, vertices: &[Vec3]) -> f32 {
+    fn rounding(&self, mesh: &TriangleMesh, vertices: &[[f32; 3]]) -> f32 {
         if !mesh.is_far() && mesh.rounding == 0.0 {
             return 0.0;
         }
         let pairs = mesh.vertices.iter().zip(vertices);
         let (mut placed, mut size) = (0.0_f64, 0.0_f64);
         for (vertex, rounded) in pairs {
-            placed = placed.max(self.point(vertex).distance(rounded.as_dvec3()));
-            size = size.max(vertex.as_dvec3().abs().max_element());
+            placed = placed.max(self.point(vertex).distance(in_f64(rounded)));
+            size = size.max(in_f64(vertex).abs().max_element());
         }
         // In f64 the difference and the product round each coordinate twice, and a scaled offset once.
         let size = (size + self.centre.abs().max_element()) * self.scale;
@@ -288,18 +292,16 @@ impl Placement {
 }
 
 /// Why a mesh has no volumes.
-#[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum VolumeError {
     /// No vertices.
     #[error("shape `{shape}` has no vertices")]
-    #[diagnostic(help("a shape needs at least one vertex: check the mesh file"))]
     Empty {
         /// The mesh's name.
         shape: String,
     },
     /// A coordinate is NaN or infinite.
     #[error("vertex {vertex} of shape `{shape}` is not finite")]
-    #[diagnostic(help("coordinates must be finite f32: mend the mesh file"))]
     NotFinite {
         /// The mesh's name.
         shape: String,
@@ -308,7 +310,6 @@ pub enum VolumeError {
     },
     /// The requested radius is not a positive number within the limit.
     #[error("radius {radius} of shape `{shape}` is not in 0 < radius ≤ 2⁶⁰")]
-    #[diagnostic(help("give a positive radius, or none to keep the mesh's own size"))]
     Radius {
         /// The mesh's name.
         shape: String,
@@ -317,7 +318,6 @@ pub enum VolumeError {
     },
     /// A mesh of one point can't be scaled.
     #[error("shape `{shape}` is a single point and can't be scaled to radius {radius}")]
-    #[diagnostic(help("leave the radius out: the point is culled as a ball of radius 0"))]
     NoExtent {
         /// The mesh's name.
         shape: String,
@@ -326,11 +326,26 @@ pub enum VolumeError {
     },
     /// Vertices too far from the body origin for the culler's f32 arithmetic.
     #[error("shape `{shape}` reaches {reach:e} from its origin, beyond the limit of 2⁶⁰ ≈ 1.15e18")]
-    #[diagnostic(help("scale the mesh down, or give a radius"))]
     TooLarge {
         /// The mesh's name.
         shape: String,
         /// The largest vertex norm.
         reach: f32,
     },
+}
+
+impl VolumeError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        match self {
+            Self::Empty { .. } => "a shape needs at least one vertex: check the mesh file",
+            Self::NotFinite { .. } => "coordinates must be finite f32: mend the mesh file",
+            Self::Radius { .. } => "give a positive radius, or none to keep the mesh's own size",
+            Self::NoExtent { .. } => {
+                "leave the radius out: the point is culled as a ball of radius 0"
+            }
+            Self::TooLarge { .. } => "scale the mesh down, or give a radius",
+        }
+    }
 }

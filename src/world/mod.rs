@@ -24,56 +24,79 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "shapes")]
 mod body;
+#[cfg(feature = "shapes")]
+mod bounds;
+#[cfg(feature = "shapes")]
 mod crowds;
-#[cfg(feature = "serde")]
+#[cfg(all(feature = "shapes", feature = "serde"))]
 mod digest;
 mod error;
 mod events;
 mod ids;
+#[cfg(feature = "shapes")]
 mod local;
+#[cfg(feature = "shapes")]
 mod lookup;
+#[cfg(feature = "shapes")]
 mod margins;
+#[cfg(feature = "shapes")]
 mod offset;
 mod pair_log;
+#[cfg(feature = "shapes")]
 mod pair_test;
+#[cfg(feature = "shapes")]
+mod region;
+#[cfg(feature = "shapes")]
+mod regions;
 #[cfg(feature = "serde")]
 mod saved;
+#[cfg(feature = "shapes")]
 mod shapes;
-#[cfg(feature = "serde")]
+#[cfg(all(feature = "shapes", feature = "serde"))]
 mod snapshot;
 
 pub use crate::bodies::Groups;
+#[cfg(feature = "shapes")]
 pub use body::Body;
 pub use error::WorldError;
 pub use events::{Event, Events};
 pub use ids::BodyId;
+#[cfg(feature = "shapes")]
 pub use lookup::PairLookup;
 pub use pair_log::{PairIds, WorldPairs};
+#[cfg(feature = "shapes")]
 pub use pair_test::PairTest;
 #[cfg(feature = "serde")]
 pub use saved::SnapshotError;
-#[cfg(feature = "serde")]
+#[cfg(all(feature = "shapes", feature = "serde"))]
 pub use snapshot::WorldSnapshot;
 
 pub(crate) use self::ids::{Ids, shrink_column};
-use self::local::Local;
-use self::margins::{Margins, check_margin};
 pub(crate) use self::pair_log::PairLog;
 #[cfg(feature = "serde")]
 pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length};
-use self::shapes::{ShapeSlot, check_shape};
-use crate::bodies::Bodies;
-use crate::bodies::contract::{ContractError, check_number, check_pose};
-use crate::counters::{Counters, Seconds};
-use crate::culler::{CullError, Culler, CullerBuilder};
-use crate::settings::{Interest, SettingsError};
-use crate::simd::in_default_mode;
-use crate::volume::Shape;
+#[cfg(feature = "shapes")]
+use self::{
+    margins::{Margins, check_margin},
+    shapes::{ShapeSlot, check_shape},
+};
+#[cfg(feature = "shapes")]
+use crate::{
+    bodies::Bodies,
+    bodies::contract::{ContractError, check_number, check_pose},
+    counters::{Counters, Seconds},
+    culler::{CullError, Culler, CullerBuilder},
+    settings::{Finder, Interest, SettingsError},
+    simd::in_default_mode,
+    volume::Shape,
+};
 
 /// Bodies in slots, and their culler.
 ///
 /// A clone goes on as the original would, on threads that it starts for itself.
+#[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 pub struct World {
     shapes: Vec<ShapeSlot>,
@@ -86,7 +109,6 @@ pub struct World {
     translation: Vec<[f64; 3]>,
     margin: Vec<f32>,
     groups: Vec<Groups>,
-    local: Local,
     margins: Margins,
     interest: Vec<BodyId>,
     culler: Culler,
@@ -96,6 +118,7 @@ pub struct World {
     regrouped: bool,
 }
 
+#[cfg(feature = "shapes")]
 impl World {
     /// A world without bodies, culled with every default ([`Culler::new`]).
     ///
@@ -131,7 +154,6 @@ impl World {
             translation: Vec::new(),
             margin: Vec::new(),
             groups: Vec::new(),
-            local: Local::default(),
             margins: Margins::default(),
             interest: Vec::new(),
             culler,
@@ -247,11 +269,12 @@ impl World {
     /// Finds the pairs that might touch now, and returns them: the lower slot first, sorted by slots. Under every strategy,
     /// list and order are a function of the bodies as they are now (with [`Order::OldestAnswer`](crate::Order), also of when
     /// pairs were refined, and with a budget of time, of the clock), whatever the finder, the threads and the calls before.
-    /// Translations that f32 has to round are the exception: the origin about which they are rounded follows the bodies, and
-    /// how much wider their volumes are depends on where it has been.
+    /// That holds for translations that f32 has to round, too: the origins about which they are rounded follow from the bodies
+    /// as they are now.
     ///
     /// # Errors
-    /// Bodies more than 2⁶⁰ apart; [`Self::pairs`] are still those of the cull before.
+    /// Bodies that can't be placed within 2⁶⁰ of an origin, which takes meshes far from their own origins; [`Self::pairs`] are
+    /// still those of the cull before.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
         self.cull_with(|culler, bodies| culler.cull(bodies).map(|_| ()))
     }
@@ -321,6 +344,12 @@ impl World {
         self.ids.slots()
     }
 
+    /// The pair finder at work: the one asked for, or what `auto` picked last.
+    #[must_use]
+    pub fn finder(&self) -> Finder {
+        self.culler.finder()
+    }
+
     /// Counters summed over all culls.
     #[must_use]
     pub fn counters(&self) -> &Counters {
@@ -331,47 +360,6 @@ impl World {
     #[must_use]
     pub fn seconds(&self) -> &Seconds {
         self.culler.seconds()
-    }
-
-    /// Brings all bodies near the local origin, in the model that their margin and rounding call for.
-    fn place(&mut self) -> Result<(), WorldError> {
-        let (ids, slots) = (&self.ids, 0..self.ids.slots());
-        let present = slots.filter(|&slot| ids.present()[slot]);
-        let translations = present.clone().map(|slot| self.composed(slot).0);
-        let local = self.local.follow(translations);
-        self.replaced |= local != self.local; // static bodies have moved, as seen from there
-        if let Some(slot) = present
-            .clone()
-            .find(|&slot| !local.reaches(self.composed(slot).0))
-        {
-            return Err(WorldError::Apart(ids.id(slot as u32)));
-        }
-        self.local = local;
-        let mut changed = false;
-        for slot in present {
-            let (translation, composed) = self.composed(slot);
-            let (place, moved) = local.place(translation);
-            let moved = moved + composed;
-            let shape = self.shape[slot] as usize;
-            let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
-            let grow = |model, margin| self.culler.grow(model, margin);
-            let model = self
-                .margins
-                .model(self.models[shape], reach, margin, moved, grow);
-            changed |= self.bodies.shape[slot] != model;
-            self.bodies.shape[slot] = model;
-            self.bodies.translation[slot] = place;
-        }
-        if changed && !self.replaced {
-            self.culler.reread_shapes(&self.bodies);
-        }
-        Ok(())
-    }
-
-    /// The translation of the vertices of the body in a slot, and how far from the exact one it may be.
-    fn composed(&self, slot: usize) -> ([f64; 3], f64) {
-        let offset = self.shapes[self.shape[slot] as usize].pose_offset;
-        offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)
     }
 
     /// Tells the culler of the bodies of interest that are still there.

@@ -7,12 +7,10 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::local::Local;
 use super::saved::{IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged};
 use super::shapes::{ShapeSlot, check_shape};
 use super::{BodyId, Groups, World, check_margin, check_pose};
 use crate::bodies::Bodies;
-use crate::rounding::LIMIT;
 use crate::strategy::Answers;
 
 /// A [`World`] at one moment, to be stored or sent in any format of serde.
@@ -31,8 +29,6 @@ pub struct WorldSnapshot {
     margin: Vec<u32>,
     groups: Vec<[u32; 2]>,
     interest: Vec<BodyId>,
-    /// About which translations are f32: it follows the bodies, and so depends on where they have been.
-    origin: [u64; 3],
     pairs: PairsSnapshot,
     answers: Vec<([u32; 2], u32)>,
 }
@@ -90,7 +86,6 @@ impl World {
             margin: self.margin.iter().copied().map(bits).collect(),
             groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
             interest: self.interest.clone(),
-            origin: self.local.origin.map(f64::to_bits),
             pairs: PairsSnapshot::of(&self.log),
             answers: self.culler.answers().0,
         }
@@ -141,13 +136,6 @@ impl World {
                 counts[shape as usize] += 1;
             }
         }
-        let origin = snapshot.origin.map(f64::from_bits);
-        if origin
-            .iter()
-            .any(|x| x.abs() > f64::from(LIMIT) || x.is_nan())
-        {
-            return damaged(format!("its origin is {origin:?}"));
-        }
         let log = snapshot.pairs.restored(&ids)?;
         let answers = checked(&snapshot.answers, slots)?;
 
@@ -158,7 +146,6 @@ impl World {
             translation: vec![[0.0; 3]; slots],
         };
         (self.ids, self.log) = (ids, log);
-        self.local = Local { origin };
         (self.shape, self.translation, self.margin) = (snapshot.shape.clone(), translation, margin);
         let groups = snapshot.groups.iter();
         self.groups = groups

@@ -1,4 +1,4 @@
-//! Every command whose work can be shared: shards of it, merged, are the work of one process, and so is a journal gone on from.
+//! Every command whose work can be shared: shards of it, merged, are the work of one process.
 //! `.ci/mpi` shows the same of ranks.
 
 use std::fs;
@@ -283,18 +283,15 @@ fn a_record_is_of_its_own_shards_alone() {
 }
 
 #[test]
-fn a_record_made_anew_has_nothing_of_an_interrupted_one() {
+fn an_interrupted_record_is_made_anew() {
     let sweep = SWEEPS.iter().find(|sweep| sweep.name == "record").unwrap();
     let (directory, scene) = scene_file(SCENE);
     let out = directory.path().join("out");
     let part = out.join("box/reproduce.part");
     fs::create_dir_all(&part).unwrap();
-    fs::write(part.join("reproduce.journal"), "{\"form\":").unwrap();
+    fs::write(part.join("left.csv"), "an,earlier,run\n").unwrap();
     sweep.run(&scene, &out, &[]);
-    let files = fs::read_dir(out.join(sweep.result)).unwrap();
-    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
-    let left: Vec<String> = names.filter(|name| name.ends_with(".journal")).collect();
-    assert_eq!(left, [""; 0]);
+    assert!(!out.join(sweep.result).join("left.csv").exists());
 }
 
 #[test]
@@ -309,7 +306,7 @@ fn what_has_no_units_is_not_shared() {
             "cost/quiet is measured in one process",
         ),
         (
-            &["record", "verify", "reproduce", "--resume"],
+            &["record", "verify", "reproduce", "--share-cores"],
             "several experiments can't be shared at once",
         ),
         (

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::{command, refusal, scene_file, sdop, stdout, text};
+use crate::{refusal, scene_file, sdop, stdout, text};
 
 const SCENE: &str = r#"
 name = "seen </script>"
@@ -384,40 +384,4 @@ fn a_case_is_shown_with_the_answers_to_it() {
     assert!(message.contains("--answers is for a case"), "{message}");
     let message = refusal(&["view", text(&case), "--strategy", "sphere"]);
     assert!(message.contains("its poses are given"), "{message}");
-}
-
-#[test]
-fn without_a_browser_a_picture_is_refused_clearly() {
-    let (directory, scene) = scene_file(SCENE);
-    let page = directory.path().join("page.html");
-    let args = [
-        "view",
-        text(&scene),
-        "--no-prices",
-        "--out",
-        text(&page),
-        "--png",
-        "3",
-    ];
-    let output = command(&args)
-        .env("PATH", directory.path())
-        .output()
-        .unwrap();
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(
-        message.contains("there is none on this machine")
-            && message.contains("apt-get install chromium"),
-        "{message}"
-    );
-    assert!(page.exists(), "the page needs no browser");
-    let nowhere = refusal_of_browser(&args, directory.path());
-    assert!(nowhere.contains("no browser at"), "{nowhere}");
-}
-
-fn refusal_of_browser(args: &[&str], directory: &Path) -> String {
-    let missing = directory.join("no-browser");
-    let output = sdop(&[args, &["--browser", text(&missing)]].concat());
-    assert_eq!(output.status.code(), Some(2));
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }

@@ -16,9 +16,9 @@ use sdop::bodies::Bodies;
 use sdop::settings::CullSettings;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
-use sdop_bench::domain::local::on_ranks;
-use sdop_bench::domain::{DomainError, DomainSummary, Network as _, Rank, RankLine, run};
+use sdop_bench::domain::{DomainError, DomainSummary, Rank, RankLine, run};
 use sdop_bench::effects::{EffectsSpec, Velocities};
+use sdop_bench::network::{Network as _, on_ranks};
 use sdop_bench::scene::{Scene, SceneFile, Share};
 use sdop_bench::simulate::SimulationError;
 
@@ -62,6 +62,7 @@ fn scene_of(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings) -> Scene
             angular: still,
         },
         bodies: bodies.clone(),
+        fine: Default::default(),
         share: None,
         effects: EffectsSpec::default(),
         cull: settings.clone(),

@@ -211,7 +211,8 @@ fn bounding_spheres_stay_inside_and_speeds_stay() {
             for body in 0..bodies.len() {
                 let ball = scene.shapes[bodies.shape[body] as usize].ball;
                 let q = glam::Quat::from_array(bodies.rotation[body]);
-                let centre = q * ball.centre + glam::Vec3::from(bodies.translation[body]);
+                let centre =
+                    q * glam::Vec3::from(ball.centre) + glam::Vec3::from(bodies.translation[body]);
                 let room = 6.0 - ball.radius + 1e-5;
                 assert!(
                     centre.abs().max_element() <= room,

@@ -12,7 +12,7 @@ fn respond(scene: &Scene) -> (Vec<[f32; 3]>, usize) {
     let (bodies, mut velocity) = (&scene.bodies, scene.velocities.linear.clone());
     let sphere = |bodies: &Bodies, body: usize| {
         let ball = scene.shapes[bodies.shape[body] as usize].ball;
-        assert_eq!(ball.centre, glam::Vec3::ZERO);
+        assert_eq!(ball.centre, [0.0; 3]);
         (
             glam::DVec3::from(bodies.translation[body].map(f64::from)),
             f64::from(ball.radius),

@@ -8,6 +8,7 @@ mod neighbours;
 mod outside;
 mod plan;
 mod scenes;
+mod sizes;
 #[path = "../support/mod.rs"]
 mod support;
 mod windows;

@@ -117,7 +117,7 @@ fn ball(shapes: &[Shape], bodies: &Bodies, i: u32) -> ([f64; 3], f64) {
     let i = i as usize;
     let ball = shapes[bodies.shape[i] as usize].ball;
     let pose = rotation(bodies.rotation[i]);
-    let centre = transform(&pose, ball.centre.to_array(), bodies.translation[i]);
+    let centre = transform(&pose, ball.centre, bodies.translation[i]);
     (centre, f64::from(ball.radius))
 }
 

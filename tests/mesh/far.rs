@@ -6,11 +6,12 @@ use sdop::mesh::topology::Topology;
 use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes, write_bytes};
 use sdop::volume::{Hull, Shape, ShapeSpec};
 
-const FORMATS: [MeshFormat; 4] = [
+const FORMATS: [MeshFormat; 5] = [
     MeshFormat::Tri,
     MeshFormat::Obj,
     MeshFormat::Stl,
     MeshFormat::Ply,
+    MeshFormat::Off,
 ];
 
 fn read(format: MeshFormat, text: impl AsRef<[u8]>) -> TriangleMesh {
@@ -63,6 +64,7 @@ fn file(format: MeshFormat, real: &str, points: &[[String; 3]], triangles: &[[u3
             lines(""),
             faces("3 ", 0)
         ),
+        MeshFormat::Off => format!("OFF\n{n} {t} 0\n{}{}", lines(""), faces("3 ", 0)),
         MeshFormat::Stl => {
             let facet = |t: &[u32; 3]| {
                 let corners = t.map(|i| points[i as usize].join(" "));
@@ -149,7 +151,7 @@ fn near_coordinates_are_the_nearest_f32() {
         for format in FORMATS {
             let mesh = read(format, file(format, "float", &words, &BOX));
             assert_eq!((mesh.offset, mesh.rounding), ([0.0; 3], 0.0));
-            let corners = |t: [u32; 3]| t.map(|i| mesh.vertices[i as usize].to_array());
+            let corners = |t: [u32; 3]| t.map(|i| mesh.vertices[i as usize]);
             for (found, wanted_triangle) in mesh.triangles.iter().zip(BOX) {
                 let wanted = wanted_triangle.map(|i| wanted[i as usize]);
                 assert_eq!(corners(*found), wanted, "{format:?}");
@@ -184,7 +186,7 @@ fn a_mesh_is_far_from_two_to_the_minus_twenty_on() {
     for moved in [0.01, 0.5, 0.9] {
         let mesh = moved_by(moved);
         assert_eq!((mesh.offset, mesh.rounding), ([0.0; 3], 0.0), "{moved}");
-        assert_eq!(mesh.vertices[0].x, 65536.0);
+        assert_eq!(mesh.vertices[0][0], 65536.0);
     }
 }
 

@@ -33,7 +33,7 @@ pub fn shapes(directions: DirectionSet, axes: Axes) -> Vec<Shape> {
         .collect();
     let mut off_centre = mesh("l-shape");
     for vertex in &mut off_centre.vertices {
-        *vertex += glam::Vec3::new(0.7, -0.3, 0.4);
+        *vertex = (glam::Vec3::from(*vertex) + glam::Vec3::new(0.7, -0.3, 0.4)).to_array();
     }
     shapes.push(Shape::build(&off_centre, &about_file).unwrap());
     shapes

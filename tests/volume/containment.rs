@@ -23,7 +23,7 @@ fn check(vertices: &[Vec3], radius: Option<f32>) -> Result<(), TestCaseError> {
             let shape = Shape::build(&mesh(vertices.to_vec()), &spec).unwrap();
             prop_assert!(ball_contains(&shape.ball, &shape.vertices), "{shape:?}");
             let about_origin = Ball {
-                centre: Vec3::ZERO,
+                centre: [0.0; 3],
                 radius: shape.reach,
             };
             prop_assert!(ball_contains(&about_origin, &shape.vertices), "{shape:?}");

@@ -84,7 +84,11 @@ fn an_end_that_the_margin_nearly_cancels_moves_far_enough() {
         .directions
         .coefficients()
         .iter()
-        .map(|&c| ordop.basis.direction(c).as_dvec3().length())
+        .map(|&c| {
+            glam::Vec3::from(ordop.basis.direction(c))
+                .as_dvec3()
+                .length()
+        })
         .collect();
     let mut close = 0;
     for _ in 0..100_000 {

@@ -8,7 +8,7 @@ use sdop::mesh::TriangleMesh;
 pub fn mesh(vertices: Vec<Vec3>) -> TriangleMesh {
     TriangleMesh {
         name: "test".into(),
-        vertices,
+        vertices: vertices.iter().map(Vec3::to_array).collect(),
         triangles: Vec::new(),
         ..TriangleMesh::default()
     }

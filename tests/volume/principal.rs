@@ -1,6 +1,6 @@
 //! Principal axes: of the hull's surface, longest first, and the model's own where rounding alone would choose.
 
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DMat3, DQuat, DVec3, Vec3};
 use proptest::prelude::*;
 use sdop::volume::{Axes, Basis, Hull, Shape, ShapeSpec};
 use sdop_bench::tightness::PolytopeVolume as _;
@@ -16,7 +16,7 @@ proptest! {
     #[test]
     fn a_turned_box_is_found(rotation in rotation()) {
         let points = rotated(&box_corners(Vec3::new(1.0, 3.0, 2.0)), rotation);
-        let axes = principal(&points).rotation();
+        let axes = DMat3::from_cols_array_2d(&principal(&points).rotation());
         for (axis, edge) in [(axes.x_axis, DVec3::Y), (axes.y_axis, DVec3::Z), (axes.z_axis, DVec3::X)] {
             prop_assert!(axis.dot(rotation * edge).abs() > 1.0 - 1e-6, "{axes:?}");
         }

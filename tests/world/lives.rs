@@ -1,7 +1,7 @@
 //! What a world holds of its bodies: ids, interest and groups, from insertion to removal, and what it refuses.
 
 use sdop::culler::Culler;
-use sdop::settings::{CullSettings, DirectionSet, Strategy};
+use sdop::settings::{CullSettings, DirectionSet, Interest, Strategy};
 use sdop::world::{Body, BodyId, Groups, PairLookup, World, WorldError};
 
 use super::shapes;
@@ -74,7 +74,7 @@ fn what_breaks_the_contract_is_refused_and_changes_nothing() {
     assert!(lost.unwrap_err().to_string().contains("translation"));
     assert_eq!((world.len(), world.body(id).unwrap()), (1, Body::default()));
     let cone = CullSettings {
-        interest: Some("0".parse().unwrap()),
+        interest: Some(Interest::Bodies(vec![0])),
         ..CullSettings::all_pairs()
     };
     assert!(World::with(shapes(), &Culler::builder().settings(&cone)).is_err());

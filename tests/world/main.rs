@@ -8,6 +8,7 @@ mod lives;
 mod many;
 mod margins;
 mod pair_test;
+mod regions;
 mod saves;
 
 use std::collections::{BTreeSet, HashMap};

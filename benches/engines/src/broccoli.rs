@@ -17,7 +17,6 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     version: "6.3.0",
     work: Work::Boxes,
     threads: 1,
-    slack: 0,
     ages: false,
     new: |setup| Ok(Box::new(Broccoli::new(setup))),
 }];

@@ -71,9 +71,6 @@ pub struct Entry {
     pub work: Work,
     /// The most threads that it can use.
     pub threads: usize,
-    /// Steps between neighbouring f32 by which it widens each end of a box before it compares: 0 but for engines that
-    /// round, each of which says why.
-    pub slack: u32,
     /// Whether it keeps anything but buffers from frame to frame. What starts from nothing each frame has no age, and joins
     /// for the last of the frames before the clock counts.
     pub ages: bool,

@@ -4,9 +4,6 @@ mod boxes;
 mod broccoli;
 #[cfg(feature = "debian")]
 mod bullet;
-mod bvh;
-#[cfg(feature = "debian")]
-mod cgal;
 mod changes;
 mod check;
 mod compare;
@@ -20,7 +17,6 @@ mod memory;
 mod narrow;
 #[cfg(feature = "debian")]
 mod native;
-mod obvhs;
 mod oracle;
 mod ours;
 mod parry;
@@ -29,7 +25,6 @@ mod physx;
 mod rapier;
 mod record;
 mod roster;
-mod rstar;
 mod scenes;
 mod threads;
 mod turns;

@@ -24,7 +24,6 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     version: "0.36.1",
     work: Work::Boxes,
     threads: usize::MAX,
-    slack: 0,
     ages: true,
     new: |setup| Ok(Box::new(Rapier::new(setup)?)),
 }];

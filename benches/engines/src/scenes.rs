@@ -9,6 +9,7 @@ use clap::ValueEnum;
 use sdop::bodies::Bodies;
 use sdop::mesh::ProceduralShape;
 use sdop_bench::effects::Effects;
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::scene::{Scene, SceneFile};
 use serde::Serialize;
 
@@ -144,7 +145,7 @@ impl Course {
     /// Writes the next frame; the first is the scene as placed.
     pub fn next_frame(&mut self, frame: &mut Frame) -> miette::Result<()> {
         if self.started {
-            self.effects.step(&mut self.bodies)?;
+            self.effects.step(&mut self.bodies).or_report()?;
         }
         self.started = true;
         if self.is_long {

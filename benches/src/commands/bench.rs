@@ -61,12 +61,23 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     };
     let table = compare(&args.exec, &program, &case, args.claims, args.rounds).into_diagnostic()?;
     emit(args.format, &table, |table| page(table, args))?;
-    let passed = table.iter().all(|row| row.outcome == CaseOutcome::Pass);
-    Ok(if passed {
-        Outcome::Passed
-    } else {
-        Outcome::Failed
-    })
+    Ok(outcome(&table))
+}
+
+/// A contestant that is wrong counts before one that skips the scene.
+fn outcome(table: &[ContestantTiming]) -> Outcome {
+    let mut skipped = None;
+    for ContestantTiming { name, outcome, .. } in table {
+        match outcome {
+            CaseOutcome::Pass => {}
+            CaseOutcome::Fail { why } => return Outcome::Failed(format!("{name} {why}")),
+            CaseOutcome::Error { trouble } => return Outcome::Failed(format!("{name} {trouble}")),
+            CaseOutcome::Skipped { why } => {
+                skipped.get_or_insert_with(|| format!("{name} skipped the scene: {why}"));
+            }
+        }
+    }
+    skipped.map_or(Outcome::Passed, Outcome::Incomplete)
 }
 
 fn page(table: &[ContestantTiming], args: &Args) -> String {

@@ -9,7 +9,7 @@ use sdop_bench::report::{Change, Code, Comparison, compare};
 use tempfile::TempDir;
 
 use super::Outcome;
-use super::output::{csv_text, print, rows};
+use super::output::{csv_text, json_with_reason, print, rows};
 
 /// Compare two records: counts must be equal, times are ratios with intervals
 ///
@@ -58,21 +58,27 @@ enum Format {
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let [first, second] = [place(&args.first)?, place(&args.second)?];
     let comparison = compare(first.path(), second.path())?;
+    let why = why(&comparison, args.fail_slower);
     let text = match args.format {
         Format::Table => table(&comparison, args.most),
         Format::Markdown => markdown(&comparison, args.most),
-        Format::Json => serde_json::to_string_pretty(&comparison).into_diagnostic()?,
+        Format::Json => json_with_reason(&comparison, why.as_deref())?,
         Format::Csv => csv_text(serde_json::to_value(&comparison.changes).into_diagnostic()?)?,
     };
     print(text.trim_end())?;
-    let slower = args
-        .fail_slower
-        .is_some_and(|percent| 100.0 * comparison.slowest() > percent);
-    if comparison.differences.is_empty() && !slower {
-        Ok(Outcome::Passed)
-    } else {
-        Ok(Outcome::Failed)
+    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
+}
+
+/// What differs that should not.
+fn why(comparison: &Comparison, fail_slower: Option<f64>) -> Option<String> {
+    let (differences, slowest) = (comparison.differences.len(), 100.0 * comparison.slowest());
+    if differences > 0 {
+        return Some(format!("{differences} results differ that should be equal"));
     }
+    let limit = fail_slower.filter(|percent| slowest > *percent)?;
+    Some(format!(
+        "a time is slower by {slowest:.1} %, more than {limit} %"
+    ))
 }
 
 /// Where a record can be read.

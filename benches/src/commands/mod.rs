@@ -34,13 +34,14 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use miette::MietteHandlerOpts;
 use sdop_bench::mpi;
+use sdop_judge::{Conclusion, Verdict};
 
 /// Collision culling by sphere-encapsulated or-DOPs (S-DOP): verified, vectorised, measured.
 #[derive(Parser)]
 #[command(
     name = "sdop",
     version,
-    after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input."
+    after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input, 3 not all that was asked for was judged. Standard error says why."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -98,13 +99,18 @@ impl Command {
     }
 }
 
+/// The exit code of bad input.
+pub const BAD_INPUT: u8 = 2;
+
 /// How a command ended when its input was good.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// All is well: exit code 0.
     Passed,
-    /// A check failed: exit code 1.
-    Failed,
+    /// A check failed, and which, on one line: exit code 1.
+    Failed(String),
+    /// No check failed, but some that were asked for were not made, and how many: exit code 3.
+    Incomplete(String),
     /// The input was bad, all ranks know, and one of them has said it: exit code 2.
     #[cfg(feature = "mpi")]
     Told,
@@ -149,8 +155,7 @@ impl Cli {
     }
 }
 
-/// Runs the program with these arguments, its own name first. Returns its exit code: 0 when all is well, 1 when a check failed, 2 on
-/// bad input.
+/// Runs the program with these arguments, its own name first, and returns its exit code.
 pub fn main(arguments: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>) -> u8 {
     report_errors_whole();
     let ending = mpi::Ending;
@@ -170,12 +175,7 @@ pub fn main(arguments: impl IntoIterator<Item = impl Into<std::ffi::OsString> + 
     match cli.run() {
         Ok(outcome) => {
             ending.well();
-            match outcome {
-                Outcome::Passed => 0,
-                Outcome::Failed => 1,
-                #[cfg(feature = "mpi")]
-                Outcome::Told => BAD_INPUT,
-            }
+            outcome.into_code()
         }
         Err(report) => {
             complain(&report);
@@ -185,7 +185,32 @@ pub fn main(arguments: impl IntoIterator<Item = impl Into<std::ffi::OsString> + 
     }
 }
 
-const BAD_INPUT: u8 = 2;
+impl Outcome {
+    /// The exit code. Why it is 1 or 3 goes to standard error, on one line.
+    fn into_code(self) -> u8 {
+        let (code, why) = match self {
+            Self::Passed => return 0,
+            #[cfg(feature = "mpi")]
+            Self::Told => return BAD_INPUT,
+            Self::Failed(why) => (1, why),
+            Self::Incomplete(why) => (3, why),
+        };
+        // Nobody may be listening: that is no reason to panic.
+        let _ = writeln!(std::io::stderr(), "sdop: {why}");
+        code
+    }
+}
+
+impl From<&Verdict> for Outcome {
+    fn from(verdict: &Verdict) -> Self {
+        let why = verdict.why().unwrap_or_default();
+        match verdict.conclusion() {
+            Conclusion::Pass => Self::Passed,
+            Conclusion::Incomplete => Self::Incomplete(why),
+            Conclusion::NotPassed => Self::Failed(why),
+        }
+    }
+}
 
 /// Says an error. Nobody may be listening on standard error: that is no reason to panic.
 fn complain(report: &miette::Report) {

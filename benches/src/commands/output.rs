@@ -41,6 +41,39 @@ pub fn emit<T: Serialize>(
     print(text.trim_end())
 }
 
+/// A result with the reason why it is no success.
+#[derive(Serialize)]
+struct WithReason<'a, T> {
+    #[serde(flatten)]
+    value: &'a T,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    why: Option<&'a str>,
+}
+
+/// As [`emit`], for a value with named fields: in JSON, the field `why` says why the exit code is not 0.
+///
+/// # Errors
+/// As [`emit`].
+pub fn emit_with_reason<T: Serialize>(
+    format: Format,
+    value: &T,
+    why: Option<&str>,
+    table: impl FnOnce(&T) -> String,
+) -> miette::Result<()> {
+    match format {
+        Format::Json => print(&json_with_reason(value, why)?),
+        Format::Table | Format::Csv => emit(format, value, table),
+    }
+}
+
+/// The JSON that [`emit_with_reason`] prints.
+///
+/// # Errors
+/// A value that is no JSON.
+pub fn json_with_reason<T: Serialize>(value: &T, why: Option<&str>) -> miette::Result<String> {
+    serde_json::to_string_pretty(&WithReason { value, why }).into_diagnostic()
+}
+
 /// Prints lines.
 ///
 /// # Errors

@@ -9,6 +9,7 @@ use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
 use sdop_bench::domain::{BorderSeconds, RankLine};
 use sdop_bench::effects::EffectReport;
 use sdop_bench::percentiles::Percentiles;
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::scene::Scene;
 use sdop_bench::simulate::{Simulation, Summary};
 use sdop_bench::tradeoff::TradeoffError;
@@ -110,13 +111,21 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if sdop_bench::mpi::launched() > 1 {
         return Ok(ranks::run(args));
     }
-    let scene = args.scene.build()?;
+    let scene = args.scene.read()?.build_exact()?;
     let tier = args.machine.tier();
     let mut recorder = match &args.record {
-        Some(path) => Some(Recorder::create(path, &sdop_bench::record::header(&scene))?),
+        Some(path) => {
+            Some(Recorder::create(path, &sdop_bench::record::header(&scene)).or_report()?)
+        }
         None => None,
     };
     let judge = if args.truth {
+        if !scene.fine.is_empty() {
+            miette::bail!(
+                help = "leave --truth out, or round the translations to f32",
+                "--truth, and translations that f32 doesn't hold: the exact reference reads f32 poses"
+            );
+        }
         Some(Judge::new(&scene.shapes).map_err(TradeoffError::from)?)
     } else {
         None
@@ -130,14 +139,14 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
             if let Some(judge) = &judge {
                 line.meets = Some(judge.meetings(frame.bodies).map_err(TradeoffError::from)?);
             }
-            recorder.frame(&line)?;
+            recorder.frame(&line).or_report()?;
         }
         bar.inc(1);
         Ok(())
     })?;
     bar.finish_and_clear();
     if let Some(recorder) = recorder {
-        recorder.finish()?;
+        recorder.finish().or_report()?;
     }
     print(args, &scene, &summary, None)?;
     Ok(Outcome::Passed)

@@ -1,6 +1,5 @@
 //! `sdop tradeoff`: what each step of accuracy costs in time on one scene, and when it pays.
 
-mod page;
 mod plot;
 mod tables;
 
@@ -18,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Outcome;
 use super::files::{self, command, write};
-use super::output::{Format, csv_text, emit};
+use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::{MachineArgs, SceneArgs};
 use super::sweep::{self, SweepArgs};
 
@@ -31,7 +30,7 @@ use super::sweep::{self, SweepArgs};
 #[derive(clap::Args)]
 #[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
     Examples: sdop tradeoff data/scenes/paper-500.toml --out target/tradeoff\n          \
-    mpirun -n 9 sdop tradeoff data/scenes/paper-500.toml --seeds 64 --out target/tradeoff")]
+    mpirun -n 8 sdop tradeoff data/scenes/paper-500.toml --seeds 64 --out target/tradeoff")]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
@@ -46,10 +45,10 @@ pub struct Args {
     /// Print every table, not only the recommendation and what it rests on
     #[arg(long)]
     all: bool,
-    /// Write the page, the figures, JSON and CSV into this directory
+    /// Write the figures, JSON and CSV into this directory; of a record, `sdop report` makes the page paper/tradeoff.md
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write the page and the figures into this directory instead
+    /// Write the figures into this directory instead
     #[arg(long, value_name = "DIR", requires = "out")]
     paper: Option<PathBuf>,
     /// Where exact truths are kept between runs [default: sdop/truth in the user's cache directory]
@@ -98,13 +97,11 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let mut findings = Findings::default();
     let mut take = |_, result: &str| findings.take(result);
     let directory = args.out.as_deref().unwrap_or(Path::new("."));
-    let Some(finished) = args.sweep.run(&comparison, directory, &mut take)? else {
+    if args.sweep.run(&comparison, directory, &mut take)?.is_none() {
         return Ok(Outcome::Passed);
-    };
+    }
     let settings = comparison.settings();
-    let outcome = args.tell(&Recorded::new(command(), findings, &settings, before)?)?;
-    finished.clear()?;
-    Ok(outcome)
+    args.tell(&Recorded::new(command(), findings, &settings, before)?)
 }
 
 /// What merged shards give.
@@ -161,17 +158,17 @@ fn print(
     text: fn(&Tradeoff) -> String,
 ) -> miette::Result<Outcome> {
     let result = &recorded.result;
+    let failures: Vec<&str> = result.failures().collect();
+    let why = (!failures.is_empty())
+        .then(|| format!("true pairs were missed by: {}", failures.join("; ")));
     match format {
         // A line a variant; the rest is in the other formats.
         Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
-        format => emit(format, recorded, |recorded| text(&recorded.result))?,
+        format => emit_with_reason(format, recorded, why.as_deref(), |recorded| {
+            text(&recorded.result)
+        })?,
     }
-    let failures: Vec<&str> = result.failures().collect();
-    if failures.is_empty() {
-        return Ok(Outcome::Passed);
-    }
-    eprintln!("true pairs were missed by: {}", failures.join("; "));
-    Ok(Outcome::Failed)
+    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
 fn plan(args: &Args) -> Plan {
@@ -207,7 +204,7 @@ fn read(path: &Path) -> miette::Result<Recorded> {
         .wrap_err_with(|| format!("{} is no result of sdop tradeoff", path.display()))
 }
 
-/// Writes the numbers to one directory, the page and its figures to another.
+/// Writes the numbers to one directory, the figures to another.
 fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Result<()> {
     let result = &recorded.result;
     let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
@@ -215,7 +212,6 @@ fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Resul
     write(&numbers.join("tradeoff.json"), &json)?;
     write(&numbers.join("tradeoff.csv"), &csv)?;
     let figures = paper.join("figures");
-    write(&paper.join("tradeoff.md"), page::page(recorded))?;
     write(&figures.join("tradeoff.svg"), &plot::precision(result)?)?;
     write(
         &figures.join("tradeoff-pays.svg"),

@@ -20,7 +20,7 @@ use sdop_judge::ours::rounds::{Failure, Ledger};
 use super::Outcome;
 use super::files::{self, ReadArgs};
 use super::judge::{self, ReportFormat};
-use super::output::{Format, emit, print, progress};
+use super::output::{Format, emit_with_reason, print, progress};
 use super::sweep::{self, SweepArgs};
 use report::Report;
 
@@ -58,7 +58,7 @@ pub struct Args {
     /// One SIMD tier alone, instead of all that the CPU has
     #[arg(long, value_name = "TIER")]
     simd: Option<Tier>,
-    /// Where the scene that shows a missed pair is written, and shards and journals
+    /// Where the scene that shows a missed pair is written, and shards
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// Write the hard cases' exact answers and their page into this directory, and judge nothing
@@ -105,12 +105,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let run = verification(args)?;
     let mut taken = Taken::default();
     let mut take = |unit, result: &str| taken.take(&run, unit, result);
-    let Some(finished) = args.sweep.run(&run, &args.out, &mut take)? else {
+    let Some(seconds) = args.sweep.run(&run, &args.out, &mut take)? else {
         return Ok(Outcome::Passed);
     };
-    let outcome = taken.report(&run, finished.seconds, format, &args.out)?;
-    finished.clear()?;
-    Ok(outcome)
+    taken.report(&run, seconds, format, &args.out)
 }
 
 /// The report of merged shards. A scene whose frames show a failure is read again, if it is where it was.
@@ -202,10 +200,11 @@ impl Taken {
         let none = Ledger::default();
         let boxes = self.ledgers.get(&Origin::Boxes).unwrap_or(&none);
         report.finish(seconds, &boxes.boxes, run.rotation());
-        emit(format, &report, Report::tables)?;
-        if report.passed() {
+        let why = report.why();
+        emit_with_reason(format, &report, why.as_deref(), Report::tables)?;
+        let Some(why) = why else {
             return Ok(Outcome::Passed);
-        }
+        };
         if let Some((origin, &unit)) = self.failed.first_key_value() {
             let judged = run.judge(unit)?.into_iter().filter(|(of, _)| of == origin);
             let ledger = judged.map(|(_, ledger)| ledger).next().unwrap_or_default();
@@ -215,7 +214,7 @@ impl Taken {
                 (None, None) => print("the failure doesn't show on this machine")?,
             }
         }
-        Ok(Outcome::Failed)
+        Ok(Outcome::Failed(why))
     }
 }
 

@@ -9,7 +9,8 @@
 //! Partitioners that are kept (coupe, the METIS family) work on a mesh or points in one memory; MPI ones are C and another
 //! installation. Selection over ranks is shorter than what would bind them.
 
-use super::network::{Network, key, of_key};
+use super::float_key::{key, of_key};
+use crate::network::Network;
 
 /// Where space is cut, and who owns what.
 #[derive(Clone, Debug, PartialEq)]
@@ -288,7 +289,7 @@ fn select(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::local::on_ranks;
+    use crate::network::on_ranks;
 
     /// Points of a lattice with many equal coordinates, and some far away.
     fn points() -> Vec<[f32; 3]> {

@@ -3,7 +3,7 @@
 use miette::Diagnostic;
 use thiserror::Error;
 
-use super::network::{Network, tell_all};
+use crate::network::{Network, tell_all};
 use crate::simulate::SimulationError;
 
 /// Why a scene can't be run, or run on, on many ranks.

@@ -2,7 +2,7 @@
 
 use super::cut::Cuts;
 use super::held::{Held, Record, read_poses, write_pose};
-use super::network::Network;
+use crate::network::Network;
 use sdop::rounding::border::may_meet;
 
 /// A body's ball centre and its reach, by place.

@@ -15,24 +15,18 @@
 //!              ╰─▶ cut where unequal ─▶ migrate ─▶ ghosts ╯
 //! ```
 //!
-//! Ranks reach one another by a [`Network`]: MPI, or threads of one process, which tests use.
+//! Ranks reach one another by a [`Network`](crate::network::Network): MPI, or threads of one process, which tests use.
 
 mod cut;
 mod error;
+mod float_key;
 mod ghosts;
 mod held;
-pub mod local;
-#[cfg(feature = "mpi")]
-mod mpi;
-mod network;
 mod rank;
 mod renew;
 mod run;
 
 pub use cut::Cuts;
 pub use error::DomainError;
-#[cfg(feature = "mpi")]
-pub use mpi::MpiNetwork;
-pub use network::Network;
 pub use rank::{Rank, RankFrame};
 pub use run::{BorderSeconds, DomainSummary, RankLine, RankSeconds, run};

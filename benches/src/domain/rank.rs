@@ -6,9 +6,9 @@ use super::cut::Cuts;
 use super::error::{DomainError, agree};
 use super::ghosts::{Balls, Plan};
 use super::held::Held;
-use super::network::Network;
 use super::run::BorderSeconds;
 use crate::effects::Effects;
+use crate::network::Network;
 use crate::scene::Scene;
 use crate::simulate::SimulationError;
 use sdop::bodies::Bodies;
@@ -198,7 +198,7 @@ impl<'a, N: Network> Rank<'a, N> {
     fn contract_error(&self, error: ContractError) -> DomainError {
         let (frame, body) = (self.next, self.held.numbers[error.body] as usize);
         let error = ContractError { body, ..error };
-        SimulationError::Contract { frame, error }.into()
+        SimulationError::contract(frame, error).into()
     }
 
     /// The ball of the body in a place now.
@@ -275,6 +275,10 @@ fn decider(balls: &Balls, [i, j]: [u32; 2]) -> usize {
 fn supported(scene: &Scene, ranks: usize) -> Result<(), DomainError> {
     let refuse = |what: String, hint| Err(DomainError::Unsupported { what, ranks, hint });
     let strategy = scene.cull.strategy;
+    if !scene.fine.is_empty() {
+        let hint = "ranks exchange f32 poses: take one process, or round the translations to f32";
+        return refuse("translations that f32 doesn't hold".to_owned(), hint);
+    }
     if ranks > 1 && strategy.scheme().has_budget() {
         let hint =
             "a budget is spent in one order over all pairs: take another strategy, or one process";

@@ -5,9 +5,9 @@ use std::time::Instant;
 use super::cut::Cuts;
 use super::ghosts::{Border, Plan};
 use super::held::Record;
-use super::network::Network;
 use super::rank::Rank;
 use crate::effects::runs;
+use crate::network::Network;
 use sdop::rounding::border;
 use sdop::settings::{Interest, ViewCone};
 

@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::error::DomainError;
-use super::network::{Network, tell_first};
 use super::rank::Rank;
 use crate::effects::EffectReport;
 use crate::hash::{PairsDigest, PairsHash, volumes_sha256};
+use crate::network::{Network, tell_first};
 use crate::percentiles::Percentiles;
 use crate::simulate::Summary;
 use sdop::counters::{Counters, Seconds};

@@ -39,7 +39,7 @@ pub(super) fn new(Settings::Elastic: &Settings, start: &Start<'_>) -> Made {
     let balls = start
         .shapes
         .iter()
-        .map(|s| (s.ball.centre.to_array(), s.ball.radius))
+        .map(|s| (s.ball.centre, s.ball.radius))
         .collect();
     Ok(Box::new(Elastic {
         balls,

@@ -42,7 +42,7 @@ pub(super) fn new(kind: &Settings, start: &Start<'_>) -> Made {
     let shapes = start
         .shapes
         .iter()
-        .map(|s| (s.ball.centre.to_array(), half - s.ball.radius));
+        .map(|s| (s.ball.centre, half - s.ball.radius));
     let walls = Walls {
         kind: *kind,
         shapes: shapes.collect(),

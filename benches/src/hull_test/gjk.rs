@@ -46,7 +46,10 @@ impl HullGraph {
         Self {
             starts: (0..=points.len()).map(start).collect(),
             links: edges.iter().map(|&[_, to]| to).collect(),
-            points: points.iter().map(|p| p.as_dvec3()).collect(),
+            points: points
+                .iter()
+                .map(|p| DVec3::from_array(p.map(f64::from)))
+                .collect(),
             reach: f64::from(shape.reach),
         }
     }

@@ -170,7 +170,7 @@ impl Timed {
     ) -> Result<(), InvalidInput> {
         let answers = match answers {
             Ok(answers) => answers,
-            Err(Stop::Skipped(why)) => {
+            Err(Stop::Skipped { why, .. }) => {
                 self.outcome = Outcome::Skipped { why };
                 return Ok(());
             }

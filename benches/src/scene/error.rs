@@ -41,11 +41,11 @@ pub enum SceneError {
     Text(Box<TextError>),
     /// Culling settings that can't be carried out.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Settings(#[from] SettingsError),
     /// A body outside of the contract.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Contract(#[from] ContractError),
 }
 

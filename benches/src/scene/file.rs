@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue, Deserializer};
 
 use super::error::{SceneError, Source};
 use crate::effects::EffectsSpec;
-use crate::number::{Interval, Positive, Real};
+use crate::number::{Factors, Interval, Positive, Real};
 use sdop::choice::choices;
 use sdop::files;
 use sdop::settings::CullSettings;
@@ -78,10 +78,12 @@ pub struct GroupSpec {
     /// The procedural shape's sizes, where they differ from its defaults.
     #[serde(default)]
     pub sizes: BTreeMap<Spanned<String>, Spanned<Real>>,
+    /// Factors of the mesh's coordinates, before anything else; negative ones mirror.
+    pub scale: Option<Spanned<Factors>>,
     /// How many bodies, placed by the seed.
     pub count: Option<Spanned<NonZeroU32>>,
-    /// Explicit poses instead: q (x, y, z, w), then t.
-    pub poses: Option<Spanned<Vec<Spanned<[f32; 7]>>>>,
+    /// Explicit poses instead: q (x, y, z, w), which are f32, then t, which are f64.
+    pub poses: Option<Spanned<Vec<Spanned<[f64; 7]>>>>,
     /// Radius of the bounding ball, or the ends of a log-uniform range; absent: the mesh's own size.
     pub radius: Option<Spanned<Interval>>,
     /// What the body frame's origin is.
@@ -214,10 +216,25 @@ fn find_double_roundings(value: &Spanned<DeValue<'_>>, nearest: &mut BTreeMap<us
         DeValue::Array(list) => list
             .iter()
             .for_each(|item| find_double_roundings(item, nearest)),
-        DeValue::Table(table) => table
-            .values()
-            .for_each(|item| find_double_roundings(item, nearest)),
+        DeValue::Table(table) => {
+            for (key, item) in table {
+                match (key.get_ref().as_ref(), item.get_ref()) {
+                    ("poses", DeValue::Array(poses)) => find_in_rotations(poses, nearest),
+                    _ => find_double_roundings(item, nearest),
+                }
+            }
+        }
         _ => {}
+    }
+}
+
+/// The same for poses, whose translations stay f64.
+fn find_in_rotations(poses: &[Spanned<DeValue<'_>>], nearest: &mut BTreeMap<usize, String>) {
+    for pose in poses {
+        if let DeValue::Array(numbers) = pose.get_ref() {
+            let rotation = numbers.iter().take(4);
+            rotation.for_each(|number| find_double_roundings(number, nearest));
+        }
     }
 }
 

@@ -159,7 +159,7 @@ impl SceneFile {
                 Some((size, _)) => Err(self.wrong(
                     size.span(),
                     "`sizes` belong to a `shape`",
-                    "scale a mesh by its `radius`",
+                    "scale a mesh by `scale` or `radius`",
                 )),
             },
             (None, Some(shape)) => Ok(Form::Procedural(shape, &spec.sizes)),

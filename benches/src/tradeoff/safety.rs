@@ -188,11 +188,11 @@ pub fn without_margins(shape: &Shape) -> Shape {
     while *radius > 0.0 && inflate_radius(*radius) > shape.ball.radius {
         *radius = radius.next_down();
     }
-    let reach = f64::from(shape.reach) + norm(shape.ball.centre.to_array());
+    let reach = f64::from(shape.reach) + norm(shape.ball.centre);
     let ordop = &mut bare.ordop;
     let coefficients = ordop.directions.coefficients().iter();
     for ((lo, hi), &c) in ordop.lo.iter_mut().zip(&mut ordop.hi).zip(coefficients) {
-        let direction = ordop.basis.direction(c).to_array();
+        let direction = ordop.basis.direction(c);
         let margin = norm(direction) * (SLAB_MARGIN * reach + SLAB_FLOOR);
         *lo = (f64::from(*lo) + margin) as f32;
         *hi = (f64::from(*hi) - margin) as f32;

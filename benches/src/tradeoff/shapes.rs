@@ -78,7 +78,7 @@ impl Crowd {
             let centre = draws.ball(stretch * reach);
             for (shape, centre) in [(a, [0.0; 3]), (b, centre)] {
                 let q = draws.rotation();
-                let ball = shapes[shape as usize].ball.centre.to_array();
+                let ball = shapes[shape as usize].ball.centre;
                 // The ball's centre is put where it is drawn, whatever the body's origin.
                 let offset = rotate(&rotation(q), ball);
                 let t = [0, 1, 2].map(|axis| (f64::from(centre[axis]) - offset[axis]) as f32);
@@ -202,7 +202,7 @@ pub fn outside(shape: &[Shape], pairs: u32, tier: Tier) -> f64 {
     let reach = 2.0 * f64::from(shape[0].ball.radius);
     let crowd = Crowd::new(shape, FAR, pairs, BATCHES as u64);
     let centre = |body: u32| {
-        let ball = shape[0].ball.centre.to_array();
+        let ball = shape[0].ball.centre;
         let body = body as usize;
         let offset = rotate(&rotation(crowd.bodies.rotation[body]), ball);
         [0, 1, 2].map(|axis| f64::from(crowd.bodies.translation[body][axis]) + offset[axis])

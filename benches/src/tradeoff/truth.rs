@@ -98,7 +98,7 @@ impl Judge {
         let mut key = Sha256::new_with_prefix(HEADER);
         let mut meshes = Vec::new();
         for shape in shapes {
-            let vertices: Vec<_> = shape.vertices.iter().map(|v| v.to_array()).collect();
+            let vertices = shape.vertices.clone();
             key.update((vertices.len() as u64).to_le_bytes());
             key.update((shape.triangles.len() as u64).to_le_bytes());
             vertices

@@ -1,7 +1,6 @@
 //! What is compared: every volume and strategy, as culling settings with the shapes that they need.
 
 use crate::tightness::PolytopeVolume as _;
-use glam::Vec3;
 
 use crate::measure::counts::Volume;
 pub use crate::measure::variant::Variant;
@@ -32,7 +31,7 @@ fn shape_tightness(variant: &Variant, shape: &Shape) -> Option<f64> {
     let hull = Hull::of(&shape.vertices);
     let inner = hull.volume(&shape.vertices);
     let aligned = |k| {
-        let points: Vec<Vec3> = hull.points(&shape.vertices);
+        let points = hull.points(&shape.vertices);
         mean_world_aligned_volume(&points, k, TURNS)
     };
     let volume = match variant.decides()? {

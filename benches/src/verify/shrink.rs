@@ -16,6 +16,7 @@ use sdop_judge::ours::compare::{compare, culler, difference, found};
 use sdop_judge::ours::judged::Shapes;
 use sdop_judge::ours::rounds::Failure;
 use sdop_judge::ours::ways::Mode;
+use sdop_judge::report::pose_in_text;
 
 /// A scene of a few bodies that shows a missed pair.
 #[derive(Clone, Debug)]
@@ -122,13 +123,11 @@ impl Smallest {
                 ..TriangleMesh::default()
             };
             mesh::write(&mesh, directory.join(&file)).map_err(io::Error::other)?;
-            let pose = [&self.bodies.rotation[i][..], &self.bodies.translation[i]].concat();
-            let numbers: Vec<String> = pose.iter().map(|x| format!("{x:?}")).collect();
+            let numbers = pose_in_text(self.bodies.rotation[i], self.bodies.translation[i]);
             let _ = write!(
                 text,
                 "\n[[bodies]] # {i}\nmesh = \"{file}\"\norigin = \"{origin}\"\nposes = [[{}]]\nstatic = {}\n",
-                numbers.join(", "),
-                !self.bodies.dynamic[i]
+                numbers, !self.bodies.dynamic[i]
             );
         }
         let cull = std::collections::BTreeMap::from([("cull", &self.settings)]);

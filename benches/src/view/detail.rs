@@ -34,9 +34,6 @@ impl Drawn {
             }
         }
         let hull = Hull::of(&shape.vertices).points(&shape.vertices);
-        Self {
-            levels,
-            hull: hull.iter().map(|v| v.to_array()).collect(),
-        }
+        Self { levels, hull }
     }
 }

@@ -50,7 +50,7 @@ pub enum PageError {
     },
     /// Culling settings that can't be carried out.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Cull(#[from] CullError),
     /// Prices that can't be calibrated.
     #[error(transparent)]
@@ -211,7 +211,7 @@ impl Page {
                     vertices: [vertices.len(), mesh.vertices.len()],
                     triangles: [triangles.len(), mesh.triangles.len()],
                 };
-                vertices.extend(mesh.vertices.iter().map(|v| v.to_array()));
+                vertices.extend(&mesh.vertices);
                 triangles.extend_from_slice(&mesh.triangles);
                 level
             });

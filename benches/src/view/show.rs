@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use miette::Diagnostic as _;
-
 use crate::measure::counts::Volume;
 use crate::record;
 use crate::scene::Scene;
@@ -81,6 +79,11 @@ impl Show {
             claim: Claim::Mesh,
             messages: Vec::new(),
         };
+        if show.frames.iter().any(|frame| frame.translations.is_some()) {
+            let words =
+                "The record has translations that f32 doesn't hold. They are drawn rounded to f32.";
+            show.messages.push(words.to_owned());
+        }
         if let Some(error) = &broken {
             show.messages.push(match show.frames.len() {
                 0 => in_words(error),
@@ -196,6 +199,7 @@ impl Show {
             frames.push(FrameLine {
                 frame: number as u32,
                 poses: FrameLine::poses(&frame.bodies),
+                translations: None,
                 pairs: reported.next().unwrap_or_default(),
                 counters: None,
                 meets: Some(truth.pairs(frame).map_err(|error| error.to_string())?),
@@ -284,7 +288,9 @@ impl Show {
                         same.frame, frame.frame
                     ));
                 }
-                Some(same) if same.poses != frame.poses => {
+                Some(same)
+                    if same.poses != frame.poses || same.translations != frame.translations =>
+                {
                     return Err(format!("frame {} has other poses", frame.frame));
                 }
                 Some(_) => {}

@@ -6,7 +6,7 @@ use crate::cost::predict::Prices;
 use crate::effects::{EffectsSpec, Velocities};
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::variant::Variant;
-use crate::scene::Scene;
+use crate::scene::{FineTranslations, Scene};
 use crate::simulate::SimulationError;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
@@ -54,6 +54,7 @@ pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>
             angular: at_rest,
         },
         bodies,
+        fine: FineTranslations::default(),
         share: None,
         effects: EffectsSpec::default(),
         cull,

@@ -125,8 +125,8 @@ impl Scene {
 
     /// A shape, whose pairs are filtered if it is a hull or a mesh. Its margin is taken times `share`: 1, but for a planted bug.
     pub fn shape(&mut self, kind: Kind, mesh: &TriangleMesh, share: f32) -> ShapeId {
-        let vertices = mesh.vertices.iter().map(|v| v.to_array()).collect();
-        self.meshes.push((vertices, mesh.triangles.clone()));
+        self.meshes
+            .push((mesh.vertices.clone(), mesh.triangles.clone()));
         let (vertices, triangles) = &self.meshes[self.meshes.len() - 1];
         let (v, n, t, m) = (
             vertices.as_ptr(),

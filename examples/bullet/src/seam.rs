@@ -53,8 +53,9 @@ pub fn add(
     triangles: &[[u32; 3]],
     margin: f32,
 ) -> Option<u32> {
-    let vertices = vertices.iter().map(|&v| v.into()).collect();
-    let mesh = TriangleMesh::new("body", vertices, triangles.to_vec()).ok()?;
+    let mesh = TriangleMesh::from_f32(vertices, triangles)
+        .ok()?
+        .named("body");
     let shape = Shape::build(&mesh, &ShapeSpec::default()).ok()?;
     let number = test.add(&shape).ok()?;
     test.grown(number, margin).ok().map(|_| number)

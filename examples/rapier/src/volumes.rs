@@ -15,10 +15,7 @@ use super::rapier::prelude::{Collider, IntegrationParameters, RigidBody};
 #[must_use]
 pub fn volume(shape: &dyn Shape) -> Option<Volume> {
     let (vertices, triangles) = triangles_of(shape)?;
-    let vertices = vertices
-        .iter()
-        .map(|v| v.to_array().map(|x| x as f32).into())
-        .collect();
+    let vertices = vertices.iter().map(|v| v.to_array().map(|x| x as f32));
     let mesh = TriangleMesh::new("collider", vertices, triangles).ok()?;
     Volume::build(&mesh, &ShapeSpec::default()).ok()
 }

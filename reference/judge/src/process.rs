@@ -115,7 +115,10 @@ impl Running {
             }
             match wire.decode(answers.len(), &line)? {
                 Said::Answer(answer) => answers.push(answer),
-                Said::Skipped(why) => return Err(Stop::Skipped(why)),
+                Said::Skipped(why) => {
+                    let answered = answers;
+                    return Err(Stop::Skipped { why, answered });
+                }
             }
         }
         let answered = answers.len();

@@ -47,18 +47,25 @@ fn scene(bodies: &Bodies, shapes: &[Shape]) -> String {
     let mut text = format!("name = \"{STEM}\"\nframes = 1\n");
     for i in 0..bodies.len() {
         let shape = bodies.shape[i] as usize;
-        let pose = [&bodies.rotation[i][..], &bodies.translation[i]].concat();
-        let numbers: Vec<String> = pose.iter().map(|x| format!("{x:?}")).collect();
+        let numbers = pose_in_text(bodies.rotation[i], bodies.translation[i]);
         let _ = write!(
             text,
             "\n[[bodies]] # {i}: {}\nmesh = \"{STEM}-{shape}.obj\"\norigin = \"file\"\nposes = [[{}]]\nstatic = {}\n",
             shapes[shape].name.escape_default(),
-            numbers.join(", "),
+            numbers,
             !bodies.dynamic[i]
         );
     }
     text.push_str("\n[cull]\nstrategy = \"s-dop-sequential\"\n");
     text
+}
+
+/// A pose's seven numbers as a scene file has them: written as f64, so that the translation is this one and no other f64.
+#[must_use]
+pub fn pose_in_text(rotation: [f32; 4], translation: [f32; 3]) -> String {
+    let pose = rotation.into_iter().chain(translation);
+    let numbers: Vec<String> = pose.map(|x| format!("{:?}", f64::from(x))).collect();
+    numbers.join(", ")
 }
 
 /// JUnit's XML: a suite for each group, a test for each case.
@@ -102,6 +109,13 @@ pub fn junit(verdict: &Verdict) -> String {
             };
         }
         text.push_str("  </testsuite>\n");
+    }
+    if verdict.not_run > 0 {
+        let n = verdict.not_run;
+        let _ = writeln!(
+            text,
+            "  <testsuite name=\"not run\" tests=\"{n}\" failures=\"0\" errors=\"0\" skipped=\"{n}\"/>"
+        );
     }
     text.push_str("</testsuites>\n");
     text

@@ -3,8 +3,6 @@
 
 use std::time::{Duration, Instant};
 
-use glam::Vec3;
-
 use super::case::{Case, Frame};
 use super::catalogue::picked;
 use super::claim::Claim;
@@ -290,7 +288,7 @@ fn without_triangle(case: &Case, shape: usize, triangle: usize) -> Option<Case> 
         return None;
     }
     triangles.remove(triangle);
-    let mut vertices: Vec<Vec3> = Vec::new();
+    let mut vertices: Vec<[f32; 3]> = Vec::new();
     let mut number = vec![None; old.vertices.len()];
     for corner in triangles.iter_mut().flatten() {
         let vertex = *corner as usize;

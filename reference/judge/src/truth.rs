@@ -107,7 +107,7 @@ fn near(a: &reference::Body<'_>, b: &reference::Body<'_>) -> bool {
 /// The numbers that a claim is about; or-DOPs are expensive to prepare and left trivial for the others.
 fn judged(claim: Claim, shape: &Shape) -> Result<reference::Shape, InvalidInput> {
     let ball = reference::Ball {
-        centre: shape.ball.centre.to_array(),
+        centre: shape.ball.centre,
         radius: shape.ball.radius,
     };
     let slabs = match claim {
@@ -123,7 +123,7 @@ fn judged(claim: Claim, shape: &Shape) -> Result<reference::Shape, InvalidInput>
         Claim::Hull => hull_triangles(shape),
         _ => shape.triangles.clone(),
     };
-    let vertices = shape.vertices.iter().map(|v| v.to_array()).collect();
+    let vertices = shape.vertices.clone();
     reference::Shape::new(ball, slabs, vertices, triangles)
 }
 

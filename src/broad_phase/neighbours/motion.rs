@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use super::drift::{PIECE, padded};
 use crate::broad_phase::BLOCK_BODIES;
+use crate::rounding::skin::{REACH_FLOOR, SKIN_FLOOR};
 use crate::simd::{Kernel, Lanes, dispatch, quads_in_columns};
 use crate::threads::Executor;
 
@@ -15,7 +16,7 @@ const ASKED: usize = 256;
 const MOST_OF_SMALLEST: f64 = 16.0;
 
 /// 2⁻⁶⁰: smaller radii count as this one, whose square is no subnormal.
-const LEAST: f32 = crate::rounding::skin::SKIN_FLOOR as f32;
+const LEAST: f32 = SKIN_FLOOR as f32;
 
 /// The farthest that any ball has drifted: sums of squares of what the centre has moved and the radius has grown.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -76,6 +77,18 @@ pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> 
     } else {
         typical
     }
+}
+
+/// Whether most balls are so small that the floor of the skin, and of what rounding needs beyond it, is
+/// wider than they are. A list would then hold pairs that have nothing to do with the bodies' sizes.
+pub fn are_specks(radii: impl ExactSizeIterator<Item = f32>) -> bool {
+    let step = radii.len().div_ceil(ASKED).max(1);
+    let (mut specks, mut asked) = (0, 0);
+    for radius in radii.step_by(step) {
+        specks += usize::from(f64::from(radius) < REACH_FLOOR);
+        asked += 1;
+    }
+    2 * specks > asked
 }
 
 /// What is known of the sizes of bodies of which lists are made.

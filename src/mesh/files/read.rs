@@ -3,7 +3,8 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::{TriFormat, obj, ply, stl, tri};
+use super::parts::Parts;
+use super::{TriFormat, obj, off, ply, stl, tri};
 use crate::files;
 use crate::mesh::{MeshError, Problem, TriangleMesh};
 
@@ -18,6 +19,8 @@ pub enum MeshFormat {
     Stl,
     /// PLY, text or binary.
     Ply,
+    /// OFF, text.
+    Off,
 }
 
 /// What a file cannot say about itself, and how much of it is read.
@@ -46,6 +49,7 @@ impl MeshFormat {
             "obj" => Some(Self::Obj),
             "stl" => Some(Self::Stl),
             "ply" => Some(Self::Ply),
+            "off" => Some(Self::Off),
             _ => None,
         }
     }
@@ -101,6 +105,7 @@ pub fn read_bytes(
         MeshFormat::Obj => obj::read(bytes),
         MeshFormat::Stl => stl::read(bytes),
         MeshFormat::Ply => ply::read(bytes),
+        MeshFormat::Off => off::read(bytes),
     };
     let Parts { points, triangles } = parts.map_err(|(line, problem)| problem.at(file, line))?;
     let stem = Path::new(file)
@@ -115,26 +120,4 @@ pub fn read_bytes(
     };
     mesh.map(|mesh| mesh.named(stem))
         .map_err(|problem| problem.at(file, None))
-}
-
-/// What a format's reader finds.
-pub(super) struct Parts {
-    /// Positions in f64, each of which rounds to the f32 nearest to what the file says.
-    pub points: Vec<[f64; 3]>,
-    /// The three vertices of each triangle; `None` where each three points are one.
-    pub triangles: Option<Vec<[u32; 3]>>,
-}
-
-impl Parts {
-    /// Vertices and what triangles name of them.
-    pub fn indexed(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
-        let triangles = Some(triangles);
-        Self { points, triangles }
-    }
-
-    /// Three points a triangle.
-    pub fn soup(points: Vec<[f64; 3]>) -> Self {
-        let triangles = None;
-        Self { points, triangles }
-    }
 }

@@ -15,7 +15,7 @@
 //! pass for one of another dialect. One fit is the answer, two are refused with both names.
 //! When nothing fits, the message comes from the dialect that got furthest into the file.
 
-use super::read::Parts;
+use super::parts::Parts;
 use super::text::{self, Cursor, Fault, Token};
 use crate::choice::choices;
 use crate::mesh::{Problem, check_triangle};
@@ -88,7 +88,8 @@ impl TriFormat {
 
 /// Reads a `.tri` file of the given dialect, or of the one that fits.
 pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<Parts, Fault> {
-    let tokens = text::tokens(text::decode(bytes)?);
+    let text = text::decode(bytes);
+    let tokens = text::tokens(&text);
     if tokens.is_empty() {
         return Err((None, Problem::NoVertices));
     }
@@ -226,7 +227,7 @@ fn vertices(cursor: &mut Cursor, count: usize, numbers: usize) -> Result<Vec<[f6
         let record = cursor.record(numbers, &format!("vertex {index} of {count}"))?;
         // Normals and colours are not used, and a degenerate mesh has NaN normals: they need only be numbers.
         for token in &record[3..] {
-            token.number::<f32>("a normal or colour")?;
+            token.number("a normal or colour")?;
         }
         vertices.push(text::position(index, record)?);
     }

@@ -13,6 +13,8 @@ mod tubes;
 
 pub use sizes::ShapeError;
 
+use glam::Vec3;
+
 use super::TriangleMesh;
 
 /// A shape made from a few sizes; lengths in scene units, counts in pieces.
@@ -240,7 +242,7 @@ impl ProceduralShape {
         };
         Ok(TriangleMesh {
             name: self.name().to_owned(),
-            vertices,
+            vertices: vertices.iter().map(Vec3::to_array).collect(),
             triangles,
             ..TriangleMesh::default()
         })

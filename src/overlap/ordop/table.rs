@@ -84,7 +84,7 @@ impl SlabTables {
             columns: vec![[0.0; ROW]; directions.k()],
         };
         for (shape, ordop) in shapes {
-            tables.push(ordop, shape.ball.centre.to_array(), shape.reach);
+            tables.push(ordop, shape.ball.centre, shape.reach);
         }
         tables
     }
@@ -152,7 +152,7 @@ impl SlabTables {
 
 fn table(ordop: &OrDop, centre: [f32; 3], reach: f32) -> [f32; TABLE] {
     let mut table = [0.0; TABLE];
-    let columns = ordop.basis.columns.map(|column| column.to_array());
+    let columns = ordop.basis.columns;
     let scale = norm(columns[0]);
     for (slab, &member) in members_of(2 * ordop.lo.len()).iter().enumerate() {
         let coefficients = COEFFICIENTS[member];
@@ -209,7 +209,7 @@ mod tests {
         let mut tables = SlabTables::new(box_of(1).ordop.directions, []);
         for shapes in 1..=ROW + 2 {
             let shape = box_of(shapes as u16);
-            tables.push(&shape.ordop, shape.ball.centre.to_array(), shape.reach);
+            tables.push(&shape.ordop, shape.ball.centre, shape.reach);
             assert_eq!(tables.rows().len(), 2 * shapes);
             assert_eq!(tables.columns().is_empty(), shapes > ROW, "{shapes}");
             for (number, column) in tables.columns().iter().enumerate() {

@@ -16,7 +16,6 @@ pub const ENTRIES: [Entry; 3] = [
         version: VERSION,
         work: Work::Boxes,
         threads: usize::MAX,
-        slack: 0,
         ages: true,
         new: |setup| Ok(Box::new(boxes::Boxes::new(setup)?)),
     },
@@ -25,7 +24,6 @@ pub const ENTRIES: [Entry; 3] = [
         version: VERSION,
         work: Work::Spheres,
         threads: usize::MAX,
-        slack: 0,
         ages: true,
         new: |setup| Ok(Box::new(culler::Culled::new(setup, Strategy::Sphere)?)),
     },
@@ -34,7 +32,6 @@ pub const ENTRIES: [Entry; 3] = [
         version: VERSION,
         work: Work::SDop,
         threads: usize::MAX,
-        slack: 0,
         ages: true,
         new: |setup| {
             Ok(Box::new(culler::Culled::new(

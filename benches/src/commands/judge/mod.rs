@@ -141,11 +141,7 @@ pub fn run(
     };
     print::emit(format, &verdict)?;
     save(args, command, &verdict, out, format)?;
-    Ok(if verdict.passed() {
-        Outcome::Passed
-    } else {
-        Outcome::Failed
-    })
+    Ok(Outcome::from(&verdict))
 }
 
 impl Outside {
@@ -176,7 +172,8 @@ pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::Read> {
             .wrap_err_with(|| format!("cannot read {}", path.display()))?;
         let case = broadmark::read(&bytes).into_diagnostic()?;
         let pairs = vec![None; case.frames.len()];
-        return Ok(ndjson::Read { case, pairs });
+        let lacks = None;
+        return Ok(ndjson::Read { case, pairs, lacks });
     }
     let file = File::open(path)
         .into_diagnostic()

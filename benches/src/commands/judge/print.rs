@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 use miette::miette;
-use sdop_judge::Verdict;
 use sdop_judge::report::junit;
 use sdop_judge::verdict::GroupVerdict;
+use sdop_judge::{Conclusion, Verdict};
 use serde::Serialize;
 
 use crate::commands::output::{self, Format, print, rows};
@@ -45,6 +45,11 @@ impl ReportFormat {
 #[derive(Serialize)]
 struct Whole<'a> {
     passed: bool,
+    conclusion: Conclusion,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    why: Option<String>,
+    asked: usize,
+    judged: usize,
     groups: Vec<GroupVerdict>,
     #[serde(flatten)]
     verdict: &'a Verdict,
@@ -67,6 +72,10 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
                 .and_then(|smallest| smallest.witness.as_ref());
             let whole = Whole {
                 passed: verdict.passed(),
+                conclusion: verdict.conclusion(),
+                why: verdict.why(),
+                asked: verdict.asked(),
+                judged: verdict.judged(),
                 groups: verdict.groups(),
                 verdict,
                 witness,

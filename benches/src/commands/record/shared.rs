@@ -111,7 +111,7 @@ pub(super) fn merge(args: &Args, experiment: &Experiment, directory: &Path) -> m
         .map(serde_json::from_value)
         .transpose()
         .into_diagnostic()?;
-    let part = prepare(directory, false)?;
+    let part = prepare(directory)?;
     let program = std::env::current_exe().into_diagnostic()?;
     let mut command = Command::new(program);
     command

@@ -4,10 +4,11 @@
 
 use miette::IntoDiagnostic as _;
 use sdop::bodies::Bodies;
-use sdop_bench::domain::{DomainError, DomainSummary, MpiNetwork, Network as _, Rank};
+use sdop_bench::domain::{DomainError, DomainSummary, Rank};
 use sdop_bench::effects::Velocities;
 use sdop_bench::hash::volumes_sha256;
 use sdop_bench::mpi::Ranks;
+use sdop_bench::network::{MpiNetwork, Network as _};
 use sdop_bench::scene::Scene;
 use sdop_bench::sweep::{code, digest};
 

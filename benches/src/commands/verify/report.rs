@@ -107,9 +107,20 @@ impl Report {
         self.coverage = Coverage::of(&self.matrix, boxes, rotation);
     }
 
-    /// Whether no pair is missed, no finder disagrees with all-pairs, and no cell of the matrix is empty.
-    pub fn passed(&self) -> bool {
-        self.missed == 0 && self.differ == 0 && self.coverage.is_full()
+    /// What is wrong, if anything is: a pair is missed, a finder disagrees with all-pairs, or a cell of the matrix is empty.
+    pub fn why(&self) -> Option<String> {
+        if self.missed > 0 {
+            Some(format!("{} pairs were missed", self.missed))
+        } else if self.differ > 0 {
+            Some(format!(
+                "lists differ from all-pairs' in {} pairs",
+                self.differ
+            ))
+        } else if !self.coverage.is_full() {
+            Some("a cell of the matrix is empty".to_owned())
+        } else {
+            None
+        }
     }
 
     /// Two tables a source, and those of the matrix.

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::Tier;
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::view::Show;
 use sdop_judge::answer::{Answer, Stop, sorted};
 use sdop_judge::ours::hard::Group;
@@ -116,7 +117,7 @@ fn judged(
     claim: Claim,
     answers: Option<&Path>,
 ) -> miette::Result<Show> {
-    let Read { case, pairs } = read_case(path, most)?;
+    let Read { case, pairs, .. } = read_case(path, most)?;
     let given = match answers {
         None => {
             let answer = |pairs: Option<Vec<_>>| pairs.map(|pairs| Answer { pairs, ns: None });
@@ -164,7 +165,7 @@ fn answered(case: &Case, file: &Path, most: u64) -> miette::Result<Vec<Answer>> 
             "{name}: {} answers to {frames} frames",
             answers.len()
         )),
-        Err(Stop::Skipped(why)) => Err(miette!("{name}: the case was skipped: {why}")),
+        Err(Stop::Skipped { why, .. }) => Err(miette!("{name}: the case was skipped: {why}")),
         Err(Stop::Trouble(trouble)) => Err(miette!(help = hint, "{name}: {trouble}")),
     }
 }
@@ -186,7 +187,7 @@ fn record(args: &SceneArgs, run: Option<usize>) -> miette::Result<Input> {
     match Show::record(args.path(), args.frames()) {
         Ok((show, broken)) => Ok(Input::Show(Box::new(show), broken)),
         // Nothing there is no record that is broken.
-        Err(error @ RecordError::Unreadable { .. }) => Err(error.into()),
+        Err(error @ RecordError::Unreadable { .. }) => Err(error).or_report(),
         Err(error) => Ok(Input::Broken(error)),
     }
 }
@@ -233,7 +234,8 @@ fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<Show> {
         &frames[..most],
         &settings,
         tier,
-    )?;
+    )
+    .or_report()?;
     show.header.seed = group.seed;
     show.messages.push(group.why.clone());
     if cases.runs.len() > 1 {

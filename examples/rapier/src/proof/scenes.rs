@@ -284,11 +284,7 @@ impl Stage {
 
 /// The colliders of one body.
 fn made_of(kind: Kind, form: &TriangleMesh, hooks: ActiveHooks) -> Vec<Collider> {
-    let points: Vec<Vector> = form
-        .vertices
-        .iter()
-        .map(|v| to_vector(v.to_array()))
-        .collect();
+    let points: Vec<Vector> = form.vertices.iter().map(|v| to_vector(*v)).collect();
     let hull =
         |points: &[Vector]| SharedShape::convex_hull(points).expect("every form has a volume");
     let halves = || {

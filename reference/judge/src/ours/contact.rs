@@ -183,7 +183,7 @@ impl<'a> Side<'a> {
     }
 
     fn ball(&self) -> DVec3 {
-        self.matrix * self.built.ball.centre.as_dvec3()
+        self.matrix * in_f64(&self.built.ball.centre)
     }
 
     fn turned(&self) -> Turned {
@@ -195,14 +195,19 @@ impl<'a> Side<'a> {
     }
 
     fn vertices(&self) -> Vec<[f64; 3]> {
-        let turn = |v: &glam::Vec3| (self.matrix * v.as_dvec3()).to_array();
+        let turn = |v: &[f32; 3]| (self.matrix * in_f64(v)).to_array();
         self.built.vertices.iter().map(turn).collect()
     }
 
     fn triangle_normal(&self, pick: u32) -> Option<DVec3> {
         let triangles = &self.built.triangles;
         let triangle = triangles.get(pick as usize % triangles.len().max(1))?;
-        let [p, q, r] = triangle.map(|v| self.built.vertices[v as usize].as_dvec3());
+        let [p, q, r] = triangle.map(|v| in_f64(&self.built.vertices[v as usize]));
         (self.matrix * (q - p).cross(r - p)).try_normalize()
     }
+}
+
+/// A vertex in f64.
+fn in_f64(vertex: &[f32; 3]) -> DVec3 {
+    DVec3::from_array(vertex.map(f64::from))
 }

@@ -242,7 +242,7 @@ pub fn crowd(shapes: &Shapes, bodies: usize, side: f64, rng: &mut impl Rng) -> B
         let rotation = rotation(rng);
         let centre: [f32; 3] = std::array::from_fn(|_| rng.random_range(0.0..side));
         // The ball's centre is what is uniform, wherever the shape's origin is.
-        let ball = shapes.built[shape].ball.centre.to_array();
+        let ball = shapes.built[shape].ball.centre;
         let offset = pose::rotate(&pose::rotation(rotation), ball);
         let placed = Placed {
             shape,

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::{BodyLine, FORMAT, FrameLine, Header, RecordError, ShapeLine, VERSION};
 use sdop::bodies::Bodies;
-use sdop::bodies::contract::{ContractError, check_bodies, check_poses};
+use sdop::bodies::contract::{ContractError, check_bodies, check_pose, check_poses};
 use sdop::files::{MAX_BYTES, read_line};
 use sdop::volume::Shape;
 
@@ -156,10 +156,10 @@ impl<R: BufRead> Reader<R> {
         }
         frame.pose(&mut self.bodies);
         let posed = check_poses(&self.bodies, 0..self.bodies.len());
-        posed.map_err(|error: ContractError| {
-            let problem = format!("frame {}: {error}", frame.frame);
-            self.wrong(problem, error.hint)
-        })?;
+        posed.map_err(|error| self.outside(frame, &error))?;
+        if let Some(translations) = &frame.translations {
+            self.check_translations(frame, translations)?;
+        }
         for (name, pairs) in [
             ("pairs", Some(&frame.pairs)),
             ("meets", frame.meets.as_ref()),
@@ -171,6 +171,40 @@ impl<R: BufRead> Reader<R> {
             }
         }
         Ok(())
+    }
+
+    /// Checks a frame's f64 translations, of which its poses have the nearest f32.
+    fn check_translations(&self, frame: &FrameLine, all: &[[f64; 3]]) -> Result<(), RecordError> {
+        let Bodies {
+            rotation,
+            translation,
+            ..
+        } = &self.bodies;
+        let hint = "give every body its f64 translation, and its pose the nearest f32";
+        if all.len() != translation.len() {
+            let (given, bodies) = (all.len(), translation.len());
+            let problem = format!(
+                "frame {} has {given} translations for {bodies} bodies",
+                frame.frame
+            );
+            return Err(self.wrong(problem, hint));
+        }
+        for (body, t) in all.iter().enumerate() {
+            check_pose(body, &rotation[body], t).map_err(|error| self.outside(frame, &error))?;
+            if t.map(|x| x as f32) != translation[body] {
+                let problem = format!(
+                    "frame {}: body {body} has the translation {t:?} and the pose's {:?}",
+                    frame.frame, translation[body]
+                );
+                return Err(self.wrong(problem, hint));
+            }
+        }
+        Ok(())
+    }
+
+    /// The error for a body outside of the contract.
+    fn outside(&self, frame: &FrameLine, error: &ContractError) -> RecordError {
+        self.wrong(format!("frame {}: {error}", frame.frame), error.hint)
     }
 
     /// What is wrong with a list of pairs.
