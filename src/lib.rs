@@ -88,6 +88,8 @@
 
 pub mod bodies;
 pub mod boxes;
+#[cfg(feature = "c")]
+pub mod c;
 pub mod counters;
 pub mod culler;
 #[cfg(feature = "shapes")]

@@ -189,7 +189,7 @@ pub fn check_length(what: &str, length: usize, bodies: usize) -> PyResult<()> {
 }
 
 /// Rows of two as an array of shape (rows, 2), which takes the vector over.
-pub fn pairs<T: numpy::Element + bytemuck::Pod>(
+pub fn pairs<T: numpy::Element>(
     py: Python<'_>,
     pairs: Vec<[T; 2]>,
 ) -> PyResult<Bound<'_, PyArray2<T>>> {

@@ -2,7 +2,6 @@
 
 use std::sync::Mutex;
 
-use bytemuck::cast_slice;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use sdop::boxes::BoxBody;
@@ -93,7 +92,7 @@ impl BoxCuller {
         sort: bool,
     ) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let given = self::boxes(boxes)?;
-        let boxes: &[Aabb] = cast_slice(given.rows());
+        let boxes = Aabb::from_rows(given.rows());
         let groups = self::groups(groups, boxes.len())?;
         let found = locked(py, &self.0, |culler| {
             culler.set_groups(groups);
@@ -139,7 +138,7 @@ impl BoxWorld {
     /// Moves many boxes: ids of shape (n,), boxes as `box_pairs` takes them. Those before one that is refused have moved.
     fn set_many(&self, py: Python<'_>, ids: &Bound<'_, PyAny>, boxes: &Bound<'_, PyAny>) -> PyResult<()> {
         let (ids, given) = (id_column(ids, "ids")?, self::boxes(boxes)?);
-        let boxes: &[Aabb] = cast_slice(given.rows());
+        let boxes = Aabb::from_rows(given.rows());
         check_length("boxes", boxes.len(), ids.len())?;
         locked(py, &self.0, |world| {
             let mut all = ids.iter().zip(boxes);
@@ -189,7 +188,7 @@ impl BoxWorld {
 fn one(given: &Bound<'_, PyAny>) -> PyResult<Aabb> {
     let given = given.py().import("numpy")?.call_method1("reshape", (given, (-1, 6)))?;
     let given = boxes(&given)?;
-    match cast_slice(given.rows()) {
+    match Aabb::from_rows(given.rows()) {
         [one] => Ok(*one),
         _ => Err(with_help("bounds are not one box", "six numbers: the lower corner, then the upper one")),
     }

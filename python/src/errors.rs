@@ -3,9 +3,9 @@
 use std::fmt::Display;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use miette::Diagnostic;
 use pyo3::exceptions::PyValueError;
 use pyo3::{PyErr, Python, create_exception};
+use sdop_bench::remedy::Remedy;
 
 create_exception!(
     sdop,
@@ -15,8 +15,8 @@ create_exception!(
 );
 
 /// An error of the library.
-pub fn refused(error: impl Diagnostic) -> PyErr {
-    match error.help() {
+pub fn refused(error: impl Remedy) -> PyErr {
+    match error.remedy() {
         Some(help) => with_help(&error, help),
         None => SdopError::new_err(error.to_string()),
     }

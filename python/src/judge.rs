@@ -78,14 +78,11 @@ impl Scene {
         let shapes = PyList::empty(py);
         for shape in &case.shapes {
             let named = PyDict::new(py);
-            let vertices: Vec<[f32; 3]> = shape.vertices.iter().map(|v| (*v).into()).collect();
-            let centre: [f32; 3] = shape.ball.centre.into();
-            let basis: [[f32; 3]; 3] = shape.ordop.basis.columns.map(Into::into);
             named.set_item("name", &shape.name)?;
-            named.set_item("vertices", matrix(py, &vertices)?)?;
+            named.set_item("vertices", matrix(py, &shape.vertices)?)?;
             named.set_item("triangles", matrix(py, &shape.triangles)?)?;
-            named.set_item("ball", (centre, shape.ball.radius))?;
-            named.set_item("basis", matrix(py, &basis)?)?;
+            named.set_item("ball", (shape.ball.centre, shape.ball.radius))?;
+            named.set_item("basis", matrix(py, &shape.ordop.basis.columns)?)?;
             named.set_item("lo", PyArray1::from_slice(py, &shape.ordop.lo))?;
             named.set_item("hi", PyArray1::from_slice(py, &shape.ordop.hi))?;
             shapes.append(named)?;

@@ -85,8 +85,7 @@ impl Shape {
     /// Vertices as culled, shape (n, 3): scale · (point of the mesh − offset), rounded to float32.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let vertices: Vec<[f32; 3]> = self.built.vertices.iter().map(|v| (*v).into()).collect();
-        matrix(py, &vertices)
+        matrix(py, &self.built.vertices)
     }
 
     /// Vertex indices of each triangle, shape (m, 3).
@@ -98,7 +97,7 @@ impl Shape {
     /// Smallest enclosing ball of the vertices, rounded up: centre x, y, z and radius.
     #[getter]
     fn ball(&self) -> ([f32; 3], f32) {
-        (self.built.ball.centre.into(), self.built.ball.radius)
+        (self.built.ball.centre, self.built.ball.radius)
     }
 
     /// Number of or-DOP faces.

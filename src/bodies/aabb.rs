@@ -1,7 +1,7 @@
 //! Boxes on the world's axes, as engines hand them over.
 
 use super::contract::{ContractError, refuse};
-use crate::simd::in_default_mode;
+use crate::simd::{boxes_of, in_default_mode};
 
 pub use crate::simd::Aabb;
 
@@ -11,6 +11,12 @@ impl Aabb {
     pub fn new(min: impl Into<[f32; 3]>, max: impl Into<[f32; 3]>) -> Self {
         let (min, max) = (min.into(), max.into());
         Self { min, max }
+    }
+
+    /// Rows of six numbers as boxes, where they are: the lower corner x, y, z, then the upper one.
+    #[must_use]
+    pub fn from_rows(rows: &[[f32; 6]]) -> &[Self] {
+        boxes_of(rows)
     }
 
     /// Whether two boxes have a point in common.

@@ -22,9 +22,16 @@ pub fn numbers_of(boxes: &[Aabb]) -> &[[f32; 6]] {
     unsafe { std::slice::from_raw_parts(boxes.as_ptr().cast(), boxes.len()) }
 }
 
+/// The boxes that rows of six numbers are: lower corner, then upper corner.
+#[must_use]
+pub fn boxes_of(numbers: &[[f32; 6]]) -> &[Aabb] {
+    // SAFETY: as above, the other way round: each pattern of bits is a box, whose fields are plain f32.
+    unsafe { std::slice::from_raw_parts(numbers.as_ptr().cast(), numbers.len()) }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Aabb, numbers_of};
+    use super::{Aabb, boxes_of, numbers_of};
 
     #[test]
     fn numbers_keep_their_order() {
@@ -35,6 +42,7 @@ mod tests {
             [4.0, 5.0, 6.0, 1.0, 2.0, 3.0],
         ];
         assert_eq!(numbers_of(&boxes), expected);
-        assert!(numbers_of(&[]).is_empty());
+        assert_eq!(boxes_of(&expected), boxes);
+        assert!(numbers_of(&[]).is_empty() && boxes_of(&[]).is_empty());
     }
 }
