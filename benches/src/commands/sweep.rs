@@ -123,14 +123,16 @@ impl SweepArgs {
         let own = header.units.div_ceil(ranks.size) as u64;
         let bar = first.then(|| progress(own, "units of rank 0"));
         let mut ended = |unit| {
-            for bar in &bar {
+            if let Some(bar) = &bar {
                 bar.set_message(work.name(unit));
                 bar.inc(1);
             }
         };
         let network = MpiNetwork::new(ranks);
         let done = sdop_bench::sweep::on_ranks(&network, work, self.share_cores, &mut ended);
-        bar.iter().for_each(|bar| bar.finish_and_clear());
+        if let Some(bar) = &bar {
+            bar.finish_and_clear();
+        }
         for (unit, result) in done? {
             take(unit, &result)?;
         }
