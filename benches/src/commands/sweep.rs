@@ -104,7 +104,8 @@ impl SweepArgs {
         };
         let name = format!("{}-{}-of-{}.units", header.command, shard.index, shard.of);
         let path = directory.join(name);
-        write_shard(&path, &header, &part, start.elapsed().as_secs_f64())
+        std::fs::create_dir_all(directory)
+            .and_then(|()| write_shard(&path, &header, &part, start.elapsed().as_secs_f64()))
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot write {}", path.display()))?;
         let (units, all) = (part.len(), header.units);
