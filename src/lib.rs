@@ -107,7 +107,7 @@ pub mod threads;
 pub mod update;
 
 pub use bodies::contract::ContractError;
-pub use bodies::{Aabb, Bodies, Groups};
+pub use bodies::{Aabb, Bodies, Groups, Motion};
 pub use boxes::{BoxCuller, BoxWorld};
 pub use culler::{CullError, Culler, CullerBuilder};
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};

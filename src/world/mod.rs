@@ -31,6 +31,7 @@ mod digest;
 mod error;
 mod events;
 mod ids;
+mod live_pairs;
 mod local;
 mod lookup;
 mod margins;
@@ -57,11 +58,12 @@ pub use saved::SnapshotError;
 pub use snapshot::WorldSnapshot;
 
 pub(crate) use self::ids::{Ids, shrink_column};
+pub(crate) use self::live_pairs::LivePairs;
 use self::local::Local;
 use self::margins::{Margins, check_margin};
-pub(crate) use self::pair_log::PairLog;
+use self::pair_log::PairLog;
 #[cfg(feature = "serde")]
-pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length};
+pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length, damaged};
 use self::shapes::{ShapeSlot, check_shape};
 use crate::bodies::Bodies;
 use crate::bodies::contract::{ContractError, check_number, check_pose};
