@@ -408,7 +408,7 @@ mod tests {
             most = most.max(live.bytes());
         }
         assert!(most < 200_000, "{most}");
-        assert_eq!(live.events(&ids).ended().count(), 66);
+        assert_eq!(live.events(&ids).ended().count(), 67);
     }
 
     #[test]
