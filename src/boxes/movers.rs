@@ -137,7 +137,7 @@ impl BoxWorld {
     /// What the index has of a box.
     fn tags(&self, slot: usize) -> u32 {
         let is_grouped = self.groups[slot] != Groups::ALL;
-        FIXED * u32::from(!self.dynamic[slot]) | GROUPED * u32::from(is_grouped)
+        (FIXED * u32::from(!self.dynamic[slot])) | (GROUPED * u32::from(is_grouped))
     }
 
     /// An index of all boxes as they are now.
@@ -181,7 +181,8 @@ impl BoxWorld {
         let mut found = std::mem::take(&mut self.movers.found);
         let mut ends = std::mem::take(&mut self.movers.ends);
         let mut search = std::mem::take(&mut self.movers.search);
-        (found.clear(), ends.clear());
+        found.clear();
+        ends.clear();
         let mut seekers = Vec::with_capacity(TOGETHER);
         let mut updates = 0;
         for slots in self.movers.changed.chunks(TOGETHER) {

@@ -258,8 +258,7 @@ impl BoxWorld {
         Ok(self.log.pairs(&self.ids))
     }
 
-    /// Finds all pairs anew. Those of the last cull are of no use for the next until it is told otherwise.
-
+    /// Finds all pairs anew. Until [`Movers::all_found`], the next cull does so too.
     pub(super) fn cull_into(&mut self, output: Output<'_>) -> Result<(), WorldError> {
         self.movers.lose_pairs();
         if std::mem::take(&mut self.replaced) {

@@ -126,7 +126,11 @@ impl Events {
 
 /// Lists what has changed between two culls, unless it is much.
 pub(super) fn changes_between(before: &Reported, now: &Reported) -> Option<Change> {
-    let most = (before.slots.len() + now.slots.len()) / LISTED_SHARE + ALWAYS_LISTED;
+    let [former, later] = [before, now].map(|reported| reported.slots.len());
+    let most = (former + later) / LISTED_SHARE + ALWAYS_LISTED;
+    if former.abs_diff(later) > most {
+        return None;
+    }
     let (mut begun, mut ended) = (Vec::new(), Vec::new());
     if !std::ptr::eq(before, now) {
         let merge = Merge {
