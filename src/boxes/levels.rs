@@ -11,6 +11,9 @@ use crate::bodies::Aabb;
 const SAMPLE: usize = 256;
 const SMALLER: usize = 192;
 
+/// Boxes of one size differ by what rounding makes of their ends.
+const SOMEWHAT_ABOVE: f64 = 1.0 + 1.0 / (1 << 10) as f64;
+
 /// Bits of a number's fraction.
 const MANTISSA: u32 = f64::MANTISSA_DIGITS - 1;
 
@@ -31,8 +34,9 @@ pub(super) struct Level {
 pub(super) type CellRange = [[i64; 2]; 3];
 
 impl Level {
-    fn new(number: i32) -> Self {
-        let bound = size_of_number(number);
+    /// Its boxes are no larger than its size, in such units.
+    fn new(number: i32, unit: f64) -> Self {
+        let bound = (unit * size_of_number(number)).next_up();
         Self {
             number,
             bound,
@@ -101,6 +105,8 @@ pub(super) fn cell_count(range: &CellRange) -> u64 {
 /// The levels of a set of boxes.
 #[derive(Clone, Debug)]
 pub(super) struct Levels {
+    /// Sizes are counted in units somewhat above the usual size, so that cells suit it best.
+    unit: f64,
     /// Smaller boxes are in the level of this number.
     least: i32,
     pub all: Vec<Level>,
@@ -126,13 +132,16 @@ impl Levels {
         let usual = usual.unwrap_or(1.0);
         let space = (0..3).map(|axis| (upper[axis] - lower[axis]).max(usual));
         let distance = (space.product::<f64>() / count.max(1) as f64).cbrt();
-        let least = if usual > f64::from(f32::MIN_POSITIVE) {
-            usual.min(0.5 * distance)
+        let tiniest = f64::from(f32::from_bits(1));
+        let (least, unit) = if usual > f64::from(f32::MIN_POSITIVE) {
+            (usual.min(0.5 * distance), usual * SOMEWHAT_ABOVE)
         } else {
-            0.5 * distance
+            let least = (0.5 * distance).max(tiniest);
+            (least, least)
         };
         Self {
-            least: size_number(least.max(f64::from(f32::from_bits(1)))),
+            unit,
+            least: size_number(least.max(tiniest) / unit),
             all: Vec::new(),
         }
     }
@@ -140,10 +149,10 @@ impl Levels {
     /// The index of the level of a box.
     #[inline]
     pub fn level_of(&mut self, aabb: &Aabb) -> u16 {
-        let number = size_number(longest_side(aabb)).max(self.least);
+        let number = size_number((longest_side(aabb) / self.unit).next_up()).max(self.least);
         let found = self.all.iter().position(|level| level.number == number);
         let index = found.unwrap_or_else(|| {
-            self.all.push(Level::new(number));
+            self.all.push(Level::new(number, self.unit));
             self.all.len() - 1
         });
         // Sizes of f32 have some 600 numbers.
