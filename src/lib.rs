@@ -122,7 +122,7 @@ pub mod threads;
 pub mod update;
 
 pub use bodies::contract::ContractError;
-pub use bodies::{Aabb, Bodies, Groups};
+pub use bodies::{Aabb, Bodies, Groups, Motion};
 pub use boxes::{BoxCuller, BoxWorld};
 pub use culler::CullError;
 #[cfg(feature = "shapes")]

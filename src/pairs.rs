@@ -1,13 +1,22 @@
 //! Lists of candidate or reported pairs.
 
+mod partners;
+mod runs;
 mod sort;
 
+pub(crate) use partners::{PartnerPairs, Partners};
+pub(crate) use runs::{Run, Runs};
 pub(crate) use sort::PairSorter;
 
 use crate::simd::MAX_WIDTH;
 
 /// Room of the smallest list that has any.
 const SMALLEST: usize = 1024;
+
+/// Bytes that a column has taken, used or not.
+fn bytes<T>(column: &Vec<T>) -> usize {
+    column.capacity() * size_of::<T>()
+}
 
 /// A list of body pairs as two columns. It grows by what is needed: no pair is ever dropped for lack of memory.
 ///

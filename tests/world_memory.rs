@@ -12,7 +12,7 @@ use sdop::mesh::ProceduralShape;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::volume::{Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, World};
-use sdop::{Aabb, BoxWorld, Culler};
+use sdop::{Aabb, BoxWorld, Culler, Motion};
 
 /// The system's allocator, counting the bytes that each thread holds and the most that it held: tests run side by side.
 struct Counting;
@@ -277,12 +277,16 @@ fn events_of_a_crowd_take_no_list() {
     let mut world = BoxWorld::new();
     for body in 0..CROWD {
         let bounds = box_at([0.0; 3]);
-        let dynamic = body != 7;
+        let motion = if body == 7 {
+            Motion::Fixed
+        } else {
+            Motion::Dynamic
+        };
         let groups = sdop::Groups::ALL;
         world
             .insert(BoxBody {
                 bounds,
-                dynamic,
+                motion,
                 groups,
             })
             .unwrap();

@@ -3,11 +3,13 @@
 mod aabb;
 pub mod contract;
 mod groups;
+mod motion;
 mod places;
 mod read_ahead;
 
 pub use aabb::Aabb;
 pub use groups::Groups;
+pub use motion::Motion;
 #[doc(hidden)]
 pub use places::Places;
 pub(crate) use read_ahead::read_ahead;

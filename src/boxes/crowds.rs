@@ -21,7 +21,7 @@ impl BoxWorld {
     ) -> Result<u64, WorldError> {
         // Those of bodies that are there don't change in a cull.
         let generation = self.ids.generation().clone();
-        self.log.take();
+        self.log.take(&self.ids);
         self.cull_by_slots(|portion| take(WorldPairs::new(portion, &generation)))
     }
 
@@ -31,13 +31,17 @@ impl BoxWorld {
     /// More pairs than that, with their number: there are no [`Self::pairs`] then, and the frame counts as culled. Otherwise
     /// as [`Self::cull`].
     pub fn cull_up_to(&mut self, limit: usize) -> Result<WorldPairs<'_>, WorldError> {
-        let mut kept = self.log.take();
+        if self.cull_changed(limit) && self.log.pairs(&self.ids).len() <= limit {
+            return Ok(self.log.pairs(&self.ids));
+        }
+        let mut kept = self.log.take(&self.ids);
         let pairs = self.cull_by_slots(|portion| kept.append_up_to(portion, limit))?;
         if kept.len() as u64 != pairs {
             return Err(CullError::TooManyPairs { pairs, limit }.into());
         }
         self.log.put(kept, &self.ids);
-        Ok(self.log.pairs())
+        self.movers.all_found();
+        Ok(self.log.pairs(&self.ids))
     }
 
     fn cull_by_slots(&mut self, mut take: impl FnMut(&PairList) + Send) -> Result<u64, WorldError> {
@@ -61,11 +65,14 @@ impl BoxWorld {
     /// world has gone. Free slots at the end are given back, too ([`Self::slots`]); ids are still never given again. The next
     /// cull begins anew, at the price of a first one, and reports the same pairs in the same order.
     pub fn shrink_to_fit(&mut self) {
+        self.log.shrink_to_fit(&self.ids);
         let slots = self.ids.shrink();
         shrink_column(&mut self.bounds, slots);
         shrink_column(&mut self.dynamic, slots);
+        shrink_column(&mut self.resting, slots);
         shrink_column(&mut self.groups, slots);
-        self.log.shrink_to_fit();
+        self.count_groups();
+        self.movers.forget();
         self.frames.forget();
         self.replaced = true;
     }

@@ -11,11 +11,14 @@ mod crowds;
 mod cubes;
 mod culler;
 mod frame;
+mod index;
+mod levels;
+mod movers;
 #[cfg(feature = "serde")]
 mod snapshot;
 mod world;
 
-pub use crate::bodies::Aabb;
+pub use crate::bodies::{Aabb, Motion};
 pub use culler::{BoxCuller, BoxCullerBuilder};
 #[cfg(feature = "serde")]
 pub use snapshot::BoxWorldSnapshot;

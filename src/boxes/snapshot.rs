@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::BoxWorld;
 use crate::bodies::{Aabb, Groups};
-use crate::world::{IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length};
+use crate::world::{
+    IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, check_length, damaged,
+};
 
 /// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
 ///
@@ -17,6 +19,9 @@ pub struct BoxWorldSnapshot {
     /// The lower corner of each box, then the upper one.
     bounds: Vec<[[u32; 3]; 2]>,
     dynamic: Vec<bool>,
+    /// Slots of boxes at rest, sorted.
+    #[serde(default)]
+    resting: Vec<u32>,
     groups: Vec<[u32; 2]>,
     pairs: PairsSnapshot,
 }
@@ -32,8 +37,13 @@ impl BoxWorld {
             ids: IdsSnapshot::of(&self.ids),
             bounds: self.bounds.iter().map(bits).collect(),
             dynamic: self.dynamic.clone(),
+            resting: (0..)
+                .zip(&self.resting)
+                .filter(|(_, is_resting)| **is_resting)
+                .map(|(slot, _)| slot)
+                .collect(),
             groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
-            pairs: PairsSnapshot::of(&self.log),
+            pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
         }
     }
 
@@ -57,14 +67,24 @@ impl BoxWorld {
         for (slot, aabb) in bounds.iter().enumerate() {
             aabb.check(slot)?;
         }
-        let log = snapshot.pairs.restored(&ids)?;
+        let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
+        let mut resting = vec![false; ids.slots()];
+        for &slot in &snapshot.resting {
+            match resting.get_mut(slot as usize) {
+                Some(is_resting) => *is_resting = true,
+                None => return damaged(format!("slot {slot} of {} is at rest", ids.slots())),
+            }
+        }
 
         (self.ids, self.log, self.bounds) = (ids, log, bounds);
         self.dynamic.clone_from(&snapshot.dynamic);
+        self.resting = resting;
         let groups = snapshot.groups.iter();
         self.groups = groups
             .map(|&[member, mask]| Groups { member, mask })
             .collect();
+        self.count_groups();
+        self.movers.forget();
         self.replaced = true;
         Ok(())
     }

@@ -2,6 +2,9 @@
 
 use super::PairList;
 
+/// Up to so many numbers are sorted by insertion.
+const FEW: usize = 12;
+
 /// Buffers of [`PairList::sort`], kept from list to list.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairSorter {
@@ -48,9 +51,28 @@ impl PairList {
         std::mem::swap(&mut self.second, second);
         let mut start = 0;
         for (first, &end) in (0..).zip(&*places) {
-            self.first[start..end].fill(first);
-            self.second[start..end].sort_unstable();
+            if end - start == 1 {
+                self.first[start] = first;
+            } else if end > start {
+                self.first[start..end].fill(first);
+                sort_few(&mut self.second[start..end]);
+            }
             start = end;
+        }
+    }
+}
+
+/// Sorts numbers that are mostly few, without a call for these.
+#[inline(always)]
+fn sort_few(numbers: &mut [u32]) {
+    if numbers.len() > FEW {
+        return numbers.sort_unstable();
+    }
+    for end in 1..numbers.len() {
+        let mut at = end;
+        while at > 0 && numbers[at - 1] > numbers[at] {
+            numbers.swap(at - 1, at);
+            at -= 1;
         }
     }
 }

@@ -35,6 +35,7 @@ mod digest;
 mod error;
 mod events;
 mod ids;
+mod live_pairs;
 #[cfg(feature = "shapes")]
 mod local;
 #[cfg(feature = "shapes")]
@@ -74,12 +75,13 @@ pub use saved::SnapshotError;
 pub use snapshot::WorldSnapshot;
 
 pub(crate) use self::ids::{Ids, shrink_column};
-pub(crate) use self::pair_log::PairLog;
+pub(crate) use self::live_pairs::LivePairs;
 #[cfg(feature = "serde")]
-pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length};
+pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length, damaged};
 #[cfg(feature = "shapes")]
 use self::{
     margins::{Margins, check_margin},
+    pair_log::PairLog,
     shapes::{ShapeSlot, check_shape},
 };
 #[cfg(feature = "shapes")]

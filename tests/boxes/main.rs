@@ -3,6 +3,7 @@
 
 mod lives;
 mod misuse;
+mod movers;
 mod scenes;
 
 use sdop::boxes::BoxCullerBuilder;

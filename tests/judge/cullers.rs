@@ -8,7 +8,7 @@ use sdop::culler::Culler;
 use sdop::rounding::pose::{rotation, transform};
 use sdop::settings::Strategy;
 use sdop::volume::Shape;
-use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Groups};
+use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Groups, Motion};
 use sdop_judge::{Contestant, PairTest, Scene, WorldBox};
 
 /// Our own culler.
@@ -80,7 +80,11 @@ impl Contestant for BoxesOfAWorld {
         for (i, id) in self.ids.iter_mut().enumerate() {
             let body = BoxBody {
                 bounds: self.boxes[i],
-                dynamic: bodies.dynamic[i],
+                motion: if bodies.dynamic[i] {
+                    Motion::Dynamic
+                } else {
+                    Motion::Fixed
+                },
                 groups: Groups::ALL,
             };
             match *id {

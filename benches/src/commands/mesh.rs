@@ -19,6 +19,7 @@ use super::{Outcome, one_of};
 ///
 /// Prints counts, whether the mesh is closed, its smallest enclosing ball and the size of every volume over that of the
 /// convex hull. World-aligned volumes (aabb, k-dop) are re-fitted when a body turns: theirs is the mean over 64 rotations.
+/// Vertices that no triangle uses are left out of ball, hull and volumes.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop mesh data/meshes/spot.tri\n          sdop mesh model.obj --to model.tri\n          sdop mesh model.obj --triangles 4000 --to coarse.tri"

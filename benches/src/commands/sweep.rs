@@ -104,7 +104,8 @@ impl SweepArgs {
         };
         let name = format!("{}-{}-of-{}.units", header.command, shard.index, shard.of);
         let path = directory.join(name);
-        write_shard(&path, &header, &part, start.elapsed().as_secs_f64())
+        std::fs::create_dir_all(directory)
+            .and_then(|()| write_shard(&path, &header, &part, start.elapsed().as_secs_f64()))
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot write {}", path.display()))?;
         let (units, all) = (part.len(), header.units);
@@ -123,14 +124,16 @@ impl SweepArgs {
         let own = header.units.div_ceil(ranks.size) as u64;
         let bar = first.then(|| progress(own, "units of rank 0"));
         let mut ended = |unit| {
-            for bar in &bar {
+            if let Some(bar) = &bar {
                 bar.set_message(work.name(unit));
                 bar.inc(1);
             }
         };
         let network = MpiNetwork::new(ranks);
         let done = sdop_bench::sweep::on_ranks(&network, work, self.share_cores, &mut ended);
-        bar.iter().for_each(|bar| bar.finish_and_clear());
+        if let Some(bar) = &bar {
+            bar.finish_and_clear();
+        }
         for (unit, result) in done? {
             take(unit, &result)?;
         }

@@ -313,7 +313,7 @@ mod tests {
         }
     }
 
-    /// Old text has 7.038531e-26, which is the f32 0x15ae43fd. By way of an f64 it would be the next one.
+    /// Old text may have 7.038531e-26, which is the f32 0x15ae43fd. By way of an f64 it would be the next one.
     #[test]
     fn old_cases_are_read_without_rounding_twice() {
         let group = groups()
@@ -332,6 +332,7 @@ mod tests {
         };
         assert_eq!(read(&old).shapes[0].ball.radius.to_bits(), 0x15ae_43fd);
         assert_eq!(read(&new).frames, case.frames);
-        assert_eq!(read(&new).shapes, case.shapes);
+        let lines = |case: &Case| case.shapes.iter().map(ShapeLine::of).collect::<Vec<_>>();
+        assert_eq!(lines(&read(&new)), lines(&case));
     }
 }
