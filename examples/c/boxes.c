@@ -42,7 +42,7 @@ int main(void) {
     check(sdop_box_world_new(NULL, 1, &world));
     uint64_t ids[3];
     for (size_t i = 0; i < count; ++i) {
-        const SdopBoxBody body = {boxes[i], true, {UINT32_MAX, UINT32_MAX}};
+        const SdopBoxBody body = {boxes[i], false, false, {UINT32_MAX, UINT32_MAX}};
         check(sdop_box_world_insert(world, &body, &ids[i]));
     }
     int events = 0;

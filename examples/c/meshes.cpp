@@ -68,7 +68,7 @@ void a_world(const SdopShape *shape) {
     const World world(made);
     std::array<std::uint64_t, 2> ids{};
     for (std::size_t i = 0; i < ids.size(); ++i) {
-        const SdopBody body{0, true, {0, 0, 0, 1}, {1000000031.5 + 0.7 * static_cast<double>(i), 0, 0}, 0, {~0U, ~0U}};
+        const SdopBody body{0, false, {0, 0, 0, 1}, {1000000031.5 + 0.7 * static_cast<double>(i), 0, 0}, 0, {~0U, ~0U}};
         check(sdop_world_insert(world.get(), &body, &ids[i]));
     }
     assert(pairs_of(world.get()).size() == 1); // they overlap by 0.3, a billion units from the origin

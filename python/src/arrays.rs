@@ -105,14 +105,18 @@ fn whole(given: &Bound<'_, PyAny>, what: &str) -> PyResult<(Vec<u32>, Vec<usize>
     let array = as_array(given, "int64", what)?;
     let array = array.cast::<PyArrayDyn<i64>>()?;
     let numbers = array.readonly();
-    let numbers = numbers.as_array().iter().map(|&number| {
-        u32::try_from(number).map_err(|_| {
-            with_help(
-                format!("{what} has the number {number}"),
-                "numbers of shapes, bodies and vertices are at least 0 and below 2**32",
-            )
+    let numbers = numbers
+        .as_array()
+        .iter()
+        .map(|&number| {
+            u32::try_from(number).map_err(|_| {
+                with_help(
+                    format!("{what} has the number {number}"),
+                    "numbers of shapes, bodies and vertices are at least 0 and below 2**32",
+                )
+            })
         })
-    }).collect::<PyResult<Vec<u32>>>()?;
+        .collect::<PyResult<Vec<u32>>>()?;
     Ok((numbers, array.shape().to_vec()))
 }
 
@@ -140,7 +144,9 @@ fn as_array<'py>(
     };
     if !fits {
         let text = format!("{what} has dtype {}", array.getattr("dtype")?);
-        return Err(PyTypeError::new_err(format!("{text}, and must be of {dtype}")));
+        return Err(PyTypeError::new_err(format!(
+            "{text}, and must be of {dtype}"
+        )));
     }
     let options = PyDict::new(given.py());
     options.set_item("copy", false)?;
@@ -158,7 +164,11 @@ fn check_shape<const N: usize>(shape: &[usize], what: &str) -> PyResult<()> {
         [_, 2, 3] if N == 6 => Ok(()),
         [0] => Ok(()),
         _ => {
-            let wanted = if N == 6 { "(n, 6) or (n, 2, 3)".to_owned() } else { format!("(n, {N})") };
+            let wanted = if N == 6 {
+                "(n, 6) or (n, 2, 3)".to_owned()
+            } else {
+                format!("(n, {N})")
+            };
             Err(with_help(
                 format!("{what} has shape {shape:?}"),
                 format!("its shape must be {wanted}"),

@@ -4,6 +4,7 @@ use std::sync::Mutex;
 
 use numpy::PyArray2;
 use pyo3::prelude::*;
+use sdop::bodies::Motion;
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BodyId, Finder, Groups, PairList};
 
@@ -20,15 +21,24 @@ fn boxes<'py>(given: &Bound<'py, PyAny>) -> PyResult<Rows<'py, 6>> {
 
 /// Pairs as rows, sorted if wanted.
 pub(super) fn list(found: &PairList, sort: bool) -> Vec<[u32; 2]> {
-    if sort { found.sorted() } else { found.iter().collect() }
+    if sort {
+        found.sorted()
+    } else {
+        found.iter().collect()
+    }
 }
 
 /// Groups as two numbers: those that a body is in, and those that it collides with.
-pub(super) fn groups(given: Option<&Bound<'_, PyAny>>, bodies: usize) -> PyResult<Option<Vec<Groups>>> {
+pub(super) fn groups(
+    given: Option<&Bound<'_, PyAny>>,
+    bodies: usize,
+) -> PyResult<Option<Vec<Groups>>> {
     let Some(given) = given else { return Ok(None) };
     let given = whole_rows::<2>(given, "groups")?;
     check_length("groups", given.len(), bodies)?;
-    let groups = given.into_iter().map(|[member, mask]| Groups { member, mask });
+    let groups = given
+        .into_iter()
+        .map(|[member, mask]| Groups { member, mask });
     Ok(Some(groups.collect()))
 }
 
@@ -113,15 +123,29 @@ impl BoxWorld {
     fn new(finder: &str, threads: usize) -> PyResult<Self> {
         let finder: Finder = finder.parse().map_err(refused)?;
         let builder = sdop::BoxCuller::builder().finder(finder).threads(threads);
-        Ok(Self(Mutex::new(sdop::BoxWorld::with(&builder).map_err(refused)?)))
+        Ok(Self(Mutex::new(
+            sdop::BoxWorld::with(&builder).map_err(refused)?,
+        )))
     }
 
     /// Adds a box (lower corner x, y, z, then the upper one) and returns its id, which stays until `remove`.
-    #[pyo3(signature = (bounds, *, dynamic=true, groups=(u32::MAX, u32::MAX)))]
-    fn insert(&self, py: Python<'_>, bounds: &Bound<'_, PyAny>, dynamic: bool, groups: (u32, u32)) -> PyResult<u64> {
+    #[pyo3(signature = (bounds, *, motion="dynamic", groups=(u32::MAX, u32::MAX)))]
+    fn insert(
+        &self,
+        py: Python<'_>,
+        bounds: &Bound<'_, PyAny>,
+        motion: &str,
+        groups: (u32, u32),
+    ) -> PyResult<u64> {
         let (member, mask) = groups;
-        let body = BoxBody { bounds: one(bounds)?, dynamic, groups: Groups { member, mask } };
-        locked(py, &self.0, |world| world.insert(body)).map(BodyId::to_bits).map_err(refused)
+        let body = BoxBody {
+            bounds: one(bounds)?,
+            motion: self::motion(motion)?,
+            groups: Groups { member, mask },
+        };
+        locked(py, &self.0, |world| world.insert(body))
+            .map(BodyId::to_bits)
+            .map_err(refused)
     }
 
     /// Removes a box.
@@ -132,11 +156,28 @@ impl BoxWorld {
     /// Moves a box, or gives it another size.
     fn set_bounds(&self, py: Python<'_>, id: u64, bounds: &Bound<'_, PyAny>) -> PyResult<()> {
         let bounds = one(bounds)?;
-        locked(py, &self.0, |world| world.set_bounds(BodyId::from_bits(id), bounds)).map_err(refused)
+        locked(py, &self.0, |world| {
+            world.set_bounds(BodyId::from_bits(id), bounds)
+        })
+        .map_err(refused)
+    }
+
+    /// Puts a box to rest, wakes it, or makes it scenery: "resting", "dynamic" or "fixed". Rest begins and ends no pair.
+    fn set_motion(&self, py: Python<'_>, id: u64, motion: &str) -> PyResult<()> {
+        let motion = self::motion(motion)?;
+        locked(py, &self.0, |world| {
+            world.set_motion(BodyId::from_bits(id), motion)
+        })
+        .map_err(refused)
     }
 
     /// Moves many boxes: ids of shape (n,), boxes as `box_pairs` takes them. Those before one that is refused have moved.
-    fn set_many(&self, py: Python<'_>, ids: &Bound<'_, PyAny>, boxes: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_many(
+        &self,
+        py: Python<'_>,
+        ids: &Bound<'_, PyAny>,
+        boxes: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
         let (ids, given) = (id_column(ids, "ids")?, self::boxes(boxes)?);
         let boxes = Aabb::from_rows(given.rows());
         check_length("boxes", boxes.len(), ids.len())?;
@@ -149,7 +190,9 @@ impl BoxWorld {
 
     /// Finds the pairs that meet now: ids of shape (m, 2), sorted.
     fn cull<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        let found = locked(py, &self.0, |world| world.cull().map(|found| bits_of(found.iter())));
+        let found = locked(py, &self.0, |world| {
+            world.cull().map(|found| bits_of(found.iter()))
+        });
         pairs(py, found.map_err(refused)?)
     }
 
@@ -184,12 +227,31 @@ impl BoxWorld {
     }
 }
 
+/// "dynamic", "resting" or "fixed".
+fn motion(name: &str) -> PyResult<Motion> {
+    match name {
+        "dynamic" => Ok(Motion::Dynamic),
+        "resting" => Ok(Motion::Resting),
+        "fixed" => Ok(Motion::Fixed),
+        _ => Err(with_help(
+            format!("unknown motion `{name}`"),
+            "one of: dynamic, resting, fixed",
+        )),
+    }
+}
+
 /// One box: six numbers, or two corners.
 fn one(given: &Bound<'_, PyAny>) -> PyResult<Aabb> {
-    let given = given.py().import("numpy")?.call_method1("reshape", (given, (-1, 6)))?;
+    let given = given
+        .py()
+        .import("numpy")?
+        .call_method1("reshape", (given, (-1, 6)))?;
     let given = boxes(&given)?;
     match Aabb::from_rows(given.rows()) {
         [one] => Ok(*one),
-        _ => Err(with_help("bounds are not one box", "six numbers: the lower corner, then the upper one")),
+        _ => Err(with_help(
+            "bounds are not one box",
+            "six numbers: the lower corner, then the upper one",
+        )),
     }
 }

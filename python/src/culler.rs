@@ -67,16 +67,33 @@ impl Culler {
             None => vec![true; n],
         };
         check_length("dynamic", dynamic.len(), n)?;
-        let (strategy, finder): (Strategy, Finder) = (strategy.parse().map_err(refused)?, finder.parse().map_err(refused)?);
-        let mut builder = sdop::Culler::builder().strategy(strategy).finder(finder).threads(threads);
+        let (strategy, finder): (Strategy, Finder) = (
+            strategy.parse().map_err(refused)?,
+            finder.parse().map_err(refused)?,
+        );
+        let mut builder = sdop::Culler::builder()
+            .strategy(strategy)
+            .finder(finder)
+            .threads(threads);
         if let Some(bodies) = interest {
             builder = builder.interest(Interest::Bodies(bodies));
         }
         let (rotation, translation) = (vec![[0.0, 0.0, 0.0, 1.0]; n], vec![[0.0; 3]; n]);
-        let bodies = Bodies { shape, dynamic, rotation, translation };
+        let bodies = Bodies {
+            shape,
+            dynamic,
+            rotation,
+            translation,
+        };
         let mut culler = builder.build(&built(&shapes), &bodies).map_err(refused)?;
-        culler.set_groups(self::groups(groups, n)?).map_err(refused)?;
-        Ok(Self(Mutex::new(State { culler, bodies, is_new: true })))
+        culler
+            .set_groups(self::groups(groups, n)?)
+            .map_err(refused)?;
+        Ok(Self(Mutex::new(State {
+            culler,
+            bodies,
+            is_new: true,
+        })))
     }
 
     /// The pairs of this frame that might touch.
@@ -105,7 +122,9 @@ impl Culler {
         let rotations = rows::<4>(rotations, "rotations", ROUND)?;
         let translations = rows::<3>(translations, "translations", ROUND)?;
         let (rotations, translations) = (rotations.rows(), translations.rows());
-        let found = locked(py, &self.0, |state| state.cull(rotations, translations, sort));
+        let found = locked(py, &self.0, |state| {
+            state.cull(rotations, translations, sort)
+        });
         pairs(py, found?)
     }
 
@@ -121,12 +140,19 @@ impl Culler {
 }
 
 impl State {
-    fn cull(&mut self, rotations: &[[f32; 4]], translations: &[[f32; 3]], sort: bool) -> PyResult<Vec<[u32; 2]>> {
+    fn cull(
+        &mut self,
+        rotations: &[[f32; 4]],
+        translations: &[[f32; 3]],
+        sort: bool,
+    ) -> PyResult<Vec<[u32; 2]>> {
         let n = self.bodies.len();
         check_length("rotations", rotations.len(), n)?;
         check_length("translations", translations.len(), n)?;
         let fixed = (0..n).filter(|&i| !self.bodies.dynamic[i]);
-        let has_moved = |i: usize| self.bodies.rotation[i] != rotations[i] || self.bodies.translation[i] != translations[i];
+        let has_moved = |i: usize| {
+            self.bodies.rotation[i] != rotations[i] || self.bodies.translation[i] != translations[i]
+        };
         self.is_new |= fixed.into_iter().any(has_moved);
         self.bodies.rotation.copy_from_slice(rotations);
         self.bodies.translation.copy_from_slice(translations);
@@ -134,6 +160,9 @@ impl State {
             self.culler.refresh(&self.bodies).map_err(refused)?;
             self.is_new = false;
         }
-        self.culler.cull(&self.bodies).map(|found| list(found, sort)).map_err(refused)
+        self.culler
+            .cull(&self.bodies)
+            .map(|found| list(found, sort))
+            .map_err(refused)
     }
 }

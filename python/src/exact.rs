@@ -31,18 +31,30 @@ pub fn exact_meet(
 ) -> PyResult<bool> {
     let poses = [pose("pose_a", &pose_a)?, pose("pose_b", &pose_b)?];
     py.detach(|| {
-        let [a, b] = [(shape_a, poses[0]), (shape_b, poses[1])]
-            .map(|(shape, pose)| shape.judged().map(|shape| Body { shape, pose, dynamic: true }));
+        let [a, b] = [(shape_a, poses[0]), (shape_b, poses[1])].map(|(shape, pose)| {
+            shape.judged().map(|shape| Body {
+                shape,
+                pose,
+                dynamic: true,
+            })
+        });
         Ok(meeting::overlap(&a?, &b?).meets)
     })
 }
 
-fn pose(what: &str, (rotation, translation): &(Bound<'_, PyAny>, Bound<'_, PyAny>)) -> PyResult<Pose> {
+fn pose(
+    what: &str,
+    (rotation, translation): &(Bound<'_, PyAny>, Bound<'_, PyAny>),
+) -> PyResult<Pose> {
     let numpy = rotation.py().import("numpy")?;
     let rotation = numpy.call_method1("reshape", (rotation, (1, 4)))?;
     let translation = numpy.call_method1("reshape", (translation, (1, 3)))?;
     let rotation = rows::<4>(&rotation, &format!("{what}'s rotation"), ROUND)?.rows()[0];
     let translation = rows::<3>(&translation, &format!("{what}'s translation"), ROUND)?.rows()[0];
-    Pose::new(rotation, translation)
-        .map_err(|error| with_help(format!("{what}: {error}"), "a non-zero quaternion and finite numbers"))
+    Pose::new(rotation, translation).map_err(|error| {
+        with_help(
+            format!("{what}: {error}"),
+            "a non-zero quaternion and finite numbers",
+        )
+    })
 }

@@ -33,14 +33,26 @@ pub fn judge(
     fail_fast: bool,
 ) -> PyResult<(bool, String, String, Option<Missed>)> {
     let claim: Claim = claims.parse().map_err(refused)?;
-    let options = Options { claim, pattern: cases, seed, extra_limit, fail_fast, ..Options::default() };
+    let options = Options {
+        claim,
+        pattern: cases,
+        seed,
+        extra_limit,
+        fail_fast,
+        ..Options::default()
+    };
     let subject = InPython { make };
     let verdict = py
         .detach(|| examine(&subject, &options, |_, _| {}))
         .map_err(|error| SdopError::new_err(error.to_string()))?;
     py.check_signals()?;
-    let json = serde_json::to_string(&verdict).map_err(|error| SdopError::new_err(error.to_string()))?;
-    let missed = verdict.smallest.as_ref().map(|smallest| missed(py, smallest, claim)).transpose()?;
+    let json =
+        serde_json::to_string(&verdict).map_err(|error| SdopError::new_err(error.to_string()))?;
+    let missed = verdict
+        .smallest
+        .as_ref()
+        .map(|smallest| missed(py, smallest, claim))
+        .transpose()?;
     Ok((verdict.passed(), verdict.to_string(), json, missed))
 }
 
@@ -103,28 +115,40 @@ struct InPython {
 
 impl Subject for InPython {
     fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
-        let mut answers = Vec::new();
+        let mut answered = Vec::new();
         // Threads of the judge hold the interpreter for a whole case: a case's frames come one after the other.
-        Python::attach(|py| match self.run(py, case, claim, &mut answers) {
-            Ok(None) => Ok(()),
-            Ok(Some(why)) => Err(Stop::Skipped(why)),
+        Python::attach(|py| match self.run(py, case, claim, &mut answered) {
+            Ok(None) => Ok(answered),
+            Ok(Some(why)) => Err(Stop::Skipped { why, answered }),
             Err(error) => Err(Stop::Trouble(Trouble::Crashed {
                 how: how(py, &error),
-                answered: answers.len(),
+                answered: answered.len(),
                 said: String::new(),
             })),
-        })?;
-        Ok(answers)
+        })
     }
 }
 
 impl InPython {
     /// Answers all frames, or says why the case is skipped.
-    fn run(&self, py: Python<'_>, case: &Case, claim: Claim, answers: &mut Vec<Answer>) -> PyResult<Option<String>> {
-        let Some(first) = case.frames.first() else { return Ok(None) };
-        let culler = self.make.bind(py).call1((Scene::new(py, case, &first.bodies, claim)?,))?;
+    fn run(
+        &self,
+        py: Python<'_>,
+        case: &Case,
+        claim: Claim,
+        answers: &mut Vec<Answer>,
+    ) -> PyResult<Option<String>> {
+        let Some(first) = case.frames.first() else {
+            return Ok(None);
+        };
+        let culler = self
+            .make
+            .bind(py)
+            .call1((Scene::new(py, case, &first.bodies, claim)?,))?;
         for frame in &case.frames {
-            if let Some(was) = &frame.was && !change(&culler, frame, was)? {
+            if let Some(was) = &frame.was
+                && !change(&culler, frame, was)?
+            {
                 return Ok(Some("its set of bodies can't change".to_owned()));
             }
             let pairs = if claim == Claim::Aabb {
@@ -156,10 +180,17 @@ fn change(culler: &Bound<'_, PyAny>, frame: &Frame, was: &[Option<u32>]) -> PyRe
 
 /// An exception with the line that raised it.
 fn how(py: Python<'_>, error: &PyErr) -> String {
-    let traceback = error.traceback(py).and_then(|traceback| traceback.format().ok());
-    let last = traceback.as_deref().and_then(|text| text.trim_end().rsplit("File ").next());
+    let traceback = error
+        .traceback(py)
+        .and_then(|traceback| traceback.format().ok());
+    let last = traceback
+        .as_deref()
+        .and_then(|text| text.trim_end().rsplit("File ").next());
     match last {
-        Some(last) => format!("{error}, in {}", last.split_whitespace().collect::<Vec<_>>().join(" ")),
+        Some(last) => format!(
+            "{error}, in {}",
+            last.split_whitespace().collect::<Vec<_>>().join(" ")
+        ),
         None => error.to_string(),
     }
 }

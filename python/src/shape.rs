@@ -68,7 +68,14 @@ impl Shape {
     /// Reads a mesh file: OBJ, STL, PLY or .tri. Keywords as for `Shape`.
     #[staticmethod]
     #[pyo3(signature = (path, *, radius=None, origin="file", k=18, axes="principal"))]
-    fn load(py: Python<'_>, path: std::path::PathBuf, radius: Option<f32>, origin: &str, k: u32, axes: &str) -> PyResult<Self> {
+    fn load(
+        py: Python<'_>,
+        path: std::path::PathBuf,
+        radius: Option<f32>,
+        origin: &str,
+        k: u32,
+        axes: &str,
+    ) -> PyResult<Self> {
         let spec = spec(radius, origin, k, axes)?;
         py.detach(|| {
             let mesh = sdop::mesh::read(&path, &ReadOptions::default()).map_err(refused)?;
@@ -108,9 +115,15 @@ impl Shape {
 
     /// The or-DOP's slabs along its directions: lower and upper ends, each of shape (k / 2,).
     #[getter]
-    fn slabs<'py>(&self, py: Python<'py>) -> (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f32>>) {
+    fn slabs<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f32>>) {
         let ordop = &self.built.ordop;
-        (PyArray1::from_slice(py, &ordop.lo), PyArray1::from_slice(py, &ordop.hi))
+        (
+            PyArray1::from_slice(py, &ordop.lo),
+            PyArray1::from_slice(py, &ordop.hi),
+        )
     }
 
     /// The point of the mesh's coordinates that is the origin of `vertices`.
@@ -127,21 +140,33 @@ impl Shape {
 
     fn __repr__(&self) -> String {
         let Self { built, .. } = self;
-        format!("<sdop.Shape {}: {} vertices, {} triangles, k = {}>", built.name, built.vertices.len(), built.triangles.len(), self.k())
+        format!(
+            "<sdop.Shape {}: {} vertices, {} triangles, k = {}>",
+            built.name,
+            built.vertices.len(),
+            built.triangles.len(),
+            self.k()
+        )
     }
 }
 
 impl Shape {
     fn build(mesh: &TriangleMesh, spec: &ShapeSpec) -> PyResult<Self> {
         let built = sdop::Shape::build(mesh, spec).map_err(refused)?;
-        Ok(Self { built, judged: OnceLock::new() })
+        Ok(Self {
+            built,
+            judged: OnceLock::new(),
+        })
     }
 
     /// The shape as the exact reference takes it, prepared at first use.
     pub(super) fn judged(&self) -> PyResult<&reference::Shape> {
         if self.built.is_far() {
             return Err(with_help(
-                format!("shape `{}` is far from the origin of its mesh", self.built.name),
+                format!(
+                    "shape `{}` is far from the origin of its mesh",
+                    self.built.name
+                ),
                 "the exact answer takes float32 poses: move the mesh to its origin, and add its place to the translations",
             ));
         }
@@ -149,7 +174,9 @@ impl Shape {
             let mut shapes = Shapes::new(vec![self.built.clone()])?;
             Ok(shapes.judged.remove(0))
         });
-        judged.as_ref().map_err(|error| with_help(error, "pass a mesh that `Culler` takes"))
+        judged
+            .as_ref()
+            .map_err(|error| with_help(error, "pass a mesh that `Culler` takes"))
     }
 }
 
@@ -157,7 +184,12 @@ fn spec(radius: Option<f32>, origin: &str, k: u32, axes: &str) -> PyResult<Shape
     let origin: Origin = origin.parse().map_err(refused)?;
     let directions: DirectionSet = k.to_string().parse().map_err(refused)?;
     let axes: Axes = axes.parse().map_err(refused)?;
-    Ok(ShapeSpec { origin, radius, directions, axes })
+    Ok(ShapeSpec {
+        origin,
+        radius,
+        directions,
+        axes,
+    })
 }
 
 /// Shapes of a list.

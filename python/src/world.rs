@@ -36,9 +36,20 @@ pub struct World(Mutex<sdop::World>);
 impl World {
     #[new]
     #[pyo3(signature = (shapes, *, strategy="s-dop", finder="auto", threads=1))]
-    fn new(shapes: Vec<PyRef<'_, Shape>>, strategy: &str, finder: &str, threads: usize) -> PyResult<Self> {
-        let (strategy, finder): (Strategy, Finder) = (strategy.parse().map_err(refused)?, finder.parse().map_err(refused)?);
-        let builder = sdop::Culler::builder().strategy(strategy).finder(finder).threads(threads);
+    fn new(
+        shapes: Vec<PyRef<'_, Shape>>,
+        strategy: &str,
+        finder: &str,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let (strategy, finder): (Strategy, Finder) = (
+            strategy.parse().map_err(refused)?,
+            finder.parse().map_err(refused)?,
+        );
+        let builder = sdop::Culler::builder()
+            .strategy(strategy)
+            .finder(finder)
+            .threads(threads);
         let world = sdop::World::with(built(&shapes), &builder).map_err(refused)?;
         Ok(Self(Mutex::new(world)))
     }
@@ -84,8 +95,17 @@ impl World {
     ) -> PyResult<u64> {
         let (rotation, translation) = pose(rotation, translation)?;
         let (member, mask) = groups;
-        let body = Body { shape, dynamic, rotation, translation, margin, groups: Groups { member, mask } };
-        locked(py, &self.0, |world| world.insert(body)).map(BodyId::to_bits).map_err(refused)
+        let body = Body {
+            shape,
+            dynamic,
+            rotation,
+            translation,
+            margin,
+            groups: Groups { member, mask },
+        };
+        locked(py, &self.0, |world| world.insert(body))
+            .map(BodyId::to_bits)
+            .map_err(refused)
     }
 
     /// Removes a body.
@@ -94,16 +114,34 @@ impl World {
     }
 
     /// Moves a body: a step or a teleport.
-    fn set_pose(&self, py: Python<'_>, id: u64, rotation: &Bound<'_, PyAny>, translation: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_pose(
+        &self,
+        py: Python<'_>,
+        id: u64,
+        rotation: &Bound<'_, PyAny>,
+        translation: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
         let (rotation, translation) = pose(rotation, translation)?;
-        locked(py, &self.0, |world| world.set_pose(BodyId::from_bits(id), rotation, translation)).map_err(refused)
+        locked(py, &self.0, |world| {
+            world.set_pose(BodyId::from_bits(id), rotation, translation)
+        })
+        .map_err(refused)
     }
 
     /// Moves many bodies: ids of shape (n,), rotations (n, 4), translations (n, 3). Those before one that is refused have moved.
-    fn set_poses(&self, py: Python<'_>, ids: &Bound<'_, PyAny>, rotations: &Bound<'_, PyAny>, translations: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_poses(
+        &self,
+        py: Python<'_>,
+        ids: &Bound<'_, PyAny>,
+        rotations: &Bound<'_, PyAny>,
+        translations: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
         let ids = id_column(ids, "ids")?;
         let rotations = rows::<4>(rotations, "rotations", ROUND)?;
-        let (rotations, translations) = (rotations.rows(), wide_rows::<3>(translations, "translations")?);
+        let (rotations, translations) = (
+            rotations.rows(),
+            wide_rows::<3>(translations, "translations")?,
+        );
         check_length("rotations", rotations.len(), ids.len())?;
         check_length("translations", translations.len(), ids.len())?;
         locked(py, &self.0, |world| {
@@ -116,7 +154,8 @@ impl World {
 
     /// The body as it is now, by the names of `insert`'s parameters.
     fn body<'py>(&self, py: Python<'py>, id: u64) -> PyResult<Bound<'py, PyDict>> {
-        let body = locked(py, &self.0, |world| world.body(BodyId::from_bits(id))).map_err(refused)?;
+        let body =
+            locked(py, &self.0, |world| world.body(BodyId::from_bits(id))).map_err(refused)?;
         let named = PyDict::new(py);
         named.set_item("shape", body.shape)?;
         named.set_item("rotation", body.rotation)?;
@@ -129,7 +168,9 @@ impl World {
 
     /// Finds the pairs that might touch now: ids of shape (m, 2), sorted.
     fn cull<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        let found = locked(py, &self.0, |world| world.cull().map(|found| bits_of(found.iter())));
+        let found = locked(py, &self.0, |world| {
+            world.cull().map(|found| bits_of(found.iter()))
+        });
         pairs(py, found.map_err(refused)?)
     }
 
@@ -165,7 +206,10 @@ impl World {
 }
 
 /// A rotation and a translation.
-fn pose(rotation: &Bound<'_, PyAny>, translation: &Bound<'_, PyAny>) -> PyResult<([f32; 4], [f64; 3])> {
+fn pose(
+    rotation: &Bound<'_, PyAny>,
+    translation: &Bound<'_, PyAny>,
+) -> PyResult<([f32; 4], [f64; 3])> {
     let row = |given: &Bound<'_, PyAny>, n: usize| -> PyResult<Py<PyAny>> {
         let numpy = given.py().import("numpy")?;
         Ok(numpy.call_method1("reshape", (given, (1, n)))?.unbind())
@@ -173,7 +217,10 @@ fn pose(rotation: &Bound<'_, PyAny>, translation: &Bound<'_, PyAny>) -> PyResult
     let py = rotation.py();
     let (rotation, translation) = (row(rotation, 4)?, row(translation, 3)?);
     let rotation = rows::<4>(rotation.bind(py), "rotation", ROUND)?.rows()[0];
-    Ok((rotation, wide_rows::<3>(translation.bind(py), "translation")?[0]))
+    Ok((
+        rotation,
+        wide_rows::<3>(translation.bind(py), "translation")?[0],
+    ))
 }
 
 /// What has changed between two reads of events: three lists of pairs, each of shape (m, 2), sorted.
@@ -217,7 +264,8 @@ impl Events {
 
 /// A snapshot as bytes.
 pub fn saved(snapshot: &impl serde::Serialize) -> PyResult<Vec<u8>> {
-    serde_json::to_vec(snapshot).map_err(|error| with_help(error, "this is a bug of sdop: please report it"))
+    serde_json::to_vec(snapshot)
+        .map_err(|error| with_help(error, "this is a bug of sdop: please report it"))
 }
 
 /// A snapshot of bytes.

@@ -90,7 +90,7 @@ def test_a_culler_follows_moving_boxes_of_any_number():
 
 def test_a_world_of_boxes_reports_changes():
     world = sdop.BoxWorld()
-    floor = world.insert([-9, -9, -1, 9, 9, 0], dynamic=False)
+    floor = world.insert([-9, -9, -1, 9, 9, 0], motion="fixed")
     crates = [world.insert([x, 0, 0, x + 1, 1, 1]) for x in (0, 5)]
     assert world.cull().tolist() == [[floor, crates[0]], [floor, crates[1]]]
     saved = world.snapshot()

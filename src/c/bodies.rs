@@ -3,7 +3,8 @@
 use std::ffi::c_char;
 
 use super::border::{
-    Refusal, SdopPair, SdopStatus, call, column, fill, free, give, handle, optional, pairs, put, text,
+    Refusal, SdopPair, SdopStatus, call, column, fill, free, give, handle, optional, pairs, put,
+    text,
 };
 use crate::bodies::{Bodies, Groups};
 use crate::culler::{Culler, CullerBuilder};
@@ -43,10 +44,18 @@ unsafe fn spec(given: *const SdopShapeSpec) -> Result<ShapeSpec, Refusal> {
         k => k.to_string().parse()?,
     };
     Ok(ShapeSpec {
-        origin: if given.about_ball { Origin::Ball } else { Origin::File },
+        origin: if given.about_ball {
+            Origin::Ball
+        } else {
+            Origin::File
+        },
         radius: (given.radius != 0.0).then_some(given.radius),
         directions,
-        axes: if given.on_model_axes { Axes::Model } else { Axes::Principal },
+        axes: if given.on_model_axes {
+            Axes::Model
+        } else {
+            Axes::Principal
+        },
     })
 }
 
@@ -120,11 +129,15 @@ pub(super) unsafe fn builder(options: *const SdopOptions) -> Result<CullerBuilde
 ///
 /// # Safety
 /// The column has so many entries, each a shape or null.
-pub(super) unsafe fn shapes(first: *const *const SdopShape, count: usize) -> Result<Vec<Shape>, Refusal> {
+pub(super) unsafe fn shapes(
+    first: *const *const SdopShape,
+    count: usize,
+) -> Result<Vec<Shape>, Refusal> {
     // SAFETY: the caller's promise.
     let handles = unsafe { column(first, count, "shapes") }?;
     // SAFETY: the caller's promise.
-    let copy = |shape: &*const SdopShape| Ok(unsafe { handle(shape.cast_mut(), "shape") }?.0.clone());
+    let copy =
+        |shape: &*const SdopShape| Ok(unsafe { handle(shape.cast_mut(), "shape") }?.0.clone());
     handles.iter().map(copy).collect()
 }
 
@@ -167,7 +180,12 @@ pub unsafe extern "C" fn sdop_culler_new(
 ) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
-        let (shapes, given) = unsafe { (self::shapes(shapes, shape_count)?, handle(bodies.cast_mut(), "bodies")?) };
+        let (shapes, given) = unsafe {
+            (
+                self::shapes(shapes, shape_count)?,
+                handle(bodies.cast_mut(), "bodies")?,
+            )
+        };
         let n = given.count;
         // SAFETY: the caller's promise.
         let bodies = unsafe {
@@ -214,7 +232,12 @@ pub unsafe extern "C" fn sdop_culler_cull(
         let it = unsafe { handle(culler, "culler") }?;
         let n = it.bodies.len();
         // SAFETY: the caller's promise.
-        let (rotation, translation) = unsafe { (column(rotation, n, "rotation")?, column(translation, n, "translation")?) };
+        let (rotation, translation) = unsafe {
+            (
+                column(rotation, n, "rotation")?,
+                column(translation, n, "translation")?,
+            )
+        };
         it.bodies.rotation.copy_from_slice(rotation);
         it.bodies.translation.copy_from_slice(translation);
         let found = it.culler.cull(&it.bodies)?.len();

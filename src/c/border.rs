@@ -114,7 +114,14 @@ macro_rules! refusals {
         })+
     };
 }
-refusals!(UnknownChoice, CullError, MeshError, VolumeError, WorldError, SnapshotError);
+refusals!(
+    UnknownChoice,
+    CullError,
+    MeshError,
+    VolumeError,
+    WorldError,
+    SnapshotError
+);
 
 /// Carries out a call, and keeps why it failed.
 pub fn call(run: impl FnOnce() -> Result<(), Refusal>) -> SdopStatus {
@@ -132,7 +139,10 @@ pub fn call(run: impl FnOnce() -> Result<(), Refusal>) -> SdopStatus {
 }
 
 fn null(what: &str) -> Refusal {
-    Refusal::new(SdopStatus::Null, format!("{what} is null\nhelp: pass a pointer"))
+    Refusal::new(
+        SdopStatus::Null,
+        format!("{what} is null\nhelp: pass a pointer"),
+    )
 }
 
 /// What a handle points to.
@@ -198,7 +208,9 @@ pub unsafe fn column<'a, T>(first: *const T, count: usize, what: &str) -> Result
 /// As [`column`].
 pub unsafe fn optional<'a, T>(first: *const T, count: usize) -> Option<&'a [T]> {
     // SAFETY: the caller's promise.
-    unsafe { column(first, count, "") }.ok().filter(|_| !first.is_null())
+    unsafe { column(first, count, "") }
+        .ok()
+        .filter(|_| !first.is_null())
 }
 
 /// A text that may be left out.
@@ -229,7 +241,9 @@ pub unsafe fn fill<T>(
     // SAFETY: the caller's promise.
     unsafe { put(count, needed, "count") }?;
     if needed > capacity {
-        let text = format!("{needed} entries don't fit into a buffer of {capacity}\nhelp: pass a larger buffer");
+        let text = format!(
+            "{needed} entries don't fit into a buffer of {capacity}\nhelp: pass a larger buffer"
+        );
         return Err(Refusal::new(SdopStatus::TooSmall, text));
     }
     if needed > 0 && buffer.is_null() {
@@ -244,20 +258,31 @@ pub unsafe fn fill<T>(
 
 /// A snapshot as bytes.
 pub fn saved(snapshot: &impl serde::Serialize) -> Result<Vec<u8>, Refusal> {
-    let refused = |error| Refusal::new(SdopStatus::Bug, format!("{error}\nhelp: report what was called"));
+    let refused = |error| {
+        Refusal::new(
+            SdopStatus::Bug,
+            format!("{error}\nhelp: report what was called"),
+        )
+    };
     serde_json::to_vec(snapshot).map_err(refused)
 }
 
 /// A snapshot of bytes.
 pub fn read_back<T: serde::de::DeserializeOwned>(bytes: &[u8]) -> Result<T, Refusal> {
     let help = "pass what a snapshot of this version has written";
-    let refused = |error| Refusal::new(SdopStatus::Refused, format!("no snapshot: {error}\nhelp: {help}"));
+    let refused = |error| {
+        Refusal::new(
+            SdopStatus::Refused,
+            format!("no snapshot: {error}\nhelp: {help}"),
+        )
+    };
     serde_json::from_slice(bytes).map_err(refused)
 }
 
 /// The pairs of a list.
 pub fn pairs(list: &PairList) -> impl ExactSizeIterator<Item = SdopPair> + '_ {
-    list.iter().map(|[first, second]| SdopPair { first, second })
+    list.iter()
+        .map(|[first, second]| SdopPair { first, second })
 }
 
 /// The pointer that a caller wants back in its callback, which may be called on another thread.

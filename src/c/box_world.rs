@@ -3,10 +3,11 @@
 use std::ffi::{c_char, c_void};
 
 use super::border::{
-    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back, saved, tell,
+    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back,
+    saved, tell,
 };
 use super::boxes::builder;
-use crate::bodies::{Aabb, Groups};
+use crate::bodies::{Aabb, Groups, Motion};
 use crate::boxes::{BoxBody, BoxWorld};
 use crate::world::BodyId;
 
@@ -20,15 +21,25 @@ pub struct SdopBoxWorld(BoxWorld);
 pub struct SdopBoxBody {
     /// Where it is.
     pub bounds: Aabb,
-    /// Whether it may move; pairs of two boxes that may not are never reported.
-    pub dynamic: bool,
+    /// Whether it is scenery; pairs of two such boxes are never reported.
+    pub fixed: bool,
+    /// Whether it lies still for the time being; its pairs stay.
+    pub resting: bool,
     /// Which boxes it may collide with; all bits for all.
     pub groups: Groups,
 }
 
 impl From<SdopBoxBody> for BoxBody {
-    fn from(SdopBoxBody { bounds, dynamic, groups }: SdopBoxBody) -> Self {
-        Self { bounds, dynamic, groups }
+    fn from(body: SdopBoxBody) -> Self {
+        Self {
+            bounds: body.bounds,
+            motion: match (body.fixed, body.resting) {
+                (true, _) => Motion::Fixed,
+                (false, true) => Motion::Resting,
+                (false, false) => Motion::Dynamic,
+            },
+            groups: body.groups,
+        }
     }
 }
 
@@ -86,7 +97,11 @@ pub unsafe extern "C" fn sdop_box_world_insert(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_remove(world: *mut SdopBoxWorld, id: u64) -> SdopStatus {
     // SAFETY: the caller's promise.
-    call(|| Ok(unsafe { handle(world, "world") }?.0.remove(BodyId::from_bits(id))?))
+    call(|| {
+        Ok(unsafe { handle(world, "world") }?
+            .0
+            .remove(BodyId::from_bits(id))?)
+    })
 }
 
 /// Changes a box in any of its properties.
@@ -94,7 +109,11 @@ pub unsafe extern "C" fn sdop_box_world_remove(world: *mut SdopBoxWorld, id: u64
 /// # Safety
 /// `world` is a handle, `body` a box.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_box_world_set(world: *mut SdopBoxWorld, id: u64, body: *const SdopBoxBody) -> SdopStatus {
+pub unsafe extern "C" fn sdop_box_world_set(
+    world: *mut SdopBoxWorld,
+    id: u64,
+    body: *const SdopBoxBody,
+) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
         let (it, body) = unsafe { (handle(world, "world")?, *handle(body.cast_mut(), "body")?) };
@@ -130,7 +149,10 @@ pub unsafe extern "C" fn sdop_box_world_set_bounds(
 /// # Safety
 /// `world` is a handle; `pairs` may be written.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_box_world_cull(world: *mut SdopBoxWorld, pairs: *mut usize) -> SdopStatus {
+pub unsafe extern "C" fn sdop_box_world_cull(
+    world: *mut SdopBoxWorld,
+    pairs: *mut usize,
+) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
         let found = unsafe { handle(world, "world") }?.0.cull()?.len();
@@ -200,7 +222,11 @@ pub unsafe extern "C" fn sdop_box_world_snapshot(
 /// # Safety
 /// `world` is a handle; `count` bytes may be read.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_box_world_restore(world: *mut SdopBoxWorld, bytes: *const u8, count: usize) -> SdopStatus {
+pub unsafe extern "C" fn sdop_box_world_restore(
+    world: *mut SdopBoxWorld,
+    bytes: *const u8,
+    count: usize,
+) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
         let (it, bytes) = unsafe { (handle(world, "world")?, column(bytes, count, "bytes")?) };

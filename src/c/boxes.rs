@@ -3,8 +3,8 @@
 use std::ffi::{c_char, c_void};
 
 use super::border::{
-    Refusal, SdopPair, SdopStatus, SdopTakePairs, User, call, column, fill, free, give, handle, optional,
-    pairs, put, text,
+    Refusal, SdopPair, SdopStatus, SdopTakePairs, User, call, column, fill, free, give, handle,
+    optional, pairs, put, text,
 };
 use crate::bodies::{Aabb, Groups};
 use crate::boxes::{BoxCuller, BoxCullerBuilder};
@@ -19,7 +19,10 @@ pub struct SdopBoxCuller(BoxCuller);
 ///
 /// # Safety
 /// The finder is null or a text that ends with a zero.
-pub(super) unsafe fn builder(finder: *const c_char, threads: usize) -> Result<BoxCullerBuilder, Refusal> {
+pub(super) unsafe fn builder(
+    finder: *const c_char,
+    threads: usize,
+) -> Result<BoxCullerBuilder, Refusal> {
     // SAFETY: the caller's promise.
     let finder: Finder = unsafe { text(finder, "auto") }?.parse()?;
     Ok(BoxCuller::builder().finder(finder).threads(threads))

@@ -4,7 +4,8 @@ use std::ffi::c_void;
 
 use super::bodies::{SdopOptions, SdopShape, builder, shapes};
 use super::border::{
-    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back, saved, tell,
+    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back,
+    saved, tell,
 };
 use crate::bodies::Groups;
 use crate::world::{Body, BodyId, World};
@@ -19,8 +20,8 @@ pub struct SdopWorld(World);
 pub struct SdopBody {
     /// Number of its shape.
     pub shape: u32,
-    /// Whether it may move; pairs of two bodies that may not are never reported.
-    pub dynamic: bool,
+    /// Whether it is scenery; pairs of two such bodies are never reported.
+    pub fixed: bool,
     /// Quaternion x, y, z, w of any non-zero norm.
     pub rotation: [f32; 4],
     /// Translation of its origin, world frame.
@@ -33,8 +34,14 @@ pub struct SdopBody {
 
 impl From<SdopBody> for Body {
     fn from(body: SdopBody) -> Self {
-        let SdopBody { shape, dynamic, rotation, translation, margin, groups } = body;
-        Self { shape, dynamic, rotation, translation, groups, margin }
+        Self {
+            shape: body.shape,
+            dynamic: !body.fixed,
+            rotation: body.rotation,
+            translation: body.translation,
+            groups: body.groups,
+            margin: body.margin,
+        }
     }
 }
 
@@ -123,7 +130,11 @@ pub unsafe extern "C" fn sdop_world_insert(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_remove(world: *mut SdopWorld, id: u64) -> SdopStatus {
     // SAFETY: the caller's promise.
-    call(|| Ok(unsafe { handle(world, "world") }?.0.remove(BodyId::from_bits(id))?))
+    call(|| {
+        Ok(unsafe { handle(world, "world") }?
+            .0
+            .remove(BodyId::from_bits(id))?)
+    })
 }
 
 /// Changes a body in any of its properties.
@@ -131,7 +142,11 @@ pub unsafe extern "C" fn sdop_world_remove(world: *mut SdopWorld, id: u64) -> Sd
 /// # Safety
 /// `world` is a handle, `body` a body.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_set(world: *mut SdopWorld, id: u64, body: *const SdopBody) -> SdopStatus {
+pub unsafe extern "C" fn sdop_world_set(
+    world: *mut SdopWorld,
+    id: u64,
+    body: *const SdopBody,
+) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
         let (it, body) = unsafe { (handle(world, "world")?, *handle(body.cast_mut(), "body")?) };
@@ -156,7 +171,11 @@ pub unsafe extern "C" fn sdop_world_set_poses(
         let it = unsafe { handle(world, "world") }?;
         // SAFETY: the caller's promise.
         let (ids, rotations, translations) = unsafe {
-            (column(ids, count, "ids")?, column(rotation, count, "rotation")?, column(translation, count, "translation")?)
+            (
+                column(ids, count, "ids")?,
+                column(rotation, count, "rotation")?,
+                column(translation, count, "translation")?,
+            )
         };
         for ((&id, &q), &t) in ids.iter().zip(rotations).zip(translations) {
             it.0.set_pose(BodyId::from_bits(id), q, t)?;
@@ -240,7 +259,11 @@ pub unsafe extern "C" fn sdop_world_snapshot(
 /// # Safety
 /// `world` is a handle; `count` bytes may be read.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_restore(world: *mut SdopWorld, bytes: *const u8, count: usize) -> SdopStatus {
+pub unsafe extern "C" fn sdop_world_restore(
+    world: *mut SdopWorld,
+    bytes: *const u8,
+    count: usize,
+) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
         let (it, bytes) = unsafe { (handle(world, "world")?, column(bytes, count, "bytes")?) };
