@@ -217,7 +217,7 @@ pub unsafe fn optional<'a, T>(first: *const T, count: usize) -> Option<&'a [T]> 
 ///
 /// # Safety
 /// The pointer is null, or to a text that ends with a zero.
-pub unsafe fn text<'a>(text: *const c_char, default: &'a str) -> Result<&'a str, Refusal> {
+pub unsafe fn text(text: *const c_char, default: &str) -> Result<&str, Refusal> {
     if text.is_null() {
         return Ok(default);
     }

@@ -84,7 +84,7 @@ pub unsafe extern "C" fn sdop_box_world_insert(
     call(|| {
         // SAFETY: the caller's promise.
         let (it, body) = unsafe { (handle(world, "world")?, *handle(body.cast_mut(), "body")?) };
-        let inserted = it.0.insert(body.into())?;
+        let inserted = it.0.insert(BoxBody::from(body))?;
         // SAFETY: the caller's promise.
         unsafe { put(id, inserted.to_bits(), "id") }
     })
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn sdop_box_world_set(
     call(|| {
         // SAFETY: the caller's promise.
         let (it, body) = unsafe { (handle(world, "world")?, *handle(body.cast_mut(), "body")?) };
-        Ok(it.0.set(BodyId::from_bits(id), body.into())?)
+        Ok(it.0.set(BodyId::from_bits(id), BoxBody::from(body))?)
     })
 }
 
