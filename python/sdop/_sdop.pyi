@@ -81,7 +81,7 @@ class Culler:
         body_shapes: ArrayLike,
         *,
         dynamic: ArrayLike | None = None,
-        strategy: str = "s-dop",
+        strategy: str = "s-dop-sequential",
         finder: str = "auto",
         interest: Sequence[int] | None = None,
         groups: ArrayLike | None = None,
@@ -102,7 +102,7 @@ class _Body(TypedDict):
 
 class World:
     def __new__(
-        cls, shapes: Sequence[Shape], *, strategy: str = "s-dop", finder: str = "auto", threads: int = 1
+        cls, shapes: Sequence[Shape], *, strategy: str = "s-dop-sequential", finder: str = "auto", threads: int = 1
     ) -> World: ...
     def add_shape(self, shape: Shape) -> int: ...
     def remove_shape(self, shape: int) -> None: ...

@@ -26,7 +26,7 @@ const ROUND: &str = "pass float32, whose pose is then the one that is culled; `s
 /// dynamic : array of bool, shape (n,), optional
 ///     Whether a body may move; pairs of two that may not are never reported. All may, unless given.
 /// strategy : str
-///     Which volumes are tested: "s-dop" tests spheres, then or-DOPs.
+///     Which volumes are tested: "s-dop-sequential" tests spheres, then or-DOPs.
 /// finder : str
 ///     Who finds the candidates; the reported set doesn't depend on it.
 /// interest : list of int, optional
@@ -48,7 +48,7 @@ struct State {
 #[pymethods]
 impl Culler {
     #[new]
-    #[pyo3(signature = (shapes, body_shapes, *, dynamic=None, strategy="s-dop", finder="auto", interest=None, groups=None, threads=1))]
+    #[pyo3(signature = (shapes, body_shapes, *, dynamic=None, strategy="s-dop-sequential", finder="auto", interest=None, groups=None, threads=1))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
         shapes: Vec<PyRef<'_, Shape>>,

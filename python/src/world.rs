@@ -24,7 +24,7 @@ const ROUND: &str = "pass a float32 quaternion, whose rotation is then the one t
 /// ----------
 /// shapes : list of Shape
 /// strategy : str
-///     Which volumes are tested: "s-dop" tests spheres, then or-DOPs.
+///     Which volumes are tested: "s-dop-sequential" tests spheres, then or-DOPs.
 /// finder : str
 ///     Who finds the candidates; the reported set doesn't depend on it.
 /// threads : int
@@ -35,7 +35,7 @@ pub struct World(Mutex<sdop::World>);
 #[pymethods]
 impl World {
     #[new]
-    #[pyo3(signature = (shapes, *, strategy="s-dop", finder="auto", threads=1))]
+    #[pyo3(signature = (shapes, *, strategy="s-dop-sequential", finder="auto", threads=1))]
     fn new(
         shapes: Vec<PyRef<'_, Shape>>,
         strategy: &str,

@@ -34,7 +34,7 @@ def meeting(shape, rotations, translations):
     return [[i, j] for i in range(n) for j in range(i + 1, n) if sdop.exact_meet(shape, pose[i], shape, pose[j])]
 
 
-@pytest.mark.parametrize("strategy", ["s-dop", "sphere", "k-dop", "obb"])
+@pytest.mark.parametrize("strategy", ["s-dop-sequential", "sphere", "k-dop", "obb"])
 def test_nothing_that_meets_is_missed(strategy):
     shape = sdop.Shape(*bracket())
     rotations, translations = poses(60)
@@ -91,7 +91,7 @@ def test_a_world_is_saved_and_restored():
         (lambda s: sdop.Culler([s], [1]), "shape"),
         (lambda s: sdop.Culler([s], [-1]), "-1"),
         (lambda s: sdop.Culler([s], [0], dynamic=[True, False]), "dynamic has 2 rows for 1 bodies"),
-        (lambda s: sdop.Culler([s], [0], strategy="sdop"), "did you mean `s-dop`"),
+        (lambda s: sdop.Culler([s], [0], strategy="s-dop-sequentail"), "did you mean `s-dop-sequential`"),
         (lambda s: sdop.Culler([s], [0]).cull([[0, 0, 0, 1]] * 2, [[0, 0, 0]] * 2), "2 rows for 1 bodies"),
         (lambda s: sdop.Culler([s], [0]).cull([[0, 0, 0, 0]], [[0, 0, 0]]), "quaternion"),
         (lambda s: sdop.Culler([s], [0]).cull([[0, 0, 0, 1]], [[np.inf, 0, 0]]), "inf"),

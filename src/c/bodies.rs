@@ -100,7 +100,7 @@ pub unsafe extern "C" fn sdop_shape_free(shape: *mut SdopShape) {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct SdopOptions {
-    /// Which volumes are tested; null is "s-dop", spheres and then or-DOPs.
+    /// Which volumes are tested; null is "s-dop-sequential", spheres and then or-DOPs.
     pub strategy: *const c_char,
     /// Who finds the candidates; null is "auto".
     pub finder: *const c_char,
@@ -118,7 +118,7 @@ pub(super) unsafe fn builder(options: *const SdopOptions) -> Result<CullerBuilde
         return Ok(Culler::builder());
     };
     // SAFETY: the caller's promise.
-    let strategy: Strategy = unsafe { text(options.strategy, "s-dop") }?.parse()?;
+    let strategy: Strategy = unsafe { text(options.strategy, "s-dop-sequential") }?.parse()?;
     // SAFETY: the caller's promise.
     let finder: Finder = unsafe { text(options.finder, "auto") }?.parse()?;
     let builder = Culler::builder().strategy(strategy).finder(finder);
