@@ -25,6 +25,7 @@
 //! ```
 
 mod body;
+mod change_log;
 mod crowds;
 #[cfg(feature = "serde")]
 mod digest;
