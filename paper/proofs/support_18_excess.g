@@ -27,4 +27,4 @@ S + c + f4 -> a * q * (2 - p) + w + f4;
 ab1 - c + f3 -> 2 * b + w + (ab1 - (S + b + f2)) + f2 + f3;
 ac1 - b + f5 -> 2 * c + w + (ac1 - (S + c + f4)) + f4 + f5;
 a - S + f6 -> a * (1 - q) - w + f6;
-$ a in 1, q in 1, p in 1;
+$ a in 6, q in 6, p in 6;

@@ -75,7 +75,7 @@ impl BoxIndex {
     pub fn suited_to<'a>(boxes: impl Iterator<Item = &'a Aabb>, count: usize) -> Self {
         Self {
             levels: Levels::suited_to(boxes, count),
-            cells: vec![Cell::default(); count.next_power_of_two().max(16)],
+            cells: vec![Cell::default(); (count / 2).next_power_of_two().max(16)],
             taken: 0,
             boxes: Runs::default(),
             homes: Vec::new(),

@@ -22,7 +22,9 @@ const TOGETHER: usize = 16;
 /// How many boxes ahead what is read of one is prefetched.
 const AHEAD: usize = 8;
 
-/// After a frame in which looking one by one took too long, the next ones find all pairs, up to so many.
+/// An index pays if it serves for so many frames. After one that didn't, or a frame in which looking one by one took too long, the
+/// next frames find all pairs: twice as many as the last time, up to so many.
+const LEAST_SERVICE: u32 = 8;
 const LONGEST_PAUSE: u32 = 64;
 
 /// Which boxes have changed since the last cull, and where all are.
@@ -35,8 +37,9 @@ pub(super) struct Movers {
     are_many: bool,
     /// As the boxes were at the last cull. None after one that found all pairs.
     index: Option<BoxIndex>,
-    /// Boxes in the index when it was made.
+    /// Boxes in the index when it was made, and frames that it has served for.
     indexed: usize,
+    served: u32,
     /// Frames that still find all pairs, and how many there were after the last attempt.
     pause: u32,
     last_pause: u32,
@@ -56,6 +59,7 @@ impl Default for Movers {
             are_many: true,
             index: None,
             indexed: 0,
+            served: 0,
             pause: 0,
             last_pause: 0,
             found: Vec::new(),
@@ -91,26 +95,30 @@ impl Movers {
     pub fn all_found(&mut self) {
         self.changed.clear();
         self.is_changed.fill(false);
-        (self.are_many, self.index) = (false, None);
+        self.are_many = false;
         self.pause = self.pause.saturating_sub(1);
     }
 
     /// The pairs of the last cull aren't known any more, until [`Self::all_found`].
     pub fn lose_pairs(&mut self) {
-        (self.are_many, self.index) = (true, None);
+        self.are_many = true;
+        match self.index.take() {
+            Some(_) if self.served < LEAST_SERVICE => self.back_off(),
+            Some(_) => self.last_pause = 0,
+            None => {}
+        }
+    }
+
+    fn back_off(&mut self) {
+        self.last_pause = (2 * self.last_pause).clamp(1, LONGEST_PAUSE);
+        self.pause = self.last_pause;
     }
 
     fn clear(&mut self) {
         for slot in self.changed.drain(..) {
             self.is_changed[slot as usize] = false;
         }
-        (self.pause, self.last_pause) = (0, 0);
-    }
-
-    /// Looking one by one took too long.
-    fn give_up(&mut self) {
-        self.last_pause = (2 * self.last_pause).clamp(1, LONGEST_PAUSE);
-        (self.pause, self.are_many) = (self.last_pause, true);
+        self.served = self.served.saturating_add(1);
     }
 }
 
@@ -124,7 +132,7 @@ impl BoxWorld {
         }
         if !movers.changed.is_empty() {
             if !in_default_mode(|| self.find_changed(most)) {
-                self.movers.give_up();
+                self.movers.back_off();
                 return false;
             }
             self.change_pairs();
@@ -174,7 +182,7 @@ impl BoxWorld {
             }
             _ => {
                 let index = self.indexed();
-                self.movers.indexed = index.len();
+                (self.movers.indexed, self.movers.served) = (index.len(), 0);
                 index
             }
         };

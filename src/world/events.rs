@@ -132,22 +132,30 @@ pub(super) fn changes_between(before: &Reported, now: &Reported) -> Option<Chang
         return None;
     }
     let (mut begun, mut ended) = (Vec::new(), Vec::new());
-    if !std::ptr::eq(before, now) {
-        let merge = Merge {
-            before: before.pairs().iter().peekable(),
-            now: now.pairs().iter().peekable(),
-        };
-        for event in merge {
-            match event {
-                Event::Begun(pair) => begun.push(pair),
-                Event::Ended(pair) => ended.push(pair),
-                Event::Persisting(_) => {}
-            }
-            if begun.len() + ended.len() > most {
-                return None;
-            }
+    let slots = [before, now].map(|reported| (reported.slots.first(), reported.slots.second()));
+    let ids = [before, now].map(|reported| reported.pairs().iter());
+    let are_of_one_time = Arc::ptr_eq(&before.generation, &now.generation);
+    let pair = |list: usize, at: usize| ids[list].at([slots[list].0[at], slots[list].1[at]]);
+    let (mut i, mut j) = (0, 0);
+    while i < former && j < later {
+        let is_same = slots[0].0[i] == slots[1].0[j] && slots[0].1[i] == slots[1].1[j];
+        if is_same && (are_of_one_time || pair(0, i) == pair(1, j)) {
+            (i, j) = (i + 1, j + 1);
+            continue;
+        }
+        if pair(0, i) < pair(1, j) {
+            ended.push(pair(0, i));
+            i += 1;
+        } else {
+            begun.push(pair(1, j));
+            j += 1;
+        }
+        if begun.len() + ended.len() > most {
+            return None;
         }
     }
+    ended.extend((i..former).map(|at| pair(0, at)));
+    begun.extend((j..later).map(|at| pair(1, at)));
     Some(Change::Listed { begun, ended })
 }
 

@@ -6,13 +6,11 @@
 
 use std::sync::Arc;
 
+use super::change_log::{ChangeLog, PairChange};
 use super::events::{Change, Now};
 use super::pair_log::{PairLog, Reported, WorldPairs};
 use super::{BodyId, Events, Ids};
 use crate::pairs::{PairList, Partners};
-
-/// A log of so many changes is searched for those that cancel each other.
-const WORTH_CANCELLING: usize = 1024;
 
 /// The pairs of the last cull, and how they differ from those that events were last read of.
 #[derive(Clone, Debug, Default)]
@@ -29,61 +27,6 @@ struct Live {
     partners: Arc<Partners>,
     /// None if no pairs were there when events were last read, or if none have been read: all have begun since then.
     changes: Option<ChangeLog>,
-}
-
-/// A pair that came or went.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct PairChange {
-    pair: [BodyId; 2],
-    has_begun: bool,
-}
-
-/// What came and went since events were last read, in the order of time.
-#[derive(Clone, Debug, Default)]
-struct ChangeLog {
-    changes: Vec<PairChange>,
-    /// So many are left of those that were there when the log was last searched.
-    lasting: usize,
-}
-
-impl ChangeLog {
-    fn push(&mut self, change: PairChange) {
-        self.changes.push(change);
-    }
-
-    /// Drops changes that cancel each other, if the log has doubled since it was last done: so it holds at most some times the
-    /// pairs of then and of now, however long events aren't read.
-    fn cancel_some(&mut self) {
-        if self.changes.len() > 2 * self.lasting + WORTH_CANCELLING {
-            self.cancel();
-            self.lasting = self.changes.len();
-        }
-    }
-
-    /// Sorts by pair, and leaves those changes that no later one cancels. A pair comes and goes in turns, so of an even number
-    /// of changes nothing is left, and of an odd one the last.
-    fn cancel(&mut self) {
-        self.changes.sort_by_key(|change| change.pair);
-        let mut kept: Vec<PairChange> = Vec::new();
-        for &change in &self.changes {
-            match kept.last() {
-                Some(former) if former.pair == change.pair => _ = kept.pop(),
-                _ => kept.push(change),
-            }
-        }
-        self.changes = kept;
-    }
-
-    /// Pairs that have begun, and those that have ended, each sorted.
-    fn net(mut self) -> [Vec<[BodyId; 2]>; 2] {
-        self.cancel();
-        let of = |has_begun: bool| {
-            let changes = self.changes.iter();
-            let changes = changes.filter(move |change| change.has_begun == has_begun);
-            changes.map(|change| change.pair).collect()
-        };
-        [of(true), of(false)]
-    }
 }
 
 impl LivePairs {
@@ -188,9 +131,7 @@ impl LivePairs {
     /// Bytes that pairs hold.
     pub fn bytes(&self) -> usize {
         let live = self.live.as_ref().map_or(0, |live| {
-            let changes = live.changes.as_ref();
-            let changes = changes.map_or(0, |log| log.changes.capacity());
-            live.partners.bytes() + changes * size_of::<PairChange>()
+            live.partners.bytes() + live.changes.as_ref().map_or(0, ChangeLog::bytes)
         });
         self.log.bytes() + live
     }
@@ -214,29 +155,6 @@ impl LivePairs {
         let are_equal = last.pairs().iter().eq(watched.pairs());
         let watched = if are_equal { last.clone() } else { watched };
         PairLog::of(last, watched)
-    }
-}
-
-impl ChangeLog {
-    fn between(before: &Reported, now: &Reported) -> Self {
-        let mut log = Self::default();
-        let (mut before, mut now) = (
-            before.pairs().iter().peekable(),
-            now.pairs().iter().peekable(),
-        );
-        while let Some(pair) = [before.peek(), now.peek()]
-            .into_iter()
-            .flatten()
-            .min()
-            .copied()
-        {
-            let [had, has] = [before.next_if_eq(&pair), now.next_if_eq(&pair)];
-            if had.is_some() != has.is_some() {
-                let has_begun = has.is_some();
-                log.push(PairChange { pair, has_begun });
-            }
-        }
-        log
     }
 }
 

@@ -28,6 +28,7 @@
 mod body;
 #[cfg(feature = "shapes")]
 mod bounds;
+mod change_log;
 #[cfg(feature = "shapes")]
 mod crowds;
 #[cfg(all(feature = "shapes", feature = "serde"))]

@@ -91,6 +91,17 @@ enum SlotIter<'a> {
     Partners(PartnerPairs<'a>),
 }
 
+impl PairIds<'_> {
+    /// The bodies in two slots.
+    #[inline(always)]
+    pub(super) fn at(&self, pair: [u32; 2]) -> [BodyId; 2] {
+        pair.map(|slot| BodyId {
+            slot,
+            generation: self.generation[slot as usize],
+        })
+    }
+}
+
 impl Iterator for PairIds<'_> {
     type Item = [BodyId; 2];
     fn next(&mut self) -> Option<[BodyId; 2]> {
@@ -98,11 +109,7 @@ impl Iterator for PairIds<'_> {
             SlotIter::List(list) => list.next().map(|(&first, &second)| [first, second])?,
             SlotIter::Partners(partners) => partners.next()?,
         };
-        let id = |slot: u32| BodyId {
-            slot,
-            generation: self.generation[slot as usize],
-        };
-        Some([id(first), id(second)])
+        Some(self.at([first, second]))
     }
     fn size_hint(&self) -> (usize, Option<usize>) {
         match &self.slots {

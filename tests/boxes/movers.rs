@@ -226,6 +226,20 @@ fn pairs_at_rest_stay_until_a_box_leaves() {
     assert!(world.events().begun().eq([[ids[50], ids[51]]]));
 }
 
+/// The box was moved after the cull that the snapshot has the pairs of, and the world has seen that since.
+#[test]
+fn a_world_rolled_back_looks_at_all_boxes() {
+    let (mut world, ids) = row(100, Motion::Dynamic);
+    world.set_bounds(ids[20], cube(20.5)).unwrap();
+    let saved = world.snapshot();
+    for _ in 0..2 {
+        world.cull().unwrap();
+        assert_eq!(world.pairs().len(), 98);
+        world.restore(&saved).unwrap();
+        assert_eq!(world.pairs().len(), 99);
+    }
+}
+
 #[test]
 fn groups_change_the_pairs_of_boxes_that_stay() {
     let (mut world, ids) = row(100, Motion::Resting);

@@ -121,7 +121,14 @@ Ltac rewriting :=
   intros; unfold Float1, float2R, F2R in *; cbn [Defs.Fnum Defs.Fexp Fnum Fexp] in *;
   first [ ring | powers_as_numbers; field; nonzero ].
 
-(* A certificate ends with l1: the hypotheses and the negated claim contradict each other. *)
+(* A certificate ends with l1: the hypotheses contradict the negation of the claim, which for two
+   claims is a disjunction. *)
 Lemma implied (hypotheses claim : Prop) :
   (hypotheses /\ ~ claim -> False) -> hypotheses -> claim.
 Proof. intros H h. apply NNPP. intro n. exact (H (conj h n)). Qed.
+
+Lemma implied_both (hypotheses claim1 claim2 : Prop) :
+  (hypotheses /\ (~ claim1 \/ ~ claim2) -> False) -> hypotheses -> claim1 /\ claim2.
+Proof. intros H h. split; apply NNPP; intro n; apply H; split; tauto. Qed.
+
+Ltac conclude l1 := first [exact (implied _ _ l1) | exact (implied_both _ _ _ l1)].
