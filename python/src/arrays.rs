@@ -39,9 +39,10 @@ pub fn rows<'py, const N: usize>(
     if let Ok(array) = given.cast::<PyArrayDyn<f32>>() {
         check_shape::<N>(array.shape(), what)?;
         let array = array.readonly();
-        return Ok(match array.as_slice() {
-            Ok(_) => Rows::Borrowed(array),
-            Err(_) => Rows::Copied(array.as_array().iter().copied().collect()),
+        return Ok(if array.is_c_contiguous() {
+            Rows::Borrowed(array)
+        } else {
+            Rows::Copied(array.as_array().iter().copied().collect())
         });
     }
     let (array, shape) = as_f64(given, what)?;

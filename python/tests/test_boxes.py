@@ -111,7 +111,7 @@ def test_a_world_of_boxes_reports_changes():
 
 
 def test_pairs_are_those_of_rust_to_the_bit():
-    """The hash is the one of the same boxes in `tests/boxes/python.rs`."""
+    """The hash is the one of the same boxes in `tests/boxes/main.rs`."""
     i = np.arange(3000, dtype=np.uint32)
     lower = np.stack([(i * k) % 1021 for k in (7, 131, 577)], axis=1).astype(np.float32) / 16
     sides = np.stack([(i * k) % 61 for k in (3, 11, 29)], axis=1).astype(np.float32) / 16
@@ -119,4 +119,4 @@ def test_pairs_are_those_of_rust_to_the_bit():
     assert hashlib.sha256(found.astype("<u4").tobytes()).hexdigest() == HASH
 
 
-HASH = "set from the Rust test"
+HASH = "bf3a97d3cf6860a4eba71ead750f8e5a0928f8a2a647e078928cac46621b6769"

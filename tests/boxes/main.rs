@@ -236,3 +236,38 @@ fn frames_of_little_work_stay_on_the_caller_s_thread() {
         assert!(culler.cull_in_portions(&now, take).unwrap() > 0);
     }
 }
+
+/// The same boxes as in `python/tests/test_boxes.py`, and the same hash.
+#[test]
+fn pairs_are_those_of_python() {
+    use sha2::{Digest as _, Sha256};
+
+    let sixteenth = |number: u32| number as f32 / 16.0;
+    let of = |i: u32| {
+        let min = [7, 131, 577].map(|k| sixteenth(i * k % 1021));
+        let sides = [3, 11, 29].map(|k| sixteenth(i * k % 61));
+        Aabb::new(
+            min,
+            std::array::from_fn::<f32, 3, _>(|axis| min[axis] + sides[axis]),
+        )
+    };
+    let boxes: Vec<Aabb> = (0..3000).map(of).collect();
+    let mut hash = Sha256::new();
+    for number in BoxCuller::new()
+        .cull(&boxes)
+        .unwrap()
+        .sorted()
+        .as_flattened()
+    {
+        hash.update(number.to_le_bytes());
+    }
+    let hex: String = hash
+        .finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    assert_eq!(
+        hex,
+        "bf3a97d3cf6860a4eba71ead750f8e5a0928f8a2a647e078928cac46621b6769"
+    );
+}
