@@ -1,6 +1,6 @@
 import os
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, TypedDict
+from typing import Any, Literal, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,10 +17,12 @@ def box_pairs(
     boxes: ArrayLike, *, groups: ArrayLike | None = None, sort: bool = False, threads: int = 1
 ) -> NDArray[np.uint32]: ...
 
+@final
 class BoxCuller:
     def __new__(cls, *, finder: str = "auto", threads: int = 1) -> BoxCuller: ...
     def cull(self, boxes: ArrayLike, *, groups: ArrayLike | None = None, sort: bool = False) -> NDArray[np.uint32]: ...
 
+@final
 class BoxWorld:
     def __new__(cls, *, finder: str = "auto", threads: int = 1) -> BoxWorld: ...
     def insert(self, bounds: ArrayLike, *, motion: _Motion = "dynamic", groups: tuple[int, int] = ...) -> int: ...
@@ -34,8 +36,9 @@ class BoxWorld:
     def snapshot(self) -> bytes: ...
     def restore(self, snapshot: bytes) -> None: ...
     def __len__(self) -> int: ...
-    def __contains__(self, id: int) -> bool: ...
+    def __contains__(self, key: int, /) -> bool: ...
 
+@final
 class Shape:
     def __new__(
         cls,
@@ -74,6 +77,7 @@ class Shape:
     @property
     def scale(self) -> float: ...
 
+@final
 class Culler:
     def __new__(
         cls,
@@ -100,6 +104,7 @@ class _Body(TypedDict):
     dynamic: bool
     groups: tuple[int, int]
 
+@final
 class World:
     def __new__(
         cls, shapes: Sequence[Shape], *, strategy: str = "s-dop-sequential", finder: str = "auto", threads: int = 1
@@ -126,8 +131,9 @@ class World:
     def snapshot(self) -> bytes: ...
     def restore(self, snapshot: bytes) -> None: ...
     def __len__(self) -> int: ...
-    def __contains__(self, id: int) -> bool: ...
+    def __contains__(self, key: int, /) -> bool: ...
 
+@final
 class Events:
     @property
     def begun(self) -> NDArray[np.uint64]: ...
@@ -145,6 +151,7 @@ class _CaseShape(TypedDict):
     lo: NDArray[np.float32]
     hi: NDArray[np.float32]
 
+@final
 class Scene:
     @property
     def claim(self) -> str: ...

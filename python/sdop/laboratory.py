@@ -61,7 +61,8 @@ class Verdict:
     @property
     def cases(self) -> list[dict[str, Any]]:
         """A row for each case that was run."""
-        return self.data["cases"]
+        cases: list[dict[str, Any]] = self.data["cases"]
+        return cases
 
 
 def judge(

@@ -20,7 +20,7 @@ def test_trimesh_tests_of_its_own_manager():
     assert manager.in_collision_internal(return_names=True) == (False, set())
     manager.set_transform("cube1", at(0.5))
     assert manager.in_collision_internal(return_names=True) == (True, {("cube0", "cube1")})
-    assert manager.in_collision_single(cube, at(-0.5), return_names=True) == (True, {"cube0"})
+    assert manager.in_collision_single(cube, at(-0.6), return_names=True) == (True, {"cube0"})
     assert manager.in_collision_single(cube, at(-3)) is False
     manager.remove_object("cube0")
     assert manager.in_collision_internal() is False
