@@ -26,6 +26,7 @@ const LIBRARY: &[&str] = &[
     "culler",
     "world",
     "boxes",
+    "c",
 ];
 const JUDGE: &[&str] = &["contestant", "json", "record", "ours", REST];
 const BENCH: &[&str] = &[

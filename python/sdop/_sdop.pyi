@@ -5,6 +5,21 @@ from typing import Any, Literal, TypedDict, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+__all__ = [
+    "BoxCuller",
+    "BoxWorld",
+    "Culler",
+    "Events",
+    "Scene",
+    "SdopError",
+    "Shape",
+    "World",
+    "box_pairs",
+    "exact_meet",
+    "judge",
+    "main",
+]
+
 _Axes = Literal["principal", "model"]
 _Faces = Literal[6, 14, 18, 26]
 _Motion = Literal["dynamic", "resting", "fixed"]
