@@ -1,4 +1,5 @@
-//! Boxes that an engine has anyway: a crate falls past shelves onto a floor, and a frame of a thousand boxes is culled at once.
+//! Boxes that an engine has anyway: a crate falls past shelves onto a floor, and a frame of a
+//! thousand boxes is culled at once.
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BoxCuller, BoxWorld, Motion};
 

@@ -32,7 +32,8 @@ impl UnknownChoice {
     }
 }
 
-/// "did you mean …" when one of the known names is close to the given one, the list of all otherwise.
+/// "did you mean …" when one of the known names is close to the given one, the list of all
+/// otherwise.
 #[must_use]
 pub fn suggest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
@@ -46,7 +47,8 @@ pub fn suggest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String 
 #[must_use]
 pub fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let lower = given.to_lowercase().replace('_', "-");
-    // Two typing errors in a short word already make another word: allow one edit per three letters.
+    // Two typing errors in a short word already make another word: allow one edit per three
+    // letters.
     let allowed = given.chars().count() / 3;
     let distance = |name: &str| strsim::damerau_levenshtein(&lower, &name.replace('_', "-"));
     known
@@ -56,7 +58,8 @@ pub fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<
         .map(|(_, name)| name)
 }
 
-/// Declares an enum of named choices with `ALL`, `NAMES`, `name`, `Display`, `FromStr` and serde as its name.
+/// Declares an enum of named choices with `ALL`, `NAMES`, `name`, `Display`, `FromStr` and serde as
+/// its name.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! choices {

@@ -1,6 +1,8 @@
-//! What is counted and timed of culling: the Nu and Nv of the paper's formula, and seconds by stage.
+//! What is counted and timed of culling: the Nu and Nv of the paper's formula, and seconds by
+//! stage.
 //!
-//! A test counts when a candidate pair is handed to it, so counts are equal on every CPU, tier and thread count.
+//! A test counts when a candidate pair is handed to it, so counts are equal on every CPU, tier and
+//! thread count.
 
 use std::ops::AddAssign;
 

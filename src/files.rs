@@ -1,16 +1,17 @@
 //! Files, read within a limit and written whole.
 //!
-//! What is written appears under its name only when all of it is there: it is written beside, and renamed. A crash, a full
-//! disk or a kill leaves the former file or none, and at worst a `.part` file next to it, which the next
-//! writer of that name removes. A `.part` file is locked as long as somebody writes it.
+//! What is written appears under its name only when all of it is there: it is written beside, and
+//! renamed. A crash, a full disk or a kill leaves the former file or none, and at worst a `.part`
+//! file next to it, which the next writer of that name removes. A `.part` file is locked as long as
+//! somebody writes it.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Bytes of a file that are read unless the caller says otherwise: 1 GiB, several times the largest scanned meshes. A link
-/// to an endless device ends here.
+/// Bytes of a file that are read unless the caller says otherwise: 1 GiB, several times the largest
+/// scanned meshes. A link to an endless device ends here.
 pub const MAX_BYTES: u64 = 1 << 30;
 
 /// Reads a file of at most `most` bytes.
@@ -46,7 +47,8 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     text.map_err(|_| io::Error::new(ErrorKind::InvalidData, "the file is not UTF-8 text"))
 }
 
-/// Reads a line of at most `most` bytes and its end into `line`, which is emptied before; the number of bytes, 0 at the end.
+/// Reads a line of at most `most` bytes and its end into `line`, which is emptied before; the
+/// number of bytes, 0 at the end.
 ///
 /// # Errors
 /// What the system says, and [`ErrorKind::FileTooLarge`] for a longer line.
@@ -71,16 +73,19 @@ pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
     file.finish()
 }
 
-/// A file that is being written, and takes its name when it is finished. Dropped before, it leaves nothing.
+/// A file that is being written, and takes its name when it is finished. Dropped before, it leaves
+/// nothing.
 #[derive(Debug)]
 pub struct Whole {
     file: BufWriter<File>,
-    /// Where it is written, and the name that it takes; `None` for devices and pipes, which can't be replaced.
+    /// Where it is written, and the name that it takes; `None` for devices and pipes, which can't
+    /// be replaced.
     part: Option<[PathBuf; 2]>,
 }
 
 impl Whole {
-    /// Starts a file. Symbolic links are followed, so that the file they lead to is replaced and not the link.
+    /// Starts a file. Symbolic links are followed, so that the file they lead to is replaced and
+    /// not the link.
     ///
     /// # Errors
     /// What the system says.
@@ -139,8 +144,8 @@ fn create_locked(part: &Path) -> io::Result<File> {
     }
 }
 
-/// Removes the `.part` files of a name whose writers have ended: nobody holds their lock. What can't be
-/// read or removed stays.
+/// Removes the `.part` files of a name whose writers have ended: nobody holds their lock. What
+/// can't be read or removed stays.
 fn remove_abandoned(target: &Path, name: &OsStr) {
     let directory = target.parent().filter(|path| !path.as_os_str().is_empty());
     let Ok(entries) = fs::read_dir(directory.unwrap_or(Path::new("."))) else {

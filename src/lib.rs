@@ -1,12 +1,13 @@
-//! Which pairs of rigid bodies might touch? Collision culling by bounding spheres and oriented k-DOPs (S-DOP), on SIMD in
-//! every tier of the CPU, that never misses a pair.
+//! Which pairs of rigid bodies might touch? Collision culling by bounding spheres and oriented
+//! k-DOPs (S-DOP), on SIMD in every tier of the CPU, that never misses a pair.
 //!
 //! # The promise
 //!
-//! If two posed meshes intersect in exact real arithmetic, touching included, and at least one of them may move, the pair is
-//! reported: by every [`Strategy`] but the control [`Strategy::None`], with every [`Finder`], on every CPU, for any finite
-//! poses up to 2⁶⁰ in size. Pairs that don't intersect may be reported too; strategies differ in how many, and in time.
-//! The question is who touches *now*: there is no continuous detection, and a narrow phase still has to judge what is
+//! If two posed meshes intersect in exact real arithmetic, touching included, and at least one of
+//! them may move, the pair is reported: by every [`Strategy`] but the control [`Strategy::None`],
+//! with every [`Finder`], on every CPU, for any finite poses up to 2⁶⁰ in size. Pairs that don't
+//! intersect may be reported too; strategies differ in how many, and in time. The question is who
+//! touches *now*: there is no continuous detection, and a narrow phase still has to judge what is
 //! reported.
 //!
 //! # A first use
@@ -34,23 +35,29 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of bodies; in a [`World`] they
-//! come and go, with stable ids, groups, contact margins, f64 translations and events. Whoever has boxes already takes
-//! [`BoxCuller`] or [`BoxWorld`]: exactly the pairs of boxes that meet.
+//! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of
+//! bodies; in a [`World`] they come and go, with stable ids, groups, contact margins, f64
+//! translations and events. Whoever has boxes already takes [`BoxCuller`] or [`BoxWorld`]: exactly
+//! the pairs of boxes that meet.
 //!
 //! # Conventions
 //!
 //! - **Axes**: right-handed. Which one points up doesn't matter: nothing here prefers an axis.
-//! - **Rotations**: quaternions in the order (x, y, z, w), of any non-zero norm. They turn the body frame into the world
-//!   frame: a vertex p of a body stands at R(q)·p + t.
-//! - **Translations**: of the body's origin, world frame. That is the mesh's own origin, as the file has it, unless
-//!   [`Origin::Ball`] moves the centre of the smallest enclosing ball there; [`Shape::offset`] keeps what was moved.
-//! - **Far meshes**: where rounding a mesh to f32 would move a vertex by more than 2⁻²⁰ of the mesh's size, its vertices are kept
-//!   about a point near it. A [`World`] adds that offset to the pose in f64; a [`Culler`], whose poses are f32, refuses it.
-//! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and at most 2⁶⁰.
-//! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair once, and its order depends on the
-//!   finder and the frames so far, never on the CPU or the number of threads; [`PairList::sorted`] gives an order of its own.
-//! - **Poses** are taken as anything that turns into arrays: `[f32; 4]` and `[f32; 3]`, or glam's `Quat` and `Vec3`.
+//! - **Rotations**: quaternions in the order (x, y, z, w), of any non-zero norm. They turn the body
+//!   frame into the world frame: a vertex p of a body stands at R(q)·p + t.
+//! - **Translations**: of the body's origin, world frame. That is the mesh's own origin, as the
+//!   file has it, unless [`Origin::Ball`] moves the centre of the smallest enclosing ball there;
+//!   [`Shape::offset`] keeps what was moved.
+//! - **Far meshes**: where rounding a mesh to f32 would move a vertex by more than 2⁻²⁰ of the
+//!   mesh's size, its vertices are kept about a point near it. A [`World`] adds that offset to the
+//!   pose in f64; a [`Culler`], whose poses are f32, refuses it.
+//! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and
+//!   at most 2⁶⁰.
+//! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair
+//!   once, and its order depends on the finder and the frames so far, never on the CPU or the
+//!   number of threads; [`PairList::sorted`] gives an order of its own.
+//! - **Poses** are taken as anything that turns into arrays: `[f32; 4]` and `[f32; 3]`, or glam's
+//!   `Quat` and `Vec3`.
 //!
 //! # Stages
 //!
@@ -62,7 +69,8 @@
 //!  ╰─────── once ──────╯          ╰───────── each frame: Culler::cull ───────╯
 //! ```
 //!
-//! [`strategy`](Strategy) names which tests run in which order; [`counters`] say how often each did.
+//! [`strategy`](Strategy) names which tests run in which order; [`counters`] say how often each
+//! did.
 //!
 //! # Features
 //!
@@ -75,8 +83,8 @@
 //!
 //! Every error has a `help` method: how to mend what it reports.
 //!
-//! The crate `sdop-judge` judges any culler against the exact reference. `sdop-bench` has scenes, measurements, studies and
-//! the program `sdop`.
+//! The crate `sdop-judge` judges any culler against the exact reference. `sdop-bench` has scenes,
+//! measurements, studies and the program `sdop`.
 
 #![cfg_attr(
     not(feature = "shapes"),
@@ -102,7 +110,8 @@ pub mod world;
 
 mod strategy;
 
-// Inner rooms, which the judge, tests and benches enter from outside: no promise is made about them.
+// Inner rooms, which the judge, tests and benches enter from outside: no promise is made about
+// them.
 #[doc(hidden)]
 pub mod broad_phase;
 #[doc(hidden)]

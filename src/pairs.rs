@@ -18,7 +18,8 @@ fn bytes<T>(column: &Vec<T>) -> usize {
     column.capacity() * size_of::<T>()
 }
 
-/// A list of body pairs as two columns. It grows by what is needed: no pair is ever dropped for lack of memory.
+/// A list of body pairs as two columns. It grows by what is needed: no pair is ever dropped for
+/// lack of memory.
 ///
 /// Kernels write a whole vector and then advance by the lanes they kept, so the columns always have
 /// [`MAX_WIDTH`] elements of room behind the last pair.

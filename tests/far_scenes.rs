@@ -1,4 +1,5 @@
-//! Scenes far from the origin: translations of `poses` are f64, and pairs are those of their exact values.
+//! Scenes far from the origin: translations of `poses` are f64, and pairs are those of their exact
+//! values.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
@@ -132,7 +133,8 @@ fn translations_beyond_the_limit_are_refused() {
     );
 }
 
-/// The second body moves by a half per frame, which f32 doesn't notice there, and the third by 64, which it does.
+/// The second body moves by a half per frame, which f32 doesn't notice there, and the third by 64,
+/// which it does.
 #[test]
 fn moved_bodies_are_where_f32_says() {
     let more = "velocities = [[128, 0, 0]]\n[effects]\nmotion = true\n";
@@ -190,7 +192,8 @@ fn records_hold_exact_translations() {
     }
 }
 
-/// A pose of f32 numbers, written into a scene file, reads back to them exactly, and to no other f64.
+/// A pose of f32 numbers, written into a scene file, reads back to them exactly, and to no other
+/// f64.
 #[test]
 fn written_poses_are_exact() {
     let translation = [0.1_f32, -3.0e-39, 1.0e9 / 3.0];

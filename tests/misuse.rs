@@ -1,4 +1,5 @@
-//! What happens when a culler is used otherwise than meant. No entry may panic, hang or silently drop a pair.
+//! What happens when a culler is used otherwise than meant. No entry may panic, hang or silently
+//! drop a pair.
 //!
 //! | misuse | what happens |
 //! |---|---|

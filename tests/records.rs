@@ -1,4 +1,5 @@
-//! Records: what is written reads back, and whatever is wrong with one is said with its line and a remedy.
+//! Records: what is written reads back, and whatever is wrong with one is said with its line and a
+//! remedy.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

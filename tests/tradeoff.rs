@@ -81,7 +81,8 @@ fn hulls_agree_with_the_exact_meeting_of_hull_meshes() {
 
 #[test]
 fn touching_hulls_are_reported() {
-    // Unit cubes face to face, corner to corner, edge to edge: exact in f32, a sign in f64 could fall either way.
+    // Unit cubes face to face, corner to corner, edge to edge: exact in f32, a sign in f64 could
+    // fall either way.
     let cubes = [builtin().unwrap().swap_remove(0)];
     let graphs = [HullGraph::new(&cubes[0])];
     let half = 0.5_f32;
@@ -270,8 +271,8 @@ fn changes_are_what_they_say(path: &Path) {
     assert!(narrow("needles") < 0.2 && narrow("balls") > 0.9);
 }
 
-/// The parts that units come to: of two seeds and three passes, three shapes and nine of known form, seven densities, changes of
-/// four kinds.
+/// The parts that units come to: of two seeds and three passes, three shapes and nine of known
+/// form, seven densities, changes of four kinds.
 fn nothing_is_left_out(path: &Path) {
     let result: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();

@@ -1,8 +1,10 @@
-//! What distance from the origin costs: reported pairs and time of frames, of f32 poses, of f64 ones in a world, and of a world
-//! whose bodies are in many places. `cargo bench --bench far` prints CSV.
+//! What distance from the origin costs: reported pairs and time of frames, of f32 poses, of f64
+//! ones in a world, and of a world whose bodies are in many places. `cargo bench --bench far`
+//! prints CSV.
 //!
-//! The same bodies move in the same way in every row, and only the place differs. Pairs are compared with those next to the
-//! origin, where rounding moves nothing noticeably: f32 poses far out lose pairs and gain others, f64 ones only where f64 rounds.
+//! The same bodies move in the same way in every row, and only the place differs. Pairs are
+//! compared with those next to the origin, where rounding moves nothing noticeably: f32 poses far
+//! out lose pairs and gain others, f64 ones only where f64 rounds.
 
 use std::collections::HashSet;
 use std::time::Instant;
@@ -55,7 +57,8 @@ impl Swarm {
         }
     }
 
-    /// Where a body is when its place is at this distance: on a line through the origin, for many places all along it.
+    /// Where a body is when its place is at this distance: on a line through the origin, for many
+    /// places all along it.
     fn at(&self, body: usize, distance: f64) -> [f64; 3] {
         let place = 1 + body % self.places;
         let along = distance * place as f64 / self.places as f64;

@@ -1,4 +1,5 @@
-//! The laboratory: scenes, their simulation, and the studies that judge and measure the culler. An engine needs none of it.
+//! The laboratory: scenes, their simulation, and the studies that judge and measure the culler. An
+//! engine needs none of it.
 
 extern crate self as sdop_bench; // commands name the rooms as from outside
 

@@ -74,7 +74,8 @@ impl<'de, T: Kind + FromEnds> Visitor<'de> for NumberVisitor<T> {
         f.write_str(T::EXPECTED)
     }
 
-    // Both casts round to the nearest f32; beyond its range they give an infinity, which no kind accepts.
+    // Both casts round to the nearest f32; beyond its range they give an infinity, which no kind
+    // accepts.
     fn visit_f64<E: Error>(self, value: f64) -> Result<T, E> {
         T::accept(value as f32).ok_or_else(|| E::invalid_value(Unexpected::Float(value), &self))
     }
@@ -124,8 +125,8 @@ macro_rules! deserialize_number {
 }
 deserialize_number!(Real, Positive, Share, Interval);
 
-/// Factors of x, y and z, written as one number for all or as `[x, y, z]`: not zero, of size at most 2⁶⁰. In f64, since 0.001
-/// is no f32.
+/// Factors of x, y and z, written as one number for all or as `[x, y, z]`: not zero, of size at
+/// most 2⁶⁰. In f64, since 0.001 is no f32.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Factors(pub [f64; 3]);
 

@@ -1,4 +1,5 @@
-//! Errors of the library and the judge as miette's diagnostics: those crates name a remedy, the program prints it.
+//! Errors of the library and the judge as miette's diagnostics: those crates name a remedy, the
+//! program prints it.
 
 use std::error::Error;
 use std::fmt::Display;
@@ -41,7 +42,8 @@ impl Remedy for sdop_judge::record::RecordError {
     }
 }
 
-/// An error with its remedy, as a diagnostic that prints the same message and the remedy as its help.
+/// An error with its remedy, as a diagnostic that prints the same message and the remedy as its
+/// help.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(transparent)]
 pub struct Explained<E: Remedy>(#[from] pub E);

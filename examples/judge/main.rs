@@ -1,7 +1,7 @@
 //! A culler in Rust, judged: a grid over bounding balls that claims to miss no pair of meshes.
 //!
-//! `cargo run --release --example judge` passes. With `-- --tight-cells` the cells are exactly as large as the largest ball, and
-//! counted in f32: a partner can be two cells away.
+//! `cargo run --release --example judge` passes. With `-- --tight-cells` the cells are exactly as
+//! large as the largest ball, and counted in f32: a partner can be two cells away.
 
 use std::collections::HashMap;
 use std::process::ExitCode;

@@ -1,7 +1,8 @@
 //! Arrays of numpy as rows of numbers, and back.
 //!
-//! One rule for all columns of f32: an array of float32 whose rows lie one behind the other is read where it is; any
-//! other array of numbers is copied; a number that float32 can't hold is refused, since the answer would be about another one.
+//! One rule for all columns of f32: an array of float32 whose rows lie one behind the other is read
+//! where it is; any other array of numbers is copied; a number that float32 can't hold is refused,
+//! since the answer would be about another one.
 
 use numpy::{
     PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn,
@@ -23,14 +24,16 @@ impl<const N: usize> Rows<'_, N> {
     /// The rows.
     pub fn rows(&self) -> &[[f32; N]] {
         let numbers = match self {
-            Self::Borrowed(array) => array.as_slice().unwrap_or_default(), // checked when it was borrowed
+            // checked when it was borrowed
+            Self::Borrowed(array) => array.as_slice().unwrap_or_default(),
             Self::Copied(numbers) => numbers,
         };
         numbers.as_chunks().0
     }
 }
 
-/// A column of rows of N numbers in f32. `what` names it in errors, `remedy` says what to do with numbers that f32 can't hold.
+/// A column of rows of N numbers in f32. `what` names it in errors, `remedy` says what to do with
+/// numbers that f32 can't hold.
 pub fn rows<'py, const N: usize>(
     given: &Bound<'py, PyAny>,
     what: &str,
@@ -128,7 +131,8 @@ fn as_f64(given: &Bound<'_, PyAny>, what: &str) -> PyResult<(Vec<f64>, Vec<usize
     Ok((numbers, array.shape().to_vec()))
 }
 
-/// Anything that numpy takes for an array of numbers, in another type of the same kind: no fraction is cut off.
+/// Anything that numpy takes for an array of numbers, in another type of the same kind: no fraction
+/// is cut off.
 fn as_array<'py>(
     given: &Bound<'py, PyAny>,
     dtype: &str,

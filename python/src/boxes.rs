@@ -44,16 +44,11 @@ pub(super) fn groups(
 
 /// Which boxes meet? Touching is meeting.
 ///
-/// Parameters
-/// ----------
-/// boxes : array of float32, shape (n, 6) or (n, 2, 3)
-///     Lower corner x, y, z, then the upper one. float64 is taken where float32 holds each number exactly.
-/// groups : array of whole numbers, shape (n, 2), optional
-///     Bits of the groups that each box is in, and of those that it collides with.
-/// sort : bool
-///     Whether the rows are sorted; otherwise their order is the same for the same boxes.
-/// threads : int
-///     Number of threads.
+/// Parameters ---------- boxes : array of float32, shape (n, 6) or (n, 2, 3) Lower corner x, y, z,
+/// then the upper one. float64 is taken where float32 holds each number exactly. groups : array of
+/// whole numbers, shape (n, 2), optional Bits of the groups that each box is in, and of those that
+/// it collides with. sort : bool Whether the rows are sorted; otherwise their order is the same for
+/// the same boxes. threads : int Number of threads.
 ///
 /// Returns
 /// -------
@@ -71,7 +66,8 @@ pub fn box_pairs<'py>(
     BoxCuller::new("auto", threads)?.cull(py, boxes, groups, sort)
 }
 
-/// Finds the boxes that meet, frame after frame: faster than `box_pairs`, since what one frame finds serves the next.
+/// Finds the boxes that meet, frame after frame: faster than `box_pairs`, since what one frame
+/// finds serves the next.
 ///
 /// Parameters
 /// ----------
@@ -92,7 +88,8 @@ impl BoxCuller {
         Ok(Self(Mutex::new(builder.build().map_err(refused)?)))
     }
 
-    /// The pairs of this frame's boxes, as `box_pairs` has them. Their number may change from frame to frame.
+    /// The pairs of this frame's boxes, as `box_pairs` has them. Their number may change from frame
+    /// to frame.
     #[pyo3(signature = (boxes, *, groups=None, sort=false))]
     fn cull<'py>(
         &self,
@@ -112,7 +109,8 @@ impl BoxCuller {
     }
 }
 
-/// A long-lived set of boxes: ids that stay, boxes at rest, groups, and pairs as a list or as events.
+/// A long-lived set of boxes: ids that stay, boxes at rest, groups, and pairs as a list or as
+/// events.
 #[pyclass(frozen, module = "sdop")]
 pub struct BoxWorld(Mutex<sdop::BoxWorld>);
 
@@ -128,7 +126,8 @@ impl BoxWorld {
         )))
     }
 
-    /// Adds a box (lower corner x, y, z, then the upper one) and returns its id, which stays until `remove`.
+    /// Adds a box (lower corner x, y, z, then the upper one) and returns its id, which stays until
+    /// `remove`.
     #[pyo3(signature = (bounds, *, motion="dynamic", groups=(u32::MAX, u32::MAX)))]
     fn insert(
         &self,
@@ -162,7 +161,8 @@ impl BoxWorld {
         .map_err(refused)
     }
 
-    /// Puts a box to rest, wakes it, or makes it scenery: "resting", "dynamic" or "fixed". Rest begins and ends no pair.
+    /// Puts a box to rest, wakes it, or makes it scenery: "resting", "dynamic" or "fixed". Rest
+    /// begins and ends no pair.
     fn set_motion(&self, py: Python<'_>, id: u64, motion: &str) -> PyResult<()> {
         let motion = self::motion(motion)?;
         locked(py, &self.0, |world| {
@@ -171,7 +171,8 @@ impl BoxWorld {
         .map_err(refused)
     }
 
-    /// Moves many boxes: ids of shape (n,), boxes as `box_pairs` takes them. Those before one that is refused have moved.
+    /// Moves many boxes: ids of shape (n,), boxes as `box_pairs` takes them. Those before one that
+    /// is refused have moved.
     fn set_many(
         &self,
         py: Python<'_>,

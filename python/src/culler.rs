@@ -15,26 +15,17 @@ const ROUND: &str = "pass float32, whose pose is then the one that is culled; `s
 
 /// Culls the frames of a fixed set of bodies whose poses change.
 ///
-/// If two posed meshes meet in exact arithmetic, touching included, and one of them is dynamic, the pair is reported. Pairs that
-/// don't meet may be reported too; how many depends on the strategy.
+/// If two posed meshes meet in exact arithmetic, touching included, and one of them is dynamic, the
+/// pair is reported. Pairs that don't meet may be reported too; how many depends on the strategy.
 ///
-/// Parameters
-/// ----------
-/// shapes : list of Shape
-/// body_shapes : array of whole numbers, shape (n,)
-///     For each body, the index of its shape.
-/// dynamic : array of bool, shape (n,), optional
-///     Whether a body may move; pairs of two that may not are never reported. All may, unless given.
-/// strategy : str
-///     Which volumes are tested: "s-dop-sequential" tests spheres, then or-DOPs.
-/// finder : str
-///     Who finds the candidates; the reported set doesn't depend on it.
-/// interest : list of int, optional
-///     Bodies of interest, for the strategies that need them.
-/// groups : array of whole numbers, shape (n, 2), optional
-///     Bits of the groups that each body is in, and of those that it collides with.
-/// threads : int
-///     Number of threads.
+/// Parameters ---------- shapes : list of Shape body_shapes : array of whole numbers, shape (n,)
+/// For each body, the index of its shape. dynamic : array of bool, shape (n,), optional Whether a
+/// body may move; pairs of two that may not are never reported. All may, unless given. strategy :
+/// str Which volumes are tested: "s-dop-sequential" tests spheres, then or-DOPs. finder : str Who
+/// finds the candidates; the reported set doesn't depend on it. interest : list of int, optional
+/// Bodies of interest, for the strategies that need them. groups : array of whole numbers, shape
+/// (n, 2), optional Bits of the groups that each body is in, and of those that it collides with.
+/// threads : int Number of threads.
 #[pyclass(frozen, module = "sdop")]
 pub struct Culler(Mutex<State>);
 

@@ -10,7 +10,8 @@ use super::shape::Shape;
 
 const ROUND: &str = "pass float32: the exact answer is about the numbers as given";
 
-/// Whether two posed meshes share a point, or one lies inside of a closed part of the other, in exact arithmetic.
+/// Whether two posed meshes share a point, or one lies inside of a closed part of the other, in
+/// exact arithmetic.
 ///
 /// Parameters
 /// ----------

@@ -14,13 +14,14 @@ use super::errors::{SdopError, refused};
 
 /// Judges a culler against the exact reference.
 ///
-/// `make` is called with a `Scene` for each case and returns an object with `frame(rotations, translations)`, which returns the
-/// pairs i < j as an array of shape (m, 2). For the claim "aabb" it has `frame(boxes)` instead. If its set of bodies can change, it
-/// has `change(body_shapes, dynamic, was)`, where `was` holds each body's former number, or −1; cases with such a change are
+/// `make` is called with a `Scene` for each case and returns an object with `frame(rotations,
+/// translations)`, which returns the pairs i < j as an array of shape (m, 2). For the claim "aabb"
+/// it has `frame(boxes)` instead. If its set of bodies can change, it has `change(body_shapes,
+/// dynamic, was)`, where `was` holds each body's former number, or −1; cases with such a change are
 /// skipped otherwise. An exception is an error of that case.
 ///
-/// Returns whether it is a pass, the verdict as text and as JSON, and the smallest case of a miss; `sdop.judge` makes a `Verdict`
-/// of it.
+/// Returns whether it is a pass, the verdict as text and as JSON, and the smallest case of a miss;
+/// `sdop.judge` makes a `Verdict` of it.
 #[pyfunction]
 #[pyo3(signature = (make, claims, cases, seed, extra_limit, fail_fast))]
 pub fn judge(
@@ -76,8 +77,8 @@ fn missed(py: Python<'_>, smallest: &Smallest, claim: Claim) -> PyResult<Missed>
 pub struct Scene {
     /// What it is judged by.
     claim: &'static str,
-    /// A dict for each shape: `name`, `vertices` (n, 3), `triangles` (m, 3), `ball` (centre and radius), and the or-DOP's
-    /// `basis` (3, 3, a row for each axis), `lo` and `hi` (k / 2).
+    /// A dict for each shape: `name`, `vertices` (n, 3), `triangles` (m, 3), `ball` (centre and
+    /// radius), and the or-DOP's `basis` (3, 3, a row for each axis), `lo` and `hi` (k / 2).
     shapes: Py<PyList>,
     /// Number of each body's shape, shape (n,).
     body_shapes: Py<PyArray1<u32>>,
@@ -116,7 +117,8 @@ struct InPython {
 impl Subject for InPython {
     fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
         let mut answered = Vec::new();
-        // Threads of the judge hold the interpreter for a whole case: a case's frames come one after the other.
+        // Threads of the judge hold the interpreter for a whole case: a case's frames come one
+        // after the other.
         Python::attach(|py| match self.run(py, case, claim, &mut answered) {
             Ok(None) => Ok(answered),
             Ok(Some(why)) => Err(Stop::Skipped { why, answered }),

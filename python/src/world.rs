@@ -14,11 +14,12 @@ use super::shape::{Shape, built};
 
 const ROUND: &str = "pass a float32 quaternion, whose rotation is then the one that is culled";
 
-/// A long-lived set of bodies that come and go, with ids that stay, groups, contact margins, float64 translations, and pairs as a
-/// list or as events.
+/// A long-lived set of bodies that come and go, with ids that stay, groups, contact margins,
+/// float64 translations, and pairs as a list or as events.
 ///
-/// At every `cull`, if two meshes, each grown by its body's margin and posed at its float64 translation, meet in exact
-/// arithmetic, one of them is dynamic and their groups collide, the pair is reported.
+/// At every `cull`, if two meshes, each grown by its body's margin and posed at its float64
+/// translation, meet in exact arithmetic, one of them is dynamic and their groups collide, the pair
+/// is reported.
 ///
 /// Parameters
 /// ----------
@@ -128,7 +129,8 @@ impl World {
         .map_err(refused)
     }
 
-    /// Moves many bodies: ids of shape (n,), rotations (n, 4), translations (n, 3). Those before one that is refused have moved.
+    /// Moves many bodies: ids of shape (n,), rotations (n, 4), translations (n, 3). Those before
+    /// one that is refused have moved.
     fn set_poses(
         &self,
         py: Python<'_>,
@@ -184,7 +186,8 @@ impl World {
         locked(py, &self.0, |world| Events::new(&world.events()))
     }
 
-    /// The world as bytes, for `restore` here or elsewhere: bodies, ids, pairs and events, without shapes.
+    /// The world as bytes, for `restore` here or elsewhere: bodies, ids, pairs and events, without
+    /// shapes.
     fn snapshot(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
         let snapshot = locked(py, &self.0, |world| world.snapshot());
         saved(&snapshot)
@@ -223,7 +226,8 @@ fn pose(
     ))
 }
 
-/// What has changed between two reads of events: three lists of pairs, each of shape (m, 2), sorted.
+/// What has changed between two reads of events: three lists of pairs, each of shape (m, 2),
+/// sorted.
 #[pyclass(frozen, module = "sdop")]
 pub struct Events {
     begun: Vec<[u64; 2]>,

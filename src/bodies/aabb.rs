@@ -40,7 +40,8 @@ impl Aabb {
         [self.min, self.max].map(|corner| corner.map(f32::to_bits))
     }
 
-    /// Whether its ends are finite and in order, by their bits: in any floating-point mode, but not of zeros of two signs.
+    /// Whether its ends are finite and in order, by their bits: in any floating-point mode, but not
+    /// of zeros of two signs.
     #[inline]
     fn is_surely_sound(&self) -> bool {
         // Numbers of one sign are in the order of their bits, negative ones in the opposite one.

@@ -1,7 +1,8 @@
-//! The contract between bodies and culling (design, section 4): within it, no strategy misses a pair.
+//! The contract between bodies and culling (design, section 4): within it, no strategy misses a
+//! pair.
 //!
-//! Checked where bodies enter and again after every effects step, so that a NaN is reported with its body's
-//! number at the step that made it, and not as a wrong pair list frames later.
+//! Checked where bodies enter and again after every effects step, so that a NaN is reported with
+//! its body's number at the step that made it, and not as a wrong pair list frames later.
 
 #[cfg(feature = "shapes")]
 mod poses;
@@ -49,7 +50,8 @@ impl ContractError {
     }
 }
 
-/// The most bodies that a culler can number: one a quad of its table of balls, and a vector of padding.
+/// The most bodies that a culler can number: one a quad of its table of balls, and a vector of
+/// padding.
 pub const MOST_BODIES: usize = MOST_QUADS - MAX_WIDTH;
 
 /// Checks that so many bodies can be numbered.

@@ -28,8 +28,8 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Appends a body: the number of its shape, whether it may move, its orientation quaternion (x, y, z, w) of any non-zero
-    /// norm, and the translation of its origin, world frame.
+    /// Appends a body: the number of its shape, whether it may move, its orientation quaternion (x,
+    /// y, z, w) of any non-zero norm, and the translation of its origin, world frame.
     pub fn push(
         &mut self,
         shape: u32,

@@ -1,7 +1,9 @@
-//! Where each box is, to be changed box by box: cells of several sizes ([`levels`](super::levels)) in a hash table.
+//! Where each box is, to be changed box by box: cells of several sizes ([`levels`](super::levels))
+//! in a hash table.
 //!
-//! A box that moves, comes or goes costs its old cell and its new one; a query costs the cells near the box, and what is in
-//! them. Nothing is sorted, and nothing rebuilt but the table of cells when it is full.
+//! A box that moves, comes or goes costs its old cell and its new one; a query costs the cells near
+//! the box, and what is in them. Nothing is sorted, and nothing rebuilt but the table of cells when
+//! it is full.
 
 use super::levels::{Levels, cell_count};
 use crate::bodies::{Aabb, Groups};
@@ -61,7 +63,8 @@ pub(super) struct Seeker<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct BoxIndex {
     levels: Levels,
-    /// Open addressing with linear probing. Cells stay when their last box leaves, until the table is made anew.
+    /// Open addressing with linear probing. Cells stay when their last box leaves, until the table
+    /// is made anew.
     cells: Vec<Cell>,
     taken: usize,
     boxes: Runs<Entry>,
@@ -171,7 +174,8 @@ impl BoxIndex {
         }
     }
 
-    /// Brings near what [`Self::put`] and [`Self::remove`] will read of a box: some boxes before them.
+    /// Brings near what [`Self::put`] and [`Self::remove`] will read of a box: some boxes before
+    /// them.
     #[inline]
     pub fn prefetch(&self, slot: u32) {
         if let Some(home) = self.homes.get(slot as usize) {
@@ -179,8 +183,9 @@ impl BoxIndex {
         }
     }
 
-    /// Appends for each seeker the slots of the boxes that meet it, not both fixed, whose groups collide: sorted, each once. Where
-    /// each one's end goes to `ends`. Returns how many boxes and cells were looked at.
+    /// Appends for each seeker the slots of the boxes that meet it, not both fixed, whose groups
+    /// collide: sorted, each once. Where each one's end goes to `ends`. Returns how many boxes and
+    /// cells were looked at.
     pub fn find_partners(
         &self,
         seekers: &[Seeker<'_>],

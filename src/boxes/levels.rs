@@ -1,13 +1,16 @@
-//! Sizes of boxes and of cells: boxes of about one size share a level, whose cells are twice as wide as the widest of them.
+//! Sizes of boxes and of cells: boxes of about one size share a level, whose cells are twice as
+//! wide as the widest of them.
 //!
-//! A box is in the cell of its lower corner. Let b be a level's bound, no less than any side of its boxes, and q a box. A box t of
-//! the level that meets q has q.min − b ≤ t.min ≤ q.max on each axis. The cell of a coordinate is a monotone function of it,
-//! ⌊fl(x·w)⌋, so t is in the cells from that of a number no greater than q.min − b to that of q.max. Everything is monotone, so
+//! A box is in the cell of its lower corner. Let b be a level's bound, no less than any side of its
+//! boxes, and q a box. A box t of the level that meets q has q.min − b ≤ t.min ≤ q.max on each
+//! axis. The cell of a coordinate is a monotone function of it, ⌊fl(x·w)⌋, so t is in the cells
+//! from that of a number no greater than q.min − b to that of q.max. Everything is monotone, so
 //! rounding costs at most a cell; q.min − b is rounded to a number below it.
 
 use crate::bodies::Aabb;
 
-/// Quantiles of a sample of boxes: so many of them are drawn, and so many are smaller than the one in question.
+/// Quantiles of a sample of boxes: so many of them are drawn, and so many are smaller than the one
+/// in question.
 const SAMPLE: usize = 256;
 const SMALLER: usize = 192;
 
@@ -79,7 +82,8 @@ impl Level {
         }
     }
 
-    /// A number that hardly any other cell has; never 0. Cells that share it share their boxes, which costs time and nothing else.
+    /// A number that hardly any other cell has; never 0. Cells that share it share their boxes,
+    /// which costs time and nothing else.
     #[inline(always)]
     pub fn name(&self, cell: [i64; 3]) -> u64 {
         const FACTORS: [u64; 3] = [
@@ -113,7 +117,8 @@ pub(super) struct Levels {
 }
 
 impl Levels {
-    /// Levels that suit these boxes: none has cells much smaller than the mean distance of boxes, unless most boxes are smaller.
+    /// Levels that suit these boxes: none has cells much smaller than the mean distance of boxes,
+    /// unless most boxes are smaller.
     pub fn suited_to<'a>(boxes: impl Iterator<Item = &'a Aabb>, count: usize) -> Self {
         let step = count.div_ceil(SAMPLE).max(1);
         let (mut lower, mut upper) = ([f64::MAX; 3], [f64::MIN; 3]);
@@ -166,7 +171,8 @@ fn longest_side(aabb: &Aabb) -> f64 {
     (0..3).map(side).fold(0.0, f64::max).next_up()
 }
 
-/// Sizes 1, 1.5, 2, 3, 4, 6 … have the numbers 0, 1, 2 …; of a number in between, that of the next larger one.
+/// Sizes 1, 1.5, 2, 3, 4, 6 … have the numbers 0, 1, 2 …; of a number in between, that of the next
+/// larger one.
 fn size_number(size: f64) -> i32 {
     let bits = size.to_bits();
     let exponent = (bits >> MANTISSA) as i32 - (f64::MAX_EXP - 1);

@@ -1,8 +1,10 @@
-//! Frames in which few boxes change: these alone are looked for, and the pairs of all others are kept.
+//! Frames in which few boxes change: these alone are looked for, and the pairs of all others are
+//! kept.
 //!
-//! A pair's verdict is a function of the ends, groups and motion of its two boxes. A box of which any of these has changed since the
-//! last cull is in the list of changed ones, so a pair of two others has the verdict that it had. The partners of each changed box
-//! are found anew by an index of all boxes, compared with those that it had, and the differences are made at its partners too.
+//! A pair's verdict is a function of the ends, groups and motion of its two boxes. A box of which
+//! any of these has changed since the last cull is in the list of changed ones, so a pair of two
+//! others has the verdict that it had. The partners of each changed box are found anew by an index
+//! of all boxes, compared with those that it had, and the differences are made at its partners too.
 
 use super::BoxWorld;
 use super::index::{BoxIndex, FIXED, GROUPED, Search, Seeker};
@@ -10,7 +12,8 @@ use crate::bodies::Groups;
 use crate::simd::in_default_mode;
 use crate::world::Ids;
 
-/// Changed boxes are looked for one by one while they are at most one in so many: beyond, finding all pairs anew is faster.
+/// Changed boxes are looked for one by one while they are at most one in so many: beyond, finding
+/// all pairs anew is faster.
 const FEW: usize = 8;
 
 /// The same by the boxes that looking for them takes, for each box of the world.
@@ -22,8 +25,9 @@ const TOGETHER: usize = 16;
 /// How many boxes ahead what is read of one is prefetched.
 const AHEAD: usize = 8;
 
-/// An index pays if it serves for so many frames. After one that didn't, or a frame in which looking one by one took too long, the
-/// next frames find all pairs: twice as many as the last time, up to so many.
+/// An index pays if it serves for so many frames. After one that didn't, or a frame in which
+/// looking one by one took too long, the next frames find all pairs: twice as many as the last
+/// time, up to so many.
 const LEAST_SERVICE: u32 = 8;
 const LONGEST_PAUSE: u32 = 64;
 
@@ -33,7 +37,8 @@ pub(super) struct Movers {
     changed: Vec<u32>,
     /// By slot.
     is_changed: Vec<bool>,
-    /// So many have changed that the next cull finds all pairs, or the pairs of the last one aren't known.
+    /// So many have changed that the next cull finds all pairs, or the pairs of the last one aren't
+    /// known.
     are_many: bool,
     /// As the boxes were at the last cull. None after one that found all pairs.
     index: Option<BoxIndex>,
@@ -123,8 +128,9 @@ impl Movers {
 }
 
 impl BoxWorld {
-    /// Changes the pairs of the last cull to those of now, by the boxes that have changed. False if that would take longer than
-    /// finding them all, or if these boxes are in more than so many pairs: then nothing has happened.
+    /// Changes the pairs of the last cull to those of now, by the boxes that have changed. False if
+    /// that would take longer than finding them all, or if these boxes are in more than so many
+    /// pairs: then nothing has happened.
     pub(super) fn cull_changed(&mut self, most: usize) -> bool {
         let movers = &self.movers;
         if movers.are_many || (movers.pause > 0 && !movers.changed.is_empty()) {
@@ -159,8 +165,8 @@ impl BoxWorld {
         index
     }
 
-    /// Puts changed boxes where they are now, and lists the partners of each. False if that takes too much work, or if there
-    /// are pairs beyond `most`.
+    /// Puts changed boxes where they are now, and lists the partners of each. False if that takes
+    /// too much work, or if there are pairs beyond `most`.
     fn find_changed(&mut self, most: usize) -> bool {
         let (mut work, most_work) = (0, WORK_PER_BOX * self.ids.slots());
         let present = self.ids.present();

@@ -32,17 +32,19 @@ impl From<Aabb> for BoxBody {
     }
 }
 
-/// A long-lived set of boxes: ids that stay, boxes at rest, groups, and pairs as a list or as events, as
-/// [`World`](crate::world::World) has them for meshes.
+/// A long-lived set of boxes: ids that stay, boxes at rest, groups, and pairs as a list or as
+/// events, as [`World`](crate::world::World) has them for meshes.
 ///
-/// A frame costs time for the boxes that were inserted, removed or set to another value since the last cull, for their neighbours,
-/// and for the pairs that change: nothing for all others, however many there are. Where more than an eighth has changed, all pairs
-/// are found anew, as a [`BoxCuller`](super::BoxCuller) does. The first cull does so too, and the first one after a world was
-/// restored, after [`Self::shrink_to_fit`] and after [`Self::cull_in_portions`]. Whatever a frame costs, its pairs are exactly
-/// those of the boxes as they are.
+/// A frame costs time for the boxes that were inserted, removed or set to another value since the
+/// last cull, for their neighbours, and for the pairs that change: nothing for all others, however
+/// many there are. Where more than an eighth has changed, all pairs are found anew, as a
+/// [`BoxCuller`](super::BoxCuller) does. The first cull does so too, and the first one after a
+/// world was restored, after [`Self::shrink_to_fit`] and after [`Self::cull_in_portions`]. Whatever
+/// a frame costs, its pairs are exactly those of the boxes as they are.
 ///
-/// A box is dynamic, resting or fixed ([`Motion`]). Pairs of two fixed boxes are never reported. A box at rest keeps its pairs, with
-/// others at rest too: putting a box to rest or waking it ends no pair and begins none.
+/// A box is dynamic, resting or fixed ([`Motion`]). Pairs of two fixed boxes are never reported. A
+/// box at rest keeps its pairs, with others at rest too: putting a box to rest or waking it ends no
+/// pair and begins none.
 ///
 /// ```
 /// use sdop::{Aabb, BoxWorld, Motion};
@@ -87,7 +89,8 @@ impl Default for BoxWorld {
 }
 
 impl BoxWorld {
-    /// A world without boxes, culled with every default ([`BoxCuller::new`](super::BoxCuller::new)).
+    /// A world without boxes, culled with every default
+    /// ([`BoxCuller::new`](super::BoxCuller::new)).
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -120,7 +123,8 @@ impl BoxWorld {
     /// Adds a box.
     ///
     /// # Errors
-    /// A box whose ends are infinite, no numbers or the wrong way round; more boxes than can be numbered.
+    /// A box whose ends are infinite, no numbers or the wrong way round; more boxes than can be
+    /// numbered.
     pub fn insert(&mut self, body: impl Into<BoxBody>) -> Result<BodyId, WorldError> {
         let body = body.into();
         let slot = self.ids.next();
@@ -192,7 +196,8 @@ impl BoxWorld {
         Ok(())
     }
 
-    /// Moves a box, or gives it another size. One that is there already costs nothing, and a box at rest stays at rest.
+    /// Moves a box, or gives it another size. One that is there already costs nothing, and a box at
+    /// rest stays at rest.
     ///
     /// # Errors
     /// As [`Self::set`].
@@ -243,8 +248,9 @@ impl BoxWorld {
         self.grouped = groups.filter(|groups| **groups != Groups::ALL).count();
     }
 
-    /// Finds the boxes that meet, not both fixed, whose groups collide, and returns their pairs: the lower slot first, sorted
-    /// by slots, whatever the finder, the threads and the calls before.
+    /// Finds the boxes that meet, not both fixed, whose groups collide, and returns their pairs:
+    /// the lower slot first, sorted by slots, whatever the finder, the threads and the calls
+    /// before.
     ///
     /// # Errors
     /// None: what could be wrong was refused when it came.
@@ -276,8 +282,9 @@ impl BoxWorld {
         self.log.pairs(&self.ids).iter()
     }
 
-    /// What the last cull reports that it didn't at the last call of this, and the other way round. The events are apart
-    /// from the world: boxes may be removed while they are read. Drop them before the next cull, which otherwise copies the pairs.
+    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    /// The events are apart from the world: boxes may be removed while they are read. Drop them
+    /// before the next cull, which otherwise copies the pairs.
     pub fn events(&mut self) -> Events {
         self.log.events(&self.ids)
     }

@@ -22,9 +22,11 @@ pub struct SdopShape(pub(super) Shape);
 pub struct SdopShapeSpec {
     /// Number of or-DOP faces: 6, 14, 18 or 26; 0 is 18.
     pub k: u32,
-    /// Scales the mesh about its origin until its smallest enclosing ball has this radius; 0 keeps its size.
+    /// Scales the mesh about its origin until its smallest enclosing ball has this radius; 0 keeps
+    /// its size.
     pub radius: f32,
-    /// Whether poses place the centre of the smallest enclosing ball instead of the mesh's own origin.
+    /// Whether poses place the centre of the smallest enclosing ball instead of the mesh's own
+    /// origin.
     pub about_ball: bool,
     /// Whether the or-DOP stands on the mesh's own axes instead of the principal axes of its hull.
     pub on_model_axes: bool,
@@ -59,11 +61,12 @@ unsafe fn spec(given: *const SdopShapeSpec) -> Result<ShapeSpec, Refusal> {
     })
 }
 
-/// Makes a shape of vertices in the mesh's own frame, to whose origin poses refer, and vertex indices of triangles. `spec` may be
-/// null.
+/// Makes a shape of vertices in the mesh's own frame, to whose origin poses refer, and vertex
+/// indices of triangles. `spec` may be null.
 ///
 /// # Safety
-/// The columns have as many entries as said; `spec` is null or a specification; `out` may be written.
+/// The columns have as many entries as said; `spec` is null or a specification; `out` may be
+/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_shape_new(
     vertices: *const [f64; 3],
@@ -215,8 +218,8 @@ pub unsafe extern "C" fn sdop_culler_free(culler: *mut SdopCuller) {
     unsafe { free(culler) }
 }
 
-/// Finds the pairs that might touch at these poses, one of each column for each body. Static bodies stay where they were made.
-/// `pairs` gets their number; read them with `sdop_culler_pairs`.
+/// Finds the pairs that might touch at these poses, one of each column for each body. Static bodies
+/// stay where they were made. `pairs` gets their number; read them with `sdop_culler_pairs`.
 ///
 /// # Safety
 /// `culler` is a handle; the columns have an entry for each body; `pairs` may be written.
@@ -246,7 +249,8 @@ pub unsafe extern "C" fn sdop_culler_cull(
     })
 }
 
-/// Copies the pairs of the last frame into `buffer`. If they don't fit, `count` says how many there are.
+/// Copies the pairs of the last frame into `buffer`. If they don't fit, `count` says how many there
+/// are.
 ///
 /// # Safety
 /// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.

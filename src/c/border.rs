@@ -77,7 +77,8 @@ pub struct SdopEvent {
     pub pair: SdopIdPair,
 }
 
-/// Takes some of a frame's pairs: the pointer given along, the pairs, their number. Must return normally.
+/// Takes some of a frame's pairs: the pointer given along, the pairs, their number. Must return
+/// normally.
 pub type SdopTakePairs = Option<unsafe extern "C" fn(*mut c_void, *const SdopPair, usize)>;
 
 /// Takes an event: the pointer given along, the event. Must return normally.
@@ -148,7 +149,8 @@ fn null(what: &str) -> Refusal {
 /// What a handle points to.
 ///
 /// # Safety
-/// The pointer is null, or from the function that makes such handles and not freed, and no other call uses it meanwhile.
+/// The pointer is null, or from the function that makes such handles and not freed, and no other
+/// call uses it meanwhile.
 pub unsafe fn handle<'a, T>(handle: *mut T, what: &str) -> Result<&'a mut T, Refusal> {
     // SAFETY: the caller's promise.
     unsafe { handle.as_mut() }.ok_or_else(|| null(what))
@@ -230,7 +232,8 @@ pub unsafe fn text(text: *const c_char, default: &str) -> Result<&str, Refusal> 
 /// Copies values into a caller's buffer; `count` gets their number, whether they fit or not.
 ///
 /// # Safety
-/// `capacity` entries behind `buffer` may be written, if there are any; `count` is null or may be written.
+/// `capacity` entries behind `buffer` may be written, if there are any; `count` is null or may be
+/// written.
 pub unsafe fn fill<T>(
     values: impl ExactSizeIterator<Item = T>,
     buffer: *mut T,
@@ -288,8 +291,8 @@ pub fn pairs(list: &PairList) -> impl ExactSizeIterator<Item = SdopPair> + '_ {
 /// The pointer that a caller wants back in its callback, which may be called on another thread.
 pub struct User(pub *mut c_void);
 
-// SAFETY: it is handed back as it is and never followed; calls come one at a time, and the caller is told that any thread may
-// make them.
+// SAFETY: it is handed back as it is and never followed; calls come one at a time, and the caller
+// is told that any thread may make them.
 unsafe impl Send for User {}
 
 impl User {

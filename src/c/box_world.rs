@@ -161,7 +161,8 @@ pub unsafe extern "C" fn sdop_box_world_cull(
     })
 }
 
-/// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count` says how many there are.
+/// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
+/// says how many there are.
 ///
 /// # Safety
 /// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
@@ -180,7 +181,8 @@ pub unsafe extern "C" fn sdop_box_world_pairs(
     })
 }
 
-/// Hands to `take` what the last cull reports that it didn't at the last call of this, and the other way round.
+/// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
+/// other way round.
 ///
 /// # Safety
 /// `world` is a handle; `take` may be called with `user`.
@@ -198,7 +200,8 @@ pub unsafe extern "C" fn sdop_box_world_events(
     })
 }
 
-/// Copies the world as bytes into `buffer`, for `sdop_box_world_restore`. If they don't fit, `count` says how many there are.
+/// Copies the world as bytes into `buffer`, for `sdop_box_world_restore`. If they don't fit,
+/// `count` says how many there are.
 ///
 /// # Safety
 /// `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.

@@ -75,11 +75,12 @@ impl SdopBoxCuller {
     }
 }
 
-/// Finds the pairs of boxes that meet, touching included, and whose groups collide. `groups` may be null: all do. `pairs` gets
-/// their number; read them with `sdop_box_culler_pairs`.
+/// Finds the pairs of boxes that meet, touching included, and whose groups collide. `groups` may be
+/// null: all do. `pairs` gets their number; read them with `sdop_box_culler_pairs`.
 ///
 /// # Safety
-/// `culler` is a handle; `boxes` has `count` entries, `groups` too unless null; `pairs` may be written.
+/// `culler` is a handle; `boxes` has `count` entries, `groups` too unless null; `pairs` may be
+/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_culler_cull(
     culler: *mut SdopBoxCuller,
@@ -99,8 +100,8 @@ pub unsafe extern "C" fn sdop_box_culler_cull(
     })
 }
 
-/// Copies the pairs of the last frame into `buffer`, in an order that depends on the finder and the frames so far alone. If they
-/// don't fit, `count` says how many there are.
+/// Copies the pairs of the last frame into `buffer`, in an order that depends on the finder and the
+/// frames so far alone. If they don't fit, `count` says how many there are.
 ///
 /// # Safety
 /// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
@@ -119,8 +120,9 @@ pub unsafe extern "C" fn sdop_box_culler_pairs(
     })
 }
 
-/// Culls as `sdop_box_culler_cull` does and hands the pairs to `take`, some 65,000 at a time, so that memory doesn't grow with
-/// their number. With several threads, `take` is called from any of them, one call at a time.
+/// Culls as `sdop_box_culler_cull` does and hands the pairs to `take`, some 65,000 at a time, so
+/// that memory doesn't grow with their number. With several threads, `take` is called from any of
+/// them, one call at a time.
 ///
 /// # Safety
 /// As `sdop_box_culler_cull`; `take` may be called with `user`.

@@ -10,7 +10,8 @@ use super::border::{
 use crate::bodies::Groups;
 use crate::world::{Body, BodyId, World};
 
-/// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and events.
+/// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and
+/// events.
 #[derive(Debug)]
 pub struct SdopWorld(World);
 
@@ -45,7 +46,8 @@ impl From<SdopBody> for Body {
     }
 }
 
-/// Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the defaults.
+/// Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
+/// defaults.
 ///
 /// # Safety
 /// The column has as many shapes as said; `options` is null or options; `out` may be written.
@@ -154,7 +156,8 @@ pub unsafe extern "C" fn sdop_world_set(
     })
 }
 
-/// Moves bodies: columns of ids, rotations and translations. Those before one that is refused have moved.
+/// Moves bodies: columns of ids, rotations and translations. Those before one that is refused have
+/// moved.
 ///
 /// # Safety
 /// `world` is a handle; the columns have `count` entries.
@@ -184,7 +187,8 @@ pub unsafe extern "C" fn sdop_world_set_poses(
     })
 }
 
-/// Finds the pairs that might touch now. `pairs` gets their number; read them with `sdop_world_pairs`.
+/// Finds the pairs that might touch now. `pairs` gets their number; read them with
+/// `sdop_world_pairs`.
 ///
 /// # Safety
 /// `world` is a handle; `pairs` may be written.
@@ -198,7 +202,8 @@ pub unsafe extern "C" fn sdop_world_cull(world: *mut SdopWorld, pairs: *mut usiz
     })
 }
 
-/// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count` says how many there are.
+/// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
+/// says how many there are.
 ///
 /// # Safety
 /// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
@@ -217,7 +222,8 @@ pub unsafe extern "C" fn sdop_world_pairs(
     })
 }
 
-/// Hands to `take` what the last cull reports that it didn't at the last call of this, and the other way round.
+/// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
+/// other way round.
 ///
 /// # Safety
 /// `world` is a handle; `take` may be called with `user`.
@@ -235,7 +241,8 @@ pub unsafe extern "C" fn sdop_world_events(
     })
 }
 
-/// Copies the world as bytes into `buffer`, for `sdop_world_restore`. If they don't fit, `count` says how many there are.
+/// Copies the world as bytes into `buffer`, for `sdop_world_restore`. If they don't fit, `count`
+/// says how many there are.
 ///
 /// # Safety
 /// `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.

@@ -2,8 +2,8 @@
 //!
 //! > update → broad phase → overlap → pairs
 //!
-//! A [`Culler`] is built once for a scene (the paper's Co) and then culls frame after frame. All buffers stay, so in steady
-//! state nothing is allocated.
+//! A [`Culler`] is built once for a scene (the paper's Co) and then culls frame after frame. All
+//! buffers stay, so in steady state nothing is allocated.
 
 #[cfg(feature = "shapes")]
 mod builder;
@@ -57,7 +57,8 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Culler {
     settings: CullSettings,
-    /// Whether budgets are spent on pairs in the order of their bodies, whatever the finder and the frames so far.
+    /// Whether budgets are spent on pairs in the order of their bodies, whatever the finder and the
+    /// frames so far.
     is_canonical: bool,
     scheme: Scheme,
     needs: Needs,
@@ -72,7 +73,8 @@ pub struct Culler {
     numbers: Vec<u32>,
     order: Vec<u32>,
     finder: PairFinder,
-    /// What the finder bins, by place: the spheres, or what contains the volumes of a homogeneous strategy.
+    /// What the finder bins, by place: the spheres, or what contains the volumes of a homogeneous
+    /// strategy.
     balls: Balls,
     rows: OrDopRows,
     intervals: Option<Intervals>,
@@ -87,8 +89,8 @@ pub struct Culler {
 
 #[cfg(feature = "shapes")]
 impl Culler {
-    /// The culler of these bodies with every default: sequential S-DOP with the two-sided test, the finder that `auto`
-    /// picks, the fastest tier of this CPU, the caller's thread.
+    /// The culler of these bodies with every default: sequential S-DOP with the two-sided test, the
+    /// finder that `auto` picks, the fastest tier of this CPU, the caller's thread.
     ///
     /// # Errors
     /// As [`CullerBuilder::build`].
@@ -150,9 +152,11 @@ impl Culler {
         Ok(culler)
     }
 
-    /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a body.
+    /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a
+    /// body.
     ///
-    /// Pairs are filtered behind the first test, whose hits are few, and before anything else is done with them.
+    /// Pairs are filtered behind the first test, whose hits are few, and before anything else is
+    /// done with them.
     ///
     /// # Errors
     /// A column that is shorter or longer than there are bodies; the groups stay as they were.
@@ -164,7 +168,8 @@ impl Culler {
         Ok(())
     }
 
-    /// From now on, a budget that is spent on pairs as they are found is spent on them in the order of their bodies.
+    /// From now on, a budget that is spent on pairs as they are found is spent on them in the order
+    /// of their bodies.
     pub(crate) fn set_canonical(&mut self) {
         self.is_canonical = true;
     }
@@ -174,7 +179,8 @@ impl Culler {
         std::mem::swap(&mut self.pairs, pairs);
     }
 
-    /// When the pairs of the last frame were refined, for strategies that take the oldest answers first.
+    /// When the pairs of the last frame were refined, for strategies that take the oldest answers
+    /// first.
     #[cfg(feature = "serde")]
     pub(crate) fn answers(&self) -> Answers {
         self.scratch.answers()
@@ -193,7 +199,8 @@ impl Culler {
         self.settings.interest = Some(interest);
     }
 
-    /// A body's ball centre, and how far from it the body can matter to any pair ([`border`](crate::rounding::border)).
+    /// A body's ball centre, and how far from it the body can matter to any pair
+    /// ([`border`](crate::rounding::border)).
     #[cfg(feature = "internals")]
     #[doc(hidden)]
     pub fn reach(&self, shape: u32, q: [f32; 4], t: [f32; 3]) -> ([f32; 3], f32) {
@@ -219,25 +226,26 @@ impl Culler {
         self.finder.bytes()
     }
 
-    /// Candidates that the last frame tested to make a list of neighbours, in addition to the tests that
-    /// [`Self::counters`] count. At most three times the candidates that the grid would test, and 48 per
-    /// body; a search that reaches this limit is abandoned and counts as the limit.
+    /// Candidates that the last frame tested to make a list of neighbours, in addition to the tests
+    /// that [`Self::counters`] count. At most three times the candidates that the grid would test,
+    /// and 48 per body; a search that reaches this limit is abandoned and counts as the limit.
     #[must_use]
     pub fn list_tests(&self) -> u64 {
         self.finder.list_tests()
     }
 
-    /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
-    /// finder and on the frames so far alone.
+    /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order
+    /// that depends on the finder and on the frames so far alone.
     ///
-    /// Shapes and the poses of static bodies are not read here: they stay as they were at construction or at the last
-    /// [`Self::refresh`].
+    /// Shapes and the poses of static bodies are not read here: they stay as they were at
+    /// construction or at the last [`Self::refresh`].
     ///
     /// # Errors
-    /// Fewer or more bodies than the culler was made for, a `dynamic` flag that has changed, a pose outside of the contract.
-    /// [`Self::pairs`] is empty then, and the next frame is culled as if this one hadn't been. One thing is not looked for:
-    /// the rotation of a body whose ball is centred in its origin, where a ball comes first. If it is zero or not finite,
-    /// no or-DOP is separated from this body's, so that whatever its ball meets is reported.
+    /// Fewer or more bodies than the culler was made for, a `dynamic` flag that has changed, a pose
+    /// outside of the contract. [`Self::pairs`] is empty then, and the next frame is culled as if
+    /// this one hadn't been. One thing is not looked for: the rotation of a body whose ball is
+    /// centred in its origin, where a ball comes first. If it is zero or not finite, no or-DOP is
+    /// separated from this body's, so that whatever its ball meets is reported.
     pub fn cull(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
         let start = Instant::now();
         self.check_set(bodies)?;
@@ -297,7 +305,8 @@ impl Culler {
         &self.pairs
     }
 
-    /// For strategies that list it, the potentially colliding set of the last frame in the order of refinement.
+    /// For strategies that list it, the potentially colliding set of the last frame in the order of
+    /// refinement.
     pub fn potentially_colliding(&self) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
         self.scratch.candidates.iter().map(|pair| {
             let [a, b] = pair.map(|place| self.places.body[place as usize]);
@@ -317,13 +326,14 @@ impl Culler {
         &self.seconds
     }
 
-    /// Whether slots are named by place: or-DOPs and slabs are looked up by place, spheres alone need the body only.
+    /// Whether slots are named by place: or-DOPs and slabs are looked up by place, spheres alone
+    /// need the body only.
     fn names_are_places(&self) -> bool {
         self.needs.rows || self.needs.intervals.is_some()
     }
 
-    /// Updates all but the rows in a range of places: what the first test takes. Returns whether the poses were found within the
-    /// contract.
+    /// Updates all but the rows in a range of places: what the first test takes. Returns whether
+    /// the poses were found within the contract.
     fn update_first(&mut self, bodies: &Bodies, range: Range<usize>) -> bool {
         let (frames, places) = (&self.models.frames, &self.places);
         let executor = self.threads.get().executor(self.tier);

@@ -1,10 +1,11 @@
 //! Triangle meshes: validation, readers, writers, topology and procedural shapes.
 //!
 //! A [`TriangleMesh`] made here keeps the contract that all later stages build on: every coordinate
-//! finite and at most 2⁶⁰ in size, every index in range, at least one vertex and one triangle. Degenerate
-//! triangles (zero area, repeated indices, a single point as 0 0 0) are legal: they bound, collide and
-//! are culled like any other. A mesh without triangles is refused, since no surface of it could intersect
-//! anything. Vertices that no triangle uses are kept: they only widen the volumes.
+//! finite and at most 2⁶⁰ in size, every index in range, at least one vertex and one triangle.
+//! Degenerate triangles (zero area, repeated indices, a single point as 0 0 0) are legal: they
+//! bound, collide and are culled like any other. A mesh without triangles is refused, since no
+//! surface of it could intersect anything. Vertices that no triangle uses are kept: they only widen
+//! the volumes.
 
 pub mod decimate;
 mod error;
@@ -26,11 +27,13 @@ use glam::DVec3;
 /// The largest coordinate size a mesh may have: 2⁶⁰ (the culler's contract).
 pub const MAX_COORDINATE: f32 = (1_u64 << 60) as f32;
 
-/// An indexed triangle mesh, in the file's own units and axes (right-handed): a point of the file is offset + vertex.
+/// An indexed triangle mesh, in the file's own units and axes (right-handed): a point of the file
+/// is offset + vertex.
 ///
-/// Vertices are f32 and, within their `rounding`, what the promise is about. The offset is zero, and coordinates are rounded
-/// to f32 where they are, unless that would move one by more than 2⁻²⁰ of the mesh's largest extent: such a mesh is far from
-/// its origin, and kept about a point near it.
+/// Vertices are f32 and, within their `rounding`, what the promise is about. The offset is zero,
+/// and coordinates are rounded to f32 where they are, unless that would move one by more than 2⁻²⁰
+/// of the mesh's largest extent: such a mesh is far from its origin, and kept about a point near
+/// it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
     /// What messages and tables call the mesh: the file's stem or the procedural shape's name.
@@ -39,19 +42,22 @@ pub struct TriangleMesh {
     pub vertices: Vec<[f32; 3]>,
     /// Vertex indices of each triangle, all in range.
     pub triangles: Vec<[u32; 3]>,
-    /// Where the origin of `vertices` lies in the file's coordinates: zero unless the mesh is far from its origin.
+    /// Where the origin of `vertices` lies in the file's coordinates: zero unless the mesh is far
+    /// from its origin.
     pub offset: [f64; 3],
-    /// How far any vertex of a far mesh is at most from the f64 point that it stands for; volumes are grown by it.
+    /// How far any vertex of a far mesh is at most from the f64 point that it stands for; volumes
+    /// are grown by it.
     pub rounding: f32,
 }
 
 impl TriangleMesh {
-    /// A mesh of these vertices, which are arrays or turn into arrays as those of any version of glam do, and of the three
-    /// vertices of each triangle.
+    /// A mesh of these vertices, which are arrays or turn into arrays as those of any version of
+    /// glam do, and of the three vertices of each triangle.
     ///
     /// # Errors
-    /// No vertex, no triangle, too many of either, a coordinate that is not finite or larger than 2⁶⁰, or an
-    /// index out of range; the error names the mesh, the vertex or triangle, and the remedy.
+    /// No vertex, no triangle, too many of either, a coordinate that is not finite or larger than
+    /// 2⁶⁰, or an index out of range; the error names the mesh, the vertex or triangle, and the
+    /// remedy.
     pub fn new(
         name: impl Into<String>,
         vertices: impl IntoIterator<Item = impl Into<[f32; 3]>>,
@@ -80,7 +86,8 @@ impl TriangleMesh {
         Ok(mesh.named(""))
     }
 
-    /// A mesh of borrowed vertices in f64, without a name: rounded to f32, or kept about an offset where it is far from its origin.
+    /// A mesh of borrowed vertices in f64, without a name: rounded to f32, or kept about an offset
+    /// where it is far from its origin.
     ///
     /// # Errors
     /// As [`Self::new`].

@@ -20,9 +20,9 @@ impl From<[f64; 3]> for Scale {
 }
 
 impl TriangleMesh {
-    /// The mesh with each coordinate of the file multiplied by its factor in f64, and then kept as [`Self::from_f64`] keeps
-    /// coordinates. Faces that were counter-clockwise from outside stay so: where the scale mirrors, each triangle's last two
-    /// corners are exchanged.
+    /// The mesh with each coordinate of the file multiplied by its factor in f64, and then kept as
+    /// [`Self::from_f64`] keeps coordinates. Faces that were counter-clockwise from outside stay
+    /// so: where the scale mirrors, each triangle's last two corners are exchanged.
     ///
     /// # Errors
     /// A factor that is zero or not finite, or a mesh that is beyond 2⁶⁰ with it.

@@ -1,10 +1,10 @@
 //! Connected components, and which of them are closed.
 //!
-//! A component is a set of triangles joined by shared vertex indices. It is closed when each of its edges is shared
-//! by exactly two faces: only then has it an inside, which exact intersection asks for (odd ray parity).
-//! Triangles with a repeated index have no area and no inside: they join components but are no faces here,
-//! and a component of nothing else is open. Indices decide, not positions: a mesh whose seams are
-//! written twice (the teapot) is open along them.
+//! A component is a set of triangles joined by shared vertex indices. It is closed when each of its
+//! edges is shared by exactly two faces: only then has it an inside, which exact intersection asks
+//! for (odd ray parity). Triangles with a repeated index have no area and no inside: they join
+//! components but are no faces here, and a component of nothing else is open. Indices decide, not
+//! positions: a mesh whose seams are written twice (the teapot) is open along them.
 
 use std::collections::HashMap;
 
@@ -112,7 +112,8 @@ impl Topology {
     }
 }
 
-/// How many triangles have no area, exactly: a repeated index, two equal corners, or three on a line.
+/// How many triangles have no area, exactly: a repeated index, two equal corners, or three on a
+/// line.
 ///
 /// Those with three indices still count as faces above: a mesh is closed by them as by any other.
 #[must_use]

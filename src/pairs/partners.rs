@@ -1,4 +1,5 @@
-//! Pairs as lists of partners: who is in a pair with a given number is read, and a pair comes or goes, without a look at others.
+//! Pairs as lists of partners: who is in a pair with a given number is read, and a pair comes or
+//! goes, without a look at others.
 
 use super::runs::{Run, Runs};
 use super::{PairList, bytes};
@@ -6,7 +7,8 @@ use crate::simd::prefetch;
 
 /// A set of pairs of numbers. Each number has the sorted list of those that it is in a pair with.
 ///
-/// A pair is in the lists of both of its numbers; between the changes of one frame it may be in one of them alone.
+/// A pair is in the lists of both of its numbers; between the changes of one frame it may be in one
+/// of them alone.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Partners {
     lists: Runs<u32>,
@@ -16,7 +18,8 @@ pub(crate) struct Partners {
 }
 
 impl Partners {
-    /// The pairs of a list, which is sorted and has the lower number first. All numbers are below `numbers`.
+    /// The pairs of a list, which is sorted and has the lower number first. All numbers are below
+    /// `numbers`.
     pub fn of(pairs: &PairList, numbers: usize) -> Self {
         let mut partners = Self::default();
         let mut counts = vec![0_u32; numbers];

@@ -1,8 +1,8 @@
 //! Many short lists in one piece of memory.
 //!
-//! Each list is a run of entries with room for a power of two of them. A list that outgrows its room moves to a larger one, and
-//! the room that it leaves is given to the next list of that size. So a list costs no call of the allocator, and changing one
-//! costs what it holds.
+//! Each list is a run of entries with room for a power of two of them. A list that outgrows its
+//! room moves to a larger one, and the room that it leaves is given to the next list of that size.
+//! So a list costs no call of the allocator, and changing one costs what it holds.
 
 use super::bytes;
 use crate::simd::prefetch;

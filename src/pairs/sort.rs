@@ -22,10 +22,11 @@ impl PairSorter {
 }
 
 impl PairList {
-    /// Sorts the pairs by their first number, those of one first number by their second. All numbers are below `numbers`.
+    /// Sorts the pairs by their first number, those of one first number by their second. All
+    /// numbers are below `numbers`.
     ///
-    /// A counting sort by the first number, which takes one pass over the list; the pairs of one number are few, and are
-    /// sorted where they are. A list that is in order is left as it is.
+    /// A counting sort by the first number, which takes one pass over the list; the pairs of one
+    /// number are few, and are sorted where they are. A list that is in order is left as it is.
     pub(crate) fn sort(&mut self, numbers: usize, sorter: &mut PairSorter) {
         if self.iter().is_sorted() {
             return;

@@ -1,4 +1,5 @@
-//! How a scene is culled: the `[cull]` table, whose keys are also the flags of the command line (design, section 2).
+//! How a scene is culled: the `[cull]` table, whose keys are also the flags of the command line
+//! (design, section 2).
 
 use thiserror::Error;
 
@@ -47,8 +48,9 @@ choices! {
 choices! {
     /// When or-DOP poses are updated.
     Updates, "update mode", {
-        /// Every dynamic body's, each frame: before any pair is tested, or, of many bodies in a batch, stretch by stretch with the pairs
-        /// that need them. Each counts as one update either way.
+        /// Every dynamic body's, each frame: before any pair is tested, or, of many bodies in a
+        /// batch, stretch by stretch with the pairs that need them. Each counts as one update
+        /// either way.
         Eager = "eager",
         /// Only those of the potentially colliding set.
         Lazy = "lazy",
@@ -79,7 +81,8 @@ pub enum Interest {
     Cone(ViewCone),
 }
 
-/// A cone of view over sphere centres. With `body` it moves and turns with that body, with `apex` it stands still.
+/// A cone of view over sphere centres. With `body` it moves and turns with that body, with `apex`
+/// it stands still.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -87,14 +90,15 @@ pub enum Interest {
     serde(deny_unknown_fields)
 )]
 pub struct ViewCone {
-    /// The body that looks: the apex is its translation, `direction` is in its frame. It is of interest itself when its
-    /// sphere's centre lies in the cone, as one at its origin does.
+    /// The body that looks: the apex is its translation, `direction` is in its frame. It is of
+    /// interest itself when its sphere's centre lies in the cone, as one at its origin does.
     pub body: Option<u32>,
     /// The fixed apex, world frame, instead of `body`.
     pub apex: Option<[f32; 3]>,
     /// The cone's axis, any non-zero length; world frame with `apex`.
     pub direction: [f32; 3],
-    /// Angle between the axis and the rim, degrees, in (0, 180]. What lies on the rim is in the cone.
+    /// Angle between the axis and the rim, degrees, in (0, 180]. What lies on the rim is in the
+    /// cone.
     pub half_angle: f32,
     /// How far it reaches from the apex; absent: without end.
     pub range: Option<f32>,
@@ -116,7 +120,8 @@ pub enum Budget {
 
 /// How a scene is culled: sequential S-DOP with the finder that `auto` picks unless said otherwise.
 ///
-/// A scene file's `[cull]` table, where the finder is `all-pairs` unless said otherwise ([`Self::all_pairs`]).
+/// A scene file's `[cull]` table, where the finder is `all-pairs` unless said otherwise
+/// ([`Self::all_pairs`]).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -201,7 +206,8 @@ impl SettingsError {
 }
 
 impl CullSettings {
-    /// The defaults of a scene file: as [`Self::default`], but every pair is a candidate, as in the paper.
+    /// The defaults of a scene file: as [`Self::default`], but every pair is a candidate, as in the
+    /// paper.
     #[must_use]
     pub fn all_pairs() -> Self {
         Self {
@@ -245,7 +251,8 @@ impl Interest {
     /// Checks the interest against a scene of `bodies` bodies.
     ///
     /// # Errors
-    /// A body index out of range; a cone without one apex, a direction or a possible angle or range.
+    /// A body index out of range; a cone without one apex, a direction or a possible angle or
+    /// range.
     pub fn check(&self, bodies: usize) -> Result<(), SettingsError> {
         let wrong = |problem, hint| Err(SettingsError::Interest { problem, hint });
         let named: &[u32] = match self {

@@ -19,7 +19,8 @@ pub use cull::{
 pub use scheme::{Flow, Scheme, TestedVolume};
 
 choices! {
-    /// Who hands candidate pairs to the first volume test. Every finder leads to the same reported set.
+    /// Who hands candidate pairs to the first volume test. Every finder leads to the same reported
+    /// set.
     Finder, "pair finder", {
         /// The paper's N(N−1)/2 loop without the static–static pairs.
         AllPairs = "all-pairs",

@@ -1,7 +1,8 @@
-//! Boxes on the world's axes as columns of numbers: their layout is what the vectors' loads rely on.
+//! Boxes on the world's axes as columns of numbers: their layout is what the vectors' loads rely
+//! on.
 
-/// A closed box on the world's axes: boxes that touch meet. Its ends are finite, and no lower one is above the upper one;
-/// sides of no length are fine.
+/// A closed box on the world's axes: boxes that touch meet. Its ends are finite, and no lower one
+/// is above the upper one; sides of no length are fine.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Aabb {
@@ -17,15 +18,17 @@ const _: () = assert!(align_of::<Aabb>() == align_of::<[f32; 6]>());
 /// The six numbers of each box: those of its lower corner, then those of its upper corner.
 #[must_use]
 pub fn numbers_of(boxes: &[Aabb]) -> &[[f32; 6]] {
-    // SAFETY: a box is `repr(C)`: twice three f32 in this order. Its size and alignment are those of six f32 (asserted
-    // above), so it has no padding, and each pattern of bits is an f32. The slice borrows from `boxes`.
+    // SAFETY: a box is `repr(C)`: twice three f32 in this order. Its size and alignment are those
+    // of six f32 (asserted above), so it has no padding, and each pattern of bits is an f32. The
+    // slice borrows from `boxes`.
     unsafe { std::slice::from_raw_parts(boxes.as_ptr().cast(), boxes.len()) }
 }
 
 /// The boxes that rows of six numbers are: lower corner, then upper corner.
 #[must_use]
 pub fn boxes_of(numbers: &[[f32; 6]]) -> &[Aabb] {
-    // SAFETY: as above, the other way round: each pattern of bits is a box, whose fields are plain f32.
+    // SAFETY: as above, the other way round: each pattern of bits is a box, whose fields are plain
+    // f32.
     unsafe { std::slice::from_raw_parts(numbers.as_ptr().cast(), numbers.len()) }
 }
 

@@ -1,4 +1,5 @@
-//! One frame by the strategy of the settings: what it reads, what it keeps, and the way that pairs take.
+//! One frame by the strategy of the settings: what it reads, what it keeps, and the way that pairs
+//! take.
 
 use super::tasks::Tasks;
 #[cfg(feature = "serde")]
@@ -106,8 +107,9 @@ impl Scratch {
     }
 }
 
-/// Whether a strategy makes the rows of bodies that move itself, when their pairs are listed, so that they are tested while the
-/// caches have them. Where a list isn't kept, or caches hold all rows anyway, they are made before.
+/// Whether a strategy makes the rows of bodies that move itself, when their pairs are listed, so
+/// that they are tested while the caches have them. Where a list isn't kept, or caches hold all
+/// rows anyway, they are made before.
 pub(crate) fn makes_rows(settings: &CullSettings, places: &Places, output: &Output<'_>) -> bool {
     settings.strategy.scheme().flow == Flow::Batch
         && settings.updates == Updates::Eager

@@ -22,7 +22,8 @@ use crate::threads::{Executor, Threads};
 /// Slots of a run that are tested before their hits are listed.
 const PIECE: usize = MOST_CANDIDATES;
 
-/// How far beyond the farthest slot of a block names are prefetched: some twenty blocks ahead of their use.
+/// How far beyond the farthest slot of a block names are prefetched: some twenty blocks ahead of
+/// their use.
 const AHEAD: usize = 256;
 
 /// Up to so many names the second-level cache keeps, and prefetching only costs.
@@ -109,7 +110,8 @@ impl<'a> Listing<'a> {
         }
     }
 
-    /// The entry of each slot that hits are looked up in: its name, or its body where slots name themselves.
+    /// The entry of each slot that hits are looked up in: its name, or its body where slots name
+    /// themselves.
     #[cfg(feature = "shapes")]
     fn by_slot(&self) -> &'a [u32] {
         match self.names {
@@ -168,8 +170,8 @@ impl<'a> Listing<'a> {
         name
     }
 
-    /// Lists the pairs of some parts of the finder's work that pass the first test, and counts tests and hits. `flush`
-    /// gets the list whenever it has reached `enough` pairs.
+    /// Lists the pairs of some parts of the finder's work that pass the first test, and counts
+    /// tests and hits. `flush` gets the list whenever it has reached `enough` pairs.
     pub(super) fn run(
         &self,
         parts: Range<usize>,
@@ -408,8 +410,9 @@ impl Hits {
 }
 
 impl<T> Lister<'_, '_, T> {
-    /// Prefetches the names that the next blocks will be the first to read: those behind the farthest slot so far. Apart, so that
-    /// scenes whose names are in the caches pay for a comparison only.
+    /// Prefetches the names that the next blocks will be the first to read: those behind the
+    /// farthest slot so far. Apart, so that scenes whose names are in the caches pay for a
+    /// comparison only.
     #[inline(never)]
     fn prefetch_beyond(&mut self, block: &Block<'_>) {
         let farthest = block.codes().last().map_or(0, |code| code >> 4) as usize;
@@ -436,7 +439,8 @@ impl<T> Lister<'_, '_, T> {
         }
     }
 
-    /// Lists them all, a vector at a time; what is computed of the lanes behind the last hit is overwritten by the next pairs.
+    /// Lists them all, a vector at a time; what is computed of the lanes behind the last hit is
+    /// overwritten by the next pairs.
     #[inline(always)]
     fn name<L: Lanes>(&mut self, l: L, found: usize, hits: Hits) {
         let (first, second) = self.out.room(found);
@@ -452,7 +456,8 @@ impl<T> Lister<'_, '_, T> {
         self.out.advance(found);
     }
 
-    /// Drops those listed from this one on whose bodies don't collide. Apart, so that the common case stays small.
+    /// Drops those listed from this one on whose bodies don't collide. Apart, so that the common
+    /// case stays small.
     #[inline(never)]
     fn keep_colliding(&mut self, listed: usize, groups: &[Groups]) {
         let groups_of = |name: u32| groups[self.listing.body_of(name) as usize];

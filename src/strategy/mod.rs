@@ -1,8 +1,10 @@
-//! The paper's strategies (section 4) and the homogeneous volumes they are judged against: which tests each makes is a row
-//! of [`Strategy::scheme`](crate::settings::Strategy::scheme), and how pairs flow through them a file here.
+//! The paper's strategies (section 4) and the homogeneous volumes they are judged against: which
+//! tests each makes is a row of [`Strategy::scheme`](crate::settings::Strategy::scheme), and how
+//! pairs flow through them a file here.
 //!
-//! A strategy takes updated volumes and a pair finder and leaves the reported pairs. Strategies differ in false positives
-//! and time, never in misses: each reports every pair whose meshes meet, `none` excepted.
+//! A strategy takes updated volumes and a pair finder and leaves the reported pairs. Strategies
+//! differ in false positives and time, never in misses: each reports every pair whose meshes meet,
+//! `none` excepted.
 
 use crate::counters::VolumeCounters;
 
@@ -35,9 +37,9 @@ pub(crate) use time_critical::Answers;
 #[cfg(feature = "shapes")]
 /// What the finder's slots are named by.
 ///
-/// Volumes other than spheres are looked up by place. With spheres alone, names are bodies, so that no hit needs a look at
-/// its places: naming slots by place under every strategy took 2.5 % more instructions of a frame of spheres (10,000 bodies,
-/// grid, AVX2).
+/// Volumes other than spheres are looked up by place. With spheres alone, names are bodies, so that
+/// no hit needs a look at its places: naming slots by place under every strategy took 2.5 % more
+/// instructions of a frame of spheres (10,000 bodies, grid, AVX2).
 #[derive(Clone, Copy)]
 pub(crate) enum SlotNames<'a> {
     /// Bodies, in the order of the user's columns.

@@ -13,7 +13,8 @@ use crate::volume::{Basis, Shape};
 pub const BASIS: usize = 0;
 /// Where the centre of its ball begins.
 pub const CENTRE: usize = 9;
-/// Where one over the length of each of the basis' columns begins, a number of f64 as the sum of three of f32.
+/// Where one over the length of each of the basis' columns begins, a number of f64 as the sum of
+/// three of f32.
 pub const UNIT: usize = 12;
 
 /// The frames of all shapes.
@@ -163,7 +164,8 @@ impl ShapeFrame {
         let mut record = [0.0; ROW];
         record[BASIS..CENTRE].copy_from_slice(self.basis.as_flattened());
         record[CENTRE..UNIT].copy_from_slice(&self.centre);
-        // Lengths are in (1/2, 1], so each part takes 24 bits of what the ones before it leave, and none is left of 53.
+        // Lengths are in (1/2, 1], so each part takes 24 bits of what the ones before it leave, and
+        // none is left of 53.
         let mut rest = over_norm(self.basis[0]);
         for part in &mut record[UNIT..UNIT + 3] {
             *part = rest as f32;

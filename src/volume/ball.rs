@@ -1,9 +1,11 @@
-//! The smallest enclosing ball, Welzl's problem, by pivoting: Gärtner, "Fast and robust smallest enclosing balls", 1999.
+//! The smallest enclosing ball, Welzl's problem, by pivoting: Gärtner, "Fast and robust smallest
+//! enclosing balls", 1999.
 //!
-//! The support set (at most four vertices) is replaced by that of itself and the farthest vertex until no vertex is
-//! outside. The ball of those few points needs no tolerance, whatever their position (duplicate, collinear, cospherical):
-//! its centre is the circumcentre of one of the subsets, namely the one whose farthest point is nearest. The radius
-//! grows in each step, so no support set returns. A dozen sweeps over the vertices are typical.
+//! The support set (at most four vertices) is replaced by that of itself and the farthest vertex
+//! until no vertex is outside. The ball of those few points needs no tolerance, whatever their
+//! position (duplicate, collinear, cospherical): its centre is the circumcentre of one of the
+//! subsets, namely the one whose farthest point is nearest. The radius grows in each step, so no
+//! support set returns. A dozen sweeps over the vertices are typical.
 
 use glam::DVec3;
 
@@ -30,7 +32,8 @@ impl Ball {
         }
     }
 
-    /// The smallest enclosing ball with its centre rounded to f32: larger than the optimum by an ulp of |c| and r.
+    /// The smallest enclosing ball with its centre rounded to f32: larger than the optimum by an
+    /// ulp of |c| and r.
     #[must_use]
     pub fn smallest(vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         Self::about(smallest_enclosing(vertices).0.as_vec3(), vertices)
@@ -45,7 +48,8 @@ impl Ball {
 
 /// max ‖v − c‖, rounded up; exactly 0 when every vertex is c.
 ///
-/// The f64 steps err by less than 2⁻⁵⁰ in all (squares of f32 differences can't underflow); `up` covers 2⁻²⁶.
+/// The f64 steps err by less than 2⁻⁵⁰ in all (squares of f32 differences can't underflow); `up`
+/// covers 2⁻²⁶.
 pub(super) fn farthest_distance(centre: [f32; 3], vertices: &[impl Into<[f32; 3]> + Copy]) -> f32 {
     let centre = in_f64(&centre);
     let squared = vertices
@@ -115,7 +119,8 @@ fn smallest_of_few(points: &[DVec3]) -> (Vec<DVec3>, DVec3, f64) {
     best
 }
 
-/// The point of the affine hull that is equally far from one to four points; not finite when they are dependent.
+/// The point of the affine hull that is equally far from one to four points; not finite when they
+/// are dependent.
 fn circumcentre(points: &[DVec3]) -> DVec3 {
     match *points {
         [p] => p,

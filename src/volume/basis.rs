@@ -1,9 +1,10 @@
 //! Exact orthogonal bases: rotations snapped to integer quaternions.
 //!
-//! For an integer q = (x, y, z, w) with n = |q|², n·R(q) has integer entries of magnitude ≤ n and orthogonal columns of
-//! norm n. With n ≤ 2²² and a scale by a power of two, the entries and their sums under coefficients from {−1, 0, 1} are
-//! integers below 2²⁴ times that power: exact in f32. A basis rounded to f32 vector by vector loses
-//! (1,1,0) = (1,0,0) + (0,1,0), and with it the weak-duality bound on supports.
+//! For an integer q = (x, y, z, w) with n = |q|², n·R(q) has integer entries of magnitude ≤ n and
+//! orthogonal columns of norm n. With n ≤ 2²² and a scale by a power of two, the entries and their
+//! sums under coefficients from {−1, 0, 1} are integers below 2²⁴ times that power: exact in f32. A
+//! basis rounded to f32 vector by vector loses (1,1,0) = (1,0,0) + (0,1,0), and with it the
+//! weak-duality bound on supports.
 
 use glam::DQuat;
 
@@ -23,8 +24,9 @@ choices! {
     }
 }
 
-/// An orthogonal basis whose three columns have one common norm and f32-exact entries:
-/// an integer quaternion's rotation matrix times |q|² ≤ 2²², scaled by a power of two so that the norm is in (½, 1].
+/// An orthogonal basis whose three columns have one common norm and f32-exact entries: an integer
+/// quaternion's rotation matrix times |q|² ≤ 2²², scaled by a power of two so that the norm is in
+/// (½, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Basis {
     /// The basis vectors in the body frame.
@@ -72,8 +74,9 @@ impl Basis {
         })
     }
 
-    /// The basis nearest to a rotation (x, y, z, w): its unit quaternion times 2048, rounded to integers; off by less than 10⁻³ rad.
-    /// Rotations that differ by rounding errors snap to one basis, but for the few that lie between two.
+    /// The basis nearest to a rotation (x, y, z, w): its unit quaternion times 2048, rounded to
+    /// integers; off by less than 10⁻³ rad. Rotations that differ by rounding errors snap to one
+    /// basis, but for the few that lie between two.
     #[must_use]
     pub fn snapped(rotation: impl Into<[f64; 4]>) -> Self {
         let unit = DQuat::from_array(rotation.into()).normalize().to_array();
@@ -89,7 +92,8 @@ impl Basis {
     /// The common norm of the columns, exact: n·2⁻ᵐ.
     #[must_use]
     pub fn norm(&self) -> f64 {
-        // Entries are integers ≤ 2²² over one power of two, so the sum of squares n² ≤ 2⁴⁴ and its root are exact.
+        // Entries are integers ≤ 2²² over one power of two, so the sum of squares n² ≤ 2⁴⁴ and its
+        // root are exact.
         in_f64(&self.columns[0]).length_squared().sqrt()
     }
 

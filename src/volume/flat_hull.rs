@@ -1,7 +1,9 @@
-//! The outline of points in one plane, exact: Andrew's monotone chain (1979) on Shewchuk's predicate.
+//! The outline of points in one plane, exact: Andrew's monotone chain (1979) on Shewchuk's
+//! predicate.
 //!
-//! Points of a plane keep their outline in each coordinate plane on which they do not fall into a line. So the outline is
-//! taken in all three, and the one with most corners is right: for points of a line each has its two ends, or one.
+//! Points of a plane keep their outline in each coordinate plane on which they do not fall into a
+//! line. So the outline is taken in all three, and the one with most corners is right: for points
+//! of a line each has its two ends, or one.
 
 use robust::{Coord, Coord3D, orient2d};
 

@@ -1,12 +1,13 @@
 //! The convex hull, exact: Quickhull (Barber, Dobkin, Huhdanpaa 1996) on Shewchuk's predicates.
 //!
-//! Re-fitted volumes are taken from hull vertices alone, so a vertex lost here is a missed collision later. Every
-//! decision is the sign of an exact orient3d, and a facet is visible from a point only if that is *strictly* outside.
-//! Then no degenerate facet arises, the visible region is a disk, and the result is a closed surface with all vertices on
-//! its inner side: duplicate, coplanar and cospherical vertices need no tolerance and there is no failure to handle.
-//! (Of the crates, quickhull works in f32 and turns a facet of the bunny inside out; chull walks randomly hashed sets, so
-//! that its facets change from run to run, and gives up on rotated grids.)
-//! The distances that choose the next vertex are approximate; they steer the speed only.
+//! Re-fitted volumes are taken from hull vertices alone, so a vertex lost here is a missed
+//! collision later. Every decision is the sign of an exact orient3d, and a facet is visible from a
+//! point only if that is *strictly* outside. Then no degenerate facet arises, the visible region is
+//! a disk, and the result is a closed surface with all vertices on its inner side: duplicate,
+//! coplanar and cospherical vertices need no tolerance and there is no failure to handle. (Of the
+//! crates, quickhull works in f32 and turns a facet of the bunny inside out; chull walks randomly
+//! hashed sets, so that its facets change from run to run, and gives up on rotated grids.) The
+//! distances that choose the next vertex are approximate; they steer the speed only.
 
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
@@ -19,7 +20,8 @@ use crate::mesh::in_f64;
 pub struct Hull {
     /// Indices of the vertices that span the hull, ascending. All vertices when these are coplanar.
     pub vertices: Vec<u32>,
-    /// Triangles over the shape's vertices, counter-clockwise from outside. None when the vertices are coplanar.
+    /// Triangles over the shape's vertices, counter-clockwise from outside. None when the vertices
+    /// are coplanar.
     pub facets: Vec<[u32; 3]>,
 }
 
@@ -51,7 +53,8 @@ impl Hull {
         self.vertices.iter().map(position).collect()
     }
 
-    /// Indices of the vertices that span the hull, ascending: of a flat hull, too, whose `vertices` are all there are.
+    /// Indices of the vertices that span the hull, ascending: of a flat hull, too, whose `vertices`
+    /// are all there are.
     #[must_use]
     pub fn corners(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Vec<u32> {
         if !self.facets.is_empty() {
@@ -96,13 +99,15 @@ fn coordinates(vertex: [f32; 3]) -> Point {
     Point { x, y, z }
 }
 
-/// How far `p` is outside the plane of (a, b, c), counter-clockwise from outside: exact sign, approximate size.
+/// How far `p` is outside the plane of (a, b, c), counter-clockwise from outside: exact sign,
+/// approximate size.
 fn height(points: &[Point], [a, b, c]: [u32; 3], p: u32) -> f64 {
     let [a, b, c, p] = [a, b, c, p].map(|i| points[i as usize]);
     -orient3d(a, b, c, p)
 }
 
-/// Four vertices that are not coplanar, the first three clockwise seen from the fourth; `None` when there are none.
+/// Four vertices that are not coplanar, the first three clockwise seen from the fourth; `None` when
+/// there are none.
 fn initial_simplex(points: &[Point]) -> Option<[u32; 4]> {
     let farthest = |measure: &dyn Fn(u32) -> f64| {
         let candidates = (0..points.len() as u32).map(|i| (i, measure(i)));
@@ -200,7 +205,8 @@ impl<'a> Builder<'a> {
         alive.map(|f| f.corners).collect()
     }
 
-    /// Gives each vertex to the first facet, from number `first` on, that it is strictly outside of.
+    /// Gives each vertex to the first facet, from number `first` on, that it is strictly outside
+    /// of.
     fn distribute(&mut self, vertices: Vec<u32>, first: usize) {
         for vertex in vertices {
             for facet in &mut self.facets[first..] {
@@ -213,7 +219,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Replaces all facets visible from the farthest outside vertex of `facet` by the cone from it to their horizon.
+    /// Replaces all facets visible from the farthest outside vertex of `facet` by the cone from it
+    /// to their horizon.
     fn extend_to_farthest(&mut self, facet: u32) {
         let outside = self.facets[facet as usize].outside.iter();
         let Some(&(apex, _)) = outside.max_by(|a, b| a.1.total_cmp(&b.1)) else {
@@ -224,7 +231,8 @@ impl<'a> Builder<'a> {
         for (i, edge) in horizon.iter().enumerate() {
             self.starting_at[edge.from as usize] = (first + i) as u32;
         }
-        // Facet i has the edges from → to, to → apex, apex → from; the last is shared with the facet that ends here.
+        // Facet i has the edges from → to, to → apex, apex → from; the last is shared with the
+        // facet that ends here.
         for edge in &horizon {
             let number = self.facets.len() as u32;
             let across = &mut self.facets[edge.beyond as usize];
@@ -245,7 +253,8 @@ impl<'a> Builder<'a> {
         self.distribute(orphans, first);
     }
 
-    /// Kills the facets that are visible from `apex`; returns their horizon and the other vertices outside them.
+    /// Kills the facets that are visible from `apex`; returns their horizon and the other vertices
+    /// outside them.
     fn remove_visible(&mut self, start: u32, apex: u32) -> (Vec<HorizonEdge>, Vec<u32>) {
         self.step += 1;
         let (mut horizon, mut orphans, mut stack) = (Vec::new(), Vec::new(), vec![start]);

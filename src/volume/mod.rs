@@ -1,6 +1,7 @@
 //! Bounding volumes, built once per mesh (the paper's Co) in the body frame.
 //!
-//! One file a volume; each contains the f32 vertices as culled in exact arithmetic, before any inflation for rounding.
+//! One file a volume; each contains the f32 vertices as culled in exact arithmetic, before any
+//! inflation for rounding.
 
 mod ball;
 mod basis;

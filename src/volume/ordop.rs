@@ -1,8 +1,9 @@
-//! Oriented k-DOPs: slabs `lo ≤ d·x ≤ hi` along directions fixed in the body frame, never re-fitted.
+//! Oriented k-DOPs: slabs `lo ≤ d·x ≤ hi` along directions fixed in the body frame, never
+//! re-fitted.
 //!
-//! Containment is exact. A direction has 24-bit entries, so each product of d·x is exact in f64 and only the two
-//! additions round; Knuth's two-sum recovers what they lost. An end that is an f32 (a box's face, a plate's zero) is kept
-//! to the bit, any other is the next f32 outward.
+//! Containment is exact. A direction has 24-bit entries, so each product of d·x is exact in f64 and
+//! only the two additions round; Knuth's two-sum recovers what they lost. An end that is an f32 (a
+//! box's face, a plate's zero) is kept to the bit, any other is the next f32 outward.
 
 use glam::DVec3;
 
@@ -10,8 +11,8 @@ use super::{Basis, DirectionSet};
 use crate::mesh::in_f64;
 use crate::rounding::{down, up};
 
-/// An oriented k-DOP in the body frame: `lo[i] ≤ d_i·x ≤ hi[i]` for every vertex x in exact arithmetic,
-/// with d_i = Σ_j coefficient_ij·column_j.
+/// An oriented k-DOP in the body frame: `lo[i] ≤ d_i·x ≤ hi[i]` for every vertex x in exact
+/// arithmetic, with d_i = Σ_j coefficient_ij·column_j.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrDop {
     /// Which slab directions.
@@ -25,7 +26,8 @@ pub struct OrDop {
 }
 
 impl OrDop {
-    /// The tightest slabs with f32 ends around the vertices. No vertices: empty slabs, lo = ∞ and hi = −∞.
+    /// The tightest slabs with f32 ends around the vertices. No vertices: empty slabs, lo = ∞ and
+    /// hi = −∞.
     #[must_use]
     pub fn build(
         vertices: &[impl Into<[f32; 3]> + Copy],
@@ -51,8 +53,8 @@ impl OrDop {
         let mut grown = self.clone();
         let ends = grown.lo.iter_mut().zip(&mut grown.hi);
         for ((lo, hi), &coefficients) in ends.zip(self.directions.coefficients()) {
-            // The factor is above what three f64 roundings take where lo and the margin nearly cancel; elsewhere the
-            // step outward is.
+            // The factor is above what three f64 roundings take where lo and the margin nearly
+            // cancel; elsewhere the step outward is.
             let length = in_f64(&self.basis.direction(coefficients)).length();
             let out = f64::from(margin) * length * (1.0 + 2f64.powi(-40));
             (*lo, *hi) = (down(f64::from(*lo) - out), up(f64::from(*hi) + out));
@@ -128,7 +130,8 @@ mod tests {
     #[test]
     fn the_exact_sum_of_products_lies_within_its_bounds() {
         let big = 1 << 30;
-        // Two equal losses; what is lost is all that is left; nothing is lost; losses of other signs.
+        // Two equal losses; what is lost is all that is left; nothing is lost; losses of other
+        // signs.
         assert!(holds_exactly([big, 1, 1], [big, 1, 1]));
         assert!(holds_exactly([big, 1, big], [big, 1, -big]));
         assert!(holds_exactly([big, 0, 3], [big, 7, -5]));

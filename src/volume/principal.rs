@@ -1,8 +1,9 @@
 //! Principal axes: eigenvectors of the covariance of the convex hull's surface.
 //!
-//! With A_i, m_i the area and centroid of triangle (p, q, r)_i, A = ΣA_i and μ = ΣA_i m_i / A (Gottschalk 2000, §3.5):
-//! C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. Taken over the hull's surface, not the mesh's vertices, neither
-//! interior detail nor sampling density turns the axes.
+//! With A_i, m_i the area and centroid of triangle (p, q, r)_i, A = ΣA_i and μ = ΣA_i m_i / A
+//! (Gottschalk 2000, §3.5): C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. Taken over the
+//! hull's surface, not the mesh's vertices, neither interior detail nor sampling density turns the
+//! axes.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -10,8 +11,9 @@ use super::jacobi::eigen;
 use super::{Axes, Basis, Hull};
 use crate::mesh::in_f64;
 
-/// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are whatever rounding
-/// makes of them. Far above f32 rounding (2⁻²⁴), so a symmetric mesh is seen as such after any rotation.
+/// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are
+/// whatever rounding makes of them. Far above f32 rounding (2⁻²⁴), so a symmetric mesh is seen as
+/// such after any rotation.
 const TIE: f64 = 1.0 / 8192.0;
 
 impl Axes {
@@ -26,7 +28,8 @@ impl Axes {
 }
 
 impl Basis {
-    /// The principal axes, longest first, snapped; the model axes when they are tied or the hull is flat.
+    /// The principal axes, longest first, snapped; the model axes when they are tied or the hull is
+    /// flat.
     #[must_use]
     pub fn principal(hull: &Hull, vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         surface_covariance(hull, vertices)
@@ -90,8 +93,8 @@ fn sign_of_largest(v: DVec3) -> f64 {
 mod tests {
     use super::*;
 
-    /// Of a box with these half sides, wherever it is: (bc·a² + (ab + ca)·a²/3)/(ab + bc + ca) along a, in units of its
-    /// diagonal.
+    /// Of a box with these half sides, wherever it is: (bc·a² + (ab + ca)·a²/3)/(ab + bc + ca)
+    /// along a, in units of its diagonal.
     #[test]
     fn the_covariance_of_a_box_is_that_of_its_surface_in_its_own_size() {
         let [a, b, c] = [1.0, 2.0, 4.0];

@@ -1,14 +1,17 @@
-//! A mesh made ready for culling: placed in its body frame, with its volumes (the paper's one-off construction, Co).
+//! A mesh made ready for culling: placed in its body frame, with its volumes (the paper's one-off
+//! construction, Co).
 //!
-//! `origin = "file"`, the default, keeps the mesh's own origin, to which an engine's poses refer. `origin = "ball"` moves the
-//! smallest enclosing ball's centre into the body origin, so that the sphere of a posed body is a copy of its translation.
-//! Either way every volume is computed from, and contains exactly, the f32 vertices as culled:
+//! `origin = "file"`, the default, keeps the mesh's own origin, to which an engine's poses refer.
+//! `origin = "ball"` moves the smallest enclosing ball's centre into the body origin, so that the
+//! sphere of a posed body is a copy of its translation. Either way every volume is computed from,
+//! and contains exactly, the f32 vertices as culled:
 //!
 //! > vertex = scale · (point of the file − offset), rounded to f32
 //!
-//! with the [`Shape::offset`] and [`Shape::scale`] that the shape keeps. A mesh that is far from its own origin is the
-//! exception to "keeps": its vertices are about a point near it, and its [`Shape::pose_offset`] says where that lies, seen from
-//! the point that poses refer to. Its volumes are grown by what rounding has moved, [`Shape::rounding`].
+//! with the [`Shape::offset`] and [`Shape::scale`] that the shape keeps. A mesh that is far from
+//! its own origin is the exception to "keeps": its vertices are about a point near it, and its
+//! [`Shape::pose_offset`] says where that lies, seen from the point that poses refer to. Its
+//! volumes are grown by what rounding has moved, [`Shape::rounding`].
 
 use glam::DVec3;
 
@@ -35,7 +38,8 @@ choices! {
 pub struct ShapeSpec {
     /// The body's origin: the point that poses place. By default the mesh's own, [`Origin::File`].
     pub origin: Origin,
-    /// The radius to which the smallest enclosing ball is scaled, about the body's origin; `None` keeps the mesh's size.
+    /// The radius to which the smallest enclosing ball is scaled, about the body's origin; `None`
+    /// keeps the mesh's size.
     pub radius: Option<f32>,
     /// The or-DOP's directions.
     pub directions: DirectionSet,
@@ -63,17 +67,18 @@ pub struct Shape {
     pub vertices: Vec<[f32; 3]>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// The point of the file's coordinates that is the origin of `vertices`: zero for [`Origin::File`], unless the mesh is far
-    /// from its origin.
+    /// The point of the file's coordinates that is the origin of `vertices`: zero for
+    /// [`Origin::File`], unless the mesh is far from its origin.
     pub offset: [f64; 3],
     /// By how much the mesh was scaled: 1 without a [`ShapeSpec::radius`].
     pub scale: f64,
-    /// Where the origin of `vertices` lies in the frame that poses place: zero, or scale · offset for a mesh that is far from
-    /// its origin and keeps it. A pose (q, t) stands for vertices at (q, t + R(q)·pose_offset), which a
-    /// [`World`](crate::World) composes in f64; what has poses in f32 refuses such a shape.
+    /// Where the origin of `vertices` lies in the frame that poses place: zero, or scale · offset
+    /// for a mesh that is far from its origin and keeps it. A pose (q, t) stands for vertices at
+    /// (q, t + R(q)·pose_offset), which a [`World`](crate::World) composes in f64; what has poses
+    /// in f32 refuses such a shape.
     pub pose_offset: [f64; 3],
-    /// How far a vertex of a far mesh is at most from the f64 point that it stands for: 0 for any other mesh. Ball, reach and
-    /// slabs are grown by it.
+    /// How far a vertex of a far mesh is at most from the f64 point that it stands for: 0 for any
+    /// other mesh. Ball, reach and slabs are grown by it.
     pub rounding: f32,
     /// Smallest enclosing ball of `vertices`, rounded up.
     pub ball: Ball,
@@ -156,7 +161,8 @@ impl Shape {
         in_default_mode(|| self.slabs(axes.basis(&self.vertices), directions))
     }
 
-    /// The oriented bounding box: an or-DOP of three slabs along the principal axes, whatever the or-DOP's own axes.
+    /// The oriented bounding box: an or-DOP of three slabs along the principal axes, whatever the
+    /// or-DOP's own axes.
     #[must_use]
     pub fn obb(&self, hull: &Hull) -> OrDop {
         in_default_mode(|| self.slabs(Basis::principal(hull, &self.vertices), DirectionSet::K6))
@@ -259,8 +265,9 @@ impl Placement {
         (in_f64(vertex) - self.centre) * self.scale
     }
 
-    /// How far a vertex is at most from scale · (point of the file − offset), or with the pose's offset from scale · point: 0
-    /// for a mesh that has been rounded where it is, whose own vertices count.
+    /// How far a vertex is at most from scale · (point of the file − offset), or with the pose's
+    /// offset from scale · point: 0 for a mesh that has been rounded where it is, whose own
+    /// vertices count.
     fn rounding(&self, mesh: &TriangleMesh, vertices: &[[f32; 3]]) -> f32 {
         if !mesh.is_far() && mesh.rounding == 0.0 {
             return 0.0;
@@ -271,7 +278,8 @@ impl Placement {
             placed = placed.max(self.point(vertex).distance(in_f64(rounded)));
             size = size.max(in_f64(vertex).abs().max_element());
         }
-        // In f64 the difference and the product round each coordinate twice, and a scaled offset once.
+        // In f64 the difference and the product round each coordinate twice, and a scaled offset
+        // once.
         let size = (size + self.centre.abs().max_element()) * self.scale;
         let scaled = if self.scale == 1.0 {
             0.0

@@ -3,8 +3,8 @@
 use super::region::{Placed, Region};
 use crate::rounding::exp2;
 
-/// How many cells wide a box may be whose bodies are placed about one origin, without a search for regions: rounding there is below
-/// 2⁻¹⁰ of the largest body.
+/// How many cells wide a box may be whose bodies are placed about one origin, without a search for
+/// regions: rounding there is below 2⁻¹⁰ of the largest body.
 const FEW_CELLS: f64 = 64.0;
 
 /// The least cell, for bodies without any extent.
@@ -56,8 +56,9 @@ impl Bounds {
         2.0 * self.half() > FEW_CELLS * self.cell()
     }
 
-    /// One origin for all: the world's own, unless the box lies farther out than it is wide. Then the middle, in steps of
-    /// about an eighth of the width, so that it seldom changes while bodies move.
+    /// One origin for all: the world's own, unless the box lies farther out than it is wide. Then
+    /// the middle, in steps of about an eighth of the width, so that it seldom changes while bodies
+    /// move.
     pub fn region(&self) -> Region {
         let (half, middle) = (self.half(), self.middle());
         if middle.iter().all(|x| x.abs() <= half) {
@@ -70,8 +71,8 @@ impl Bounds {
         }
     }
 
-    /// A cube that holds all bodies and, about them, room for four of the largest. Its lowest corner is a multiple of a quarter
-    /// of the side, so that it seldom changes while bodies move.
+    /// A cube that holds all bodies and, about them, room for four of the largest. Its lowest
+    /// corner is a multiple of a quarter of the side, so that it seldom changes while bodies move.
     pub fn cube(&self) -> Cube {
         let room = 4.0 * self.size;
         let mut side = power_from((2.0 * (self.half() + room)).max(LEAST_CELL));

@@ -48,8 +48,8 @@ impl ChangeLog {
         self.changes.push(change);
     }
 
-    /// Drops changes that cancel each other, if the log has doubled since it was last done: so it holds at most some times the
-    /// pairs of then and of now, however long events aren't read.
+    /// Drops changes that cancel each other, if the log has doubled since it was last done: so it
+    /// holds at most some times the pairs of then and of now, however long events aren't read.
     pub fn cancel_some(&mut self) {
         if self.changes.len() > 2 * self.lasting + WORTH_CANCELLING {
             self.cancel();
@@ -57,8 +57,8 @@ impl ChangeLog {
         }
     }
 
-    /// Sorts by pair, and leaves those changes that no later one cancels. A pair comes and goes in turns, so of an even number
-    /// of changes nothing is left, and of an odd one the last.
+    /// Sorts by pair, and leaves those changes that no later one cancels. A pair comes and goes in
+    /// turns, so of an even number of changes nothing is left, and of an odd one the last.
     fn cancel(&mut self) {
         self.changes.sort_by_key(|change| change.pair);
         let mut kept: Vec<PairChange> = Vec::new();

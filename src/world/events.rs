@@ -1,4 +1,5 @@
-//! What has changed between two culls: read off a merge of their lists, or listed where little has changed.
+//! What has changed between two culls: read off a merge of their lists, or listed where little has
+//! changed.
 
 use std::iter::Peekable;
 use std::sync::Arc;
@@ -24,9 +25,10 @@ pub enum Event {
 
 /// What the pairs of two culls have in common and what not, each kind sorted by slots.
 ///
-/// Borrows nothing of the world: bodies may be removed while events are read. [`Self::begun`] and [`Self::ended`] cost what has
-/// changed, or one pass over both lists of pairs where that is much; [`Self::persisting`] and [`Self::iter`] are one pass over
-/// the pairs. Drop the events before the next cull, or that copies the pairs that they share with the world.
+/// Borrows nothing of the world: bodies may be removed while events are read. [`Self::begun`] and
+/// [`Self::ended`] cost what has changed, or one pass over both lists of pairs where that is much;
+/// [`Self::persisting`] and [`Self::iter`] are one pass over the pairs. Drop the events before the
+/// next cull, or that copies the pairs that they share with the world.
 #[derive(Clone, Debug, Default)]
 pub struct Events {
     pub(super) now: Now,

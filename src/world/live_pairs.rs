@@ -1,8 +1,10 @@
-//! The pairs of a world in which few bodies move: kept by body, changed pair by pair, with the changes that events are read of.
+//! The pairs of a world in which few bodies move: kept by body, changed pair by pair, with the
+//! changes that events are read of.
 //!
-//! They have two forms. As long as a cull finds all pairs anew, they are lists that take turns ([`PairLog`]). Once a cull changes
-//! some, they are lists of partners ([`Partners`]) and a log of what has changed since events were last read. Either form is made
-//! of the other at the price of one pass over the pairs.
+//! They have two forms. As long as a cull finds all pairs anew, they are lists that take turns
+//! ([`PairLog`]). Once a cull changes some, they are lists of partners ([`Partners`]) and a log of
+//! what has changed since events were last read. Either form is made of the other at the price of
+//! one pass over the pairs.
 
 use std::sync::Arc;
 
@@ -25,7 +27,8 @@ pub(crate) struct LivePairs {
 struct Live {
     /// Shared with the events that are read of them.
     partners: Arc<Partners>,
-    /// None if no pairs were there when events were last read, or if none have been read: all have begun since then.
+    /// None if no pairs were there when events were last read, or if none have been read: all have
+    /// begun since then.
     changes: Option<ChangeLog>,
 }
 
@@ -143,7 +146,8 @@ impl LivePairs {
         self.log.shrink_to_fit();
     }
 
-    /// The same pairs as lists. One list serves for both if nothing has changed since events were read.
+    /// The same pairs as lists. One list serves for both if nothing has changed since events were
+    /// read.
     pub fn to_log(&self, ids: &Ids) -> PairLog {
         let (last, watched) = match &self.live {
             None => {
@@ -204,7 +208,8 @@ fn reported(pairs: impl Iterator<Item = [BodyId; 2]>) -> Reported {
     Reported { slots, generation }
 }
 
-/// Pairs that are being changed. A change of a pair of two bodies is made at both of them, and noted once.
+/// Pairs that are being changed. A change of a pair of two bodies is made at both of them, and
+/// noted once.
 pub(crate) struct PairChanges<'a> {
     partners: &'a mut Partners,
     log: Option<&'a mut ChangeLog>,

@@ -1,8 +1,9 @@
 //! Large worlds: f64 translations, culled as f32 about local origins.
 //!
-//! Where the origins lie is a function of the bodies as they are now, never of earlier frames. Translations that are all f32
-//! stay as they are. Otherwise bodies that lie near each other are placed about one origin; bodies in many far-apart places
-//! have an [origin per region](super::regions).
+//! Where the origins lie is a function of the bodies as they are now, never of earlier frames.
+//! Translations that are all f32 stay as they are. Otherwise bodies that lie near each other are
+//! placed about one origin; bodies in many far-apart places have an [origin per
+//! region](super::regions).
 
 use super::bounds::Bounds;
 use super::region::{Placed, Region};
@@ -20,8 +21,8 @@ enum Local {
 }
 
 impl Local {
-    /// The origins for these bodies, whose translations are at most 2⁶⁰ in size, or little more where meshes are far from
-    /// their own origins.
+    /// The origins for these bodies, whose translations are at most 2⁶⁰ in size, or little more
+    /// where meshes are far from their own origins.
     fn of(bodies: impl Iterator<Item = Placed> + Clone) -> Self {
         if bodies.clone().all(|(_, t, _)| is_placed(t)) {
             return Self::World;
@@ -51,7 +52,8 @@ fn is_placed(t: [f64; 3]) -> bool {
 }
 
 impl World {
-    /// Brings all bodies near local origins, in the models that their margins and rounding call for.
+    /// Brings all bodies near local origins, in the models that their margins and rounding call
+    /// for.
     pub(super) fn place(&mut self) -> Result<(), WorldError> {
         let (ids, slots) = (&self.ids, 0..self.ids.slots());
         let present = slots.filter(|&slot| ids.present()[slot]);
@@ -92,7 +94,8 @@ impl World {
         (slot, translation, size)
     }
 
-    /// The translation of the vertices of the body in a slot, and how far from the exact one it may be.
+    /// The translation of the vertices of the body in a slot, and how far from the exact one it may
+    /// be.
     fn composed(&self, slot: usize) -> ([f64; 3], f64) {
         let offset = self.shapes[self.shape[slot] as usize].pose_offset;
         offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)

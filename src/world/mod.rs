@@ -1,13 +1,15 @@
 //! Long-lived worlds: bodies come and go, and every frame asks who might touch.
 //!
-//! What an engine needs around a [`Culler`]: stable ids, static and dynamic bodies, groups and masks, contact margins,
-//! translations in f64, and pairs as a list or as events. The promise is the same, margins included: at every
-//! [`World::cull`], if two meshes, each grown by its body's margin and posed at its f64 translation, meet in exact
-//! arithmetic, and one of them is dynamic, and their groups collide, the pair is reported.
+//! What an engine needs around a [`Culler`]: stable ids, static and dynamic bodies, groups and
+//! masks, contact margins, translations in f64, and pairs as a list or as events. The promise is
+//! the same, margins included: at every [`World::cull`], if two meshes, each grown by its body's
+//! margin and posed at its f64 translation, meet in exact arithmetic, and one of them is dynamic,
+//! and their groups collide, the pair is reported.
 //!
-//! Bodies that come or go leave what is known of the others: until a sixteenth of all are new, the next cull takes a sort
-//! more, and places static bodies anew. Poses, margins and groups change at the price of a copy. Lists, and their order, depend on
-//! the bodies as they are now, never on the finder, the CPU or threads ([`World::cull`]).
+//! Bodies that come or go leave what is known of the others: until a sixteenth of all are new, the
+//! next cull takes a sort more, and places static bodies anew. Poses, margins and groups change at
+//! the price of a copy. Lists, and their order, depend on the bodies as they are now, never on the
+//! finder, the CPU or threads ([`World::cull`]).
 //!
 //! ```
 //! use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};
@@ -131,11 +133,12 @@ impl World {
         Self::with(shapes, &Culler::builder())
     }
 
-    /// A world without bodies, culled as the builder says. Bodies of interest, where the strategy needs them, are set by
-    /// [`Self::set_interest`].
+    /// A world without bodies, culled as the builder says. Bodies of interest, where the strategy
+    /// needs them, are set by [`Self::set_interest`].
     ///
     /// # Errors
-    /// Settings that can't be carried out, a view cone, a shape beyond the contract, threads that the system refuses.
+    /// Settings that can't be carried out, a view cone, a shape beyond the contract, threads that
+    /// the system refuses.
     pub fn with(shapes: Vec<Shape>, culler: &CullerBuilder) -> Result<Self, WorldError> {
         let settings = &culler.settings;
         if let Some(interest) = &settings.interest {
@@ -222,8 +225,8 @@ impl World {
         self.ids().map(|id| (id, self.body_at(id.slot())))
     }
 
-    /// Changes a body in any of its properties. A dynamic body's pose may change by any amount: nothing is assumed of the
-    /// way between two culls.
+    /// Changes a body in any of its properties. A dynamic body's pose may change by any amount:
+    /// nothing is assumed of the way between two culls.
     ///
     /// # Errors
     /// A body that has been removed; a pose, shape or margin outside of the contract.
@@ -269,15 +272,16 @@ impl World {
         Ok(())
     }
 
-    /// Finds the pairs that might touch now, and returns them: the lower slot first, sorted by slots. Under every strategy,
-    /// list and order are a function of the bodies as they are now (with [`Order::OldestAnswer`](crate::Order), also of when
-    /// pairs were refined, and with a budget of time, of the clock), whatever the finder, the threads and the calls before.
-    /// That holds for translations that f32 has to round, too: the origins about which they are rounded follow from the bodies
-    /// as they are now.
+    /// Finds the pairs that might touch now, and returns them: the lower slot first, sorted by
+    /// slots. Under every strategy, list and order are a function of the bodies as they are now
+    /// (with [`Order::OldestAnswer`](crate::Order), also of when pairs were refined, and with a
+    /// budget of time, of the clock), whatever the finder, the threads and the calls before. That
+    /// holds for translations that f32 has to round, too: the origins about which they are rounded
+    /// follow from the bodies as they are now.
     ///
     /// # Errors
-    /// Bodies that can't be placed within 2⁶⁰ of an origin, which takes meshes far from their own origins; [`Self::pairs`] are
-    /// still those of the cull before.
+    /// Bodies that can't be placed within 2⁶⁰ of an origin, which takes meshes far from their own
+    /// origins; [`Self::pairs`] are still those of the cull before.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
         self.cull_with(|culler, bodies| culler.cull(bodies).map(|_| ()))
     }
@@ -323,8 +327,8 @@ impl World {
         self.log.pairs().iter()
     }
 
-    /// What the last cull reports that it didn't at the last call of this, and the other way round. The events are apart
-    /// from the world: bodies may be removed while they are read.
+    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    /// The events are apart from the world: bodies may be removed while they are read.
     pub fn events(&mut self) -> Events {
         self.log.events()
     }

@@ -1,4 +1,5 @@
-//! The pairs that culls have reported: those of the last cull, and those that events were last read of.
+//! The pairs that culls have reported: those of the last cull, and those that events were last read
+//! of.
 
 use std::iter::Zip;
 use std::slice::Iter;
@@ -61,7 +62,8 @@ impl<'a> WorldPairs<'a> {
         }
     }
 
-    /// The pairs sorted by slots: the order that the pairs of a world's cull have anyway, and portions don't.
+    /// The pairs sorted by slots: the order that the pairs of a world's cull have anyway, and
+    /// portions don't.
     #[must_use]
     pub fn sorted(&self) -> Vec<[BodyId; 2]> {
         let mut pairs: Vec<_> = self.iter().collect();
@@ -153,7 +155,8 @@ impl Reported {
 
 /// The pairs of the last cull, those at the last look for events, and memory for the next.
 ///
-/// Lists are shared with the [`Events`] that are read of them, and none is copied: two lists take turns.
+/// Lists are shared with the [`Events`] that are read of them, and none is copied: two lists take
+/// turns.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairLog {
     pub(super) last: Arc<Reported>,

@@ -1,28 +1,32 @@
 //! One region's f32 coordinates, and how far from the exact ones they are.
 //!
-//! A translation is subtracted twice in f64 and rounded to f32. Its distance from the exact one is bounded, and the bound
-//! joins the body's margin, so that volumes at the rounded place contain what the exact mesh occupies (theorem T).
+//! A translation is subtracted twice in f64 and rounded to f32. Its distance from the exact one is
+//! bounded, and the bound joins the body's margin, so that volumes at the rounded place contain
+//! what the exact mesh occupies (theorem T).
 
 use crate::rounding::exp2;
 
-/// √3·2⁻²⁴ < 2⁻²³: how far rounding the local translation to f64 and then to f32 moves a body, as a multiple of its largest
-/// coordinate.
+/// √3·2⁻²⁴ < 2⁻²³: how far rounding the local translation to f64 and then to f32 moves a body, as a
+/// multiple of its largest coordinate.
 const MOVED: f64 = exp2(-23);
 
 /// √3·2⁻¹⁵⁰ < 2⁻¹⁴⁹: the same where f32 underflows.
 const MOVED_LEAST: f64 = exp2(-149);
 
-/// √3·2⁻⁵³ < 2⁻⁵²: how far rounding the distance from the origin to f64 moves a body, as a multiple of its largest coordinate.
+/// √3·2⁻⁵³ < 2⁻⁵²: how far rounding the distance from the origin to f64 moves a body, as a multiple
+/// of its largest coordinate.
 const MOVED_BEFORE: f64 = exp2(-52);
 
-/// Where the f32 coordinates of a region's bodies count from: `origin` in the world becomes −`corner`.
+/// Where the f32 coordinates of a region's bodies count from: `origin` in the world becomes
+/// −`corner`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Region {
     pub origin: [f64; 3],
     pub corner: [f64; 3],
 }
 
-/// A body as far as it matters here: its slot, its translation, and how far the mesh with its margin reaches from there.
+/// A body as far as it matters here: its slot, its translation, and how far the mesh with its
+/// margin reaches from there.
 pub(super) type Placed = (usize, [f64; 3], f64);
 
 impl Region {
@@ -97,7 +101,8 @@ mod tests {
         for least in [false, true] {
             let mut worst = 0.0_f64;
             for _ in 0..50_000 {
-                // Sizes of 2⁻⁴⁰ to 2⁴⁰, or the smallest there are; halfway between two f32, and next to halfway.
+                // Sizes of 2⁻⁴⁰ to 2⁴⁰, or the smallest there are; halfway between two f32, and
+                // next to halfway.
                 let exponent = if least {
                     -149
                 } else {

@@ -1,13 +1,14 @@
 //! Regions: bodies that lie so far from all others that they can meet only each other.
 //!
-//! Space is cut into cells, far wider than two bodies that meet are apart. A region is a connected set of occupied cells, next
-//! to each other along faces, edges or corners; where its bodies are smaller than those of others, it is cut again into cells of
-//! its own. Each region lies in a cube with room about its bodies. The cubes are packed next to each other along a Morton curve,
-//! the small ones first: f32 coordinates are about as small as those of all cubes that are no larger, wherever in the world the
-//! regions are.
+//! Space is cut into cells, far wider than two bodies that meet are apart. A region is a connected
+//! set of occupied cells, next to each other along faces, edges or corners; where its bodies are
+//! smaller than those of others, it is cut again into cells of its own. Each region lies in a cube
+//! with room about its bodies. The cubes are packed next to each other along a Morton curve, the
+//! small ones first: f32 coordinates are about as small as those of all cubes that are no larger,
+//! wherever in the world the regions are.
 //!
-//! Cells are numbered by whole f64, which hold the cell of any f64 translation exactly. They are compared by differences, since
-//! a number's own neighbours are no f64 from 2⁵³ on.
+//! Cells are numbered by whole f64, which hold the cell of any f64 translation exactly. They are
+//! compared by differences, since a number's own neighbours are no f64 from 2⁵³ on.
 
 use std::cmp::Ordering;
 
@@ -18,7 +19,8 @@ use crate::rounding::LIMIT;
 /// A cell's number along each axis, a whole number.
 type Cell = [f64; 3];
 
-/// The rows of cells next to a cell's own that come after it, as steps along x and y; along z a cell on either side.
+/// The rows of cells next to a cell's own that come after it, as steps along x and y; along z a
+/// cell on either side.
 const ROWS: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1.0], [1.0, -1.0], [1.0, 0.0], [1.0, 1.0]];
 
 /// All regions, and which of them each slot belongs to.
@@ -34,7 +36,8 @@ impl Regions {
     }
 }
 
-/// The regions of these bodies, if f32 coordinates about them are finer than about one origin for all.
+/// The regions of these bodies, if f32 coordinates about them are finer than about one origin for
+/// all.
 pub(super) fn regions(mut bodies: Vec<Placed>, whole: Bounds) -> Option<Regions> {
     let mut found = Vec::new();
     split(&mut bodies, whole, &mut found);
@@ -94,8 +97,9 @@ fn sort_by_set(bodies: &mut [Placed], cell: f64) -> Vec<usize> {
     by_set.chunk_by(|a, b| a.0 == b.0).map(<[_]>::len).collect()
 }
 
-/// Whether coordinates about these regions are within the contract, and the coarsest of them, measured by the bodies there, at least
-/// twice as fine as about one origin for a box of this half width.
+/// Whether coordinates about these regions are within the contract, and the coarsest of them,
+/// measured by the bodies there, at least twice as fine as about one origin for a box of this half
+/// width.
 fn are_finer(regions: &[Region], cubes: &[Cube], found: &[(usize, Bounds)], half: f64) -> bool {
     let (mut before, mut after) = (0.0_f64, 0.0_f64);
     for ((region, cube), (_, bounds)) in regions.iter().zip(cubes).zip(found) {
@@ -115,11 +119,13 @@ fn compare(a: &Cell, b: &Cell) -> Ordering {
     by(0).then_with(|| by(1)).then_with(|| by(2))
 }
 
-/// The region of each cell, of sorted cells; regions are numbered in the order of their first cells.
+/// The region of each cell, of sorted cells; regions are numbered in the order of their first
+/// cells.
 fn connect(cells: &[Cell]) -> Vec<u32> {
     let mut first: Vec<u32> = (0..cells.len() as u32).collect();
     for [x, y] in ROWS {
-        // Where the neighbours of a cell in that row begin: never before those of the cell before it.
+        // Where the neighbours of a cell in that row begin: never before those of the cell before
+        // it.
         let mut from = 0;
         for (at, cell) in cells.iter().enumerate() {
             // From this cell to another: exact where it is at most one, whatever the numbers.
@@ -163,8 +169,8 @@ fn first_of(first: &mut [u32], mut at: u32) -> u32 {
     at
 }
 
-/// A place for each cube, from the world's origin on: cubes of one side follow one another along a Morton curve, and the larger
-/// ones the smaller ones, in a multiple of their own side.
+/// A place for each cube, from the world's origin on: cubes of one side follow one another along a
+/// Morton curve, and the larger ones the smaller ones, in a multiple of their own side.
 fn pack(cubes: &[Cube]) -> Vec<Region> {
     let mut order: Vec<usize> = (0..cubes.len()).collect();
     order.sort_by(|&a, &b| cubes[a].side.total_cmp(&cubes[b].side));
@@ -250,7 +256,8 @@ mod tests {
         assert!(seen[0] > 20 && seen[1] > 20, "{seen:?}");
     }
 
-    /// Cubes of very different sides, in any order: no two overlap, and small ones lie near the origin.
+    /// Cubes of very different sides, in any order: no two overlap, and small ones lie near the
+    /// origin.
     #[test]
     fn packed_cubes_are_apart() {
         let mut words = ChaCha8Rng::seed_from_u64(2);

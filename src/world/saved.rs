@@ -1,4 +1,5 @@
-//! What the snapshots of both worlds have in common: version, ids, pairs, and what is wrong with damaged ones.
+//! What the snapshots of both worlds have in common: version, ids, pairs, and what is wrong with
+//! damaged ones.
 
 use std::sync::Arc;
 

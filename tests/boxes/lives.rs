@@ -44,8 +44,8 @@ pub fn pairs(bodies: &BTreeMap<BodyId, BoxBody>) -> BTreeSet<[BodyId; 2]> {
         .collect()
 }
 
-/// Inserts, removes, changes and moves boxes, and holds what the world says against the definition. `before_frame` may put
-/// another world in the place of this one, if it makes no difference.
+/// Inserts, removes, changes and moves boxes, and holds what the world says against the definition.
+/// `before_frame` may put another world in the place of this one, if it makes no difference.
 fn live(world: &mut BoxWorld, kind: Kind, seed: u64, before_frame: fn(&mut BoxWorld, usize)) {
     let random = &mut Random(seed);
     let mut bodies: BTreeMap<BodyId, BoxBody> = BTreeMap::new();
@@ -145,7 +145,8 @@ pub fn through_text(world: &BoxWorld) -> BoxWorldSnapshot {
     serde_json::from_str(&serde_json::to_string(&world.snapshot()).unwrap()).unwrap()
 }
 
-/// Goes astray in a clone and rolls it back, or restores the world in another that culls by another finder.
+/// Goes astray in a clone and rolls it back, or restores the world in another that culls by another
+/// finder.
 fn restore(world: &mut BoxWorld, frame: usize) {
     let saved = through_text(world);
     let mut other = if frame.is_multiple_of(3) {

@@ -1,4 +1,5 @@
-//! Given boxes: exactly those that have a point in common, by every finder, in every tier, on any number of threads.
+//! Given boxes: exactly those that have a point in common, by every finder, in every tier, on any
+//! number of threads.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod lives;
@@ -64,7 +65,8 @@ fn the_pairs_of_a_hundred_boxes_are_exact() {
     }
 }
 
-/// The cubes about neighbours touch, and those within don't: each pair is looked up, in runs as in blocks.
+/// The cubes about neighbours touch, and those within don't: each pair is looked up, in runs as in
+/// blocks.
 #[test]
 fn boxes_that_are_nearly_cubes_touch_or_miss_each_other_by_a_step() {
     let random = &mut Random(7);
@@ -90,7 +92,8 @@ fn boxes_that_are_nearly_cubes_touch_or_miss_each_other_by_a_step() {
     }
 }
 
-/// The cubes about long boxes stay as they are where a short side grows, and lists of neighbours are followed meanwhile.
+/// The cubes about long boxes stay as they are where a short side grows, and lists of neighbours
+/// are followed meanwhile.
 #[test]
 fn long_boxes_that_grow_within_their_cubes_are_found() {
     let random = &mut Random(8);

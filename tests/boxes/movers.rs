@@ -1,4 +1,5 @@
-//! Worlds in which few boxes change per frame: whatever the history, pairs and events are those of the definition.
+//! Worlds in which few boxes change per frame: whatever the history, pairs and events are those of
+//! the definition.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -104,8 +105,8 @@ impl History {
         }
     }
 
-    /// Frames of few changes each; now and then of none, and of many. `before_frame` may put another world in the place of this
-    /// one, if it makes no difference.
+    /// Frames of few changes each; now and then of none, and of many. `before_frame` may put
+    /// another world in the place of this one, if it makes no difference.
     fn live(&mut self, frames: usize, mut before_frame: impl FnMut(&mut BoxWorld, usize)) {
         for frame in 0..frames {
             before_frame(&mut self.world, frame);
@@ -132,7 +133,8 @@ fn few_movers_leave_exact_pairs() {
     }
 }
 
-/// Clones, worlds restored by another finder, worlds that have given their memory back, and those that were culled otherwise.
+/// Clones, worlds restored by another finder, worlds that have given their memory back, and those
+/// that were culled otherwise.
 #[test]
 fn few_movers_survive_whatever_is_done_to_their_world() {
     for (kind, seed) in Kind::ALL.into_iter().zip(200..) {
@@ -226,7 +228,8 @@ fn pairs_at_rest_stay_until_a_box_leaves() {
     assert!(world.events().begun().eq([[ids[50], ids[51]]]));
 }
 
-/// The box was moved after the cull that the snapshot has the pairs of, and the world has seen that since.
+/// The box was moved after the cull that the snapshot has the pairs of, and the world has seen that
+/// since.
 #[test]
 fn a_world_rolled_back_looks_at_all_boxes() {
     let (mut world, ids) = row(100, Motion::Dynamic);
@@ -302,7 +305,8 @@ fn a_frame_costs_what_changes() {
     assert!(few < 50 * 200 && many < 2 * few, "{few}, {many}");
 }
 
-/// A giant that moves looks at more than all boxes are worth: then all pairs are found anew, and they are the same.
+/// A giant that moves looks at more than all boxes are worth: then all pairs are found anew, and
+/// they are the same.
 #[test]
 fn giants_that_move_are_no_worse_than_all() {
     let random = &mut Random(6);

@@ -95,7 +95,8 @@ fn bad_meshes_are_refused_with_file_line_and_help() {
     assert!(refusal(&["mesh", "data/meshes/README.md"]).contains("names no mesh format"));
 }
 
-/// Of a flat square with a vertex in its middle, four vertices span it, and nothing is wider for a vertex that no triangle uses.
+/// Of a flat square with a vertex in its middle, four vertices span it, and nothing is wider for a
+/// vertex that no triangle uses.
 #[test]
 fn facts_are_of_the_used_vertices() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! `sdop run --record`: read back by a stranger who knows the format alone, to the same bits as in the library, and judged
-//! by the reference from the recorded numbers alone.
+//! `sdop run --record`: read back by a stranger who knows the format alone, to the same bits as in
+//! the library, and judged by the reference from the recorded numbers alone.
 
 use sdop::simd::Tier;
 use sdop_bench::scene::SceneFile;

@@ -1,4 +1,5 @@
-//! Records, their comparison and the pages that quote them: one digit changed by hand is found wherever it stands.
+//! Records, their comparison and the pages that quote them: one digit changed by hand is found
+//! wherever it stands.
 
 use std::path::Path;
 

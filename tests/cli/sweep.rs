@@ -23,7 +23,8 @@ motion = true
 walls = "specular"
 "#;
 
-/// Units of every kind in a moment: two groups of hard cases, a seed, two blocks of a scene's frames.
+/// Units of every kind in a moment: two groups of hard cases, a seed, two blocks of a scene's
+/// frames.
 const VERIFY: [&str; 14] = [
     "verify",
     "--group",

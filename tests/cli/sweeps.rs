@@ -11,7 +11,8 @@ use super::{refusal, scene_file, stdout, text};
 /// A command whose work can be shared.
 struct Sweep {
     name: &'static str,
-    /// Arguments of a run that takes a moment; they end before the output directory. A scene's path goes where `SCENE` stands.
+    /// Arguments of a run that takes a moment; they end before the output directory. A scene's path
+    /// goes where `SCENE` stands.
     arguments: &'static [&'static str],
     /// Further ones, behind all others.
     last: &'static [&'static str],
@@ -20,7 +21,8 @@ struct Sweep {
     result: &'static str,
     /// How shards become its result, where `sdop merge` doesn't do it.
     merge: Option<&'static str>,
-    /// Files that don't depend on who did the work, but for the keys of [`CLOCK`]; of none, what it prints.
+    /// Files that don't depend on who did the work, but for the keys of [`CLOCK`]; of none, what it
+    /// prints.
     facts: &'static [&'static str],
 }
 
@@ -70,7 +72,8 @@ const SWEEPS: &[Sweep] = &[
     },
 ];
 
-/// Keys below which a clock, the machine's load or the day has a say, and digests of what they are in.
+/// Keys below which a clock, the machine's load or the day has a say, and digests of what they are
+/// in.
 const CLOCK: &[&str] = &[
     "seconds",
     "lazy_seconds",

@@ -1,5 +1,5 @@
-//! `sdop view`: what pages hold, and what is said of records that are broken, old or strange. What a browser makes of a page is
-//! tested in `benches/src/view/web/test/`.
+//! `sdop view`: what pages hold, and what is said of records that are broken, old or strange. What
+//! a browser makes of a page is tested in `benches/src/view/web/test/`.
 
 use std::path::{Path, PathBuf};
 
@@ -190,7 +190,8 @@ fn two_strategies_or_two_records_stand_side_by_side() {
     );
 }
 
-/// Runs a view that must fail, and returns what it says and the header of the page that it wrote all the same.
+/// Runs a view that must fail, and returns what it says and the header of the page that it wrote
+/// all the same.
 fn broken(path: &Path) -> (String, Value) {
     let page = path.with_extension("html");
     let output = sdop(&["view", text(path), "--no-prices", "--out", text(&page)]);

@@ -1,4 +1,5 @@
-//! One world on many ranks, each a thread here: the same pairs as one process, whatever the ranks, strategy and finder.
+//! One world on many ranks, each a thread here: the same pairs as one process, whatever the ranks,
+//! strategy and finder.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -97,7 +98,8 @@ fn share_of(scene: &Scene, rank: usize, ranks: usize) -> Scene {
     }
 }
 
-/// The sorted pairs of each frame that so many ranks report of bodies at given poses; each pair as often as it is reported.
+/// The sorted pairs of each frame that so many ranks report of bodies at given poses; each pair as
+/// often as it is reported.
 fn pairs_on(
     ranks: usize,
     shapes: &[Shape],

@@ -32,7 +32,8 @@ fn scene(radius: &str, placement: &str, box_of: &str) -> Scene {
     ))
 }
 
-/// Unit balls on a lattice: each touches its neighbours, and any plane cuts through rows of touching ones.
+/// Unit balls on a lattice: each touches its neighbours, and any plane cuts through rows of
+/// touching ones.
 fn straddling() -> Scene {
     let at = |i: i32| [i % 6, i / 6 % 6, i / 36].map(|x| 2 * x - 5);
     let poses = (0..216).map(|i| {
@@ -143,7 +144,8 @@ fn ghosts_are_a_skin_of_the_domain_and_owners_are_kept_while_bodies_are_slow() {
     let summary = on(8, &build(text)).unwrap();
     for line in &summary.ranks {
         assert!((900..1100).contains(&line.bodies), "{line:?}");
-        // A cell of side 20 with a border of two reaches and two skins on three sides: (21.5/20)³ − 1 is 0.24.
+        // A cell of side 20 with a border of two reaches and two skins on three sides: (21.5/20)³ −
+        // 1 is 0.24.
         let a_frame = line.ghosts / 24;
         assert!((100..350).contains(&a_frame), "{line:?}");
         // A skin of half the radius lasts fifteen steps of a sixtieth at speed 1.

@@ -1,5 +1,5 @@
-//! What frames cost, whatever the bodies' sizes: lists of neighbours must not be searched for where what
-//! they add to every radius is wider than the bodies.
+//! What frames cost, whatever the bodies' sizes: lists of neighbours must not be searched for where
+//! what they add to every radius is wider than the bodies.
 
 use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
@@ -43,8 +43,8 @@ impl Random {
     }
 }
 
-/// Positions of bodies, two radii of the ordinary size apart in the mean. `frame` moves them, and every
-/// eighth one shuffles them.
+/// Positions of bodies, two radii of the ordinary size apart in the mean. `frame` moves them, and
+/// every eighth one shuffles them.
 fn placed(exponent: i32, frame: usize) -> Vec<[f32; 3]> {
     let (mut still, mut moved) = (Random(7 + (frame / 8) as u64), Random(frame as u64));
     let side = 2.0 * (N as f64).cbrt();
@@ -182,7 +182,8 @@ fn searches_count_alike_on_any_threads() {
     }
 }
 
-/// Lists pay for long boxes: the first one is made in the second frame, and serves those that follow.
+/// Lists pay for long boxes: the first one is made in the second frame, and serves those that
+/// follow.
 #[test]
 fn long_boxes_are_listed_at_once() {
     let of = |finder| BoxCuller::builder().finder(finder).build().unwrap();

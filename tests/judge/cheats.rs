@@ -1,4 +1,5 @@
-//! Programs that know the exact answers to something else than what they are asked: none of them passes.
+//! Programs that know the exact answers to something else than what they are asked: none of them
+//! passes.
 
 use std::collections::HashMap;
 use std::sync::Mutex;

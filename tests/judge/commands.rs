@@ -1,4 +1,5 @@
-//! The command line: examples, known failures, halves on two machines, timing, recordings of others.
+//! The command line: examples, known failures, halves on two machines, timing, recordings of
+//! others.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,4 +1,5 @@
-//! Programs under judgement: what each ill behaviour is called, that none is waited for, and that the next case is run.
+//! Programs under judgement: what each ill behaviour is called, that none is waited for, and that
+//! the next case is run.
 
 use std::time::{Duration, Instant};
 

@@ -75,7 +75,8 @@ fn subdivided(mesh: TriangleMesh, times: u32) -> TriangleMesh {
     mesh
 }
 
-/// A flat square with a hole's worth of boundary: the corners must survive, far from the origin too.
+/// A flat square with a hole's worth of boundary: the corners must survive, far from the origin
+/// too.
 #[test]
 fn an_open_boundary_keeps_its_place() {
     for offset in [Vec3::ZERO, Vec3::new(4096.0, -8192.0, 1024.0)] {
@@ -106,7 +107,8 @@ fn what_cannot_shrink_is_left_alone() {
     }
 }
 
-/// Three vertices about a tube share neighbours without sharing a face: collapsing their edges would pinch it off.
+/// Three vertices about a tube share neighbours without sharing a face: collapsing their edges
+/// would pinch it off.
 #[test]
 fn the_last_triangles_keep_the_genus() {
     for (name, sizes) in [

@@ -1,4 +1,5 @@
-//! Meshes far from their origin: what f64 coordinates become, and that a near mesh is the f32 that its file says.
+//! Meshes far from their origin: what f64 coordinates become, and that a near mesh is the f32 that
+//! its file says.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -111,7 +112,8 @@ fn a_wall_on_a_map_keeps_its_form() {
     }
 }
 
-/// Numbers as exporters write them, some of them next to the middle of two f32, where f64 alone would round to the other one.
+/// Numbers as exporters write them, some of them next to the middle of two f32, where f64 alone
+/// would round to the other one.
 #[test]
 fn near_coordinates_are_the_nearest_f32() {
     let mut random = ChaCha8Rng::seed_from_u64(5);
@@ -167,7 +169,8 @@ fn near_coordinates_are_the_nearest_f32() {
 /// A box whose one corner rounds by `moved` times 2⁻²⁰ of its size.
 fn moved_by(moved: f64) -> TriangleMesh {
     let mut points = corners([1.0; 3], [1.0; 3]);
-    // Near 2¹⁶ an f32 steps by 2⁻⁷; the size is chosen so that the wanted part of a step is 2⁻²⁰ of it.
+    // Near 2¹⁶ an f32 steps by 2⁻⁷; the size is chosen so that the wanted part of a step is 2⁻²⁰ of
+    // it.
     let far = f64::from(1 << 16);
     let off = 2f64.powi(-9);
     let size = off * 2f64.powi(20) / moved;

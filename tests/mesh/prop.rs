@@ -1,4 +1,5 @@
-//! Meshes survive every format to the bit, and no reader panics, hangs or asks for more memory than the bytes warrant.
+//! Meshes survive every format to the bit, and no reader panics, hangs or asks for more memory than
+//! the bytes warrant.
 
 use glam::Vec3;
 use proptest::prelude::*;

@@ -11,7 +11,8 @@ fn l_shape() -> TriangleMesh {
         .unwrap()
 }
 
-/// Counter-clockwise faces look outward before and after, so the volume has the factors' sizes and no sign.
+/// Counter-clockwise faces look outward before and after, so the volume has the factors' sizes and
+/// no sign.
 #[test]
 fn scales_keep_faces_outward() {
     let mesh = l_shape();
@@ -60,7 +61,8 @@ fn bad_scales_are_refused() {
     );
 }
 
-/// A wall on a map. Factors of 2 round nothing, so its points are exact multiples, and what reading has moved grows with them.
+/// A wall on a map. Factors of 2 round nothing, so its points are exact multiples, and what reading
+/// has moved grows with them.
 #[test]
 fn far_meshes_scale_about_the_origin() {
     let wall = [

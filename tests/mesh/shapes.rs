@@ -1,4 +1,5 @@
-//! Procedural shapes: closed 2-manifolds of the right genus, facing outward, with the right size, equal on every platform.
+//! Procedural shapes: closed 2-manifolds of the right genus, facing outward, with the right size,
+//! equal on every platform.
 
 use std::collections::HashMap;
 
@@ -62,7 +63,8 @@ fn every_shape_is_one_closed_oriented_component_of_its_genus() {
     }
 }
 
-/// Closed forms where the polyhedron has one; the smooth body's volume, met from inside, where it has not.
+/// Closed forms where the polyhedron has one; the smooth body's volume, met from inside, where it
+/// has not.
 #[test]
 fn volumes_match_their_formulas() {
     let pi = std::f64::consts::PI;
@@ -215,7 +217,8 @@ fn sizes_that_make_no_shape_are_refused_with_what_would_do() {
     }
 }
 
-/// The bits of all default shapes: they must not depend on the platform's libm, optimisation or hash order.
+/// The bits of all default shapes: they must not depend on the platform's libm, optimisation or
+/// hash order.
 #[test]
 fn shapes_are_equal_to_the_bit_everywhere() {
     let mut bytes = Vec::new();

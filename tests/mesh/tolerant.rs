@@ -1,4 +1,5 @@
-//! What other programs read is read here too: bytes that are not UTF-8, capitals, marks, comments and line ends.
+//! What other programs read is read here too: bytes that are not UTF-8, capitals, marks, comments
+//! and line ends.
 
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};
 
@@ -192,7 +193,8 @@ fn text_ply_may_have_more_than_its_header() {
     );
 }
 
-/// The numbers begin after the line feed if the header's other lines end with one, whatever is before it.
+/// The numbers begin after the line feed if the header's other lines end with one, whatever is
+/// before it.
 #[test]
 fn binary_ply_begins_after_the_last_line_end() {
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\

@@ -1,5 +1,5 @@
-//! `.tri` dialects: each good file reads to the same mesh, each bad one is refused with its line, a doubtful one with
-//! both names.
+//! `.tri` dialects: each good file reads to the same mesh, each bad one is refused with its line, a
+//! doubtful one with both names.
 
 use glam::Vec3;
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};
@@ -75,7 +75,8 @@ fn each_dialect_is_told_apart_and_read() {
     }
 }
 
-/// Vertices of a soup are numbered by first use; 0 and −0 are one position; colours in AC3D's manner are passed over.
+/// Vertices of a soup are numbered by first use; 0 and −0 are one position; colours in AC3D's
+/// manner are passed over.
 #[test]
 fn a_soup_is_welded() {
     let mut welded = expected();
@@ -91,7 +92,8 @@ fn a_soup_is_welded() {
     }
 }
 
-/// Fortran wraps its lines where it likes; where no dialect fits by lines, it is enough that sections start lines.
+/// Fortran wraps its lines where it likes; where no dialect fits by lines, it is enough that
+/// sections start lines.
 #[test]
 fn records_may_run_over_line_ends() {
     for name in ["bourke", "indexed", "cart3d", "openmeeg"] {
@@ -160,7 +162,8 @@ fn two_fitting_dialects_are_refused_by_name_and_the_name_decides() {
     }
 }
 
-/// With six triangles a vertex, a file in Bourke's format has as many numbers as a labelled one. Lines tell them apart.
+/// With six triangles a vertex, a file in Bourke's format has as many numbers as a labelled one.
+/// Lines tell them apart.
 #[test]
 fn bourke_and_labelled_of_equal_counts() {
     let faces = "0 0 0\n".repeat(6);

@@ -136,7 +136,8 @@ fn exclusive_keys_are_refused() {
 
 #[test]
 fn floats_read_as_the_nearest_f32_of_their_text() {
-    // Just above the midpoint of 1 and the next f32: as f64 it is the midpoint itself, and ties to even give 1.
+    // Just above the midpoint of 1 and the next f32: as f64 it is the midpoint itself, and ties to
+    // even give 1.
     let text = "1.00000005960464477539062500000000000000001";
     assert_eq!(text.parse::<f64>().unwrap() as f32, 1.0);
     let scene = build(&posed(&format!("[0, 0, {text}, 16777217, 0.1, 0, 0]"))).unwrap();

@@ -13,7 +13,8 @@ use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_judge::ours::draw::rotation;
 
-/// Every procedural shape at bounding radius 1, and an L-shape about its file's own origin, far off its ball's centre.
+/// Every procedural shape at bounding radius 1, and an L-shape about its file's own origin, far off
+/// its ball's centre.
 pub fn shapes(directions: DirectionSet, axes: Axes) -> Vec<Shape> {
     let centred = ShapeSpec {
         origin: Origin::Ball,
@@ -39,7 +40,8 @@ pub fn shapes(directions: DirectionSet, axes: Axes) -> Vec<Shape> {
     shapes
 }
 
-/// `n` bodies with uniform centres in a cube, uniform orientations of various norms, every tenth body static.
+/// `n` bodies with uniform centres in a cube, uniform orientations of various norms, every tenth
+/// body static.
 pub fn random_bodies(seed: u64, n: usize, side: f32, shapes: usize) -> Bodies {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut bodies = Bodies::default();

@@ -1,4 +1,5 @@
-//! The ball is the smallest one: against all subsets of up to four points, and on sets that defeat naive solvers.
+//! The ball is the smallest one: against all subsets of up to four points, and on sets that defeat
+//! naive solvers.
 
 use glam::{DMat3, DVec3, Vec3};
 use proptest::prelude::*;
@@ -6,7 +7,8 @@ use sdop::volume::Ball;
 
 use crate::{exact::ball_contains, meshes};
 
-/// The smallest ball that some subset of up to four points spans and that contains all points, to 10⁻⁹.
+/// The smallest ball that some subset of up to four points spans and that contains all points, to
+/// 10⁻⁹.
 fn brute_force(points: &[DVec3]) -> f64 {
     let mut best = f64::INFINITY;
     let n = points.len();

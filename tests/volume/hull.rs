@@ -1,4 +1,5 @@
-//! The hull is exact: a closed surface with every vertex on its inner side, by integer determinants.
+//! The hull is exact: a closed surface with every vertex on its inner side, by integer
+//! determinants.
 
 use std::collections::HashSet;
 
@@ -12,7 +13,8 @@ use crate::{
     meshes::{box_corners, box_grid, rotated, rotation, vertices},
 };
 
-/// A consistently oriented closed surface, each facet of which has all points on its inner side, bounds their hull.
+/// A consistently oriented closed surface, each facet of which has all points on its inner side,
+/// bounds their hull.
 pub fn assert_hull(points: &[impl Into<[f32; 3]> + Copy + std::fmt::Debug]) -> Hull {
     let hull = Hull::of(points);
     let exact: Vec<[IBig; 3]> = points.iter().map(|&v| point(v)).collect();
@@ -148,8 +150,8 @@ fn a_large_set_is_exact() {
     assert!(hull.vertices.len() < 500 && hull.vertices.len() > 100);
 }
 
-/// Steep seen from its first vertex, along any axis, near the origin or beyond it: neither a sum of differences with a sign nor
-/// one of sums is a size.
+/// Steep seen from its first vertex, along any axis, near the origin or beyond it: neither a sum of
+/// differences with a sign nor one of sums is a size.
 #[test]
 fn a_needle_along_any_axis_is_not_flat() {
     let needle = [
@@ -188,14 +190,16 @@ fn a_far_cube_is_as_large_as_a_near_one() {
     }
 }
 
-/// Every other vertex differs from the first in one coordinate alone: no product of differences is a size.
+/// Every other vertex differs from the first in one coordinate alone: no product of differences is
+/// a size.
 #[test]
 fn the_corner_of_a_box_is_not_flat() {
     let corner = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     assert_eq!(assert_hull(&corner).facets.len(), 4);
 }
 
-/// Of a flat set `vertices` are all, but few span it: the outline's corners, the ends of a line, or a point, each once.
+/// Of a flat set `vertices` are all, but few span it: the outline's corners, the ends of a line, or
+/// a point, each once.
 #[test]
 fn flat_sets_have_corners() {
     let point = |x: f32, y: f32| Vec3::new(x, y, 2.0 * x + y);

@@ -1,4 +1,5 @@
-//! Principal axes: of the hull's surface, longest first, and the model's own where rounding alone would choose.
+//! Principal axes: of the hull's surface, longest first, and the model's own where rounding alone
+//! would choose.
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use proptest::prelude::*;
@@ -26,7 +27,8 @@ proptest! {
         prop_assert!((6.0..6.03).contains(&volume), "{volume}");
     }
 
-    /// Interior points and a finer surface leave the axes where they are: the hull's surface alone counts.
+    /// Interior points and a finer surface leave the axes where they are: the hull's surface alone
+    /// counts.
     #[test]
     fn sampling_does_not_turn_the_axes(extra in prop::collection::vec(prop::array::uniform3(-0.49..0.49_f32), 0..50)) {
         let size = Vec3::new(3.0, 2.0, 1.0);

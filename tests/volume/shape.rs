@@ -183,7 +183,8 @@ fn impossible_shapes_are_refused_by_name() {
 fn the_fingerprint_covers_every_number() {
     let shape = Shape::build(&shifted_box(), &spec(Origin::Ball, None)).unwrap();
     let original = volumes_sha256(std::slice::from_ref(&shape));
-    // The SHA-256 of 0 0 0 next_up(3), the identity, lo = −1 −2 −2 −3 −3 −3 −3 −4 −4 and hi = −lo, made apart from this code.
+    // The SHA-256 of 0 0 0 next_up(3), the identity, lo = −1 −2 −2 −3 −3 −3 −3 −4 −4 and hi = −lo,
+    // made apart from this code.
     let expected = "8485da5c21992757e15eb9b660ab5ff64d2b41711a54973bb413b91f8aeaaec0";
     assert_eq!(original, expected);
     let mut seen = vec![

@@ -80,8 +80,8 @@ fn rounded_box(random: &mut Random) -> (TriangleMesh, f64) {
     (TriangleMesh::from_f64(&points, &faces).unwrap(), length)
 }
 
-/// Boxes that touch along a face, at places that neither f32 nor a re-centred mesh holds exactly. A turn of a quarter about z has
-/// the offset go round, too.
+/// Boxes that touch along a face, at places that neither f32 nor a re-centred mesh holds exactly. A
+/// turn of a quarter about z has the offset go round, too.
 #[test]
 fn far_boxes_that_touch_are_reported() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(21));
@@ -151,7 +151,8 @@ fn poses_in_f32_refuse_a_far_shape() {
     assert!(PairTest::new(DirectionSet::K18).add(&near).is_ok());
 }
 
-/// An object of 1 m some 20 m from its file's origin along all axes: in f32, decimals there are off by more than 2⁻²⁰ of it.
+/// An object of 1 m some 20 m from its file's origin along all axes: in f32, decimals there are off
+/// by more than 2⁻²⁰ of it.
 #[test]
 fn decimal_meshes_are_told_the_remedy() {
     let mut bodies = Bodies::default();

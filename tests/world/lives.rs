@@ -1,4 +1,5 @@
-//! What a world holds of its bodies: ids, interest and groups, from insertion to removal, and what it refuses.
+//! What a world holds of its bodies: ids, interest and groups, from insertion to removal, and what
+//! it refuses.
 
 use sdop::culler::Culler;
 use sdop::settings::{CullSettings, DirectionSet, Interest, Strategy};
@@ -431,7 +432,8 @@ fn crowds_come_in_portions_or_up_to_a_limit() {
     }
 }
 
-/// What bodies have can't be removed; what they had is given again, and has its new form at once, for those at rest too.
+/// What bodies have can't be removed; what they had is given again, and has its new form at once,
+/// for those at rest too.
 #[test]
 fn shapes_go_when_no_body_has_them() {
     for way in super::ways() {

@@ -1,4 +1,5 @@
-//! Margins: bodies that touch to the ulp once they are grown, along faces, edges and corners, and margins that change.
+//! Margins: bodies that touch to the ulp once they are grown, along faces, edges and corners, and
+//! margins that change.
 
 use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
@@ -37,8 +38,8 @@ fn is_reported(world: &mut World) -> bool {
     world.pairs().len() == 1
 }
 
-/// The largest δ of whole 2⁻²², so that 2 + δ is an f32, with n·δ² ≤ reach²: cubes that are δ apart in n coordinates are no
-/// farther apart than `reach`, decided in integers.
+/// The largest δ of whole 2⁻²², so that 2 + δ is an f32, with n·δ² ≤ reach²: cubes that are δ apart
+/// in n coordinates are no farther apart than `reach`, decided in integers.
 fn farthest(n: u64, reach: f64) -> f64 {
     let step = f64::from(1 << 22);
     let unit = 2_f64.powi(26);
@@ -106,8 +107,9 @@ fn bodies_that_touch_to_the_ulp_once_grown_are_reported() {
     assert!(too_far > 100);
 }
 
-/// Cubes that touch along a face, an edge or a corner, where f32 about the origin moves each of them away from the other by
-/// all but its last half step in every coordinate: 2²⁵ away, 2 each. A giant at the origin is wide enough that all are one region.
+/// Cubes that touch along a face, an edge or a corner, where f32 about the origin moves each of
+/// them away from the other by all but its last half step in every coordinate: 2²⁵ away, 2 each. A
+/// giant at the origin is wide enough that all are one region.
 #[test]
 fn touching_bodies_are_reported_though_rounding_moves_them_apart() {
     let first = 2_f64.powi(25) + 2.0;

@@ -1,5 +1,5 @@
-//! Bodies in far-apart regions: pairs are those of the exact f64 translations, follow from the bodies as they are now, and are
-//! hardly more than each region alone has.
+//! Bodies in far-apart regions: pairs are those of the exact f64 translations, follow from the
+//! bodies as they are now, and are hardly more than each region alone has.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -27,7 +27,8 @@ fn world() -> World {
     World::with(HALF.map(cube).to_vec(), &Culler::builder().settings(&way)).unwrap()
 }
 
-/// An ordinary or small body somewhere in a place: unturned, so that cubes meet exactly where no axis separates them.
+/// An ordinary or small body somewhere in a place: unturned, so that cubes meet exactly where no
+/// axis separates them.
 fn near(random: &mut Random, base: [f64; 3], wide: f64) -> Body {
     let unit = [(); 3].map(|()| f64::from(random.unit()));
     Body {
@@ -38,7 +39,8 @@ fn near(random: &mut Random, base: [f64; 3], wide: f64) -> Body {
     }
 }
 
-/// Whether the cubes meet; differences of f64 as near as that are exact enough: within 2⁻³ of bodies 10¹⁵ away.
+/// Whether the cubes meet; differences of f64 as near as that are exact enough: within 2⁻³ of
+/// bodies 10¹⁵ away.
 fn meet(a: &Body, b: &Body) -> bool {
     let most = HALF[a.shape as usize] + HALF[b.shape as usize];
     (0..3).all(|i| (a.translation[i] - b.translation[i]).abs() <= most)
@@ -67,8 +69,8 @@ fn afresh(bodies: &[(BodyId, Body)]) -> Vec<[BodyId; 2]> {
     pairs.into_iter().map(|pair| pair.map(old)).collect()
 }
 
-/// Teleports between regions, insertions, removals, static bodies that are moved; regions that merge and split, translations
-/// that are f32 among others, and times when all are.
+/// Teleports between regions, insertions, removals, static bodies that are moved; regions that
+/// merge and split, translations that are f32 among others, and times when all are.
 #[test]
 fn pairs_follow_from_present_bodies() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(1));
@@ -84,7 +86,8 @@ fn pairs_follow_from_present_bodies() {
             }
             body
         };
-        // In two of three frames dynamic bodies move and all else stays, as far as the world is told.
+        // In two of three frames dynamic bodies move and all else stays, as far as the world is
+        // told.
         let all_change = frame % 3 == 0 || frame % 11 == 10;
         for (id, body) in world.bodies().collect::<Vec<_>>() {
             let draw = random.below(8);
@@ -166,7 +169,8 @@ fn giants_elsewhere_add_few_pairs() {
     );
 }
 
-/// A world of one far mesh, so large that all bodies are in one region. They may lie twice as far out as the contract goes.
+/// A world of one far mesh, so large that all bodies are in one region. They may lie twice as far
+/// out as the contract goes.
 fn world_of_far_meshes() -> World {
     let corner = |x: f64, y: f64, z: f64| [1.0e18 + x * 1.0e16, y * 1.0e16, z * 1.0e16];
     let corners = [
@@ -181,8 +185,8 @@ fn world_of_far_meshes() -> World {
     World::new(vec![shape]).unwrap()
 }
 
-/// Bodies that lie twice as far out as the contract goes can be placed about an origin near them, but not on both sides of the
-/// world.
+/// Bodies that lie twice as far out as the contract goes can be placed about an origin near them,
+/// but not on both sides of the world.
 #[test]
 fn refusals_follow_from_present_bodies() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(5));
@@ -199,7 +203,8 @@ fn refusals_follow_from_present_bodies() {
             margin: [0.0, 4.0e15][random.below(2) as usize],
             ..Body::default()
         };
-        // In two of three frames dynamic bodies change and all else stays, as far as the world is told.
+        // In two of three frames dynamic bodies change and all else stays, as far as the world is
+        // told.
         let all_change = frame % 3 == 0;
         for (id, was) in world.bodies().collect::<Vec<_>>() {
             let draw = random.below(4);
@@ -247,7 +252,8 @@ fn refused_frames_lose_no_change() {
     let mut world = world_of_far_meshes();
     let turns = [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]];
     let at = |turn: usize, x: f64, y: f64| Body::at(0, turns[turn], [x, y, 0.0]);
-    // Two next to the world's origin, 2·10¹⁵ from each other, and two that can go beyond the contract on either side.
+    // Two next to the world's origin, 2·10¹⁵ from each other, and two that can go beyond the
+    // contract on either side.
     let middle = [0.0, 1.2e16].map(|y| at(0, -1.0e18, y));
     let [a, b] = middle.map(|body| world.insert(body).unwrap());
     let others = [0, 1].map(|turn| world.insert(at(turn, 0.0, 5.0e17)).unwrap());
@@ -276,7 +282,8 @@ fn refused_frames_lose_no_change() {
     assert_eq!(world.cull().unwrap().sorted(), [[a, b]]);
 }
 
-/// A row of touching cubes through many cells and their borders, along each diagonal, beside a body far away.
+/// A row of touching cubes through many cells and their borders, along each diagonal, beside a body
+/// far away.
 #[test]
 fn chains_hold_across_cells() {
     for way in [

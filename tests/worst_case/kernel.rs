@@ -1,5 +1,5 @@
-//! The arithmetic that the searches attack is the culler's: supports equal to the bit, decisions equal on pairs near
-//! contact, with denormals kept and flushed.
+//! The arithmetic that the searches attack is the culler's: supports equal to the bit, decisions
+//! equal on pairs near contact, with denormals kept and flushed.
 
 use glam::Vec3;
 use sdop::mesh::TriangleMesh;
@@ -80,7 +80,8 @@ pub fn supports_agree<const FLUSH: bool>(tier: Tier) {
     }
 }
 
-/// The culler decides as the searches' arithmetic does at the last f32 distance that overlaps and at the next one.
+/// The culler decides as the searches' arithmetic does at the last f32 distance that overlaps and
+/// at the next one.
 pub fn decisions_agree<const FLUSH: bool>(tier: Tier) {
     for (k, directions) in SETS {
         let shapes: Vec<Shape> = (0..6).map(|seed| shape(seed, directions)).collect();

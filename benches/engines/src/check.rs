@@ -32,7 +32,8 @@ impl<'a> Truth<'a> {
     /// The truth about a frame.
     pub fn of(frame: &'a Frame, number: usize) -> Self {
         let boxes = oracle::pairs(&frame.boxes);
-        // Spheres that touch lie in boxes that do. What f64 can't tell from a contact isn't required.
+        // Spheres that touch lie in boxes that do. What f64 can't tell from a contact isn't
+        // required.
         let touch = |&pair: &[u32; 2]| relative_gap(frame, pair) <= -1e-14;
         Self {
             spheres: boxes.iter().copied().filter(touch).collect(),
@@ -52,7 +53,8 @@ impl<'a> Truth<'a> {
         self.boxes.len()
     }
 
-    /// Compares an engine's pairs, which may come in any order and either way round. Returns their number.
+    /// Compares an engine's pairs, which may come in any order and either way round. Returns their
+    /// number.
     ///
     /// # Errors
     /// The first pair that is missing, too much or there twice.

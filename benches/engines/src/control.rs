@@ -1,9 +1,10 @@
-//! What a second thread is worth: ours on one and on several threads, in turns with two control loops that divide without
-//! a rest, one bound by arithmetic and one by memory.
+//! What a second thread is worth: ours on one and on several threads, in turns with two control
+//! loops that divide without a rest, one bound by arithmetic and one by memory.
 //!
-//! speed-up = t(one thread) / t(several) of the same frames, the median over turns; a control's is what the machine
-//! has to give at the time, and ours is quoted as a share of it. The loops run on the same pool, in as many pieces, with as
-//! much work or as many bytes per body as the culler, so that waking threads costs them what it costs us.
+//! speed-up = t(one thread) / t(several) of the same frames, the median over turns; a control's is
+//! what the machine has to give at the time, and ours is quoted as a share of it. The loops run on
+//! the same pool, in as many pieces, with as much work or as many bytes per body as the culler, so
+//! that waking threads costs them what it costs us.
 
 use std::fmt::Write as _;
 use std::hint::black_box;

@@ -1,4 +1,5 @@
-//! `sdop-peers`: what users would pick instead of sdop, on the same frames, checked to find the same pairs.
+//! `sdop-peers`: what users would pick instead of sdop, on the same frames, checked to find the
+//! same pairs.
 
 mod boxes;
 mod broccoli;
@@ -39,7 +40,8 @@ use miette::miette;
 use record::Record;
 use scenes::{Order, Schedule, Spread};
 
-/// Finds the same pairs with sdop and with its peers, checks that they agree, and times them in turns
+/// Finds the same pairs with sdop and with its peers, checks that they agree, and times them in
+/// turns
 ///
 /// Exit codes: 0 all is well, 1 an engine's pairs differ or an engine failed, 2 bad arguments.
 #[derive(Parser)]

@@ -1,8 +1,9 @@
-//! Cp: what a real narrow phase costs for each pair that culling leaves, in nanoseconds, for pairs that it finds to touch
-//! and pairs that it doesn't.
+//! Cp: what a real narrow phase costs for each pair that culling leaves, in nanoseconds, for pairs
+//! that it finds to touch and pairs that it doesn't.
 //!
-//! Pairs of one answer are timed together, since one alone takes less than reading a clock is good for. Every answer is
-//! held against the exact one: `missed` are pairs that meet exactly and are denied, which a conservative method never has.
+//! Pairs of one answer are timed together, since one alone takes less than reading a clock is good
+//! for. Every answer is held against the exact one: `missed` are pairs that meet exactly and are
+//! denied, which a conservative method never has.
 
 use std::path::PathBuf;
 use std::time::Instant;

@@ -1,7 +1,7 @@
 //! PhysX's broad phase, driven alone through its low-level interface: automatic box pruning (ABP).
 //!
-//! Objects are dynamic, each in a group of its own, with no contact distance. Results are what began and what ended. ABP compares ends
-//! as they are.
+//! Objects are dynamic, each in a group of its own, with no contact distance. Results are what
+//! began and what ended. ABP compares ends as they are.
 
 #![allow(unsafe_code, reason = "PhysX is C++")]
 
@@ -55,7 +55,8 @@ fn has_foundation() -> bool {
 impl PhysX {
     fn new(setup: &Setup<'_>) -> miette::Result<Self> {
         let objects: Vec<u32> = (0..setup.first.boxes.len() as u32).collect();
-        // SAFETY: the foundation exists before anything else is asked for; descriptions are passed by value or live on.
+        // SAFETY: the foundation exists before anything else is asked for; descriptions are passed
+        // by value or live on.
         let (broad_phase, groups) = unsafe {
             let broad_phase = if has_foundation() {
                 phys_PxCreateBroadPhase(&PxBroadPhaseDesc_new(PxBroadPhaseType::Abp))
@@ -94,8 +95,8 @@ impl PhysX {
     fn update(&mut self, first: bool) {
         let (all, count) = (self.objects.as_ptr(), self.objects.len() as u32);
         let (created, updated) = if first { (count, 0) } else { (0, count) };
-        // SAFETY: the columns have as many elements as there are objects, and one more where PhysX reads past the end;
-        // they stay in place until the next call.
+        // SAFETY: the columns have as many elements as there are objects, and one more where PhysX
+        // reads past the end; they stay in place until the next call.
         unsafe {
             let data = PxBroadPhaseUpdateData_new(
                 all,

@@ -1,7 +1,9 @@
-//! The scenes that everyone is measured on, made by the library's own scene code: the same frames for all.
+//! The scenes that everyone is measured on, made by the library's own scene code: the same frames
+//! for all.
 //!
-//! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a unit radius per frame,
-//! mirrored at walls. The paper's scene stands in for the smallest uniform one: 500 bodies in a box of 16.1.
+//! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a
+//! unit radius per frame, mirrored at walls. The paper's scene stands in for the smallest uniform
+//! one: 500 bodies in a box of 16.1.
 
 use std::path::Path;
 
@@ -77,7 +79,8 @@ impl Schedule {
     }
 }
 
-/// Pairs of boxes in the first frame, by spread and number of bodies: a definition that drifts is no comparison.
+/// Pairs of boxes in the first frame, by spread and number of bodies: a definition that drifts is
+/// no comparison.
 pub const EXPECTED: [(Spread, usize, usize); 19] = [
     (Spread::Uniform, 500, 2229),
     (Spread::Uniform, 1000, 1604),
@@ -111,7 +114,8 @@ pub struct Course {
 }
 
 impl Course {
-    /// The scene of so many bodies, numbered in the wished order; `timed_from` is the first timed frame.
+    /// The scene of so many bodies, numbered in the wished order; `timed_from` is the first timed
+    /// frame.
     pub fn new(
         spread: Spread,
         bodies: usize,

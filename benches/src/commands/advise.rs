@@ -12,8 +12,9 @@ const CHECK: f64 = 1000.0;
 
 /// Which volume and k to use for a scene, in three lines
 ///
-/// Times spheres, boxes, S-DOP at each k and hulls on the scene's first frames, counts the pairs that each leaves to the
-/// narrow phase, and adds both up. Every volume reports all pairs that meet: they differ in time and in false pairs.
+/// Times spheres, boxes, S-DOP at each k and hulls on the scene's first frames, counts the pairs
+/// that each leaves to the narrow phase, and adds both up. Every volume reports all pairs that
+/// meet: they differ in time and in false pairs.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop advise data/scenes/paper-500.toml --narrow-ns 200")]
 pub struct Args {

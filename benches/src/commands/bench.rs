@@ -15,8 +15,9 @@ use super::{Outcome, one_of};
 
 /// Time a program beside ours on a scene's frames
 ///
-/// Every frame is judged before its time counts. A program's time is the `ns` that it reports with each answer, and the
-/// table says so: self-reported. Ours is the wall time around the call. They take turns.
+/// Every frame is judged before its time counts. A program's time is the `ns` that it reports with
+/// each answer, and the table says so: self-reported. Ours is the wall time around the call. They
+/// take turns.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop bench data/scenes/paper-500.toml --exec ./mine --wire text --claims sphere --frames 50"

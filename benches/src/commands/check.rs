@@ -14,8 +14,8 @@ use super::{Outcome, one_of};
 
 /// Judge the pairs of a record, or a program's answers to a case
 ///
-/// Without --pairs the record's own pairs are judged. The exact reference decides: a pair that meets and isn't there ends
-/// in exit code 1, a record without all of its frames in exit code 3.
+/// Without --pairs the record's own pairs are judged. The exact reference decides: a pair that
+/// meets and isn't there ends in exit code 1, a record without all of its frames in exit code 3.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop check run.ndjson --claims mesh\n          ./mine < cases/touch/vertex/0000.ndjson | sdop check cases/touch/vertex/0000.ndjson --pairs -"

@@ -13,8 +13,8 @@ use super::output::{csv_text, json_with_reason, print, rows};
 
 /// Compare two records: counts must be equal, times are ratios with intervals
 ///
-/// Counts that differ are named. Times are listed as the second over the first, the largest change first; "same" where the intervals of
-/// both meet, "?" where a record has no intervals.
+/// Counts that differ are named. Times are listed as the second over the first, the largest change
+/// first; "same" where the intervals of both meet, "?" where a record has no intervals.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop cmp data/record/epyc-2core-avx512/reproduce data/record/xeon-2core-avx512/reproduce\n         \

@@ -28,10 +28,11 @@ const EFFORT: Effort = Effort {
 
 /// What each strategy costs: predicted by the formula against measured
 ///
-/// T = Co + Nu·Cu + F + Nv·Cv: construction, updates, pair finding, tests. The paper's equation has no F. Counts are those of
-/// the scene's runs; prices come from other seeds, other numbers of bodies and other boxes, whose frames take turns with
-/// the scene's, so that the formula predicts. Warm frames follow one another; before a cold one other cullers ran. The
-/// residual is measured over predicted, less one. Without --strategy, every strategy is measured that the scene has
+/// T = Co + Nu·Cu + F + Nv·Cv: construction, updates, pair finding, tests. The paper's equation has
+/// no F. Counts are those of the scene's runs; prices come from other seeds, other numbers of
+/// bodies and other boxes, whose frames take turns with the scene's, so that the formula predicts.
+/// Warm frames follow one another; before a cold one other cullers ran. The residual is measured
+/// over predicted, less one. Without --strategy, every strategy is measured that the scene has
 /// settings for.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]

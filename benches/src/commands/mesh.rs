@@ -1,4 +1,5 @@
-//! `sdop mesh`: what a mesh is, how tight each volume is about it, and conversion to another format.
+//! `sdop mesh`: what a mesh is, how tight each volume is about it, and conversion to another
+//! format.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -17,9 +18,10 @@ use super::{Outcome, one_of};
 
 /// Describe a mesh and its bounding volumes, or convert it
 ///
-/// Prints counts, whether the mesh is closed, its smallest enclosing ball and the size of every volume over that of the
-/// convex hull. World-aligned volumes (aabb, k-dop) are re-fitted when a body turns: theirs is the mean over 64 rotations.
-/// Vertices that no triangle uses are left out of ball, hull and volumes.
+/// Prints counts, whether the mesh is closed, its smallest enclosing ball and the size of every
+/// volume over that of the convex hull. World-aligned volumes (aabb, k-dop) are re-fitted when a
+/// body turns: theirs is the mean over 64 rotations. Vertices that no triangle uses are left out of
+/// ball, hull and volumes.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop mesh data/meshes/spot.tri\n          sdop mesh model.obj --to model.tri\n          sdop mesh model.obj --triangles 4000 --to coarse.tri"
@@ -58,7 +60,8 @@ struct Report {
     closed_components: usize,
     boundary_edges: usize,
     non_manifold_edges: usize,
-    /// Smallest enclosing ball (x, y, z, r) in the file's coordinates, of the vertices that triangles use, as all that follows.
+    /// Smallest enclosing ball (x, y, z, r) in the file's coordinates, of the vertices that
+    /// triangles use, as all that follows.
     ball: [f64; 4],
     /// Where the vertices' origin lies in them: zero unless the mesh is far from its origin.
     offset: [f64; 3],

@@ -1,6 +1,8 @@
-//! The command line: one file a command. A command parses its arguments, calls the library and prints the result.
+//! The command line: one file a command. A command parses its arguments, calls the library and
+//! prints the result.
 //!
-//! A new command is a file with `Args` and `run`, a module line, a variant and a line in [`Cli::run`].
+//! A new command is a file with `Args` and `run`, a module line, a variant and a line in
+//! [`Cli::run`].
 
 mod advise;
 mod bench;
@@ -93,7 +95,8 @@ impl Command {
         }
     }
 
-    /// Whether its work can be shared by the ranks of `mpirun`. Another command would be run by each of them, all of it.
+    /// Whether its work can be shared by the ranks of `mpirun`. Another command would be run by
+    /// each of them, all of it.
     fn takes_ranks(&self) -> bool {
         self.is_sweep() || matches!(self, Self::Run(_))
     }
@@ -117,7 +120,8 @@ pub enum Outcome {
 }
 
 impl Cli {
-    /// Refuses to share work that can't be, above all to be one of many ranks where each would do all of it.
+    /// Refuses to share work that can't be, above all to be one of many ranks where each would do
+    /// all of it.
     ///
     /// # Errors
     /// Many ranks, and the program or the command doesn't take them.

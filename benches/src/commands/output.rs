@@ -1,4 +1,5 @@
-//! Results on standard output: one value, printed as a table for people or as JSON or CSV for programs.
+//! Results on standard output: one value, printed as a table for people or as JSON or CSV for
+//! programs.
 
 use std::io::{ErrorKind, Write as _};
 
@@ -50,7 +51,8 @@ struct WithReason<'a, T> {
     why: Option<&'a str>,
 }
 
-/// As [`emit`], for a value with named fields: in JSON, the field `why` says why the exit code is not 0.
+/// As [`emit`], for a value with named fields: in JSON, the field `why` says why the exit code is
+/// not 0.
 ///
 /// # Errors
 /// As [`emit`].
@@ -140,7 +142,8 @@ pub fn progress(steps: u64, what: &str) -> ProgressBar {
 
 /// CSV of a list of records, or of one.
 ///
-/// Objects are flattened with dots, lists of named objects by their names; the header is the union over all records.
+/// Objects are flattened with dots, lists of named objects by their names; the header is the union
+/// over all records.
 pub fn csv_text(value: Value) -> miette::Result<String> {
     let records = match value {
         Value::Array(records) => records,

@@ -19,9 +19,10 @@ use super::sweep::{SHARING, SweepArgs};
 
 /// Run an experiment and keep its measurements under data/record
 ///
-/// Writes the experiment's tables and record.json: command, commit, date, machine, compiler, load before and after, and the digest of
-/// every file and input. Without an experiment, lists them. Experiments that are sweeps (reproduce, tradeoff, verify) can be
-/// shared by ranks of mpirun or made in shards; others are measured in one process.
+/// Writes the experiment's tables and record.json: command, commit, date, machine, compiler, load
+/// before and after, and the digest of every file and input. Without an experiment, lists them.
+/// Experiments that are sweeps (reproduce, tradeoff, verify) can be shared by ranks of mpirun or
+/// made in shards; others are measured in one process.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop record\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick\n          \
@@ -36,7 +37,8 @@ pub struct Args {
     /// Where records go
     #[arg(long, value_name = "DIR", default_value = "data/record")]
     out: PathBuf,
-    /// Describe the files that are there already instead of measuring; they keep the commit that last touched them
+    /// Describe the files that are there already instead of measuring; they keep the commit that
+    /// last touched them
     #[arg(long)]
     adopt: bool,
     /// A note for readers of the record
@@ -196,7 +198,8 @@ fn finish(
         .wrap_err_with(|| format!("cannot write {}", directory.display()))
 }
 
-/// What a step's command gets beyond its own arguments: the SIMD level too, which the record names, so that it is what ran.
+/// What a step's command gets beyond its own arguments: the SIMD level too, which the record names,
+/// so that it is what ran.
 fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> {
     let behind = |flag: &&&str| {
         args.more

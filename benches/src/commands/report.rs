@@ -1,4 +1,5 @@
-//! `sdop report`: renders every page's numbers from the records, or checks that they are what the records say.
+//! `sdop report`: renders every page's numbers from the records, or checks that they are what the
+//! records say.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -58,23 +59,27 @@ const FIGURES: [(&str, &str); 8] = [
 /// Macros that pages share.
 const MACROS: &str = "paper/quantities.jinja";
 
-/// One template for each block that a page may carry, named after it; below `pages`, one for each whole page.
+/// One template for each block that a page may carry, named after it; below `pages`, one for each
+/// whole page.
 const TEMPLATES: &str = "paper/templates";
 
 /// Render the numbers of README and the other pages from data/record
 ///
-/// A template paper/templates/pages/PAGE gives a whole page. Other pages carry blocks between <!-- BEGIN NAME --> and <!-- END NAME -->,
-/// from the template paper/templates/NAME.md. Templates read records by csv("EXPERIMENT/FILE"), md, json, text, record and records,
-/// choose rows by where and one, and round by fixed, sig, thousands and percent. Every record's digests are checked first, so a digit changed by hand is found wherever it stands, in a page or in a record. A number must look the same on
-/// every page. A record that is older than the code it measures must have its commit named on the pages that quote it.
-/// data/record/quoted.toml names the machine whose records are quoted.
+/// A template paper/templates/pages/PAGE gives a whole page. Other pages carry blocks between <!--
+/// BEGIN NAME --> and <!-- END NAME -->, from the template paper/templates/NAME.md. Templates read
+/// records by csv("EXPERIMENT/FILE"), md, json, text, record and records, choose rows by where and
+/// one, and round by fixed, sig, thousands and percent. Every record's digests are checked first,
+/// so a digit changed by hand is found wherever it stands, in a page or in a record. A number must
+/// look the same on every page. A record that is older than the code it measures must have its
+/// commit named on the pages that quote it. data/record/quoted.toml names the machine whose records
+/// are quoted.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop report\n          sdop report --check\n          sdop report --quantities"
 )]
 pub struct Args {
-    /// Change nothing; exit with 1 when a page would change, a record was changed, two pages give a number differently, or an old
-    /// record isn't called old
+    /// Change nothing; exit with 1 when a page would change, a record was changed, two pages give a
+    /// number differently, or an old record isn't called old
     #[arg(long)]
     check: bool,
     /// List the numbers that stand on more than one page
@@ -207,7 +212,8 @@ fn list(quantities: &Quantities) -> miette::Result<()> {
     print(&table.to_string())
 }
 
-/// Copies a figure out of the record that is quoted, or says that the copy differs. A record without it has none.
+/// Copies a figure out of the record that is quoted, or says that the copy differs. A record
+/// without it has none.
 fn copy(args: &Args, store: &Store, from: &str, to: &str) -> miette::Result<Option<String>> {
     let Ok(text) = store.text(from) else {
         return Ok(None);

@@ -27,10 +27,10 @@ use super::scene_args::{MachineArgs, SceneArgs};
 
 /// Simulate and cull one scene
 ///
-/// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of each stage, what single frames
-/// take, and hashes.
-/// Counters and hashes depend on scene, seed and flags alone, not on the CPU or threads; with --budget-us they depend on the clock.
-/// Under mpirun, ranks share the scene and report the same pairs; built with the feature `mpi`.
+/// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of
+/// each stage, what single frames take, and hashes. Counters and hashes depend on scene, seed and
+/// flags alone, not on the CPU or threads; with --budget-us they depend on the clock. Under mpirun,
+/// ranks share the scene and report the same pairs; built with the feature `mpi`.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
@@ -39,7 +39,8 @@ pub struct Args {
     /// Write every frame's poses and pairs to this file, as lines of JSON
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Have the record say, too, which meshes truly meet, decided in exact arithmetic: slow for large scenes
+    /// Have the record say, too, which meshes truly meet, decided in exact arithmetic: slow for
+    /// large scenes
     #[arg(long, requires = "record")]
     truth: bool,
     /// How the result is printed
@@ -105,7 +106,8 @@ struct EffectLine {
 /// Runs the command.
 ///
 /// # Errors
-/// A bad scene, settings that it can't have, a body that leaves the contract, a recording that can't be written.
+/// A bad scene, settings that it can't have, a body that leaves the contract, a recording that
+/// can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     #[cfg(feature = "mpi")]
     if sdop_bench::mpi::launched() > 1 {

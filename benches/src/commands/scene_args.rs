@@ -1,4 +1,5 @@
-//! The arguments of every command that runs a scene: the file, and flags that override what it says.
+//! The arguments of every command that runs a scene: the file, and flags that override what it
+//! says.
 
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
@@ -54,7 +55,8 @@ pub struct CullArgs {
     /// When or-DOP poses are updated
     #[arg(long, value_parser = one_of::<Updates>(Updates::NAMES))]
     updates: Option<Updates>,
-    /// Bodies of interest, as in 0,5,7, or a view cone, as in '{ body = 0, direction = [0, 0, 1], half_angle = 30 }'
+    /// Bodies of interest, as in 0,5,7, or a view cone, as in '{ body = 0, direction = [0, 0, 1],
+    /// half_angle = 30 }'
     #[arg(long, value_parser = interest)]
     interest: Option<Interest>,
     /// Time-critical: or-DOP tests a frame
@@ -81,7 +83,8 @@ impl SceneArgs {
     /// Reads and builds the scene with the overrides in place, to be studied in f32.
     ///
     /// # Errors
-    /// A scene that can't be read or built, translations that f32 rounds too far, or settings that it can't have.
+    /// A scene that can't be read or built, translations that f32 rounds too far, or settings that
+    /// it can't have.
     pub fn build(&self) -> miette::Result<Scene> {
         Ok(self.read()?.build()?)
     }

@@ -19,7 +19,8 @@ use super::output::{print, progress};
 #[derive(clap::Args)]
 #[command(next_help_heading = "Many machines")]
 pub struct SweepArgs {
-    /// Do part i of n, every n-th unit of the work, and leave it in the output directory for `sdop merge`
+    /// Do part i of n, every n-th unit of the work, and leave it in the output directory for `sdop
+    /// merge`
     #[arg(long, value_name = "i/n")]
     shard: Option<Shard>,
     /// Under mpirun, let ranks on one machine time side by side
@@ -33,7 +34,8 @@ pub const SHARING: [&str; 2] = ["--shard", "--share-cores"];
 /// Receives results in the order of units.
 type Take<'a> = &'a mut dyn FnMut(usize, &str) -> miette::Result<()>;
 
-/// Begins a command whose work may be shared: ranks but the first wait until that has found the arguments good.
+/// Begins a command whose work may be shared: ranks but the first wait until that has found the
+/// arguments good.
 ///
 /// # Errors
 /// A shard by one of many ranks.
@@ -69,8 +71,9 @@ impl SweepArgs {
         arguments
     }
 
-    /// Does the work, and returns its wall time. `take` gets the results in the order of units. `None` when another process has
-    /// them: this one wrote a shard's file into `directory`, or is a rank whose results rank 0 has received.
+    /// Does the work, and returns its wall time. `take` gets the results in the order of units.
+    /// `None` when another process has them: this one wrote a shard's file into `directory`, or is
+    /// a rank whose results rank 0 has received.
     ///
     /// # Errors
     /// A unit that fails, files that can't be written.

@@ -23,10 +23,10 @@ use super::sweep::{self, SweepArgs};
 
 /// What accuracy costs in time, for every volume and strategy
 ///
-/// Culls sample frames of the scene with every volume and strategy, compares with the exact truth about the meshes, then
-/// measures the time of frames that follow one another (warm) and of frames between which others ran (cold). Counts depend on
-/// scene and flags alone; seconds are this machine's. Given the JSON of an earlier run instead of a scene, prints and draws
-/// that.
+/// Culls sample frames of the scene with every volume and strategy, compares with the exact truth
+/// about the meshes, then measures the time of frames that follow one another (warm) and of frames
+/// between which others ran (cold). Counts depend on scene and flags alone; seconds are this
+/// machine's. Given the JSON of an earlier run instead of a scene, prints and draws that.
 #[derive(clap::Args)]
 #[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
     Examples: sdop tradeoff data/scenes/paper-500.toml --out target/tradeoff\n          \
@@ -45,7 +45,8 @@ pub struct Args {
     /// Print every table, not only the recommendation and what it rests on
     #[arg(long)]
     all: bool,
-    /// Write the figures, JSON and CSV into this directory; of a record, `sdop report` makes the page paper/tradeoff.md
+    /// Write the figures, JSON and CSV into this directory; of a record, `sdop report` makes the
+    /// page paper/tradeoff.md
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Write the figures into this directory instead
@@ -184,8 +185,8 @@ fn plan(args: &Args) -> Plan {
     }
 }
 
-/// Where the user's programs keep what can be made again: on Linux `$XDG_CACHE_HOME`, or `~/.cache`. None where there is no
-/// home either: then nothing is kept.
+/// Where the user's programs keep what can be made again: on Linux `$XDG_CACHE_HOME`, or
+/// `~/.cache`. None where there is no home either: then nothing is kept.
 fn cache() -> Option<PathBuf> {
     let directories = etcetera::choose_base_strategy().ok()?;
     Some(directories.cache_dir().join("sdop/truth"))

@@ -1,4 +1,5 @@
-//! `sdop verify`: the optimised culler against the exact reference, on hard cases, seeded rounds and scenes.
+//! `sdop verify`: the optimised culler against the exact reference, on hard cases, seeded rounds
+//! and scenes.
 
 mod report;
 
@@ -26,11 +27,13 @@ use report::Report;
 
 /// Judge the optimised culler by the exact reference
 ///
-/// Hard cases first, then seeded rounds (a probe among bodies that nearly touch it, and a random crowd, for every k and
-/// axes), then the scenes given, meshes included. Strategies, overlap tests, finders, k, axes, update modes, SIMD tiers and
-/// numbers of threads meet in every combination; the matrix at the end says how often. Each list is held against the
-/// exact answers and against that of all-pairs. Given boxes are held against their definition. A missed pair, a list that differs from all-pairs' and an empty cell of the
-/// matrix end in exit code 1, the first two with the smallest scene that shows it.
+/// Hard cases first, then seeded rounds (a probe among bodies that nearly touch it, and a random
+/// crowd, for every k and axes), then the scenes given, meshes included. Strategies, overlap tests,
+/// finders, k, axes, update modes, SIMD tiers and numbers of threads meet in every combination; the
+/// matrix at the end says how often. Each list is held against the exact answers and against that
+/// of all-pairs. Given boxes are held against their definition. A missed pair, a list that differs
+/// from all-pairs' and an empty cell of the matrix end in exit code 1, the first two with the
+/// smallest scene that shows it.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100\n          \
@@ -111,7 +114,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     taken.report(&run, seconds, format, &args.out)
 }
 
-/// The report of merged shards. A scene whose frames show a failure is read again, if it is where it was.
+/// The report of merged shards. A scene whose frames show a failure is read again, if it is where
+/// it was.
 ///
 /// # Errors
 /// Results of another command, a CPU that lacks a tier, a directory that can't be written.

@@ -18,8 +18,9 @@ use input::Input;
 
 /// Write a page that shows a run: bodies, pairs, volumes and counts, frame by frame
 ///
-/// The page holds everything it needs and opens from disk. Bodies change colour when their pair is reported, and another when
-/// their meshes truly meet; a missed pair flashes and is listed. A record shows what any program reported.
+/// The page holds everything it needs and opens from disk. Bodies change colour when their pair is
+/// reported, and another when their meshes truly meet; a missed pair flashes and is listed. A
+/// record shows what any program reported.
 #[derive(clap::Args)]
 #[command(
     mut_arg("scene", |arg| arg.value_name("SCENE|RECORD|CASE").help(
@@ -37,13 +38,15 @@ pub struct Args {
     /// A second strategy on the same frames, or another record of them, side by side
     #[arg(long, value_name = "STRATEGY|RECORD")]
     beside: Option<String>,
-    /// What a program answered to a case (`sdop cases`) or record, one line a frame; - is standard input
+    /// What a program answered to a case (`sdop cases`) or record, one line a frame; - is standard
+    /// input
     #[arg(long, value_name = "FILE")]
     answers: Option<PathBuf>,
     /// Which run of a group of hard cases
     #[arg(long, value_name = "N")]
     run: Option<usize>,
-    /// Leave out which meshes truly meet, unless the record says: the exact decision is slow for large scenes
+    /// Leave out which meshes truly meet, unless the record says: the exact decision is slow for
+    /// large scenes
     #[arg(long)]
     no_truth: bool,
     /// Leave out T: its prices are calibrated on this machine
@@ -55,7 +58,8 @@ pub struct Args {
     machine: MachineArgs,
 }
 
-/// Runs the command. A broken record makes a page that says so, with the frames before the flaw, and is an error too.
+/// Runs the command. A broken record makes a page that says so, with the frames before the flaw,
+/// and is an error too.
 ///
 /// # Errors
 /// A bad scene or record, settings that it can't have, a page that can't be written.

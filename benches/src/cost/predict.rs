@@ -2,9 +2,9 @@
 //!
 //! > T = Co + Nu·Cu + F + Nv·Cv, summed over a variant's volumes
 //!
-//! is the paper's equation 1 with F, pair finding, as a stage of its own: a price per frame, one per body and frame, and one
-//! per pair that goes on to a second test: it is listed, and with an object of interest selected and merged. Cv is two
-//! prices, for hits and for misses.
+//! is the paper's equation 1 with F, pair finding, as a stage of its own: a price per frame, one
+//! per body and frame, and one per pair that goes on to a second test: it is listed, and with an
+//! object of interest selected and merged. Cv is two prices, for hits and for misses.
 
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +31,8 @@ pub struct Prices {
     pub volumes: Vec<Price>,
 }
 
-/// The terms of the formula for one volume: seconds per frame, but for `construct`, which is paid once.
+/// The terms of the formula for one volume: seconds per frame, but for `construct`, which is paid
+/// once.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Terms {
     /// The volume.
@@ -86,7 +87,8 @@ impl Terms {
 }
 
 impl Prices {
-    /// Predicts a run of `frames` frames of `bodies` bodies from what it counted: the terms of each volume.
+    /// Predicts a run of `frames` frames of `bodies` bodies from what it counted: the terms of each
+    /// volume.
     #[must_use]
     pub fn predict(&self, counts: &Counts, frames: u32, bodies: usize) -> Vec<Terms> {
         let (frames, bodies) = (f64::from(frames), bodies as f64);

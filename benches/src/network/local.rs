@@ -1,4 +1,5 @@
-//! Ranks as threads of one process: the same calls without MPI, for tests and for machines that have none.
+//! Ranks as threads of one process: the same calls without MPI, for tests and for machines that
+//! have none.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -12,7 +13,8 @@ pub struct LocalRank {
     from: Vec<Receiver<Vec<u8>>>,
 }
 
-/// Runs `work` on so many ranks, each a thread of its own, and returns what they return, in their order.
+/// Runs `work` on so many ranks, each a thread of its own, and returns what they return, in their
+/// order.
 ///
 /// # Panics
 /// When a rank does.

@@ -1,6 +1,8 @@
-//! What ranks need of the machine between them: a few collective calls, which all ranks make in the same order.
+//! What ranks need of the machine between them: a few collective calls, which all ranks make in the
+//! same order.
 //!
-//! Bytes are carried by MPI, or between threads of one process, which tests use. Callers can't see which.
+//! Bytes are carried by MPI, or between threads of one process, which tests use. Callers can't see
+//! which.
 
 mod local;
 #[cfg(feature = "mpi")]
@@ -10,7 +12,8 @@ pub use local::{LocalRank, on_ranks};
 #[cfg(feature = "mpi")]
 pub use mpi::MpiNetwork;
 
-/// Ranks that can reach one another. Every call is collective unless it says otherwise: it returns when all ranks have made it.
+/// Ranks that can reach one another. Every call is collective unless it says otherwise: it returns
+/// when all ranks have made it.
 pub trait Network {
     /// This rank, counted from 0. Not collective.
     fn rank(&self) -> usize;
@@ -18,7 +21,8 @@ pub trait Network {
     /// How many ranks there are. Not collective.
     fn size(&self) -> usize;
 
-    /// Hands each rank its message, one a rank in their order; returns what each rank had for this one.
+    /// Hands each rank its message, one a rank in their order; returns what each rank had for this
+    /// one.
     fn exchange(&self, outgoing: Vec<Vec<u8>>) -> Vec<Vec<u8>>;
 
     /// The numbers of all ranks, one rank's after the other's. All give equally many.
@@ -30,7 +34,8 @@ pub trait Network {
     /// Replaces each number by the largest of all ranks.
     fn max(&self, numbers: &mut [u64]);
 
-    /// Returns when all ranks have called it. A rank that waits sleeps, so that others can time what they do.
+    /// Returns when all ranks have called it. A rank that waits sleeps, so that others can time
+    /// what they do.
     fn wait(&self);
 
     /// The name of this rank's machine. Not collective.

@@ -29,7 +29,8 @@ impl MpiNetwork {
     fn exchange_pieces(&self, outgoing: &[&[u8]], lengths: &[usize]) -> Vec<u8> {
         let (counts, starts) = table(outgoing.iter().map(|piece| piece.len()));
         let (their_counts, their_starts) = table(lengths.iter().copied());
-        // A byte more than is sent: the address of an empty Vec is 1, which OpenMPI takes for MPI_IN_PLACE.
+        // A byte more than is sent: the address of an empty Vec is 1, which OpenMPI takes for
+        // MPI_IN_PLACE.
         let mut sent = outgoing.concat();
         sent.push(0);
         let mut received = vec![0; lengths.iter().sum::<usize>() + 1];

@@ -128,7 +128,8 @@ pub fn compare(first: &Path, second: &Path) -> Result<Comparison, CompareError> 
 }
 
 impl Comparison {
-    /// What an interval tells from 1 first, then what it doesn't, then what has none; the largest first in each.
+    /// What an interval tells from 1 first, then what it doesn't, then what has none; the largest
+    /// first in each.
     fn rank(&mut self) {
         let class = |change: &Change| match change.same {
             Some(false) => 0,
@@ -247,7 +248,8 @@ impl Comparison {
     }
 }
 
-/// Raw samples, a row a seed, as one change each: the geometric mean of their ratios. Other changes stay.
+/// Raw samples, a row a seed, as one change each: the geometric mean of their ratios. Other changes
+/// stay.
 fn over_seeds(changes: Vec<Change>) -> Vec<Change> {
     let mut groups: BTreeMap<(String, String), Vec<Change>> = BTreeMap::new();
     let mut rest = Vec::new();

@@ -1,4 +1,5 @@
-//! Numbers as pages show them, and which recorded number stands where: one number must look the same on every page.
+//! Numbers as pages show them, and which recorded number stands where: one number must look the
+//! same on every page.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
@@ -22,7 +23,8 @@ pub struct Quantity {
 }
 
 impl Quantities {
-    /// Notes that `page` shows `value` as `text`. A round number is no quantity: 64 seeds and 64 bytes are two things.
+    /// Notes that `page` shows `value` as `text`. A round number is no quantity: 64 seeds and 64
+    /// bytes are two things.
     pub fn note(&self, page: &str, value: f64, text: &str) {
         if !value.is_finite() || value.to_string().trim_matches(['-', '0', '.']).len() < 6 {
             return;

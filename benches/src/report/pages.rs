@@ -1,9 +1,10 @@
 //! Pages whose numbers come from records.
 //!
-//! A page that is mostly tables is what a template below `paper/templates/pages/` gives: `pages/benches/README.md` gives
-//! `benches/README.md`. A page that people write carries whole blocks between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on
-//! a line of its own, from the template `paper/templates/NAME.md`. Templates are Jinja's; macros that they share are in one file, `q`
-//! in expressions.
+//! A page that is mostly tables is what a template below `paper/templates/pages/` gives:
+//! `pages/benches/README.md` gives `benches/README.md`. A page that people write carries whole
+//! blocks between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a line of its own, from
+//! the template `paper/templates/NAME.md`. Templates are Jinja's; macros that they share are in one
+//! file, `q` in expressions.
 //!
 //! | function or filter | gives |
 //! |---|---|
@@ -16,7 +17,8 @@
 //! | `e \| interval(1e6)`, `x \| number`, `x \| signed(1)` | an estimate times 10⁶ as mean ± half-width; four digits that count; +1.2 |
 //! | `values \| in_order`, `x \| shortest` | an estimate from values in the order of time; the shortest text that reads back |
 //!
-//! `experiment` is that of the machine that `data/record/quoted.toml` names, `machine/experiment` that of any.
+//! `experiment` is that of the machine that `data/record/quoted.toml` names, `machine/experiment`
+//! that of any.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -70,10 +72,12 @@ pub fn whole(page: &str, template: &str, sources: &Sources) -> Result<String, Pa
     })
 }
 
-/// A page that people write, with its blocks as its records have them. Nothing outside of blocks changes.
+/// A page that people write, with its blocks as its records have them. Nothing outside of blocks
+/// changes.
 ///
 /// # Errors
-/// A block without an end or a template, an expression that has no value, a record that was changed.
+/// A block without an end or a template, an expression that has no value, a record that was
+/// changed.
 pub fn blocks(page: &str, text: &str, sources: &Sources) -> Result<String, PageError> {
     let environment = environment(page, sources)?;
     let mut out = String::with_capacity(text.len());
@@ -174,7 +178,8 @@ fn environment<'s>(page: &str, sources: &'s Sources) -> Result<Environment<'s>, 
     Ok(environment)
 }
 
-/// Writes a value into a page. A cell that a record leaves empty must be given a text by the template.
+/// Writes a value into a page. A cell that a record leaves empty must be given a text by the
+/// template.
 fn formatted(out: &mut Output, state: &mut State, value: &Value) -> Result<(), Error> {
     if value.is_none() {
         return Err(lost("an expression has no value"));

@@ -1,4 +1,5 @@
-//! From a scene file to a scene: each group is checked, its shapes are made, its bodies are placed by the seed.
+//! From a scene file to a scene: each group is checked, its shapes are made, its bodies are placed
+//! by the seed.
 
 use std::ops::Range;
 
@@ -18,10 +19,12 @@ use sdop::bodies::Bodies;
 use sdop::bodies::contract::{ContractError, check_bodies};
 
 impl SceneFile {
-    /// Builds the scene to be studied in f32: as [`Self::build_exact`], with translations rounded to f32.
+    /// Builds the scene to be studied in f32: as [`Self::build_exact`], with translations rounded
+    /// to f32.
     ///
     /// # Errors
-    /// As [`Self::build_exact`]; translations so far out that rounding would move a body by more than 2⁻¹⁰ of its radius.
+    /// As [`Self::build_exact`]; translations so far out that rounding would move a body by more
+    /// than 2⁻¹⁰ of its radius.
     pub fn build(&self) -> Result<Scene, SceneError> {
         let mut scene = self.build_exact()?;
         if let Some((body, moved)) = scene.fine.coarse(&scene.bodies, &scene.shapes) {
@@ -35,22 +38,26 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// Builds the scene: reads meshes, builds shapes, places bodies. Translations of `poses` that f32 doesn't hold are kept.
+    /// Builds the scene: reads meshes, builds shapes, places bodies. Translations of `poses` that
+    /// f32 doesn't hold are kept.
     ///
     /// # Errors
-    /// Everything that a value can't show alone: exclusive keys, missing or broken meshes, a box too small, bodies
-    /// outside of the contract, effects or culling that the scene can't have.
+    /// Everything that a value can't show alone: exclusive keys, missing or broken meshes, a box
+    /// too small, bodies outside of the contract, effects or culling that the scene can't have.
     pub fn build_exact(&self) -> Result<Scene, SceneError> {
         self.build_share(0, 1)
     }
 
-    /// Builds the share of rank `rank` of `ranks`: the same scene with a part of its bodies, each as in the whole.
+    /// Builds the share of rank `rank` of `ranks`: the same scene with a part of its bodies, each
+    /// as in the whole.
     ///
     /// Shapes are made for all bodies, so that all ranks number them alike. With
-    /// [`Seeding::ByBody`](super::file::Seeding::ByBody) a rank draws poses and velocities of its own bodies alone.
+    /// [`Seeding::ByBody`](super::file::Seeding::ByBody) a rank draws poses and velocities of its
+    /// own bodies alone.
     ///
     /// # Errors
-    /// As [`Self::build_exact`]; what is wrong with a body alone, only the rank that holds it finds.
+    /// As [`Self::build_exact`]; what is wrong with a body alone, only the rank that holds it
+    /// finds.
     pub fn build_share(&self, rank: usize, ranks: usize) -> Result<Scene, SceneError> {
         let groups = self.groups(ranks)?;
         let share = share_of(&groups, rank, ranks);
@@ -102,7 +109,8 @@ impl SceneFile {
         }
     }
 
-    /// Draws the radii of all the group's bodies, makes their shapes, and adds one shape and dynamic entry a body held.
+    /// Draws the radii of all the group's bodies, makes their shapes, and adds one shape and
+    /// dynamic entry a body held.
     fn add_shapes(
         &self,
         group: &Group<'_>,
@@ -198,7 +206,8 @@ impl SceneFile {
         )
     }
 
-    /// Places the bodies held by the seed; the pair is the box's side and the radius of the group's largest ball.
+    /// Places the bodies held by the seed; the pair is the box's side and the radius of the group's
+    /// largest ball.
     fn place(
         &self,
         group: &Group<'_>,
@@ -245,7 +254,8 @@ impl SceneFile {
             let shape = bodies.shape[first + index - held.start];
             let ball = library.get(shape).ball;
             let centre = placer.centre(ball.radius, centres);
-            // The ball's centre is placed: t is what brings it there, the ball's centre itself for origin = "ball".
+            // The ball's centre is placed: t is what brings it there, the ball's centre itself for
+            // origin = "ball".
             let offset = world_centre(ball.centre, &rotation, &[0.0; 3]);
             bodies.rotation.push(rotation);
             bodies
@@ -255,7 +265,8 @@ impl SceneFile {
         Ok(())
     }
 
-    /// Draws or copies velocities, and the angular velocities of dynamic bodies where the scene lists `spin`.
+    /// Draws or copies velocities, and the angular velocities of dynamic bodies where the scene
+    /// lists `spin`.
     fn add_velocities(&self, group: &Group<'_>, held: Range<usize>, velocities: &mut Velocities) {
         let (spec, all) = (group.spec, velocities.linear.len() + held.len());
         let (linear, angular) = (&mut velocities.linear, &mut velocities.angular);

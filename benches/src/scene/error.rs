@@ -127,7 +127,8 @@ impl Source {
     }
 }
 
-/// serde names what is missing, or lists the names that it expected after the one that it found, all in backticks.
+/// serde names what is missing, or lists the names that it expected after the one that it found,
+/// all in backticks.
 fn hint_of(message: &str) -> Option<String> {
     let names = |text: &str| -> Vec<String> {
         text.split('`')

@@ -1,7 +1,8 @@
 //! Translations that f32 doesn't hold.
 //!
-//! A scene's poses have f64 translations, its trajectories f32 ones. A body whose f32 translation is that of the start has not
-//! moved: it is where its pose says, to the last bit. Any other body is where its f32 translation says.
+//! A scene's poses have f64 translations, its trajectories f32 ones. A body whose f32 translation
+//! is that of the start has not moved: it is where its pose says, to the last bit. Any other body
+//! is where its f32 translation says.
 
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::{ContractError, check_pose};
@@ -50,7 +51,8 @@ impl FineTranslations {
         all.try_for_each(|(body, t)| check_pose(*body, &bodies.rotation[*body], t))
     }
 
-    /// The first body that f32 moves too far for a study in f32, and how far it moves along an axis.
+    /// The first body that f32 moves too far for a study in f32, and how far it moves along an
+    /// axis.
     pub(super) fn coarse(&self, bodies: &Bodies, shapes: &[Shape]) -> Option<(usize, f64)> {
         let moved = self.0.iter().map(|&(body, t)| {
             let near = rounded(t).map(f64::from);

@@ -1,8 +1,8 @@
 //! Scenes: bodies as columns, their shapes, what is simulated and how it is culled.
 //!
-//! A scene file (TOML) is read into a [`SceneFile`], in which a caller may still change seed, frames or culling, and
-//! built into a [`Scene`]: meshes become shapes, and bodies are placed by the seed. The same file and seed give the
-//! same bodies on every platform.
+//! A scene file (TOML) is read into a [`SceneFile`], in which a caller may still change seed,
+//! frames or culling, and built into a [`Scene`]: meshes become shapes, and bodies are placed by
+//! the seed. The same file and seed give the same bodies on every platform.
 
 mod build;
 mod density;

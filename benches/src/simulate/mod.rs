@@ -1,7 +1,8 @@
 //! A scene's run: the listed effects move the bodies, the culler culls them, frame after frame.
 //!
-//! F frames are F culls and F − 1 steps: the first frame is the scene as placed. The trajectory doesn't depend on how it is
-//! culled, so that runs which differ in [`CullSettings`](sdop::settings::CullSettings) alone see the same poses.
+//! F frames are F culls and F − 1 steps: the first frame is the scene as placed. The trajectory
+//! doesn't depend on how it is culled, so that runs which differ in
+//! [`CullSettings`](sdop::settings::CullSettings) alone see the same poses.
 
 mod scene_culler;
 
@@ -27,7 +28,8 @@ use sdop::world::WorldError;
 
 use scene_culler::SceneCuller;
 
-/// The poses of a scene, frame after frame: the first is the scene as placed, every other one a step of its effects.
+/// The poses of a scene, frame after frame: the first is the scene as placed, every other one a
+/// step of its effects.
 ///
 /// As an iterator it yields a copy of each frame's bodies; [`Self::advance`] lends them instead.
 pub struct Trajectory {
@@ -128,7 +130,8 @@ pub struct Frame<'a> {
     pub seconds: Seconds,
 }
 
-/// What a finished run says of itself. Counters and hashes are equal on every CPU, tier and thread count.
+/// What a finished run says of itself. Counters and hashes are equal on every CPU, tier and thread
+/// count.
 #[derive(Clone, Debug)]
 pub struct Summary {
     /// Sums over frames.
@@ -184,7 +187,8 @@ impl SimulationError {
 }
 
 impl<'a> Simulation<'a> {
-    /// Prepares a run of the scene, culled as its `cull` says in the tier `tier` on the caller's thread.
+    /// Prepares a run of the scene, culled as its `cull` says in the tier `tier` on the caller's
+    /// thread.
     ///
     /// # Errors
     /// Effects or culling that the scene can't have; never for a scene just built.
@@ -246,7 +250,8 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Runs to the last frame. `observe` sees every frame, after its culling and outside of the timing.
+    /// Runs to the last frame. `observe` sees every frame, after its culling and outside of the
+    /// timing.
     ///
     /// # Errors
     /// As [`Self::next_frame`], or what `observe` returns.
@@ -276,7 +281,8 @@ impl<'a> Simulation<'a> {
     }
 }
 
-/// Runs the whole scene in the tier `tier`, on the caller's thread: [`Simulation::run`] of a new simulation.
+/// Runs the whole scene in the tier `tier`, on the caller's thread: [`Simulation::run`] of a new
+/// simulation.
 ///
 /// # Errors
 /// As [`Simulation::new`] and [`Simulation::run`].

@@ -95,7 +95,8 @@ impl SceneCuller {
         }
     }
 
-    /// Seconds summed over the frames so far. To place bodies about their origins is a part of updating them.
+    /// Seconds summed over the frames so far. To place bodies about their origins is a part of
+    /// updating them.
     pub fn seconds(&self) -> Seconds {
         match self {
             Self::Columns(culler) => *culler.seconds(),

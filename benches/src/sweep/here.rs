@@ -6,8 +6,8 @@ use std::thread;
 
 use super::{OnEnd, Sweep, attempt};
 
-/// Does these units; `on` is called for each when it ends. Those that need all threads come last, one at a time. When one fails,
-/// those under way are still finished and told.
+/// Does these units; `on` is called for each when it ends. Those that need all threads come last,
+/// one at a time. When one fails, those under way are still finished and told.
 ///
 /// # Errors
 /// A unit that fails, the first that is seen; what `on` says.
@@ -21,7 +21,8 @@ pub fn here(work: &dyn Sweep, units: &[usize], on: OnEnd) -> miette::Result<()> 
     Ok(())
 }
 
-/// On threads of its own: a worker of the pool that waits within a unit would take up another unit on top of it.
+/// On threads of its own: a worker of the pool that waits within a unit would take up another unit
+/// on top of it.
 fn side_by_side(work: &dyn Sweep, units: &[usize], on: OnEnd) -> miette::Result<()> {
     let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
     thread::scope(|scope| {

@@ -1,10 +1,11 @@
-//! Work cut into units, so that many processes and machines can share it: each unit has its place in one order and a result
-//! of its own, and results are taken in that order. What comes out doesn't depend on who did what, or when.
+//! Work cut into units, so that many processes and machines can share it: each unit has its place
+//! in one order and a result of its own, and results are taken in that order. What comes out
+//! doesn't depend on who did what, or when.
 //!
 //! > [`Sweep`] → [`here()`] → [`InOrder`] → the result; or in shards, by files and [`merge()`], or by ranks and [`on_ranks`]
 //!
-//! A shard's file has a part of the units. It begins with the [`Header`] that says of which work they are, and is refused for any
-//! other.
+//! A shard's file has a part of the units. It begins with the [`Header`] that says of which work
+//! they are, and is refused for any other.
 
 mod file;
 mod header;
@@ -48,7 +49,8 @@ pub trait Sweep: Sync {
         false
     }
 
-    /// Whether a unit uses all threads of a process itself, or must have them: such units are done one after the other.
+    /// Whether a unit uses all threads of a process itself, or must have them: such units are done
+    /// one after the other.
     fn alone(&self, unit: usize) -> bool {
         self.timed(unit)
     }

@@ -1,7 +1,7 @@
 //! Ranks of `mpirun` as shards: rank i of n does part i + 1 of n, and rank 0 receives all results.
 //!
-//! Units that are only counted are done by all ranks at once. Then the ranks of one machine time their units one rank after the
-//! other, while those that wait sleep.
+//! Units that are only counted are done by all ranks at once. Then the ranks of one machine time
+//! their units one rank after the other, while those that wait sleep.
 
 use std::collections::BTreeMap;
 
@@ -11,12 +11,13 @@ use rayon::ThreadPoolBuilder;
 use super::{Header, Shard, Sweep, attempt};
 use crate::network::{Network, tell_all, tell_first};
 
-/// Does this rank's part of the work; `ended` is called after each of its units. Rank 0 gets the results of all ranks, the
-/// others none. With `share_cores`, ranks of one machine time side by side. Collective.
+/// Does this rank's part of the work; `ended` is called after each of its units. Rank 0 gets the
+/// results of all ranks, the others none. With `share_cores`, ranks of one machine time side by
+/// side. Collective.
 ///
 /// # Errors
-/// A unit that fails, on the rank that has it; ranks with different work, on rank 0. Other ranks may wait for this one then:
-/// the caller ends them.
+/// A unit that fails, on the rank that has it; ranks with different work, on rank 0. Other ranks
+/// may wait for this one then: the caller ends them.
 pub fn on_ranks(
     network: &impl Network,
     work: &dyn Sweep,
@@ -43,7 +44,8 @@ pub fn on_ranks(
         ended(unit);
         Ok::<_, miette::Report>(())
     };
-    // Ranks are what works side by side here, so each has one thread; what is timed has all that there are.
+    // Ranks are what works side by side here, so each has one thread; what is timed has all that
+    // there are.
     let one = ThreadPoolBuilder::new().num_threads(1).build();
     let one = one.into_diagnostic()?;
     for unit in counted {
@@ -100,7 +102,8 @@ fn same_work(header: &Header, headers: &[Vec<u8>], rank: usize) -> miette::Resul
     Ok(())
 }
 
-/// An error with its causes in one line that names the rank: lines of many ranks arrive in any order.
+/// An error with its causes in one line that names the rank: lines of many ranks arrive in any
+/// order.
 fn of_rank(network: &impl Network, error: &miette::Report) -> miette::Report {
     let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
     miette!("rank {}: {}", network.rank(), causes.join(": "))

@@ -1,6 +1,8 @@
-//! Which volume and k to use for one scene: every candidate timed and counted on it, without an exact truth.
+//! Which volume and k to use for one scene: every candidate timed and counted on it, without an
+//! exact truth.
 //!
-//! All variants report every pair that meets, so fewer reported pairs are fewer false ones: T + Np·Cp needs no truth.
+//! All variants report every pair that meets, so fewer reported pairs are fewer false ones: T +
+//! Np·Cp needs no truth.
 
 use serde::Serialize;
 
@@ -13,7 +15,8 @@ use crate::measure::estimate::Estimate;
 use crate::scene::SceneFile;
 use sdop::simd::Tier;
 
-/// The most frames of the scene that are looked at: enough to see its pairs, few enough for a minute.
+/// The most frames of the scene that are looked at: enough to see its pairs, few enough for a
+/// minute.
 pub const FRAMES: u32 = 200;
 /// Sample frames among them.
 const SAMPLES: u32 = 10;

@@ -2,8 +2,9 @@
 //!
 //! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`], [`decide`] (when does it pay?)
 //!
-//! Done in [`units`]. Counts come first and reproduce to the bit; time is measured afterwards and never decides a count.
-//! Every variant must report every true pair: a recall below 1 is a failed check.
+//! Done in [`units`]. Counts come first and reproduce to the bit; time is measured afterwards and
+//! never decides a count. Every variant must report every true pair: a recall below 1 is a failed
+//! check.
 
 pub mod advise;
 pub mod budget;

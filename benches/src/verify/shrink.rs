@@ -32,8 +32,9 @@ pub struct Smallest {
 }
 
 impl Smallest {
-    /// Leaves bodies out, half of the rest at a time, for as long as some pair is missed or found by one finder alone. `None` when the last frame alone
-    /// shows nothing: it depends on the frames before.
+    /// Leaves bodies out, half of the rest at a time, for as long as some pair is missed or found
+    /// by one finder alone. `None` when the last frame alone shows nothing: it depends on the
+    /// frames before.
     #[must_use]
     pub fn of(failure: &Failure) -> Option<Self> {
         let mut smallest = Self {
@@ -93,8 +94,8 @@ impl Smallest {
         wrong(&self.shapes, &self.bodies, &self.settings, self.mode).unwrap_or(false)
     }
 
-    /// Writes the scene and its meshes into `directory`. Returns the scene's path and whether the file, read back, still
-    /// misses a pair.
+    /// Writes the scene and its meshes into `directory`. Returns the scene's path and whether the
+    /// file, read back, still misses a pair.
     ///
     /// # Errors
     /// A file that can't be written.
@@ -144,7 +145,8 @@ impl Smallest {
     }
 }
 
-/// Whether a culler misses a pair of the frame, or finds others than all-pairs does on the same tier.
+/// Whether a culler misses a pair of the frame, or finds others than all-pairs does on the same
+/// tier.
 fn wrong(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings, mode: Mode) -> Option<bool> {
     let judged = Shapes::new(shapes.to_vec()).ok()?;
     let answers = Answers::judge(&judged, bodies, settings.k, &Predicate::ALL).ok()?;

@@ -1,4 +1,5 @@
-//! What is to be shown, whatever it comes from: shapes, bodies, frames, and who reported which pairs.
+//! What is to be shown, whatever it comes from: shapes, bodies, frames, and who reported which
+//! pairs.
 
 use std::path::Path;
 
@@ -49,8 +50,8 @@ pub struct Culled {
 }
 
 impl Show {
-    /// Reads a record, or as many of its frames. With a record that is broken somewhere, the frames before that are shown, the
-    /// page says so, and the error is returned too.
+    /// Reads a record, or as many of its frames. With a record that is broken somewhere, the frames
+    /// before that are shown, the page says so, and the error is returned too.
     ///
     /// # Errors
     /// A first line that can't be read.
@@ -161,8 +162,8 @@ impl Show {
         Ok(show)
     }
 
-    /// A case of the judge, and the pairs that a program reported of each frame, sorted; none where it wasn't asked. A pair meets
-    /// when the claim holds of it.
+    /// A case of the judge, and the pairs that a program reported of each frame, sorted; none where
+    /// it wasn't asked. A pair meets when the claim holds of it.
     ///
     /// # Errors
     /// In words: a set of bodies that changes, no frames, numbers that the exact reference refuses.
@@ -268,7 +269,8 @@ impl Show {
         })
     }
 
-    /// The same frames as culled by another: its record must have the same bodies in the same poses.
+    /// The same frames as culled by another: its record must have the same bodies in the same
+    /// poses.
     ///
     /// # Errors
     /// The first difference, in words.

@@ -27,7 +27,8 @@ pub struct TermCourse {
     pub frames: Vec<[f64; 3]>,
 }
 
-/// Calibrates the prices of what `culled` tested, on this machine, for frames whose data are in the caches.
+/// Calibrates the prices of what `culled` tested, on this machine, for frames whose data are in the
+/// caches.
 ///
 /// # Errors
 /// Settings that can't be carried out.

@@ -23,8 +23,8 @@ unsafe extern "C" fn sdop_test_free(test: *mut PairTest) {
 }
 
 /// # Safety
-/// `test` comes from [`sdop_test_new`] and nothing else uses it now; three floats a vertex and three indices a triangle follow the
-/// pointers.
+/// `test` comes from [`sdop_test_new`] and nothing else uses it now; three floats a vertex and
+/// three indices a triangle follow the pointers.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn sdop_test_add(
     test: *mut PairTest,
@@ -62,7 +62,8 @@ pub fn add(
 }
 
 /// # Safety
-/// `test` comes from [`sdop_test_new`]; four floats of a quaternion and three of a translation follow the pointers.
+/// `test` comes from [`sdop_test_new`]; four floats of a quaternion and three of a translation
+/// follow the pointers.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn sdop_test_may_touch(
     test: *const PairTest,

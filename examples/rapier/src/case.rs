@@ -20,7 +20,8 @@ pub struct CaseBody {
     pub translation: [f32; 3],
 }
 
-/// Writes the scene and a mesh file per body into `directory`; `comment` says what happened. Returns the scene's path.
+/// Writes the scene and a mesh file per body into `directory`; `comment` says what happened.
+/// Returns the scene's path.
 ///
 /// # Errors
 /// A file that can't be written.

@@ -9,7 +9,8 @@ use sdop_bench::remedy::OrReport as _;
 
 use crate::plan::Detail;
 
-/// A cow, a ring, an L, a rod, a gear and a knot, all closed: of 16 to 480 triangles, or finely cut of up to 7,680.
+/// A cow, a ring, an L, a rod, a gear and a knot, all closed: of 16 to 480 triangles, or finely cut
+/// of up to 7,680.
 ///
 /// # Errors
 /// `meshes` isn't the repository's folder of meshes.

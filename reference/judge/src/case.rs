@@ -14,7 +14,8 @@ pub struct Frame {
     pub bodies: Bodies,
     /// A box for each of them.
     pub boxes: Vec<WorldBox>,
-    /// When the set of bodies is another than in the frame before: each one's former number, `None` for a new body.
+    /// When the set of bodies is another than in the frame before: each one's former number, `None`
+    /// for a new body.
     pub was: Option<Vec<Option<u32>>>,
 }
 
@@ -91,7 +92,8 @@ impl Case {
     }
 }
 
-/// Whether a name matches a pattern in which `*` stands for any text, `/` included, and `?` for one character.
+/// Whether a name matches a pattern in which `*` stands for any text, `/` included, and `?` for one
+/// character.
 #[must_use]
 pub fn matches(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) =

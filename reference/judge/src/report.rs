@@ -1,4 +1,5 @@
-//! A verdict as files: the smallest scene of a miss, and JUnit's XML for programs that collect test results.
+//! A verdict as files: the smallest scene of a miss, and JUnit's XML for programs that collect test
+//! results.
 
 use std::fmt::Write as _;
 
@@ -17,7 +18,8 @@ pub type Named = (String, Vec<u8>);
 /// The stem of a counter-example's files.
 pub const STEM: &str = "missed-pair";
 
-/// A counter-example as a case file (`.ndjson`, with the pairs that were reported, for `sdop view` and `sdop check`) and as a scene that `sdop run` takes (`.toml`, and its meshes).
+/// A counter-example as a case file (`.ndjson`, with the pairs that were reported, for `sdop view`
+/// and `sdop check`) and as a scene that `sdop run` takes (`.toml`, and its meshes).
 ///
 /// # Errors
 /// A mesh that can't be written: none that was read.
@@ -60,7 +62,8 @@ fn scene(bodies: &Bodies, shapes: &[Shape]) -> String {
     text
 }
 
-/// A pose's seven numbers as a scene file has them: written as f64, so that the translation is this one and no other f64.
+/// A pose's seven numbers as a scene file has them: written as f64, so that the translation is this
+/// one and no other f64.
 #[must_use]
 pub fn pose_in_text(rotation: [f32; 4], translation: [f32; 3]) -> String {
     let pose = rotation.into_iter().chain(translation);

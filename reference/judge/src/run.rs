@@ -146,8 +146,9 @@ impl<S: Subject> Judge<S> {
         examine(&self.subject, &self.options, |_, _| {})
     }
 
-    /// As [`Judge::assert`], but content when the claim has no such case, or when the culler skips all of them
-    /// because its set of bodies can't change; the verdict is then printed as incomplete.
+    /// As [`Judge::assert`], but content when the claim has no such case, or when the culler skips
+    /// all of them because its set of bodies can't change; the verdict is then printed as
+    /// incomplete.
     ///
     /// # Panics
     /// When the verdict is no pass.

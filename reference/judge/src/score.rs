@@ -21,9 +21,11 @@ pub struct Count {
     pub missed: u64,
     /// Reported although the claim doesn't hold, in all.
     pub extra: u64,
-    /// Of those: it would hold if the bodies were nearer by 2⁻¹⁸ of their size and distance. The price of rounding.
+    /// Of those: it would hold if the bodies were nearer by 2⁻¹⁸ of their size and distance. The
+    /// price of rounding.
     pub by_rounding: u64,
-    /// Of the others: their bounding balls meet (with given boxes: the boxes grown by half of their size). A looser volume.
+    /// Of the others: their bounding balls meet (with given boxes: the boxes grown by half of their
+    /// size). A looser volume.
     pub by_looseness: u64,
     /// Of the others: both bodies are static.
     pub both_static: u64,
@@ -104,7 +106,8 @@ impl Judged {
     }
 }
 
-/// Lets a subject answer a case and judges the answers. With `twice` it answers again, and has to say the same.
+/// Lets a subject answer a case and judges the answers. With `twice` it answers again, and has to
+/// say the same.
 ///
 /// # Errors
 /// A case that the reference refuses.
@@ -135,7 +138,8 @@ pub fn judge_case(
     Ok(judged)
 }
 
-/// What a case without all answers is. A wrong answer counts, also if the rest of the case is skipped.
+/// What a case without all answers is. A wrong answer counts, also if the rest of the case is
+/// skipped.
 fn stopped(case: &Case, claim: Claim, stop: Stop) -> Result<Judged, InvalidInput> {
     let (why, answered) = match stop {
         Stop::Skipped { why, answered } => (why, answered),
@@ -260,7 +264,8 @@ fn grown(ends: &WorldBox) -> WorldBox {
     grown
 }
 
-/// The frame with the second body moved toward the first by 2⁻¹⁸ of their size and distance from the origin, on each axis.
+/// The frame with the second body moved toward the first by 2⁻¹⁸ of their size and distance from
+/// the origin, on each axis.
 fn nearer(frame: &Frame, [i, j]: [u32; 2]) -> Frame {
     let mut nearer = frame.clone();
     let (i, j) = (i as usize, j as usize);
@@ -317,7 +322,8 @@ mod tests {
         pairs.iter().map(answer).collect()
     }
 
-    /// Pairs that are required: 01 and 12 (touching); all but 34 of the first four; none, 01 by 2⁻²⁰.
+    /// Pairs that are required: 01 and 12 (touching); all but 34 of the first four; none, 01 by
+    /// 2⁻²⁰.
     const PLACES: [[f32; 5]; 3] = [
         [0.0, 0.5, 1.5, 10.0, 20.0],
         [0.0, 0.0, 0.0, 0.0, 20.0],

@@ -1,5 +1,5 @@
-//! The smallest case that a culler still fails: frames, bodies, triangles and digits are removed for as long as it misses a
-//! pair.
+//! The smallest case that a culler still fails: frames, bodies, triangles and digits are removed
+//! for as long as it misses a pair.
 
 use std::time::{Duration, Instant};
 
@@ -179,7 +179,8 @@ impl Search<'_> {
         }
     }
 
-    /// Without triangles, one at a time, for claims about meshes. Volumes are built anew around what is left.
+    /// Without triangles, one at a time, for claims about meshes. Volumes are built anew around
+    /// what is left.
     fn fewer_triangles(&mut self) {
         if !matches!(self.claim, Claim::Hull | Claim::Mesh) {
             return;

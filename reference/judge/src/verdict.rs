@@ -127,8 +127,8 @@ impl Verdict {
         }
     }
 
-    /// Whether all that was asked for was judged and nothing speaks against the claim: some cases passed, and
-    /// all others are known to fail.
+    /// Whether all that was asked for was judged and nothing speaks against the claim: some cases
+    /// passed, and all others are known to fail.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.conclusion() == Conclusion::Pass

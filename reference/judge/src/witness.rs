@@ -1,4 +1,5 @@
-//! What shows a person that a pair really meets: a common point as exact fractions, and how deep the bodies are in one another.
+//! What shows a person that a pair really meets: a common point as exact fractions, and how deep
+//! the bodies are in one another.
 
 use serde::Serialize;
 
@@ -68,8 +69,8 @@ fn directions(frame: &Frame, [i, j]: [u32; 2]) -> Vec<[f64; 3]> {
     all
 }
 
-/// The least number of ulps below `least` by which a shift along a direction parts the pair: doubled until it does, then
-/// halved down to it.
+/// The least number of ulps below `least` by which a shift along a direction parts the pair:
+/// doubled until it does, then halved down to it.
 fn depth(
     truth: &Truth,
     frame: &Frame,

@@ -16,8 +16,8 @@ const INVERTIBLE: &str = "a quaternion (x, y, z, w) has a finite norm above zero
 /// How to mend a vector.
 const WITHIN_LIMIT: &str = "coordinates are finite and at most 2^60 in size";
 
-/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, a shape that exists and is no larger than 2⁶⁰, no
-/// more than [`MOST_BODIES`](super::MOST_BODIES).
+/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, a shape that exists and is no
+/// larger than 2⁶⁰, no more than [`MOST_BODIES`](super::MOST_BODIES).
 ///
 /// # Errors
 /// A body that breaks it, the first in the first column at fault; columns of unequal length.
@@ -89,7 +89,8 @@ pub fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), ContractE
 
 /// Whether all coordinates of a column are at most 2⁶⁰ in size.
 fn are_within_limit(column: &[[f32; 3]]) -> bool {
-    // Without an early exit, so that the compiler makes vectors of it: a column that fails is the last one.
+    // Without an early exit, so that the compiler makes vectors of it: a column that fails is the
+    // last one.
     column
         .as_flattened()
         .iter()
@@ -110,7 +111,8 @@ pub(crate) fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
     Ok(())
 }
 
-/// Checks that the coordinates of a column are at most 2⁶⁰ in size; its first entry is that of the body `first`.
+/// Checks that the coordinates of a column are at most 2⁶⁰ in size; its first entry is that of the
+/// body `first`.
 #[doc(hidden)]
 pub fn check_vectors(
     name: &'static str,
@@ -126,7 +128,8 @@ pub fn check_vectors(
 
 // All limits are written as `x ≤ limit`, and what isn't so is refused: a NaN fails.
 
-/// A number's size: its bits without the sign. They are in the order of sizes, and those of NaN above all.
+/// A number's size: its bits without the sign. They are in the order of sizes, and those of NaN
+/// above all.
 #[inline(always)]
 fn size(number: f32) -> u32 {
     number.to_bits() & !(1 << 31)
@@ -148,8 +151,8 @@ pub(crate) fn is_within_limit(v: &[f32; 3]) -> bool {
     v.iter().all(|&x| size(x) <= size(LIMIT))
 }
 
-/// Whether the centres of all balls are within 2⁶⁰, and their radii finite. A function of its own, of which callgrind tells what the
-/// check costs (`.ci/instructions`).
+/// Whether the centres of all balls are within 2⁶⁰, and their radii finite. A function of its own,
+/// of which callgrind tells what the check costs (`.ci/instructions`).
 #[inline(never)]
 pub(crate) fn balls_are_within_limit(tier: Tier, balls: &[[f32; 4]]) -> bool {
     dispatch(tier, BallsWithinLimit(balls))
@@ -157,7 +160,8 @@ pub(crate) fn balls_are_within_limit(tier: Tier, balls: &[[f32; 4]]) -> bool {
 
 struct BallsWithinLimit<'a>(&'a [[f32; 4]]);
 
-/// Numbers that are looked at together: some vectors of any tier, so that what a loop takes by itself is little beside them.
+/// Numbers that are looked at together: some vectors of any tier, so that what a loop takes by
+/// itself is little beside them.
 const TOGETHER: usize = 64;
 
 impl Kernel for BallsWithinLimit<'_> {

@@ -178,7 +178,8 @@ mod tests {
             balls: (0..len + MAX_WIDTH).map(ball).collect(),
             ..Slots::default()
         };
-        // Sixteen slots from the first one on share an entry; another before or behind them opens one.
+        // Sixteen slots from the first one on share an entry; another before or behind them opens
+        // one.
         let runs = [
             (5, 6..len),
             (6, 7..9),

@@ -1,4 +1,5 @@
-//! What the search for a list has found and tested so far, on all threads together, and when it ends.
+//! What the search for a list has found and tested so far, on all threads together, and when it
+//! ends.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -7,8 +8,8 @@ use super::list::Limits;
 /// Candidates after which a thread adds its counts to those of all.
 pub const STEP: u64 = 1024;
 
-/// Counts of all threads. They only grow, so whether the search ends beyond its limits depends on no
-/// thread; how far beyond does, by a [`STEP`] and one piece of the work for each of them.
+/// Counts of all threads. They only grow, so whether the search ends beyond its limits depends on
+/// no thread; how far beyond does, by a [`STEP`] and one piece of the work for each of them.
 #[derive(Debug)]
 pub struct Effort {
     limits: Limits,

@@ -1,4 +1,5 @@
-//! The list itself: a chunk for each part of the grid's work, codes as in a [`Block`], sixteen slots an entry.
+//! The list itself: a chunk for each part of the grid's work, codes as in a [`Block`], sixteen
+//! slots an entry.
 
 use std::ops::Range;
 
@@ -10,14 +11,14 @@ use crate::rounding::skin::{Reach, Skin};
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch};
 use crate::threads::Executor;
 
-/// Pairs a body that a list with the widest skin may hold, and a few more for small scenes: crowds are bound by what is
-/// reported, and there a list would take more memory than all the rest.
+/// Pairs a body that a list with the widest skin may hold, and a few more for small scenes: crowds
+/// are bound by what is reported, and there a list would take more memory than all the rest.
 const PAIRS_PER_BODY: usize = 8;
 const FEW_PAIRS: u64 = 256;
 
-/// Candidates that the search for a list may test: this many times those of the grid without a skin,
-/// and some per body. What a skin adds is less ([`policy`](super::policy)), unless its floor is wider
-/// than the bodies.
+/// Candidates that the search for a list may test: this many times those of the grid without a
+/// skin, and some per body. What a skin adds is less ([`policy`](super::policy)), unless its floor
+/// is wider than the bodies.
 const GROWTH_OF_CANDIDATES: u64 = 3;
 const CANDIDATES_PER_BODY: u64 = 48;
 
@@ -43,8 +44,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// For a list of so many bodies, where the widest skin brings `spare` times the pairs and the grid
-    /// without a skin has so many candidates.
+    /// For a list of so many bodies, where the widest skin brings `spare` times the pairs and the
+    /// grid without a skin has so many candidates.
     fn of(bodies: usize, candidates: u64, spare: f64) -> Self {
         let pairs = (PAIRS_PER_BODY * bodies) as f64 / spare;
         Self {
@@ -59,7 +60,8 @@ impl Limits {
 pub enum Outcome {
     /// The list is complete.
     Complete,
-    /// There is no list: it would hold too many pairs, or its search would test too many candidates.
+    /// There is no list: it would hold too many pairs, or its search would test too many
+    /// candidates.
     Abandoned,
 }
 
@@ -86,10 +88,10 @@ pub struct Chunk {
 }
 
 impl List {
-    /// Makes the list of a grid that has just been arranged, whose bodies have so many candidates without
-    /// a skin. There is room for as many pairs as the widest skin will bring, `spare` times those of this
-    /// one, so that another skin allocates nothing. The search ends as soon as it exceeds its limits;
-    /// whether it does depends on no thread.
+    /// Makes the list of a grid that has just been arranged, whose bodies have so many candidates
+    /// without a skin. There is room for as many pairs as the widest skin will bring, `spare` times
+    /// those of this one, so that another skin allocates nothing. The search ends as soon as it
+    /// exceeds its limits; whether it does depends on no thread.
     pub fn make(
         &mut self,
         executor: Executor<'_>,
@@ -229,7 +231,8 @@ fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
     }
 }
 
-/// Lists breathe from one to the next: a column that was filled to the brim would be allocated anew by the next one.
+/// Lists breathe from one to the next: a column that was filled to the brim would be allocated anew
+/// by the next one.
 fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
     let [least, room] = [1.0, ROOM].map(|times| (times * spare * column.len() as f64) as usize);
     if column.capacity() < least {

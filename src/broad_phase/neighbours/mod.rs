@@ -1,19 +1,23 @@
-//! Neighbour lists: candidates within reach and a skin, found by the grid once, tested frame after frame.
+//! Neighbour lists: candidates within reach and a skin, found by the grid once, tested frame after
+//! frame.
 //!
-//! Most pairs that are near each other in one frame are so in the next. A list of the pairs whose balls, grown by a skin
-//! each, touch serves until some ball has drifted by its skin ([`drift`]), which is measured in every frame and never
-//! extrapolated; then the grid makes a new one. Meanwhile slots, and places with them, stay as they are: nothing is sorted,
-//! and updates write in the order in which the list reads. A body that jumps has drifted, so that a new list is made; static
-//! bodies have no skin.
+//! Most pairs that are near each other in one frame are so in the next. A list of the pairs whose
+//! balls, grown by a skin each, touch serves until some ball has drifted by its skin ([`drift`]),
+//! which is measured in every frame and never extrapolated; then the grid makes a new one.
+//! Meanwhile slots, and places with them, stay as they are: nothing is sorted, and updates write in
+//! the order in which the list reads. A body that jumps has drifted, so that a new list is made;
+//! static bodies have no skin.
 //!
-//! A skin is a share of each ball's radius, or the same length for all: where small bodies move as fast as wide ones, a share of
-//! theirs is used up by the first step, while pairs are made by the wide.
+//! A skin is a share of each ball's radius, or the same length for all: where small bodies move as
+//! fast as wide ones, a share of theirs is used up by the first step, while pairs are made by the
+//! wide.
 //!
-//! The cubes about long boxes have many neighbours that the boxes don't have. Their lists are made by the boxes themselves, grown by a
-//! length, and serve until an end of a box leaves its grown one ([`EndSlots`]).
+//! The cubes about long boxes have many neighbours that the boxes don't have. Their lists are made
+//! by the boxes themselves, grown by a length, and serve until an end of a box leaves its grown one
+//! ([`EndSlots`]).
 //!
-//! Lists don't pay where bodies move by a good share of their radius a frame, or where each has many neighbours. By counts
-//! alone ([`policy`]) such frames are the grid's.
+//! Lists don't pay where bodies move by a good share of their radius a frame, or where each has
+//! many neighbours. By counts alone ([`policy`]) such frames are the grid's.
 
 mod collect;
 mod drift;
@@ -99,7 +103,8 @@ impl Neighbours {
         self.policy.is_by_boxes() && self.list().is_some()
     }
 
-    /// Looks for a better order of places: that of the slots after a list has been made, or what the grid says.
+    /// Looks for a better order of places: that of the slots after a list has been made, or what
+    /// the grid says.
     pub(super) fn reorder(
         &mut self,
         moving: usize,
@@ -132,7 +137,8 @@ impl Neighbours {
         self.grid.replace(stays, moving, bodies)
     }
 
-    /// Follows the list if it may be, or lets the grid arrange the bodies and makes a new one if it pays.
+    /// Follows the list if it may be, or lets the grid arrange the bodies and makes a new one if it
+    /// pays.
     pub(super) fn arrange(
         &mut self,
         executor: Executor<'_>,
@@ -225,7 +231,8 @@ impl Neighbours {
         self.list.make(executor, grid, skin, near)
     }
 
-    /// Candidates tested in this frame in the search for a list, beyond those that the frame hands out.
+    /// Candidates tested in this frame in the search for a list, beyond those that the frame hands
+    /// out.
     pub(super) fn list_tests(&self) -> u64 {
         self.list_tests
     }
@@ -239,7 +246,8 @@ impl Neighbours {
         self.grid.slots()
     }
 
-    /// Whether the frame follows a list in whose order places are; the slots' balls are then those that the list was made of.
+    /// Whether the frame follows a list in whose order places are; the slots' balls are then those
+    /// that the list was made of.
     pub(super) fn slots_are_places(&self) -> bool {
         self.state == State::Followed
     }

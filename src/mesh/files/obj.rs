@@ -1,8 +1,9 @@
 //! Wavefront OBJ: the lines `v` and `f`, all into one mesh.
 //!
-//! Groups, objects and materials would split it, texture seams would double its vertices; none of them is read. A line that
-//! ends with a backslash goes on in the next, `#` starts a comment anywhere, and a face may name vertices further down.
-//! Polygons become fans; faces of one or two vertices become degenerate triangles, so nothing is lost.
+//! Groups, objects and materials would split it, texture seams would double its vertices; none of
+//! them is read. A line that ends with a backslash goes on in the next, `#` starts a comment
+//! anywhere, and a face may name vertices further down. Polygons become fans; faces of one or two
+//! vertices become degenerate triangles, so nothing is lost.
 
 use super::parts::Parts;
 use super::text::{self, Fault, Token};
@@ -70,7 +71,8 @@ impl File {
         Ok(())
     }
 
-    /// `f a b c …` with corners a, a/b, a//c or a/b/c, of which only a is used. −1 is the last vertex so far.
+    /// `f a b c …` with corners a, a/b, a//c or a/b/c, of which only a is used. −1 is the last
+    /// vertex so far.
     fn add_face(&mut self, line: usize, words: &[Token]) -> Result<(), Fault> {
         if words.is_empty() {
             return Err((Some(line), malformed("the face names no vertices")));

@@ -1,9 +1,11 @@
-//! OFF, Geomview's format and CGAL's: a header, the counts, a line for each vertex and for each face.
+//! OFF, Geomview's format and CGAL's: a header, the counts, a line for each vertex and for each
+//! face.
 //!
-//! The header's letters say what a vertex has besides its position: `ST` texture coordinates, `C` a colour, `N` a normal, `4`
-//! a weight, which divides. A face is its number of corners, their indices from 0, and perhaps a colour. `#` starts a
-//! comment. Files without a header are read as well. A record is a line; only a file that does not fit so is read without
-//! regard to lines, which Geomview allows.
+//! The header's letters say what a vertex has besides its position: `ST` texture coordinates, `C` a
+//! colour, `N` a normal, `4` a weight, which divides. A face is its number of corners, their
+//! indices from 0, and perhaps a colour. `#` starts a comment. Files without a header are read as
+//! well. A record is a line; only a file that does not fit so is read without regard to lines,
+//! which Geomview allows.
 
 use super::parts::Parts;
 use super::text::{self, Fault, Token};

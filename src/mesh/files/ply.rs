@@ -1,9 +1,10 @@
 //! PLY, text and binary: vertices, and faces as polygons or as strips.
 //!
-//! The header names elements and their properties; all are passed over but the vertices' x, y, z and the lists of indices.
-//! Values that are passed over are not read as numbers: a NaN, or a word, in a property that nobody uses is no error.
-//! Polygons become fans; faces of one or two vertices become degenerate triangles; strips are unrolled. In text, an element is
-//! a line; what follows its properties there is left out, but only in a file that does not fit without.
+//! The header names elements and their properties; all are passed over but the vertices' x, y, z
+//! and the lists of indices. Values that are passed over are not read as numbers: a NaN, or a word,
+//! in a property that nobody uses is no error. Polygons become fans; faces of one or two vertices
+//! become degenerate triangles; strips are unrolled. In text, an element is a line; what follows
+//! its properties there is left out, but only in a file that does not fit without.
 
 use std::iter::Peekable;
 

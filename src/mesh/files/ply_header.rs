@@ -149,7 +149,8 @@ impl Header {
         ))
     }
 
-    /// The next line. Lines end with LF, before which a CR is white space, or all with CR: numbers may follow the last one.
+    /// The next line. Lines end with LF, before which a CR is white space, or all with CR: numbers
+    /// may follow the last one.
     fn next_line<'a>(&mut self, bytes: &'a [u8]) -> Option<&'a [u8]> {
         let rest = &bytes[self.size..];
         if rest.is_empty() {

@@ -1,4 +1,5 @@
-//! Reading a mesh: the extension names the format, the format's reader makes the parts, validation makes the mesh.
+//! Reading a mesh: the extension names the format, the format's reader makes the parts, validation
+//! makes the mesh.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -54,7 +55,8 @@ impl MeshFormat {
         }
     }
 
-    /// The same, or the problem that the extension is; `action` is what was to be done, "read" or "written".
+    /// The same, or the problem that the extension is; `action` is what was to be done, "read" or
+    /// "written".
     pub(super) fn of_path(path: &Path, action: &'static str) -> Result<Self, Problem> {
         Self::from_path(path).ok_or_else(|| Problem::UnknownFormat {
             found: path
@@ -70,7 +72,8 @@ impl MeshFormat {
 /// Reads a mesh file; the mesh is named after the file's stem.
 ///
 /// # Errors
-/// An extension that names no format, a file that cannot be read, or any problem that [`read_bytes`] finds.
+/// An extension that names no format, a file that cannot be read, or any problem that
+/// [`read_bytes`] finds.
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TriangleMesh, MeshError> {
     let path = path.as_ref();
     let file = path.display().to_string();
@@ -93,7 +96,8 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TriangleMes
 /// Reads a mesh from a file's contents; `file` is what messages call it, its stem the mesh's name.
 ///
 /// # Errors
-/// Anything that breaks the format or the mesh contract, with the line in a text file. Never panics, whatever the bytes.
+/// Anything that breaks the format or the mesh contract, with the line in a text file. Never
+/// panics, whatever the bytes.
 pub fn read_bytes(
     file: &str,
     format: MeshFormat,

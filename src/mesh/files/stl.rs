@@ -1,9 +1,10 @@
 //! STL, text and binary; equal corners are welded into shared vertices.
 //!
-//! Binary files may start with the word of text files, `solid`, so the length decides first: a binary file has exactly
-//! 84 + 50·n bytes. In a text file the lines `solid` and `endsolid` hold names, which decide nothing, normals are not read,
-//! and a file may hold many solids. A facet is `facet normal`, `outer loop`, its vertices, `endloop`, `endfacet`, in either
-//! case and however lines are broken. Whatever else stands between facets is an error, except comments.
+//! Binary files may start with the word of text files, `solid`, so the length decides first: a
+//! binary file has exactly 84 + 50·n bytes. In a text file the lines `solid` and `endsolid` hold
+//! names, which decide nothing, normals are not read, and a file may hold many solids. A facet is
+//! `facet normal`, `outer loop`, its vertices, `endloop`, `endfacet`, in either case and however
+//! lines are broken. Whatever else stands between facets is an error, except comments.
 
 use super::parts::Parts;
 use super::text::{self, Fault, Token, put, wide};
@@ -196,8 +197,8 @@ fn malformed(message: String) -> Problem {
     Problem::malformed(message, help)
 }
 
-/// The mesh as an STL file: binary, or text where it is far from its origin, since binary STL has f32. Sharing of vertices is
-/// lost, and so are unused ones; positions are kept to the bit.
+/// The mesh as an STL file: binary, or text where it is far from its origin, since binary STL has
+/// f32. Sharing of vertices is lost, and so are unused ones; positions are kept to the bit.
 pub(super) fn bytes(mesh: &TriangleMesh) -> Vec<u8> {
     if mesh.is_far() {
         return text(mesh).into_bytes();

@@ -1,4 +1,5 @@
-//! The text layer of all readers: lines, words and numbers, read as the formats' other programs read them.
+//! The text layer of all readers: lines, words and numbers, read as the formats' other programs
+//! read them.
 //!
 //! | what | how |
 //! |---|---|
@@ -60,7 +61,8 @@ pub(super) fn excerpt(text: &str) -> String {
     format!("{short:?}{dots}")
 }
 
-/// The bytes as text without a byte-order mark. What is no text becomes U+FFFD, of which no number and no keyword is made.
+/// The bytes as text without a byte-order mark. What is no text becomes U+FFFD, of which no number
+/// and no keyword is made.
 pub(super) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     match utf16(bytes) {
         Some(units) => String::from_utf16_lossy(&units).into(),
@@ -78,7 +80,8 @@ pub(super) fn utf16(bytes: &[u8]) -> Option<Vec<u16>> {
     Some(text.as_chunks().0.iter().map(|&pair| unit(pair)).collect())
 }
 
-/// The refusal of a file in which a text format's reader found nothing, if it has a byte that text never has.
+/// The refusal of a file in which a text format's reader found nothing, if it has a byte that text
+/// never has.
 pub(super) fn not_text(bytes: &[u8]) -> Option<Fault> {
     let offset = bytes.iter().position(|&byte| byte == 0)?;
     let message = format!("this is not text: byte 0x00 at offset {offset}");
@@ -114,7 +117,8 @@ pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
     lines(text).flat_map(words).collect()
 }
 
-/// A number in any of the forms that C and Fortran print, as an f64 that rounds to the f32 nearest to the text.
+/// A number in any of the forms that C and Fortran print, as an f64 that rounds to the f32 nearest
+/// to the text.
 pub(super) fn number(text: &str) -> Option<f64> {
     if let Ok(number) = text.parse() {
         return between_f32(number, || text.parse::<f32>()).ok();
@@ -144,8 +148,9 @@ pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<[f64; 3], Faul
     Ok(position)
 }
 
-/// The number as an f64 that rounds to the f32 that is nearest to the text. Where an f64 lies in the middle of two f32, the
-/// text may lie on either side of it, and is read once more, by `nearest`.
+/// The number as an f64 that rounds to the f32 that is nearest to the text. Where an f64 lies in
+/// the middle of two f32, the text may lie on either side of it, and is read once more, by
+/// `nearest`.
 pub(super) fn between_f32<E>(
     number: f64,
     nearest: impl FnOnce() -> Result<f32, E>,
@@ -166,7 +171,8 @@ pub(super) fn between_f32<E>(
     })
 }
 
-/// The shortest text that reads back to the same f64, also where that lies in the middle of two f32.
+/// The shortest text that reads back to the same f64, also where that lies in the middle of two
+/// f32.
 pub(super) fn wide(x: f64) -> String {
     let text = shortest(x);
     if between_f32(x, || text.parse()) == Ok(x) {
@@ -195,7 +201,8 @@ pub(super) fn shortest(value: impl Display + LowerExp) -> String {
     }
 }
 
-/// A polygon as triangles: a fan about its first corner; of one or two corners a degenerate one, so that nothing is lost.
+/// A polygon as triangles: a fan about its first corner; of one or two corners a degenerate one, so
+/// that nothing is lost.
 pub(super) fn fan(corners: &[i64]) -> Vec<[i64; 3]> {
     match *corners {
         [] => Vec::new(),

@@ -1,9 +1,10 @@
 //! Writing a mesh; the extension names the format.
 //!
-//! Coordinates are the shortest decimals that read back to the same f32, or f64 for a mesh far from its origin or nearly so:
-//! a mesh survives the way to a file and back to the bit. `.tri` files are Bourke's dialect, whose vertices also have a unit normal and a colour: the
-//! normal is the sum of the adjacent triangles' cross products (area-weighted), in three decimals
-//! since it is for display only; a vertex without one gets 0 0 1.
+//! Coordinates are the shortest decimals that read back to the same f32, or f64 for a mesh far from
+//! its origin or nearly so: a mesh survives the way to a file and back to the bit. `.tri` files are
+//! Bourke's dialect, whose vertices also have a unit normal and a colour: the normal is the sum of
+//! the adjacent triangles' cross products (area-weighted), in three decimals since it is for
+//! display only; a vertex without one gets 0 0 1.
 
 use std::path::Path;
 
@@ -103,15 +104,16 @@ fn off_text(mesh: &TriangleMesh) -> String {
     text
 }
 
-/// Each vertex' coordinates in the file, as text that is read back as they are: the shortest f32 where that keeps the mesh where
-/// it is, f64 otherwise.
+/// Each vertex' coordinates in the file, as text that is read back as they are: the shortest f32
+/// where that keeps the mesh where it is, f64 otherwise.
 fn coordinates(mesh: &TriangleMesh) -> impl Iterator<Item = [String; 3]> + '_ {
     let short = !mesh.is_far() && stays_when_shortened(mesh);
     let word = move |x: f64| if short { shortest(x as f32) } else { wide(x) };
     mesh.points().map(move |point| point.map(word))
 }
 
-/// Whether a mesh that isn't far would not be so as the shortest decimals of its f32: read as f64, they are others.
+/// Whether a mesh that isn't far would not be so as the shortest decimals of its f32: read as f64,
+/// they are others.
 fn stays_when_shortened(mesh: &TriangleMesh) -> bool {
     let shortened = |x: f64| shortest(x as f32).parse().unwrap_or(x);
     let points: Vec<[f64; 3]> = mesh.points().map(|point| point.map(shortened)).collect();
@@ -124,7 +126,8 @@ fn three_decimals(value: f64) -> f64 {
     libm::round(value * 1000.0) / 1000.0 + 0.0
 }
 
-/// Area-weighted vertex normals; the cross product of a triangle's edges is its unit normal times twice its area.
+/// Area-weighted vertex normals; the cross product of a triangle's edges is its unit normal times
+/// twice its area.
 fn vertex_normals(mesh: &TriangleMesh) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; mesh.vertices.len()];
     for triangle in &mesh.triangles {

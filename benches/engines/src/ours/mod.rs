@@ -1,4 +1,5 @@
-//! Ourselves: boxes for the comparison on equal work, and what a user of the culler has instead of boxes.
+//! Ourselves: boxes for the comparison on equal work, and what a user of the culler has instead of
+//! boxes.
 
 mod boxes;
 mod culler;

@@ -24,7 +24,8 @@ pub use print::{ReportFormat, emit as emit_verdict};
 /// The choices for judging a program.
 #[derive(clap::Args)]
 pub struct Outside {
-    /// Judge this program in place of the own culler: a line for the shell that reads cases and answers with pairs
+    /// Judge this program in place of the own culler: a line for the shell that reads cases and
+    /// answers with pairs
     #[arg(long, value_name = "CMD", help_heading = "Judging a program")]
     pub exec: Option<String>,
     /// What it claims never to miss
@@ -157,8 +158,8 @@ impl Outside {
     }
 }
 
-/// Reads a case, a record or one of Broadmark's recordings (`.aabbs`) from a file. A recording, or a line of another, has at most
-/// `most` bytes.
+/// Reads a case, a record or one of Broadmark's recordings (`.aabbs`) from a file. A recording, or
+/// a line of another, has at most `most` bytes.
 ///
 /// # Errors
 /// A file that can't be read or is none.

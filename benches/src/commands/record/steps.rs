@@ -127,7 +127,8 @@ const BULLET: [&str; 8] = [
     "--",
 ];
 
-/// Runs benches into a directory of their own; the command that gathers criterion's estimates from it.
+/// Runs benches into a directory of their own; the command that gathers criterion's estimates from
+/// it.
 fn estimates(benches: &[&str], file: &Path) -> miette::Result<Command> {
     let home = std::env::current_dir()
         .into_diagnostic()?

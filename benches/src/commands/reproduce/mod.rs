@@ -25,9 +25,10 @@ use rows::Tables;
 
 /// Run the paper's experiments: Table 1, Figs 12 to 14, costs, claims
 ///
-/// For 50, 150, 300, 350 and 500 objects in one box, and 500 in a small one, every strategy culls the same seeded trajectories.
-/// Counts and hashes are equal on every CPU; times are medians over warm frames with intervals over seeds. Results are written
-/// as CSV, JSON and SVG; of a record (`sdop record reproduce`), `sdop report` makes the page paper/summary.md. The exit code is 1
+/// For 50, 150, 300, 350 and 500 objects in one box, and 500 in a small one, every strategy culls
+/// the same seeded trajectories. Counts and hashes are equal on every CPU; times are medians over
+/// warm frames with intervals over seeds. Results are written as CSV, JSON and SVG; of a record
+/// (`sdop record reproduce`), `sdop report` makes the page paper/summary.md. The exit code is 1
 /// when the sequential and the listed S-DOP report different pairs.
 #[derive(clap::Args)]
 #[command(

@@ -1,6 +1,7 @@
 //! `mpirun -n R sdop run`: each rank builds its share of the scene, rank 0 prints.
 //!
-//! Whatever goes wrong, all ranks learn of it before any of them ends, so that none waits for one that is gone.
+//! Whatever goes wrong, all ranks learn of it before any of them ends, so that none waits for one
+//! that is gone.
 
 use miette::IntoDiagnostic as _;
 use sdop::bodies::Bodies;
@@ -87,8 +88,9 @@ fn tell(
     }
 }
 
-/// The value, when every rank has one. Otherwise nothing on all of them, and the first that has an error of its own says it: with
-/// its number, unless all have one, which they have then come to alike. Collective.
+/// The value, when every rank has one. Otherwise nothing on all of them, and the first that has an
+/// error of its own says it: with its number, unless all have one, which they have then come to
+/// alike. Collective.
 fn agreed<T>(network: &MpiNetwork, outcome: Result<T, Option<miette::Report>>) -> Option<T> {
     let own = matches!(outcome, Err(Some(_)));
     let troubles = network.gather(&[u64::from(outcome.is_err()), own.into()]);

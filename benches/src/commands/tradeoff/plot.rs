@@ -1,4 +1,5 @@
-//! The figures, as SVG: precision against time, break-even against density, precision against budget.
+//! The figures, as SVG: precision against time, break-even against density, precision against
+//! budget.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -19,7 +20,8 @@ const COLOURS: [RGBColor; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLA
 
 type Points = Vec<(f64, f64)>;
 
-/// Precision against time per frame: the Pareto front labelled at its points, with error bars; what is tied is grey.
+/// Precision against time per frame: the Pareto front labelled at its points, with error bars; what
+/// is tied is grey.
 pub fn precision(result: &Tradeoff) -> miette::Result<String> {
     let at = |row: &VariantResult| (1e6 * row.seconds().mean, row.precision.mean);
     let of = |standing| {
@@ -88,8 +90,8 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
     })
 }
 
-/// Where the names of points go, in pixels from each: to the right, the lowest point's first, each above the one below it where
-/// they would hide one another. Points are in pixels, down the page.
+/// Where the names of points go, in pixels from each: to the right, the lowest point's first, each
+/// above the one below it where they would hide one another. Points are in pixels, down the page.
 fn label_offsets(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
     const HEIGHT: i32 = 15;
     const WIDTH: i32 = 200;

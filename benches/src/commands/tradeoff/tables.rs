@@ -75,7 +75,8 @@ pub fn text(result: &Tradeoff) -> String {
     parts.join("\n\n")
 }
 
-/// A line a density and class of shapes, a column a price of a check: what to use, and what is tied with it.
+/// A line a density and class of shapes, a column a price of a check: what to use, and what is tied
+/// with it.
 pub fn decisions(result: &Tradeoff) -> Table {
     let checks: Vec<String> = CHECKS.iter().map(|check| nanoseconds(*check)).collect();
     let header = [
@@ -106,7 +107,8 @@ fn with_ties(best: &str, tied: &[String]) -> String {
     }
 }
 
-/// A line a change of the scene, a column a price of a check: what to use, and what is tied with it.
+/// A line a change of the scene, a column a price of a check: what to use, and what is tied with
+/// it.
 pub fn variations(result: &Tradeoff) -> Table {
     let checks = CHECKS.map(nanoseconds);
     let header = [

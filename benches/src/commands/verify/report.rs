@@ -1,5 +1,5 @@
-//! What a verification run says of itself: answers by stage and lists by strategy, one table each a source, and the matrix
-//! of what was judged.
+//! What a verification run says of itself: answers by stage and lists by strategy, one table each a
+//! source, and the matrix of what was judged.
 
 mod coverage;
 
@@ -22,7 +22,8 @@ pub struct Report {
     seconds: f64,
     /// Pairs missed, over all sources.
     missed: u64,
-    /// Pairs on which a list and that of all-pairs differ, over all sources; of given boxes, a list and their definition.
+    /// Pairs on which a list and that of all-pairs differ, over all sources; of given boxes, a list
+    /// and their definition.
     differ: u64,
     sources: Vec<SourceReport>,
     coverage: Coverage,
@@ -58,11 +59,14 @@ struct StrategyReport {
     missed: u64,
     /// On which a list and that of all-pairs differ.
     differ: u64,
-    /// Reported although the exact volumes are apart, but not those wider by the rounding margins; per million judged.
+    /// Reported although the exact volumes are apart, but not those wider by the rounding margins;
+    /// per million judged.
     margin_per_million: Option<f64>,
-    /// Reported although those are apart too, since supports are bounded from slabs; per million judged.
+    /// Reported although those are apart too, since supports are bounded from slabs; per million
+    /// judged.
     bound_per_million: Option<f64>,
-    /// Reported and rightly so, but the meshes are apart, per million pairs whose meshes were judged.
+    /// Reported and rightly so, but the meshes are apart, per million pairs whose meshes were
+    /// judged.
     looseness_per_million: Option<f64>,
 }
 
@@ -107,7 +111,8 @@ impl Report {
         self.coverage = Coverage::of(&self.matrix, boxes, rotation);
     }
 
-    /// What is wrong, if anything is: a pair is missed, a finder disagrees with all-pairs, or a cell of the matrix is empty.
+    /// What is wrong, if anything is: a pair is missed, a finder disagrees with all-pairs, or a
+    /// cell of the matrix is empty.
     pub fn why(&self) -> Option<String> {
         if self.missed > 0 {
             Some(format!("{} pairs were missed", self.missed))

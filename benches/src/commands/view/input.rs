@@ -27,10 +27,12 @@ pub enum Input {
     Broken(RecordError),
 }
 
-/// Reads what the path names. A record begins with a brace, a group of hard cases has a `[recipe]`, anything else is a scene.
+/// Reads what the path names. A record begins with a brace, a group of hard cases has a `[recipe]`,
+/// anything else is a scene.
 ///
 /// # Errors
-/// A file that can't be read; a scene or case that can't be built; flags that the kind of file can't have.
+/// A file that can't be read; a scene or case that can't be built; flags that the kind of file
+/// can't have.
 pub fn read(
     args: &SceneArgs,
     run: Option<usize>,
@@ -90,7 +92,8 @@ fn is_record(path: &Path) -> miette::Result<bool> {
     Ok(start[..read].trim_ascii_start().starts_with(b"{"))
 }
 
-/// Whether a TOML file has a recipe. What is no TOML, or can't be read, is left to the scene's reader, which says so.
+/// Whether a TOML file has a recipe. What is no TOML, or can't be read, is left to the scene's
+/// reader, which says so.
 fn is_case(path: &Path, most: u64) -> bool {
     let table = sdop::files::read_text(path, most)
         .ok()
@@ -98,7 +101,8 @@ fn is_case(path: &Path, most: u64) -> bool {
     table.is_some_and(|table| table.contains_key("recipe"))
 }
 
-/// The claim that a case of the judge is about: the first of those in its first line. Records have none.
+/// The claim that a case of the judge is about: the first of those in its first line. Records have
+/// none.
 fn claim(path: &Path, most: u64) -> Option<Claim> {
     #[derive(serde::Deserialize)]
     struct Mark {
@@ -111,7 +115,8 @@ fn claim(path: &Path, most: u64) -> Option<Claim> {
     mark.claims?.first().copied()
 }
 
-/// A case with the pairs that its file has or that `answers` has; a line, and the answers, have at most `most` bytes.
+/// A case with the pairs that its file has or that `answers` has; a line, and the answers, have at
+/// most `most` bytes.
 fn judged(
     (path, most): (&Path, u64),
     claim: Claim,

@@ -148,8 +148,8 @@ impl Stage {
         }
     }
 
-    /// Sets all bodies out on a cube's lattice about `centre`, `apart` times the usual distance; returns the cube's side in
-    /// bodies.
+    /// Sets all bodies out on a cube's lattice about `centre`, `apart` times the usual distance;
+    /// returns the cube's side in bodies.
     pub(super) fn lattice(&mut self, apart: Real, centre: Vector, speed: Real) -> Real {
         let side = (1..).find(|n| n * n * n >= self.plan.bodies).unwrap_or(1);
         for i in 0..self.plan.bodies {

@@ -1,4 +1,5 @@
-//! Cubes and octahedra that touch exactly: all coordinates are short binary numbers, so nothing rounds.
+//! Cubes and octahedra that touch exactly: all coordinates are short binary numbers, so nothing
+//! rounds.
 
 use glam::Vec3;
 use rand::{Rng, RngExt};
@@ -74,7 +75,8 @@ const TURNS: [[f32; 4]; 5] = [
     [0.0, 0.0, 3.0, 0.0],
 ];
 
-/// A dynamic body at a lattice point with partners that touch it; every third one is an ulp further out or in.
+/// A dynamic body at a lattice point with partners that touch it; every third one is an ulp further
+/// out or in.
 pub fn touching(
     touch: Touch,
     number: u32,

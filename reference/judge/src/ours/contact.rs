@@ -1,9 +1,10 @@
-//! Near-touching configurations, drawn on purpose: uniform random pairs are far apart or deep inside one another and
-//! never ask for the last bit.
+//! Near-touching configurations, drawn on purpose: uniform random pairs are far apart or deep
+//! inside one another and never ask for the last bit.
 //!
-//! A supporting feature of A and one of B along an axis n are put together, Δ = a* − b* + gap·n. At gap 0 the sets share
-//! the point a* and n separates their interiors, so the pair touches whatever the other axes say. The gap is a few u of the
-//! bodies' size, and rounding tB to f32 adds half an ulp of the coordinates to it.
+//! A supporting feature of A and one of B along an axis n are put together, Δ = a* − b* + gap·n. At
+//! gap 0 the sets share the point a* and n separates their interiors, so the pair touches whatever
+//! the other axes say. The gap is a few u of the bodies' size, and rounding tB to f32 adds half an
+//! ulp of the coordinates to it.
 
 use glam::{DMat3, DVec3};
 use sdop_reference as reference;
@@ -58,7 +59,8 @@ pub struct Contact {
     pub kind: Kind,
     /// Which face, edge or world direction; taken modulo their number.
     pub pick: [u32; 2],
-    /// Any direction, any length; used by kinds that take one, and for the sign of the others' axes.
+    /// Any direction, any length; used by kinds that take one, and for the sign of the others'
+    /// axes.
     pub direction: [f64; 3],
     /// Gap (overlap if negative) in u = 2⁻²⁴ of the two bodies' reach.
     pub gap: f64,
@@ -76,8 +78,8 @@ pub struct Placed {
 }
 
 impl Contact {
-    /// The translation that brings the second body, in `shape` with `rotation`, to the contact with `first`. `None` when
-    /// a pose is outside the contract.
+    /// The translation that brings the second body, in `shape` with `rotation`, to the contact with
+    /// `first`. `None` when a pose is outside the contract.
     #[must_use]
     pub fn place(
         &self,

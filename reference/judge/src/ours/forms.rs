@@ -14,7 +14,8 @@ use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Form {
-    /// A procedural shape's name, or `point`, `segment`, `triangle`, `sliver` (zero area), `tetrahedron`.
+    /// A procedural shape's name, or `point`, `segment`, `triangle`, `sliver` (zero area),
+    /// `tetrahedron`.
     pub form: String,
     /// A procedural shape's sizes.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

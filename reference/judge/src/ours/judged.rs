@@ -19,8 +19,9 @@ pub struct Shapes {
     pub built: Vec<Shape>,
     /// The same numbers for the reference, with each shape's oriented box.
     pub judged: Vec<reference::Shape>,
-    /// The same shapes, as much wider as the rounding margins may make a report: balls by r·15u + 2⁻⁶⁸ (the bound that
-    /// [`inflate_radius`](sdop::rounding::sphere::inflate_radius) states), slabs by twice their margin.
+    /// The same shapes, as much wider as the rounding margins may make a report: balls by r·15u +
+    /// 2⁻⁶⁸ (the bound that [`inflate_radius`](sdop::rounding::sphere::inflate_radius) states),
+    /// slabs by twice their margin.
     pub widened: Vec<reference::Shape>,
 }
 

@@ -1,4 +1,5 @@
-//! Reads a record line by line, so that it need not fit into memory. Anything amiss is an error with its line.
+//! Reads a record line by line, so that it need not fit into memory. Anything amiss is an error
+//! with its line.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -37,7 +38,8 @@ impl Reader<BufReader<File>> {
     /// Opens a record and reads its first line.
     ///
     /// # Errors
-    /// A file that can't be read, is no record, or has another version; a first line that contradicts itself.
+    /// A file that can't be read, is no record, or has another version; a first line that
+    /// contradicts itself.
     pub fn open(path: &Path) -> Result<Self, RecordError> {
         let name = path.display().to_string();
         match File::open(path) {
@@ -99,10 +101,12 @@ impl<R: BufRead> Reader<R> {
         &self.bodies
     }
 
-    /// Reads the next frame and moves the bodies to it; `None` at the end. After an error nothing more can be read.
+    /// Reads the next frame and moves the bodies to it; `None` at the end. After an error nothing
+    /// more can be read.
     ///
     /// # Errors
-    /// A line that is no frame, or one that contradicts the first line: with its number and how to mend it.
+    /// A line that is no frame, or one that contradicts the first line: with its number and how to
+    /// mend it.
     pub fn next_frame(&mut self) -> Result<Option<FrameLine>, RecordError> {
         let mut text = Vec::new();
         loop {

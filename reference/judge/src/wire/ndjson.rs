@@ -1,7 +1,8 @@
-//! Cases as lines of JSON: `sdop-record`, version 1, with what a case has on top. Unknown keys are ignored by readers.
+//! Cases as lines of JSON: `sdop-record`, version 1, with what a case has on top. Unknown keys are
+//! ignored by readers.
 //!
-//! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claim `aabb`, and `bodies` when the set
-//! changes, each with its former number as `was` (null for a new body).
+//! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claim `aabb`, and
+//! `bodies` when the set changes, each with its former number as `was` (null for a new body).
 
 use std::io::BufRead;
 
@@ -29,8 +30,8 @@ struct CaseHeader {
     about: About,
 }
 
-/// What a case's first line has on top of a record's. It is read on its own, because a number of a flattened structure
-/// would be rounded twice, to f64 and then to f32.
+/// What a case's first line has on top of a record's. It is read on its own, because a number of a
+/// flattened structure would be rounded twice, to f64 and then to f32.
 #[derive(Serialize, Deserialize)]
 struct About {
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -63,7 +64,8 @@ struct CaseFrame {
     pairs: Option<Vec<[u32; 2]>>,
 }
 
-/// A whole case for one claim; with the pairs that were reported of each frame, where there are any.
+/// A whole case for one claim; with the pairs that were reported of each frame, where there are
+/// any.
 pub(crate) fn encode(
     case: &Case,
     claim: Claim,
@@ -313,7 +315,8 @@ mod tests {
         }
     }
 
-    /// Old text may have 7.038531e-26, which is the f32 0x15ae43fd. By way of an f64 it would be the next one.
+    /// Old text may have 7.038531e-26, which is the f32 0x15ae43fd. By way of an f64 it would be
+    /// the next one.
     #[test]
     fn old_cases_are_read_without_rounding_twice() {
         let group = groups()
