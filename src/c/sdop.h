@@ -45,16 +45,19 @@ typedef struct SdopCuller SdopCuller;
 // A mesh with its bounding ball and or-DOP.
 typedef struct SdopShape SdopShape;
 
-// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and events.
+// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and
+// events.
 typedef struct SdopWorld SdopWorld;
 
 // How a mesh becomes a shape. All zeros is the default.
 typedef struct {
   // Number of or-DOP faces: 6, 14, 18 or 26; 0 is 18.
   uint32_t k;
-  // Scales the mesh about its origin until its smallest enclosing ball has this radius; 0 keeps its size.
+  // Scales the mesh about its origin until its smallest enclosing ball has this radius; 0 keeps
+  // its size.
   float radius;
-  // Whether poses place the centre of the smallest enclosing ball instead of the mesh's own origin.
+  // Whether poses place the centre of the smallest enclosing ball instead of the mesh's own
+  // origin.
   bool about_ball;
   // Whether the or-DOP stands on the mesh's own axes instead of the principal axes of its hull.
   bool on_model_axes;
@@ -88,7 +91,7 @@ typedef struct {
 
 // How bodies are culled. All zeros is the default.
 typedef struct {
-  // Which volumes are tested; null is "s-dop", spheres and then or-DOPs.
+  // Which volumes are tested; null is "s-dop-sequential", spheres and then or-DOPs.
   const char *strategy;
   // Who finds the candidates; null is "auto".
   const char *finder;
@@ -104,8 +107,8 @@ typedef struct {
   uint32_t second;
 } SdopPair;
 
-// A closed box on the world's axes: boxes that touch meet. Its ends are finite, and no lower one is above the upper one;
-// sides of no length are fine.
+// A closed box on the world's axes: boxes that touch meet. Its ends are finite, and no lower one
+// is above the upper one; sides of no length are fine.
 typedef struct {
   // The lower corner.
   float min[3];
@@ -144,7 +147,8 @@ typedef struct {
 // Takes an event: the pointer given along, the event. Must return normally.
 typedef void (*SdopTakeEvent)(void*, SdopEvent);
 
-// Takes some of a frame's pairs: the pointer given along, the pairs, their number. Must return normally.
+// Takes some of a frame's pairs: the pointer given along, the pairs, their number. Must return
+// normally.
 typedef void (*SdopTakePairs)(void*, const SdopPair*, size_t);
 
 // A body to be inserted.
@@ -170,14 +174,16 @@ extern "C" {
 // The version of the library, such as "0.1.0".
 const char *sdop_version(void);
 
-// Why the last call on this thread failed and how to mend it, until the next call; empty if it did not.
+// Why the last call on this thread failed and how to mend it, until the next call; empty if it did
+// not.
 const char *sdop_last_error(void);
 
-// Makes a shape of vertices in the mesh's own frame, to whose origin poses refer, and vertex indices of triangles. `spec` may be
-// null.
+// Makes a shape of vertices in the mesh's own frame, to whose origin poses refer, and vertex
+// indices of triangles. `spec` may be null.
 //
 // # Safety
-// The columns have as many entries as said; `spec` is null or a specification; `out` may be written.
+// The columns have as many entries as said; `spec` is null or a specification; `out` may be
+// written.
 SdopStatus sdop_shape_new(const double (*vertices)[3],
                           size_t vertex_count,
                           const uint32_t (*triangles)[3],
@@ -207,8 +213,8 @@ SdopStatus sdop_culler_new(const SdopShape *const *shapes,
 // It is from `sdop_culler_new` and not used afterwards.
 void sdop_culler_free(SdopCuller *culler);
 
-// Finds the pairs that might touch at these poses, one of each column for each body. Static bodies stay where they were made.
-// `pairs` gets their number; read them with `sdop_culler_pairs`.
+// Finds the pairs that might touch at these poses, one of each column for each body. Static bodies
+// stay where they were made. `pairs` gets their number; read them with `sdop_culler_pairs`.
 //
 // # Safety
 // `culler` is a handle; the columns have an entry for each body; `pairs` may be written.
@@ -217,7 +223,8 @@ SdopStatus sdop_culler_cull(SdopCuller *culler,
                             const float (*translation)[3],
                             size_t *pairs);
 
-// Copies the pairs of the last frame into `buffer`. If they don't fit, `count` says how many there are.
+// Copies the pairs of the last frame into `buffer`. If they don't fit, `count` says how many there
+// are.
 //
 // # Safety
 // `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
@@ -268,31 +275,26 @@ SdopStatus sdop_box_world_set_bounds(SdopBoxWorld *world,
 // `world` is a handle; `pairs` may be written.
 SdopStatus sdop_box_world_cull(SdopBoxWorld *world, size_t *pairs);
 
-// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count` says how many there are.
+// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
+// says how many there are.
 //
 // # Safety
 // `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
-SdopStatus sdop_box_world_pairs(SdopBoxWorld *world,
-                                SdopIdPair *buffer,
-                                size_t capacity,
-                                size_t *count);
+SdopStatus sdop_box_world_pairs(SdopBoxWorld *world, SdopIdPair *buffer, size_t capacity, size_t *count);
 
-// Hands to `take` what the last cull reports that it didn't at the last call of this, and the other way round.
+// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
+// other way round.
 //
 // # Safety
 // `world` is a handle; `take` may be called with `user`.
-SdopStatus sdop_box_world_events(SdopBoxWorld *world,
-                                 SdopTakeEvent take,
-                                 void *user);
+SdopStatus sdop_box_world_events(SdopBoxWorld *world, SdopTakeEvent take, void *user);
 
-// Copies the world as bytes into `buffer`, for `sdop_box_world_restore`. If they don't fit, `count` says how many there are.
+// Copies the world as bytes into `buffer`, for `sdop_box_world_restore`. If they don't fit,
+// `count` says how many there are.
 //
 // # Safety
 // `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
-SdopStatus sdop_box_world_snapshot(SdopBoxWorld *world,
-                                   uint8_t *buffer,
-                                   size_t capacity,
-                                   size_t *count);
+SdopStatus sdop_box_world_snapshot(SdopBoxWorld *world, uint8_t *buffer, size_t capacity, size_t *count);
 
 // Makes this world the one of a snapshot.
 //
@@ -312,29 +314,28 @@ SdopStatus sdop_box_culler_new(const char *finder, size_t threads, SdopBoxCuller
 // It is from `sdop_box_culler_new` and not used afterwards.
 void sdop_box_culler_free(SdopBoxCuller *culler);
 
-// Finds the pairs of boxes that meet, touching included, and whose groups collide. `groups` may be null: all do. `pairs` gets
-// their number; read them with `sdop_box_culler_pairs`.
+// Finds the pairs of boxes that meet, touching included, and whose groups collide. `groups` may be
+// null: all do. `pairs` gets their number; read them with `sdop_box_culler_pairs`.
 //
 // # Safety
-// `culler` is a handle; `boxes` has `count` entries, `groups` too unless null; `pairs` may be written.
+// `culler` is a handle; `boxes` has `count` entries, `groups` too unless null; `pairs` may be
+// written.
 SdopStatus sdop_box_culler_cull(SdopBoxCuller *culler,
                                 const SdopBox *boxes,
                                 const SdopGroups *groups,
                                 size_t count,
                                 size_t *pairs);
 
-// Copies the pairs of the last frame into `buffer`, in an order that depends on the finder and the frames so far alone. If they
-// don't fit, `count` says how many there are.
+// Copies the pairs of the last frame into `buffer`, in an order that depends on the finder and the
+// frames so far alone. If they don't fit, `count` says how many there are.
 //
 // # Safety
 // `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
-SdopStatus sdop_box_culler_pairs(SdopBoxCuller *culler,
-                                 SdopPair *buffer,
-                                 size_t capacity,
-                                 size_t *count);
+SdopStatus sdop_box_culler_pairs(SdopBoxCuller *culler, SdopPair *buffer, size_t capacity, size_t *count);
 
-// Culls as `sdop_box_culler_cull` does and hands the pairs to `take`, some 65,000 at a time, so that memory doesn't grow with
-// their number. With several threads, `take` is called from any of them, one call at a time.
+// Culls as `sdop_box_culler_cull` does and hands the pairs to `take`, some 65,000 at a time, so
+// that memory doesn't grow with their number. With several threads, `take` is called from any of
+// them, one call at a time.
 //
 // # Safety
 // As `sdop_box_culler_cull`; `take` may be called with `user`.
@@ -345,7 +346,8 @@ SdopStatus sdop_box_culler_cull_each(SdopBoxCuller *culler,
                                      SdopTakePairs take,
                                      void *user);
 
-// Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the defaults.
+// Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
+// defaults.
 //
 // # Safety
 // The column has as many shapes as said; `options` is null or options; `out` may be written.
@@ -390,7 +392,8 @@ SdopStatus sdop_world_remove(SdopWorld *world, uint64_t id);
 // `world` is a handle, `body` a body.
 SdopStatus sdop_world_set(SdopWorld *world, uint64_t id, const SdopBody *body);
 
-// Moves bodies: columns of ids, rotations and translations. Those before one that is refused have moved.
+// Moves bodies: columns of ids, rotations and translations. Those before one that is refused have
+// moved.
 //
 // # Safety
 // `world` is a handle; the columns have `count` entries.
@@ -400,37 +403,33 @@ SdopStatus sdop_world_set_poses(SdopWorld *world,
                                 const double (*translation)[3],
                                 size_t count);
 
-// Finds the pairs that might touch now. `pairs` gets their number; read them with `sdop_world_pairs`.
+// Finds the pairs that might touch now. `pairs` gets their number; read them with
+// `sdop_world_pairs`.
 //
 // # Safety
 // `world` is a handle; `pairs` may be written.
 SdopStatus sdop_world_cull(SdopWorld *world, size_t *pairs);
 
-// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count` says how many there are.
+// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
+// says how many there are.
 //
 // # Safety
 // `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
-SdopStatus sdop_world_pairs(SdopWorld *world,
-                            SdopIdPair *buffer,
-                            size_t capacity,
-                            size_t *count);
+SdopStatus sdop_world_pairs(SdopWorld *world, SdopIdPair *buffer, size_t capacity, size_t *count);
 
-// Hands to `take` what the last cull reports that it didn't at the last call of this, and the other way round.
+// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
+// other way round.
 //
 // # Safety
 // `world` is a handle; `take` may be called with `user`.
-SdopStatus sdop_world_events(SdopWorld *world,
-                             SdopTakeEvent take,
-                             void *user);
+SdopStatus sdop_world_events(SdopWorld *world, SdopTakeEvent take, void *user);
 
-// Copies the world as bytes into `buffer`, for `sdop_world_restore`. If they don't fit, `count` says how many there are.
+// Copies the world as bytes into `buffer`, for `sdop_world_restore`. If they don't fit, `count`
+// says how many there are.
 //
 // # Safety
 // `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
-SdopStatus sdop_world_snapshot(SdopWorld *world,
-                               uint8_t *buffer,
-                               size_t capacity,
-                               size_t *count);
+SdopStatus sdop_world_snapshot(SdopWorld *world, uint8_t *buffer, size_t capacity, size_t *count);
 
 // Makes this world the one of a snapshot. It must have the same shapes under the same numbers.
 //
