@@ -122,6 +122,7 @@ fn without_bodies(scene: &Scene) -> Scene {
         effects: scene.effects.clone(),
         cull: scene.cull.clone(),
         share: Some(scene.share()),
+        fine: scene.fine.clone(),
         ..*scene
     }
 }
