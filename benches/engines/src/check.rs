@@ -4,7 +4,7 @@ use miette::Diagnostic;
 use sdop::rounding::U;
 use thiserror::Error;
 
-use crate::boxes::{Frame, Slabs, meet};
+use crate::boxes::{Frame, meet};
 use crate::entry::{Entry, Work};
 use crate::oracle;
 

@@ -15,6 +15,7 @@ use sdop::threads::Threads;
 use serde::Serialize;
 
 use sdop_bench::measure::turns::median;
+use sdop_bench::remedy::OrReport as _;
 use sdop_judge::contestant::Contestant;
 
 use crate::boxes::Frame;
@@ -180,7 +181,7 @@ struct Loop {
 impl Loop {
     fn new(threads: usize, numbers: usize, work: fn(&mut [f32])) -> miette::Result<Self> {
         Ok(Self {
-            pool: Threads::new(threads)?,
+            pool: Threads::new(threads).or_report()?,
             pieces: vec![vec![1.0; numbers / PIECES]; PIECES],
             work,
         })

@@ -1,11 +1,7 @@
 //! Threads for engines that work on rayon's.
 
 use miette::IntoDiagnostic as _;
-use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-
-/// Bodies whose pairs one thread finds at once.
-const CHUNK: usize = 1024;
 
 /// The caller's thread alone, or a pool of several.
 pub struct Threads(Option<ThreadPool>);
@@ -31,32 +27,6 @@ impl Threads {
             Some(pool) => pool.install(work),
             None => work(),
         }
-    }
-}
-
-/// The answers of a tree that is asked for one body after the other.
-pub struct Queries(Vec<Vec<[u32; 2]>>);
-
-impl Queries {
-    /// Room for the answers about so many bodies.
-    pub fn new(bodies: usize) -> Self {
-        Self(vec![Vec::new(); bodies.div_ceil(CHUNK)])
-    }
-
-    /// Asks for each of `bodies` on the threads at hand; `ask` appends what it finds to the list.
-    pub fn ask<T: Sync>(&mut self, bodies: &[T], ask: impl Fn(u32, &T, &mut Vec<[u32; 2]>) + Sync) {
-        let chunks = self.0.par_iter_mut().zip(bodies.par_chunks(CHUNK));
-        chunks.enumerate().for_each(|(chunk, (pairs, bodies))| {
-            pairs.clear();
-            for (number, body) in (chunk * CHUNK..).zip(bodies) {
-                ask(number as u32, body, pairs);
-            }
-        });
-    }
-
-    /// All of them.
-    pub fn pairs(&self) -> Vec<[u32; 2]> {
-        self.0.concat()
     }
 }
 
