@@ -4,7 +4,7 @@ use std::ffi::c_char;
 
 use super::border::{
     Refusal, SdopPair, SdopStatus, call, column, fill, free, give, handle, optional, pairs, put,
-    text,
+    shared, text,
 };
 use crate::bodies::{Bodies, Groups};
 use crate::culler::{Culler, CullerBuilder};
@@ -139,8 +139,7 @@ pub(super) unsafe fn shapes(
     // SAFETY: the caller's promise.
     let handles = unsafe { column(first, count, "shapes") }?;
     // SAFETY: the caller's promise.
-    let copy =
-        |shape: &*const SdopShape| Ok(unsafe { handle(shape.cast_mut(), "shape") }?.0.clone());
+    let copy = |shape: &*const SdopShape| Ok(unsafe { shared(*shape, "shape") }?.0.clone());
     handles.iter().map(copy).collect()
 }
 
@@ -186,7 +185,7 @@ pub unsafe extern "C" fn sdop_culler_new(
         let (shapes, given) = unsafe {
             (
                 self::shapes(shapes, shape_count)?,
-                handle(bodies.cast_mut(), "bodies")?,
+                shared(bodies, "bodies")?,
             )
         };
         let n = given.count;

@@ -18,7 +18,7 @@ use crate::world::{BodyId, Event, Events, SnapshotError, WorldError};
 pub enum SdopStatus {
     /// As asked.
     Ok = 0,
-    /// Input that can't be carried out; nothing has changed.
+    /// Input that can't be carried out. Of a column, what comes before it has been.
     Refused = 1,
     /// The buffer is too small; the count says how much is needed.
     TooSmall = 2,
@@ -154,6 +154,15 @@ fn null(what: &str) -> Refusal {
 pub unsafe fn handle<'a, T>(handle: *mut T, what: &str) -> Result<&'a mut T, Refusal> {
     // SAFETY: the caller's promise.
     unsafe { handle.as_mut() }.ok_or_else(|| null(what))
+}
+
+/// What a pointer that is only read points to. Many threads may read it at the same time.
+///
+/// # Safety
+/// The pointer is null, or to a value that nobody writes for as long as the call lasts.
+pub unsafe fn shared<'a, T>(pointer: *const T, what: &str) -> Result<&'a T, Refusal> {
+    // SAFETY: the caller's promise.
+    unsafe { pointer.as_ref() }.ok_or_else(|| null(what))
 }
 
 /// Frees what a handle points to.

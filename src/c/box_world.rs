@@ -4,7 +4,7 @@ use std::ffi::{c_char, c_void};
 
 use super::border::{
     SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back,
-    saved, tell,
+    saved, shared, tell,
 };
 use super::boxes::builder;
 use crate::bodies::{Aabb, Groups, Motion};
@@ -83,7 +83,7 @@ pub unsafe extern "C" fn sdop_box_world_insert(
 ) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
-        let (it, body) = unsafe { (handle(world, "world")?, *handle(body.cast_mut(), "body")?) };
+        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
         let inserted = it.0.insert(BoxBody::from(body))?;
         // SAFETY: the caller's promise.
         unsafe { put(id, inserted.to_bits(), "id") }
@@ -116,7 +116,7 @@ pub unsafe extern "C" fn sdop_box_world_set(
 ) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
-        let (it, body) = unsafe { (handle(world, "world")?, *handle(body.cast_mut(), "body")?) };
+        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
         Ok(it.0.set(BodyId::from_bits(id), BoxBody::from(body))?)
     })
 }

@@ -23,7 +23,7 @@ typedef enum {
 typedef enum {
   // As asked.
   SDOP_STATUS_OK = 0,
-  // Input that can't be carried out; nothing has changed.
+  // Input that can't be carried out. Of a column, what comes before it has been.
   SDOP_STATUS_REFUSED = 1,
   // The buffer is too small; the count says how much is needed.
   SDOP_STATUS_TOO_SMALL = 2,

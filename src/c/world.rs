@@ -5,7 +5,7 @@ use std::ffi::c_void;
 use super::bodies::{SdopOptions, SdopShape, builder, shapes};
 use super::border::{
     SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back,
-    saved, tell,
+    saved, shared, tell,
 };
 use crate::bodies::Groups;
 use crate::world::{Body, BodyId, World};
@@ -89,7 +89,7 @@ pub unsafe extern "C" fn sdop_world_add_shape(
 ) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
-        let (it, shape) = unsafe { (handle(world, "world")?, handle(shape.cast_mut(), "shape")?) };
+        let (it, shape) = unsafe { (handle(world, "world")?, shared(shape, "shape")?) };
         let added = it.0.add_shape(shape.0.clone())?;
         // SAFETY: the caller's promise.
         unsafe { put(number, added, "number") }
@@ -118,7 +118,7 @@ pub unsafe extern "C" fn sdop_world_insert(
 ) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
-        let (it, body) = unsafe { (handle(world, "world")?, *handle(body.cast_mut(), "body")?) };
+        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
         let inserted = it.0.insert(body.into())?;
         // SAFETY: the caller's promise.
         unsafe { put(id, inserted.to_bits(), "id") }
@@ -151,7 +151,7 @@ pub unsafe extern "C" fn sdop_world_set(
 ) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
-        let (it, body) = unsafe { (handle(world, "world")?, *handle(body.cast_mut(), "body")?) };
+        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
         Ok(it.0.set(BodyId::from_bits(id), body.into())?)
     })
 }
