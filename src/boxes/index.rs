@@ -11,7 +11,7 @@ use crate::pairs::{Run, Runs};
 use crate::simd::prefetch;
 
 /// The table of cells is made larger when more than this share of it is taken.
-const FULL: [usize; 2] = [3, 4];
+const MAX_LOAD: [usize; 2] = [3, 4];
 
 /// So many cells cost as much as a box to look at.
 const CELLS_PER_BOX: u64 = 2;
@@ -114,7 +114,7 @@ impl BoxIndex {
             }
         }
         let work = self.remove(slot);
-        if (self.taken + 1) * FULL[1] > self.cells.len() * FULL[0] {
+        if (self.taken + 1) * MAX_LOAD[1] > self.cells.len() * MAX_LOAD[0] {
             self.make_room();
         }
         let at = self.find(cell);

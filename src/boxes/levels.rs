@@ -11,11 +11,11 @@ use crate::bodies::Aabb;
 
 /// Quantiles of a sample of boxes: so many of them are drawn, and so many are smaller than the one
 /// in question.
-const SAMPLE: usize = 256;
-const SMALLER: usize = 192;
+const SAMPLE_SIZE: usize = 256;
+const USUAL_RANK: usize = 192;
 
 /// Boxes of one size differ by what rounding makes of their ends.
-const SOMEWHAT_ABOVE: f64 = 1.0 + 1.0 / (1 << 10) as f64;
+const UNIT_SLACK: f64 = 1.0 + 1.0 / (1 << 10) as f64;
 
 /// Bits of a number's fraction.
 const MANTISSA: u32 = f64::MANTISSA_DIGITS - 1;
@@ -120,7 +120,7 @@ impl Levels {
     /// Levels that suit these boxes: none has cells much smaller than the mean distance of boxes,
     /// unless most boxes are smaller.
     pub fn suited_to<'a>(boxes: impl Iterator<Item = &'a Aabb>, count: usize) -> Self {
-        let step = count.div_ceil(SAMPLE).max(1);
+        let step = count.div_ceil(SAMPLE_SIZE).max(1);
         let (mut lower, mut upper) = ([f64::MAX; 3], [f64::MIN; 3]);
         let mut sides: Vec<f64> = Vec::new();
         for (number, aabb) in boxes.enumerate() {
@@ -133,13 +133,13 @@ impl Levels {
             }
         }
         sides.sort_by(f64::total_cmp);
-        let usual = sides.get(sides.len() * SMALLER / SAMPLE).copied();
+        let usual = sides.get(sides.len() * USUAL_RANK / SAMPLE_SIZE).copied();
         let usual = usual.unwrap_or(1.0);
         let space = (0..3).map(|axis| (upper[axis] - lower[axis]).max(usual));
         let distance = (space.product::<f64>() / count.max(1) as f64).cbrt();
         let tiniest = f64::from(f32::from_bits(1));
         let (least, unit) = if usual > f64::from(f32::MIN_POSITIVE) {
-            (usual.min(0.5 * distance), usual * SOMEWHAT_ABOVE)
+            (usual.min(0.5 * distance), usual * UNIT_SLACK)
         } else {
             let least = (0.5 * distance).max(tiniest);
             (least, least)

@@ -14,16 +14,16 @@ use crate::world::Ids;
 
 /// Changed boxes are looked for one by one while they are at most one in so many: beyond, finding
 /// all pairs anew is faster.
-const FEW: usize = 8;
+const BOXES_PER_CHANGE: usize = 8;
 
 /// The same by the boxes that looking for them takes, for each box of the world.
 const WORK_PER_BOX: usize = 8;
 
 /// Boxes that are looked for together.
-const TOGETHER: usize = 16;
+const SEEKERS_PER_BATCH: usize = 16;
 
 /// How many boxes ahead what is read of one is prefetched.
-const AHEAD: usize = 8;
+const PREFETCH_DISTANCE: usize = 8;
 
 /// An index pays if it serves for so many frames. After one that didn't, or a frame in which
 /// looking one by one took too long, the next frames find all pairs: twice as many as the last
@@ -87,7 +87,7 @@ impl Movers {
         }
         if !std::mem::replace(&mut self.is_changed[slot], true) {
             self.changed.push(slot as u32);
-            self.are_many = self.changed.len() * FEW > ids.slots();
+            self.are_many = self.changed.len() * BOXES_PER_CHANGE > ids.slots();
         }
     }
 
@@ -174,7 +174,7 @@ impl BoxWorld {
             Some(mut index) if index.len() <= 2 * self.movers.indexed => {
                 let changed = &self.movers.changed;
                 for (number, &slot) in changed.iter().enumerate() {
-                    if let Some(&next) = changed.get(number + AHEAD) {
+                    if let Some(&next) = changed.get(number + PREFETCH_DISTANCE) {
                         index.prefetch(next);
                     }
                     let at = slot as usize;
@@ -197,9 +197,9 @@ impl BoxWorld {
         let mut search = std::mem::take(&mut self.movers.search);
         found.clear();
         ends.clear();
-        let mut seekers = Vec::with_capacity(TOGETHER);
+        let mut seekers = Vec::with_capacity(SEEKERS_PER_BATCH);
         let mut updates = 0;
-        for slots in self.movers.changed.chunks(TOGETHER) {
+        for slots in self.movers.changed.chunks(SEEKERS_PER_BATCH) {
             seekers.clear();
             seekers.extend(slots.iter().map(|&slot| Seeker {
                 slot,
@@ -237,7 +237,8 @@ impl BoxWorld {
         } = &mut self.movers;
         let mut start = 0;
         for (number, (&slot, &end)) in changed.iter().zip(&*ends).enumerate() {
-            let ahead = [2 * AHEAD, AHEAD].map(|steps| changed.get(number + steps));
+            let ahead =
+                [2 * PREFETCH_DISTANCE, PREFETCH_DISTANCE].map(|steps| changed.get(number + steps));
             self.log.prefetch(ahead);
             let found = &found[std::mem::replace(&mut start, end)..end];
             compare(self.log.partners(slot), found, differences);

@@ -5,7 +5,7 @@ use crate::rounding::exp2;
 
 /// How many cells wide a box may be whose bodies are placed about one origin, without a search for
 /// regions: rounding there is below 2⁻¹⁰ of the largest body.
-const FEW_CELLS: f64 = 64.0;
+const CELLS_PER_ORIGIN: f64 = 64.0;
 
 /// The least cell, for bodies without any extent.
 const LEAST_CELL: f64 = exp2(-149);
@@ -53,7 +53,7 @@ impl Bounds {
 
     /// Whether one origin is too coarse for all.
     pub fn is_wide(&self) -> bool {
-        2.0 * self.half() > FEW_CELLS * self.cell()
+        2.0 * self.half() > CELLS_PER_ORIGIN * self.cell()
     }
 
     /// One origin for all: the world's own, unless the box lies farther out than it is wide. Then

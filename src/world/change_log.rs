@@ -1,7 +1,9 @@
 //! Which pairs came and went since events were last read.
 
-use super::BodyId;
+use std::sync::Arc;
+
 use super::pair_log::Reported;
+use super::{BodyId, Event, Events};
 
 /// A log of so many changes is searched for those that cancel each other.
 const WORTH_CANCELLING: usize = 1024;
@@ -23,25 +25,18 @@ pub(super) struct ChangeLog {
 
 impl ChangeLog {
     /// What leads from some pairs to others.
-    pub fn between(before: &Reported, now: &Reported) -> Self {
-        let mut log = Self::default();
-        let (mut before, mut now) = (
-            before.pairs().iter().peekable(),
-            now.pairs().iter().peekable(),
-        );
-        while let Some(pair) = [before.peek(), now.peek()]
-            .into_iter()
-            .flatten()
-            .min()
-            .copied()
-        {
-            let [had, has] = [before.next_if_eq(&pair), now.next_if_eq(&pair)];
-            if had.is_some() != has.is_some() {
-                let has_begun = has.is_some();
-                log.push(PairChange { pair, has_begun });
-            }
+    pub fn between(before: Arc<Reported>, now: Arc<Reported>) -> Self {
+        let change = |pair, has_begun| Some(PairChange { pair, has_begun });
+        let events = Events::between(before, now);
+        let changes = events.iter().filter_map(|event| match event {
+            Event::Begun(pair) => change(pair, true),
+            Event::Persisting(_) => None,
+            Event::Ended(pair) => change(pair, false),
+        });
+        Self {
+            changes: changes.collect(),
+            lasting: 0,
         }
-        log
     }
 
     pub fn push(&mut self, change: PairChange) {

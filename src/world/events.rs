@@ -31,13 +31,13 @@ pub enum Event {
 /// next cull, or that copies the pairs that they share with the world.
 #[derive(Clone, Debug, Default)]
 pub struct Events {
-    pub(super) now: Now,
-    pub(super) change: Change,
+    pub(super) now: CurrentPairs,
+    pub(super) change: PairDifference,
 }
 
 /// The pairs of the later cull.
 #[derive(Clone, Debug)]
-pub(super) enum Now {
+pub(super) enum CurrentPairs {
     List(Arc<Reported>),
     Partners {
         slots: Arc<Partners>,
@@ -47,7 +47,7 @@ pub(super) enum Now {
 
 /// How the pairs of the former cull differ from them.
 #[derive(Clone, Debug)]
-pub(super) enum Change {
+pub(super) enum PairDifference {
     /// These were reported.
     Since(Arc<Reported>),
     /// Both sorted.
@@ -57,19 +57,19 @@ pub(super) enum Change {
     },
 }
 
-impl Default for Now {
+impl Default for CurrentPairs {
     fn default() -> Self {
         Self::List(Arc::default())
     }
 }
 
-impl Default for Change {
+impl Default for PairDifference {
     fn default() -> Self {
         Self::Since(Arc::default())
     }
 }
 
-impl Now {
+impl CurrentPairs {
     pub fn pairs(&self) -> WorldPairs<'_> {
         match self {
             Self::List(list) => list.pairs(),
@@ -79,15 +79,22 @@ impl Now {
 }
 
 impl Events {
+    /// Those between two culls.
+    pub(super) fn between(before: Arc<Reported>, now: Arc<Reported>) -> Self {
+        let change = changes_between(&before, &now).unwrap_or(PairDifference::Since(before));
+        let now = CurrentPairs::List(now);
+        Self { now, change }
+    }
+
     /// All events, sorted by the slots of their pairs.
     pub fn iter(&self) -> impl Iterator<Item = Event> + '_ {
         let now = self.now.pairs().iter().peekable();
         match &self.change {
-            Change::Since(before) => Either::One(Merge {
+            PairDifference::Since(before) => Either::One(Merge {
                 before: before.pairs().iter().peekable(),
                 now,
             }),
-            Change::Listed { begun, ended } => Either::Other(Replay {
+            PairDifference::Listed { begun, ended } => Either::Other(Replay {
                 now,
                 begun: begun.iter().peekable(),
                 ended: ended.iter().peekable(),
@@ -98,11 +105,13 @@ impl Events {
     /// Pairs reported now and not before.
     pub fn begun(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
         match &self.change {
-            Change::Listed { begun, .. } => Either::One(begun.iter().copied()),
-            Change::Since(_) => Either::Other(self.iter().filter_map(|event| match event {
-                Event::Begun(pair) => Some(pair),
-                _ => None,
-            })),
+            PairDifference::Listed { begun, .. } => Either::One(begun.iter().copied()),
+            PairDifference::Since(_) => {
+                Either::Other(self.iter().filter_map(|event| match event {
+                    Event::Begun(pair) => Some(pair),
+                    _ => None,
+                }))
+            }
         }
     }
 
@@ -117,17 +126,19 @@ impl Events {
     /// Pairs reported before and not now; those of a body removed since then are among them.
     pub fn ended(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
         match &self.change {
-            Change::Listed { ended, .. } => Either::One(ended.iter().copied()),
-            Change::Since(_) => Either::Other(self.iter().filter_map(|event| match event {
-                Event::Ended(pair) => Some(pair),
-                _ => None,
-            })),
+            PairDifference::Listed { ended, .. } => Either::One(ended.iter().copied()),
+            PairDifference::Since(_) => {
+                Either::Other(self.iter().filter_map(|event| match event {
+                    Event::Ended(pair) => Some(pair),
+                    _ => None,
+                }))
+            }
         }
     }
 }
 
 /// Lists what has changed between two culls, unless it is much.
-pub(super) fn changes_between(before: &Reported, now: &Reported) -> Option<Change> {
+fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> {
     let [former, later] = [before, now].map(|reported| reported.slots.len());
     let most = (former + later) / LISTED_SHARE + ALWAYS_LISTED;
     if former.abs_diff(later) > most {
@@ -158,7 +169,7 @@ pub(super) fn changes_between(before: &Reported, now: &Reported) -> Option<Chang
     }
     ended.extend((i..former).map(|at| pair(0, at)));
     begun.extend((j..later).map(|at| pair(1, at)));
-    Some(Change::Listed { begun, ended })
+    Some(PairDifference::Listed { begun, ended })
 }
 
 /// One of two iterators.

@@ -9,7 +9,7 @@
 use std::sync::Arc;
 
 use super::change_log::{ChangeLog, PairChange};
-use super::events::{Change, Now};
+use super::events::{CurrentPairs, Event, PairDifference};
 use super::pair_log::{PairLog, Reported, WorldPairs};
 use super::{BodyId, Events, Ids};
 use crate::pairs::{PairList, Partners};
@@ -19,12 +19,12 @@ use crate::pairs::{PairList, Partners};
 pub(crate) struct LivePairs {
     /// What is left of it is memory while pairs are kept by body.
     log: PairLog,
-    live: Option<Live>,
+    live: Option<PairsByBody>,
 }
 
-/// Pairs by body.
+/// What is known of pairs while they are kept by body.
 #[derive(Clone, Debug)]
-struct Live {
+struct PairsByBody {
     /// Shared with the events that are read of them.
     partners: Arc<Partners>,
     /// None if no pairs were there when events were last read, or if none have been read: all have
@@ -43,7 +43,7 @@ impl LivePairs {
     pub fn pairs<'a>(&'a self, ids: &'a Ids) -> WorldPairs<'a> {
         match &self.live {
             None => self.log.pairs(),
-            Some(live) => WorldPairs::of_partners(&live.partners, ids.generation()),
+            Some(live) => live.pairs(ids),
         }
     }
 
@@ -65,9 +65,9 @@ impl LivePairs {
         if self.live.is_none() {
             let log = std::mem::take(&mut self.log);
             let changes = (!log.watched.slots.is_empty())
-                .then(|| ChangeLog::between(&log.watched, &log.last));
+                .then(|| ChangeLog::between(log.watched, log.last.clone()));
             let partners = Partners::of(&log.last.slots, ids.slots());
-            self.live = Some(Live {
+            self.live = Some(PairsByBody {
                 partners: Arc::new(partners),
                 changes,
             });
@@ -114,21 +114,11 @@ impl LivePairs {
         let Some(live) = &mut self.live else {
             return self.log.events();
         };
-        let generation = ids.generation().clone();
-        let [begun, ended] = match live.changes.replace(ChangeLog::default()) {
+        let changes = match live.changes.replace(ChangeLog::default()) {
             Some(changes) => changes.net(),
-            None => {
-                let all = WorldPairs::of_partners(&live.partners, &generation);
-                [all.iter().collect(), Vec::new()]
-            }
+            None => [live.pairs(ids).iter().collect(), Vec::new()],
         };
-        Events {
-            now: Now::Partners {
-                slots: live.partners.clone(),
-                generation,
-            },
-            change: Change::Listed { begun, ended },
-        }
+        live.events(changes, ids)
     }
 
     /// Bytes that pairs hold.
@@ -162,11 +152,26 @@ impl LivePairs {
     }
 }
 
-impl Live {
+impl PairsByBody {
     fn last(&self, ids: &Ids) -> Reported {
         Reported {
             slots: self.partners.iter().collect(),
             generation: ids.generation().clone(),
+        }
+    }
+
+    fn pairs<'a>(&'a self, ids: &'a Ids) -> WorldPairs<'a> {
+        WorldPairs::of_partners(&self.partners, ids.generation())
+    }
+
+    /// The events of these changes, begun and ended ones, that led to the pairs.
+    fn events(&self, [begun, ended]: [Vec<[BodyId; 2]>; 2], ids: &Ids) -> Events {
+        Events {
+            now: CurrentPairs::Partners {
+                slots: self.partners.clone(),
+                generation: ids.generation().clone(),
+            },
+            change: PairDifference::Listed { begun, ended },
         }
     }
 
@@ -175,19 +180,10 @@ impl Live {
         let Some(changes) = self.changes.clone() else {
             return Reported::default();
         };
-        let [begun, ended] = changes.net();
-        let now = WorldPairs::of_partners(&self.partners, ids.generation());
-        let mut begun = begun.into_iter().peekable();
-        let mut kept = now
-            .iter()
-            .filter(|&pair| begun.next_if_eq(&pair).is_none())
-            .peekable();
-        let mut ended = ended.into_iter().peekable();
-        reported(std::iter::from_fn(|| {
-            let next = [kept.peek(), ended.peek()].into_iter().flatten().min();
-            let pair = *next?;
-            let _ = (kept.next_if_eq(&pair), ended.next_if_eq(&pair));
-            Some(pair)
+        let events = self.events(changes.net(), ids);
+        reported(events.iter().filter_map(|event| match event {
+            Event::Begun(_) => None,
+            Event::Persisting(pair) | Event::Ended(pair) => Some(pair),
         }))
     }
 }

@@ -5,7 +5,6 @@ use std::iter::Zip;
 use std::slice::Iter;
 use std::sync::Arc;
 
-use super::events::{Change, Now, changes_between};
 use super::{BodyId, Events, Ids};
 use crate::pairs::{PairList, PairSorter, PartnerPairs, Partners};
 
@@ -202,11 +201,7 @@ impl PairLog {
         let now = self.last.clone();
         let before = std::mem::replace(&mut self.watched, now.clone());
         self.spare = Some(before.clone());
-        let change = changes_between(&before, &now).unwrap_or(Change::Since(before));
-        Events {
-            now: Now::List(now),
-            change,
-        }
+        Events::between(before, now)
     }
 
     /// Bytes that lists of pairs hold.
