@@ -11,7 +11,7 @@ pub(crate) use sort::PairSorter;
 use crate::simd::MAX_WIDTH;
 
 /// Room of the smallest list that has any.
-const SMALLEST: usize = 1024;
+const LEAST_CAPACITY: usize = 1024;
 
 /// Bytes that a column has taken, used or not.
 fn bytes<T>(column: &Vec<T>) -> usize {
@@ -133,8 +133,8 @@ impl PairList {
         (self.first.capacity() + self.second.capacity()) * size_of::<u32>()
     }
 
-    #[cfg(feature = "shapes")]
     /// Replaces every index from pair `start` on by its entry in `names`.
+    #[cfg(feature = "shapes")]
     pub(crate) fn rename(&mut self, start: usize, names: &[u32]) {
         for column in [&mut self.first, &mut self.second] {
             for index in &mut column[start..self.len] {
@@ -176,7 +176,7 @@ impl PairList {
     /// At least by an eighth, so that a list which grows pair by pair is seldom copied.
     #[cold]
     fn grow(&mut self, needed: usize) {
-        self.resize(needed.max(self.first.len() / 8 * 9).max(SMALLEST));
+        self.resize(needed.max(self.first.len() / 8 * 9).max(LEAST_CAPACITY));
     }
 
     fn resize(&mut self, size: usize) {
@@ -228,7 +228,10 @@ mod tests {
         for pair in 0..100_000 {
             list.push(pair, pair + 1);
             let needed = 8 * (list.len() + MAX_WIDTH);
-            assert!(list.bytes() <= (needed / 8 * 9).max(8 * SMALLEST), "{pair}");
+            assert!(
+                list.bytes() <= (needed / 8 * 9).max(8 * LEAST_CAPACITY),
+                "{pair}"
+            );
         }
         let mut joined = PairList::default();
         joined.append_all([&list, &list].into_iter());

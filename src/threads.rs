@@ -37,7 +37,7 @@ impl Clone for Threads {
 /// A frame's work on one thread, in nanoseconds or so (measured with AVX-512 on an Intel and
 /// rounded): by counts, so that nothing depends on the machine.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Work {
+pub struct FrameWork {
     /// Volumes placed.
     pub updates: u64,
     /// Candidates of the first test.
@@ -46,7 +46,7 @@ pub struct Work {
     pub refined: u64,
 }
 
-impl Work {
+impl FrameWork {
     fn nanoseconds(self) -> u64 {
         16 * self.updates + 2 * self.candidates + 20 * self.refined
     }
@@ -81,7 +81,7 @@ impl FrameThreads {
     }
 
     /// Says how much work the coming frame is, as far as the last one shows.
-    pub fn expect(&mut self, work: Work) {
+    pub fn expect(&mut self, work: FrameWork) {
         self.wakes = work.nanoseconds() >= self.worth_waking;
     }
 
@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn others_are_woken_for_frames_that_are_worth_it_and_always_for_nothing() {
-        let work = |candidates| Work {
+        let work = |candidates| FrameWork {
             updates: 100,
             candidates,
             refined: 10,
@@ -301,7 +301,7 @@ mod tests {
         }
         let mut always = FrameThreads::new(Threads::new(2).unwrap(), 0);
         assert_eq!(always.get().threads(), 2);
-        always.expect(Work::default());
+        always.expect(FrameWork::default());
         assert_eq!(always.get().threads(), 2);
     }
 

@@ -15,7 +15,7 @@ use sdop_bench::reproduce::closed_form::{probability, relative_reach};
 use sdop_bench::reproduce::immediate::{Handing, PairLoop};
 use sdop_bench::reproduce::readings::{Reading, cell, table};
 use sdop_bench::reproduce::sensitivity::{self, Bounce, Interpretation, Start};
-use sdop_bench::reproduce::units::{Experiments, Found};
+use sdop_bench::reproduce::units::{Experiments, UnitResult};
 use sdop_bench::reproduce::{
     Estimate, PaperScene, Plan, Results, Run, claims, rates, run_scene, study,
 };
@@ -93,7 +93,7 @@ fn units_joined_have_the_golden_counts() {
     let mut joined = Results::of_header(&header).unwrap();
     for unit in 0..header.units {
         let text = experiments.run(unit).unwrap();
-        let found: Found = serde_json::from_str(&text).unwrap();
+        let found: UnitResult = serde_json::from_str(&text).unwrap();
         assert_eq!(serde_json::to_string(&found).unwrap(), text);
         joined.take(&text).unwrap();
     }

@@ -7,14 +7,14 @@
 use std::env;
 
 /// What launchers call the number of ranks: OpenMPI, and the PMI of MPICH and of Slurm.
-const SIZES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
+const SIZE_VARIABLES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
 
 /// Set by any launcher that speaks `PMIx`, which leaves the number to be asked for; Slurm says it
 /// besides.
-const PMIX: [&str; 2] = ["PMIX_RANK", "SLURM_STEP_NUM_TASKS"];
+const PMIX_VARIABLES: [&str; 2] = ["PMIX_RANK", "SLURM_STEP_NUM_TASKS"];
 
 /// What launchers call a rank's number.
-const NUMBERS: [&str; 3] = ["OMPI_COMM_WORLD_RANK", "PMI_RANK", PMIX[0]];
+const RANK_VARIABLES: [&str; 3] = ["OMPI_COMM_WORLD_RANK", "PMI_RANK", PMIX_VARIABLES[0]];
 
 /// How many ranks of this program were started, as its launcher's environment says; 1 for a program
 /// that is run alone.
@@ -28,15 +28,15 @@ pub fn launched() -> usize {
 #[must_use]
 pub fn rank() -> usize {
     let number = |name: &&str| env::var(name).ok()?.trim().parse().ok();
-    let said = || NUMBERS.iter().find_map(number).unwrap_or(0);
+    let said = || RANK_VARIABLES.iter().find_map(number).unwrap_or(0);
     if launched() > 1 { said() } else { 0 }
 }
 
 fn ranks(var: impl Fn(&str) -> Option<String>) -> usize {
     let number = |name: &str| var(name).and_then(|text| text.trim().parse().ok());
-    let [rank, tasks] = PMIX;
+    let [rank, tasks] = PMIX_VARIABLES;
     let pmix = || var(rank).and_then(|_| number(tasks));
-    let said = SIZES.into_iter().find_map(number).or_else(pmix);
+    let said = SIZE_VARIABLES.into_iter().find_map(number).or_else(pmix);
     said.unwrap_or(1).max(1)
 }
 
@@ -76,13 +76,13 @@ impl Ending {
 impl Drop for Ending {
     fn drop(&mut self) {
         if std::thread::panicking() {
-            abort(PANICKED);
+            abort(PANIC_EXIT_CODE);
         }
     }
 }
 
 /// The exit code of a Rust program that panicked.
-const PANICKED: i32 = 101;
+const PANIC_EXIT_CODE: i32 = 101;
 
 fn abort(code: i32) {
     #[cfg(feature = "mpi")]
@@ -106,7 +106,7 @@ mod started {
     use mpi::traits::CommunicatorCollectives as _;
 
     /// How long a rank that waits sleeps between two looks.
-    const NAP: Duration = Duration::from_micros(500);
+    const WAIT_INTERVAL: Duration = Duration::from_micros(500);
 
     /// MPI while it runs. It can't be started twice.
     static UNIVERSE: Mutex<Option<Universe>> = Mutex::new(None);
@@ -153,7 +153,7 @@ mod started {
             let mut barrier = self.world().immediate_barrier();
             while let Err(pending) = barrier.test() {
                 barrier = pending;
-                thread::sleep(NAP);
+                thread::sleep(WAIT_INTERVAL);
             }
         }
     }

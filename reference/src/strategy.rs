@@ -2,14 +2,14 @@
 //! pairs of a scene.
 //!
 //! Strategies share one loop and differ in which volumes must overlap. What decides a volume
-//! overlap is a [`Judge`]: the plain f64 formulas here, or the exact ones.
+//! overlap is a [`OverlapTests`]: the plain f64 formulas here, or the exact ones.
 
 use std::cell::OnceCell;
 
 use crate::broad_phase::all_pairs;
 use crate::cost::Counters;
 use crate::linear::Vector;
-use crate::overlap::ordop::{self, Turned};
+use crate::overlap::ordop::{self, TurnedPolytope};
 use crate::overlap::{Overlap, obb, sphere, world};
 use crate::pose::separation;
 use crate::shape::Body;
@@ -42,7 +42,7 @@ pub enum Strategy<'a> {
 }
 
 /// Decides the volume overlaps of bodies i < j of one scene.
-pub trait Judge {
+pub trait OverlapTests {
     /// Bounding spheres.
     fn spheres(&self, i: u32, j: u32) -> bool;
     /// or-DOPs.
@@ -61,7 +61,7 @@ pub fn pairs(bodies: &[Body], strategy: Strategy, overlap: Overlap) -> Vec<(u32,
 
 /// The pairs i < j that the strategy reports, sorted, with what was counted.
 pub fn run(
-    judge: &impl Judge,
+    judge: &impl OverlapTests,
     dynamic: &[bool],
     strategy: Strategy,
 ) -> (Vec<(u32, u32)>, Counters) {
@@ -77,7 +77,7 @@ pub fn run(
 }
 
 fn reports(
-    judge: &impl Judge,
+    judge: &impl OverlapTests,
     strategy: Strategy,
     (i, j): (u32, u32),
     counters: &mut Counters,
@@ -106,14 +106,14 @@ fn reports(
     }
 }
 
-fn spheres(judge: &impl Judge, i: u32, j: u32, counters: &mut Counters) -> bool {
+fn spheres(judge: &impl OverlapTests, i: u32, j: u32, counters: &mut Counters) -> bool {
     let hit = judge.spheres(i, j);
     counters.sphere_tests += 1;
     counters.sphere_hits += u64::from(hit);
     hit
 }
 
-fn ordops(judge: &impl Judge, i: u32, j: u32, counters: &mut Counters) -> bool {
+fn ordops(judge: &impl OverlapTests, i: u32, j: u32, counters: &mut Counters) -> bool {
     let hit = judge.ordops(i, j);
     counters.ordop_tests += 1;
     counters.ordop_hits += u64::from(hit);
@@ -131,8 +131,8 @@ fn volumes(hit: bool, counters: &mut Counters) -> bool {
 pub struct Plain<'a> {
     bodies: &'a [Body<'a>],
     overlap: Overlap,
-    ordops: Vec<OnceCell<Turned>>,
-    obbs: Vec<OnceCell<Turned>>,
+    ordops: Vec<OnceCell<TurnedPolytope>>,
+    obbs: Vec<OnceCell<TurnedPolytope>>,
     extents: [Vec<OnceCell<Vec<[f64; 2]>>>; 4],
 }
 
@@ -154,14 +154,15 @@ impl<'a> Plain<'a> {
         separation(&self.bodies[i as usize].pose, &self.bodies[j as usize].pose)
     }
 
-    fn ordop(&self, i: u32) -> &Turned {
+    fn ordop(&self, i: u32) -> &TurnedPolytope {
         let body = &self.bodies[i as usize];
-        self.ordops[i as usize].get_or_init(|| Turned::new(&body.shape.polytope, &body.pose))
+        self.ordops[i as usize]
+            .get_or_init(|| TurnedPolytope::new(&body.shape.polytope, &body.pose))
     }
 
-    fn obb(&self, i: u32) -> &Turned {
+    fn obb(&self, i: u32) -> &TurnedPolytope {
         let body = &self.bodies[i as usize];
-        self.obbs[i as usize].get_or_init(|| Turned::new(&body.shape.obb, &body.pose))
+        self.obbs[i as usize].get_or_init(|| TurnedPolytope::new(&body.shape.obb, &body.pose))
     }
 
     fn extents(&self, i: u32, directions: DirectionSet) -> &[[f64; 2]] {
@@ -171,7 +172,7 @@ impl<'a> Plain<'a> {
     }
 }
 
-impl Judge for Plain<'_> {
+impl OverlapTests for Plain<'_> {
     fn spheres(&self, i: u32, j: u32) -> bool {
         sphere::overlap(&self.bodies[i as usize], &self.bodies[j as usize])
     }

@@ -11,7 +11,7 @@ use crate::simd::CACHE_LINE;
 use crate::threads::Threads;
 
 /// Elements that one thread reads at a time.
-const PIECE: usize = 8192;
+const ELEMENTS_PER_TASK: usize = 8192;
 
 /// Reads a number of each cache line of a column whose elements will be wanted soon, `wanted` of
 /// them in any order. Does nothing and returns false where most won't be, or where the column is
@@ -27,7 +27,7 @@ pub fn read_ahead<T: Sync>(
         return false;
     }
     let stride = (CACHE_LINE / size_of::<T>().max(1)).max(1);
-    pool.ranges(column.len(), PIECE, |range| {
+    pool.ranges(column.len(), ELEMENTS_PER_TASK, |range| {
         let numbers = column[range].iter().step_by(stride);
         black_box(numbers.fold(0, |bits, element| bits ^ number(element).to_bits()));
     });
@@ -41,25 +41,31 @@ mod tests {
     use super::*;
 
     /// The longest column that is read, in bytes.
-    const LONGEST: usize = 1 << 20;
+    const MOST_BYTES: usize = 1 << 20;
 
     /// The numbers that are read of a column of `N` numbers an element, each of which is its own
     /// index.
     fn read<const N: usize>(elements: usize, wanted: usize) -> Vec<usize> {
         let column: Vec<[f32; N]> = (0..elements).map(|i| [(N * i) as f32; N]).collect();
         let seen = Mutex::new(Vec::new());
-        let is_read = read_ahead(&Threads::default(), &column, wanted, LONGEST, |element| {
-            let mut seen = seen.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-            seen.push(element[0] as usize);
-            element[0]
-        });
+        let is_read = read_ahead(
+            &Threads::default(),
+            &column,
+            wanted,
+            MOST_BYTES,
+            |element| {
+                let mut seen = seen.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                seen.push(element[0] as usize);
+                element[0]
+            },
+        );
         let seen = seen.into_inner().unwrap_or_default();
         assert_eq!(is_read, !seen.is_empty() || elements == 0);
         seen
     }
 
     fn leaves_no_line_out<const N: usize>() {
-        let elements = 2 * PIECE + 77;
+        let elements = 2 * ELEMENTS_PER_TASK + 77;
         let seen = read::<N>(elements, elements);
         // Wherever lines begin: they are sixteen numbers long.
         let gaps = seen.windows(2).map(|two| two[1] - two[0]);
@@ -85,7 +91,7 @@ mod tests {
     #[test]
     fn columns_of_which_less_than_half_is_wanted_or_that_are_too_long_are_left_alone() {
         assert!(!read::<4>(101, 51).is_empty() && read::<4>(101, 50).is_empty());
-        let longest = LONGEST / 16;
+        let longest = MOST_BYTES / 16;
         assert!(!read::<4>(longest, longest).is_empty());
         assert!(read::<4>(longest + 1, longest + 1).is_empty());
         assert!(read::<3>(0, 0).is_empty());

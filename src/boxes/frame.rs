@@ -13,7 +13,7 @@ use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
 use crate::simd::{Tier, dispatch, in_default_mode};
 use crate::strategy::{BoxInputs, BoxTest, Output, Tasks, list_boxes};
-use crate::threads::{FrameThreads, Work};
+use crate::threads::{FrameThreads, FrameWork};
 
 /// Boxes whose cubes one thread makes at once.
 const CUBES: usize = 4096;
@@ -131,7 +131,7 @@ impl Frames {
         groups: Option<&[Groups]>,
         output: Output<'_>,
     ) -> Result<VolumeCounters, ContractError> {
-        self.threads.expect(Work {
+        self.threads.expect(FrameWork {
             updates: self.len() as u64,
             candidates: self.candidates,
             refined: 0,

@@ -7,7 +7,7 @@ use crate::bodies::Places;
 use crate::simd::{Lanes, MAX_WIDTH};
 
 /// Slots whose pairs make one part of the work.
-const PART: usize = 16;
+const SLOTS_PER_PART: usize = 16;
 
 /// Slots are places: the moving bodies first, so that every moving slot's run is all slots behind
 /// it.
@@ -36,12 +36,12 @@ impl AllPairs {
     }
 
     pub(super) fn parts(&self) -> usize {
-        self.moving.div_ceil(PART)
+        self.moving.div_ceil(SLOTS_PER_PART)
     }
 
     #[inline(always)]
     pub(super) fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
-        for i in parts.start * PART..(parts.end * PART).min(self.moving) {
+        for i in parts.start * SLOTS_PER_PART..(parts.end * SLOTS_PER_PART).min(self.moving) {
             test.run(l, i, i + 1..self.len);
         }
     }

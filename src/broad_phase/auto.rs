@@ -14,10 +14,10 @@ use super::Volume;
 use crate::settings::Finder;
 
 /// The most bodies for all pairs.
-const FEW: usize = 64;
+const MOST_FOR_ALL_PAIRS: usize = 64;
 
 /// The same where radii span more than [`MANY_SIZES`].
-const FEW_OF_MANY_SIZES: usize = 96;
+const MOST_OF_MANY_SIZES: usize = 96;
 
 /// Widest over smallest radius at which the grid has levels.
 const MANY_SIZES: f32 = 16.0;
@@ -42,9 +42,9 @@ impl Population {
     pub fn finder(&self) -> Finder {
         let [smallest, widest] = self.radii;
         let few = if widest > MANY_SIZES * smallest {
-            FEW_OF_MANY_SIZES
+            MOST_OF_MANY_SIZES
         } else {
-            FEW
+            MOST_FOR_ALL_PAIRS
         };
         if !self.cheap_test {
             Finder::Grid

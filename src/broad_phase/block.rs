@@ -19,10 +19,10 @@ const STRIDE: usize = 8;
 const LONGEST_WRITTEN: usize = 2 * STRIDE;
 
 /// Runs that a page has room for.
-const RUNS: usize = 160;
+const RUNS_PER_PAGE: usize = 160;
 
 /// Room for codes.
-const CAPACITY: usize = RUNS * LONGEST_WRITTEN;
+const CAPACITY: usize = RUNS_PER_PAGE * LONGEST_WRITTEN;
 
 /// The most candidates in a block.
 pub const MOST_CANDIDATES: usize = CAPACITY;
@@ -97,7 +97,7 @@ pub struct Page {
     len: usize,
     codes: [u32; CAPACITY + MAX_WIDTH],
     long_len: usize,
-    long: [(u32, u32, u32); RUNS],
+    long: [(u32, u32, u32); RUNS_PER_PAGE],
 }
 
 impl Page {
@@ -109,7 +109,7 @@ impl Page {
             len: 0,
             codes: [0; CAPACITY + MAX_WIDTH],
             long_len: 0,
-            long: [(0, 0, 0); RUNS],
+            long: [(0, 0, 0); RUNS_PER_PAGE],
         }
     }
 
@@ -179,7 +179,7 @@ impl Pen<'_> {
     /// Whether `runs` more runs might not find room.
     #[inline(always)]
     pub fn is_full(&self, runs: usize) -> bool {
-        self.len + runs * LONGEST_WRITTEN > CAPACITY || self.long_len + runs > RUNS
+        self.len + runs * LONGEST_WRITTEN > CAPACITY || self.long_len + runs > RUNS_PER_PAGE
     }
 
     /// Closes the page.
@@ -228,7 +228,7 @@ mod tests {
                 runs += 1;
             }
             pen.done();
-            assert_eq!(runs, RUNS);
+            assert_eq!(runs, RUNS_PER_PAGE);
         }
         assert!(page.block().codes().is_empty());
     }

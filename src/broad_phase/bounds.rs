@@ -24,7 +24,7 @@ impl Bounds {
     /// Of some balls.
     #[must_use]
     pub fn of(tier: Tier, balls: &[[f32; 4]]) -> Self {
-        dispatch(tier, Extremes(balls))
+        dispatch(tier, FindExtremes(balls))
     }
 
     /// Of both sets.
@@ -40,18 +40,18 @@ impl Bounds {
 
 /// Four balls' numbers, which any tier's vectors divide: each of the sixteen positions has its own
 /// extremes, so every tier compares the same numbers in the same order.
-const CHUNK: usize = 16;
+const NUMBERS_PER_CHUNK: usize = 16;
 
-struct Extremes<'a>(&'a [[f32; 4]]);
+struct FindExtremes<'a>(&'a [[f32; 4]]);
 
-impl Kernel for Extremes<'_> {
+impl Kernel for FindExtremes<'_> {
     type Output = Bounds;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> Bounds {
-        let vectors = CHUNK / L::WIDTH;
-        let mut lo = [l.splat(f32::INFINITY); CHUNK];
-        let mut hi = [l.splat(f32::NEG_INFINITY); CHUNK];
-        let (chunks, rest) = self.0.as_flattened().as_chunks::<CHUNK>();
+        let vectors = NUMBERS_PER_CHUNK / L::WIDTH;
+        let mut lo = [l.splat(f32::INFINITY); NUMBERS_PER_CHUNK];
+        let mut hi = [l.splat(f32::NEG_INFINITY); NUMBERS_PER_CHUNK];
+        let (chunks, rest) = self.0.as_flattened().as_chunks::<NUMBERS_PER_CHUNK>();
         for chunk in chunks {
             for k in 0..vectors {
                 let numbers = l.load(&chunk[k * L::WIDTH..]);
@@ -59,7 +59,10 @@ impl Kernel for Extremes<'_> {
                 hi[k] = l.max(numbers, hi[k]);
             }
         }
-        let mut ends = [[f32::INFINITY; CHUNK], [f32::NEG_INFINITY; CHUNK]];
+        let mut ends = [
+            [f32::INFINITY; NUMBERS_PER_CHUNK],
+            [f32::NEG_INFINITY; NUMBERS_PER_CHUNK],
+        ];
         for k in 0..vectors {
             l.store(lo[k], &mut ends[0][k * L::WIDTH..]);
             l.store(hi[k], &mut ends[1][k * L::WIDTH..]);

@@ -15,7 +15,7 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch, numbers_of, quads_in_colum
 use crate::threads::{Executor, Threads};
 
 /// Boxes that one thread brings into slot order, or looks at, at a time.
-const PIECE: usize = 4096;
+const BOXES_PER_TASK: usize = 4096;
 
 /// Boxes of which a finder's balls are the cubes about them, an eighth in size.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +57,7 @@ impl EndSlots {
         let growing = cubes.len();
         let (lower, upper) = (&mut self.lower[..growing], &mut self.upper[..growing]);
         let pool = executor.pool;
-        pool.pieces_of_two([lower, upper], PIECE, |start, [lower, upper]| {
+        pool.pieces_of_two([lower, upper], BOXES_PER_TASK, |start, [lower, upper]| {
             for ((lower, upper), cube) in lower.iter_mut().zip(upper).zip(&cubes[start..]) {
                 let by = SCALE * skin.of(cube[3]);
                 let ([x, y, z, _], [to_x, to_y, to_z, _]) = (*lower, *upper);
@@ -86,8 +86,8 @@ impl EndSlots {
         });
         let boxes = numbers_of(boxes);
         let Executor { tier, pool } = executor;
-        pool.pieces_of_two([lower, upper], PIECE, |start, [lower, upper]| {
-            let fill = Fill {
+        pool.pieces_of_two([lower, upper], BOXES_PER_TASK, |start, [lower, upper]| {
+            let fill = FillBoxes {
                 names: &order[start..],
                 boxes,
                 lower,
@@ -100,8 +100,8 @@ impl EndSlots {
     /// Whether each of the boxes with these names is within the one in the slot of its place.
     pub fn hold(&self, executor: Executor<'_>, names: &[u32], boxes: &[Aabb]) -> bool {
         let Executor { tier, pool } = executor;
-        pool.all(names.len(), PIECE, |range| {
-            let within = Within {
+        pool.all(names.len(), BOXES_PER_TASK, |range| {
+            let within = BoxesWithin {
                 ends: self,
                 first: range.start,
                 names: &names[range],
@@ -211,14 +211,14 @@ pub(super) fn grown(Aabb { min, max }: Aabb, by: f32) -> Aabb {
 
 /// Brings boxes, each of which is six numbers, into the order of their names: lower and upper ends
 /// as quads.
-struct Fill<'a> {
+struct FillBoxes<'a> {
     names: &'a [u32],
     boxes: &'a [[f32; 6]],
     lower: &'a mut [[f32; 4]],
     upper: &'a mut [[f32; 4]],
 }
 
-impl Kernel for Fill<'_> {
+impl Kernel for FillBoxes<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
@@ -238,14 +238,14 @@ impl Kernel for Fill<'_> {
 }
 
 /// Whether boxes are within those in the slots from `first` on.
-struct Within<'a> {
+struct BoxesWithin<'a> {
     ends: &'a EndSlots,
     first: usize,
     names: &'a [u32],
     boxes: &'a [Aabb],
 }
 
-impl Kernel for Within<'_> {
+impl Kernel for BoxesWithin<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> bool {

@@ -42,7 +42,7 @@ impl PairFinder {
         if !(0..n).all(finite) {
             return; // outside the contract
         }
-        let seen = dispatch(tier, Record { finder: self });
+        let seen = dispatch(tier, RecordCandidates { finder: self });
         let of_boxes = boxes.filter(|_| self.is_by_boxes());
         let meet = |i, j| match of_boxes {
             None => self.meet(ball(i), ball(j)),
@@ -87,24 +87,24 @@ impl PairFinder {
 }
 
 /// Marks the candidates of all parts.
-struct Record<'a> {
+struct RecordCandidates<'a> {
     finder: &'a PairFinder,
 }
 
-impl Kernel for Record<'_> {
-    type Output = Seen;
+impl Kernel for RecordCandidates<'_> {
+    type Output = SeenPairs;
     #[inline(always)]
-    fn run<L: Lanes>(self, l: L) -> Seen {
-        let mut seen = Seen([0; MOST_BODIES]);
+    fn run<L: Lanes>(self, l: L) -> SeenPairs {
+        let mut seen = SeenPairs([0; MOST_BODIES]);
         self.finder.find(l, 0..self.finder.parts(), &mut seen);
         seen
     }
 }
 
 /// Pairs of slots: bit j of number i for i < j.
-struct Seen([u64; MOST_BODIES]);
+struct SeenPairs([u64; MOST_BODIES]);
 
-impl Seen {
+impl SeenPairs {
     fn has(&self, i: usize, j: usize) -> bool {
         self.0[i.min(j)] >> i.max(j) & 1 == 1
     }
@@ -118,7 +118,7 @@ impl Seen {
     }
 }
 
-impl FirstTest for Seen {
+impl FirstTest for SeenPairs {
     #[inline(always)]
     fn run<L: Lanes>(&mut self, _: L, i: usize, run: Range<usize>) {
         run.for_each(|j| self.take(i, j));

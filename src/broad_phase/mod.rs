@@ -34,11 +34,11 @@ use block::{BLOCK_BODIES, Page, Pen};
 pub use block::{Block, MOST_CANDIDATES};
 pub use bounds::Bounds;
 pub use ends::{Boxes, EndSlots};
-pub use grid::{Cells, Grid, Layout};
+pub use grid::{Cells, Grid, TableLayout};
 use neighbours::List;
 pub use neighbours::{Neighbours, Volume};
 pub use slot_test::{BallTest, SlotTest, list_slots};
-pub use slots::{Arranged, Balls, Slots};
+pub use slots::{Balls, SlotBodies, Slots};
 pub use sweep::Sweep;
 
 /// The strategy's first volume test.
@@ -68,7 +68,7 @@ pub enum PairFinder {
 }
 
 /// Where a frame's candidates come from.
-enum Search<'a> {
+enum CandidateSource<'a> {
     AllPairs(&'a AllPairs),
     Grid(&'a Grid),
     Sweep(&'a Sweep),
@@ -210,7 +210,7 @@ impl PairFinder {
     /// The arranged bodies. `balls` are those that were arranged: where places have the order of
     /// slots, they are read as they stand.
     #[must_use]
-    pub fn slots<'a>(&'a self, balls: &'a Balls) -> Arranged<'a> {
+    pub fn slots<'a>(&'a self, balls: &'a Balls) -> SlotBodies<'a> {
         let slots = self.own_slots();
         if self.slots_are_places() {
             slots.followed(balls)
@@ -243,14 +243,14 @@ impl PairFinder {
     /// Where this frame's candidates come from. Neighbour lists leave frames in which they don't
     /// pay to the grid: one copy of its search, compiled once, serves both finders.
     #[inline(always)]
-    fn search(&self) -> Search<'_> {
+    fn search(&self) -> CandidateSource<'_> {
         match self {
-            Self::AllPairs(finder) => Search::AllPairs(finder),
-            Self::Grid(finder) => Search::Grid(finder),
-            Self::Sweep(finder) => Search::Sweep(finder),
+            Self::AllPairs(finder) => CandidateSource::AllPairs(finder),
+            Self::Grid(finder) => CandidateSource::Grid(finder),
+            Self::Sweep(finder) => CandidateSource::Sweep(finder),
             Self::Neighbours(finder) => match finder.list() {
-                Some(list) => Search::List(list),
-                None => Search::Grid(finder.grid()),
+                Some(list) => CandidateSource::List(list),
+                None => CandidateSource::Grid(finder.grid()),
             },
         }
     }
@@ -258,17 +258,17 @@ impl PairFinder {
     /// Whether slots are handed out with runs of others in this frame, or scattered pairs alone.
     #[must_use]
     pub fn hands_out_runs(&self) -> bool {
-        !matches!(self.search(), Search::List(_))
+        !matches!(self.search(), CandidateSource::List(_))
     }
 
     /// Into how many parts the work is cut.
     #[must_use]
     pub fn parts(&self) -> usize {
         match self.search() {
-            Search::AllPairs(finder) => finder.parts(),
-            Search::Grid(finder) => finder.parts(),
-            Search::Sweep(finder) => finder.parts(),
-            Search::List(list) => list.parts(),
+            CandidateSource::AllPairs(finder) => finder.parts(),
+            CandidateSource::Grid(finder) => finder.parts(),
+            CandidateSource::Sweep(finder) => finder.parts(),
+            CandidateSource::List(list) => list.parts(),
         }
     }
 
@@ -276,10 +276,10 @@ impl PairFinder {
     #[inline(always)]
     pub fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
         match self.search() {
-            Search::AllPairs(finder) => finder.find(l, parts, test),
-            Search::Grid(finder) => finder.find(l, parts, test),
-            Search::Sweep(finder) => finder.find(l, parts, test),
-            Search::List(list) => list.find(l, parts, test),
+            CandidateSource::AllPairs(finder) => finder.find(l, parts, test),
+            CandidateSource::Grid(finder) => finder.find(l, parts, test),
+            CandidateSource::Sweep(finder) => finder.find(l, parts, test),
+            CandidateSource::List(list) => list.find(l, parts, test),
         }
     }
 }

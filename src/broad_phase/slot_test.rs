@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Arranged, Block};
+use super::{Block, SlotBodies};
 use crate::simd::{LANES, Lanes, MAX_WIDTH, quads_in_columns};
 
 /// A volume test of slots.
@@ -29,7 +29,7 @@ pub fn list_slots<L: Lanes>(l: L, hit: u32, start: usize, hits: &mut [u32]) -> u
 /// A volume test of the finder's own balls, a vector of pairs at a time.
 pub trait BallTest {
     /// The balls.
-    fn slots(&self) -> Arranged<'_>;
+    fn slots(&self) -> SlotBodies<'_>;
 
     /// Whether two balls, or what they stand for, surely lie apart, lane by lane: `between` is the
     /// way from one centre to the other, `radii` are the two radii.

@@ -65,8 +65,8 @@ impl Slots {
     }
 
     /// A frame whose balls these are.
-    pub(crate) fn arranged(&self) -> Arranged<'_> {
-        Arranged {
+    pub(crate) fn arranged(&self) -> SlotBodies<'_> {
+        SlotBodies {
             balls: &self.balls,
             columns: &self.columns,
             names: &self.names,
@@ -75,9 +75,9 @@ impl Slots {
 
     /// A frame in which places have the order of slots, so that `balls` by place are those in slot
     /// order.
-    pub(super) fn followed<'a>(&'a self, balls: &'a Balls) -> Arranged<'a> {
+    pub(super) fn followed<'a>(&'a self, balls: &'a Balls) -> SlotBodies<'a> {
         let balls = &balls.padded;
-        Arranged {
+        SlotBodies {
             balls,
             ..self.arranged()
         }
@@ -86,7 +86,7 @@ impl Slots {
 
 /// The bodies of a frame in slot order, as [`Slots`] has them.
 #[derive(Clone, Copy, Debug)]
-pub struct Arranged<'a> {
+pub struct SlotBodies<'a> {
     /// The balls as the first test takes them.
     pub balls: &'a [[f32; 4]],
     /// The same as columns, for finders whose runs are long; otherwise empty.
@@ -95,7 +95,7 @@ pub struct Arranged<'a> {
     pub names: &'a [u32],
 }
 
-impl Arranged<'_> {
+impl SlotBodies<'_> {
     /// The ball in a slot.
     #[inline(always)]
     #[must_use]

@@ -15,10 +15,10 @@ use crate::rounding::{down, up, widen};
 use crate::simd::{Lanes, MAX_WIDTH};
 
 /// Frames after which places take the order of slots.
-const REORDER: u32 = 32;
+const FRAMES_PER_REORDER: u32 = 32;
 
 /// Slots in one part of the work.
-const PART: usize = 64;
+const SLOTS_PER_PART: usize = 64;
 
 /// Another axis must promise this much more spread before static bodies are sorted anew.
 const WORTH_TURNING: f64 = 1.5;
@@ -46,7 +46,7 @@ impl Sweep {
         order: &mut Vec<u32>,
     ) -> Reorder {
         self.age += 1;
-        if !self.age.is_multiple_of(REORDER) || self.len == 0 {
+        if !self.age.is_multiple_of(FRAMES_PER_REORDER) || self.len == 0 {
             return Reorder::None;
         }
         order.clear();
@@ -119,15 +119,15 @@ impl Sweep {
     }
 
     pub(super) fn parts(&self) -> usize {
-        self.moving.div_ceil(PART) + (self.len - self.moving).div_ceil(PART)
+        self.moving.div_ceil(SLOTS_PER_PART) + (self.len - self.moving).div_ceil(SLOTS_PER_PART)
     }
 
     #[inline(always)]
     pub(super) fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
-        let moving_parts = self.moving.div_ceil(PART);
+        let moving_parts = self.moving.div_ceil(SLOTS_PER_PART);
         for part in parts {
             if part < moving_parts {
-                for i in part * PART..self.moving.min((part + 1) * PART) {
+                for i in part * SLOTS_PER_PART..self.moving.min((part + 1) * SLOTS_PER_PART) {
                     test.run(l, i, i + 1..self.end(l, i, i + 1..self.moving));
                     // Static bodies that begin no earlier than this one.
                     let fixed = &self.lo[self.moving..self.len];
@@ -135,8 +135,8 @@ impl Sweep {
                     test.run(l, i, start..self.end(l, i, start..self.len));
                 }
             } else {
-                let first = self.moving + (part - moving_parts) * PART;
-                for i in first..self.len.min(first + PART) {
+                let first = self.moving + (part - moving_parts) * SLOTS_PER_PART;
+                for i in first..self.len.min(first + SLOTS_PER_PART) {
                     // Moving bodies that begin later than this static one.
                     let moving = &self.lo[..self.moving];
                     let start = moving.partition_point(|&lo| lo <= self.lo[i]);
@@ -171,18 +171,18 @@ struct Sorter {
 
 impl Sorter {
     /// Bits a pass: three passes make 33, and the counts of each fit the first-level cache.
-    const BITS: u32 = 11;
+    const BITS_PER_PASS: u32 = 11;
 
     /// The order of the keys by value, then by position. None is NaN.
     fn sort(&mut self, keys: impl Iterator<Item = f32>) -> impl Iterator<Item = &u32> {
-        const RADIX: usize = 1 << Sorter::BITS;
+        const BUCKETS: usize = 1 << Sorter::BITS_PER_PASS;
         let [from, to] = &mut self.pairs;
         from.clear();
         from.extend(keys.map(ordered).zip(0..));
         to.resize(from.len(), (0, 0));
         for pass in 0..3 {
-            let digit = |key: u32| (key >> (pass * Self::BITS)) as usize & (RADIX - 1);
-            let mut next = [0u32; RADIX];
+            let digit = |key: u32| (key >> (pass * Self::BITS_PER_PASS)) as usize & (BUCKETS - 1);
+            let mut next = [0u32; BUCKETS];
             for &(key, _) in from.iter() {
                 next[digit(key)] += 1;
             }
@@ -251,13 +251,17 @@ mod tests {
     fn places_follow_the_slots_of_moving_bodies_now_and_then() {
         let mut sweep = Sweep::default();
         let mut order = vec![9];
-        for age in 1..=3 * REORDER {
+        for age in 1..=3 * FRAMES_PER_REORDER {
             // Without bodies at first.
-            (sweep.len, sweep.moving) = if age > REORDER { (4, 2) } else { (0, 0) };
+            (sweep.len, sweep.moving) = if age > FRAMES_PER_REORDER {
+                (4, 2)
+            } else {
+                (0, 0)
+            };
             sweep.slots.names = vec![7, 6, 5, 4];
             let names = [1, 2, 3, 4];
             let reorder = sweep.reorder(sweep.moving, &names[..sweep.len], &mut order);
-            if age % REORDER == 0 && age > REORDER {
+            if age % FRAMES_PER_REORDER == 0 && age > FRAMES_PER_REORDER {
                 assert_eq!((reorder, &order), (Reorder::Moving, &vec![7, 6, 3, 4]));
             } else {
                 assert_eq!(reorder, Reorder::None, "{age}");

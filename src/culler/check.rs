@@ -27,7 +27,7 @@ pub(super) fn fixed(bodies: &Bodies) -> Bodies {
 }
 
 /// How to mend a shape that is far from its origin.
-pub(crate) const FAR: &str = "keep its bodies in a `World`, whose translations are f64; or move the mesh's vertices near its \
+pub(crate) const FAR_SHAPE_HELP: &str = "keep its bodies in a `World`, whose translations are f64; or move the mesh's vertices near its \
                               origin; or build it with `Origin::Ball` and pose it by the centre of its ball, `Shape::offset`";
 
 /// Refuses shapes that f32 poses can't place: those far from the origin that the poses refer to.
@@ -41,7 +41,7 @@ pub(super) fn near(shapes: &[Shape]) -> Result<(), CullError> {
                  and a culler's poses are f32",
                 shape.offset
             ),
-            hint: FAR,
+            hint: FAR_SHAPE_HELP,
         }),
     }
 }

@@ -24,7 +24,7 @@ mod shapes;
 #[cfg(feature = "shapes")]
 pub use builder::CullerBuilder;
 #[cfg(feature = "shapes")]
-pub(crate) use check::FAR;
+pub(crate) use check::FAR_SHAPE_HELP;
 pub use error::CullError;
 
 #[cfg(feature = "shapes")]
@@ -33,7 +33,7 @@ use std::{ops::Range, time::Instant};
 #[cfg(feature = "shapes")]
 use self::{models::Models, needs::Needs};
 #[cfg(all(feature = "shapes", feature = "serde"))]
-use crate::strategy::Answers;
+use crate::strategy::RefinementRanks;
 #[cfg(feature = "shapes")]
 use crate::{
     bodies::contract::{check_bodies, check_column, check_poses},
@@ -46,7 +46,7 @@ use crate::{
     simd::{Tier, in_default_mode},
     strategy::{self, Inputs, Output, Scratch, SlotNames, Totals},
     threads::FrameThreads,
-    update::{Intervals, OrDopRows, Posed, update_spheres},
+    update::{Intervals, OrDopRows, UpdateInputs, update_spheres},
     volume::Shape,
 };
 
@@ -182,13 +182,13 @@ impl Culler {
     /// When the pairs of the last frame were refined, for strategies that take the oldest answers
     /// first.
     #[cfg(feature = "serde")]
-    pub(crate) fn answers(&self) -> Answers {
+    pub(crate) fn answers(&self) -> RefinementRanks {
         self.scratch.answers()
     }
 
     /// Takes over the answers of another culler, in place of its own.
     #[cfg(feature = "serde")]
-    pub(crate) fn set_answers(&mut self, answers: &Answers) {
+    pub(crate) fn set_answers(&mut self, answers: &RefinementRanks) {
         self.stamp = self.stamp.max(answers.latest());
         self.scratch.set_answers(answers);
     }
@@ -344,7 +344,7 @@ impl Culler {
             check_poses(bodies, 0..bodies.len()).is_ok()
         };
         if let Some(intervals) = &mut self.intervals {
-            let posed = Posed {
+            let posed = UpdateInputs {
                 frames,
                 bodies,
                 places,
@@ -360,7 +360,7 @@ impl Culler {
         if !self.needs.rows {
             return;
         }
-        let posed = Posed {
+        let posed = UpdateInputs {
             frames: &self.models.frames,
             bodies,
             places: &self.places,
@@ -426,7 +426,7 @@ impl Culler {
             finder: &self.finder,
             slots: self.finder.slots(&self.balls),
             names,
-            posed: Posed {
+            posed: UpdateInputs {
                 frames: &self.models.frames,
                 bodies,
                 places: &self.places,

@@ -7,13 +7,13 @@ use crate::overlap::ordop::SlabTables;
 use crate::overlap::ordop::reach::reach;
 use crate::rounding::up;
 use crate::settings::CullSettings;
-use crate::update::{Frames, ShapeFrame};
+use crate::update::{ShapeFrame, ShapeFrames};
 use crate::volume::{DirectionSet, Hull, OrDop, Shape};
 
 /// Frames and tables of all models. Numbers of models that are gone are given again.
 #[derive(Clone, Debug)]
 pub(crate) struct Models {
-    pub frames: Frames,
+    pub frames: ShapeFrames,
     pub tables: SlabTables,
     /// The slabs of every model: an or-DOP, or an oriented box.
     ordops: Vec<OrDop>,
@@ -33,7 +33,7 @@ impl Models {
     pub fn new(shapes: &[Shape], settings: &CullSettings) -> Self {
         let scheme = settings.strategy.scheme();
         let mut models = Self {
-            frames: Frames::default(),
+            frames: ShapeFrames::default(),
             tables: SlabTables::new(settings.k, std::iter::empty()),
             ordops: Vec::new(),
             free: Vec::new(),

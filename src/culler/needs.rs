@@ -6,7 +6,7 @@ use crate::bodies::Places;
 use crate::broad_phase::{Population, Volume};
 use crate::settings::{Finder, Scheme, TestedVolume};
 use crate::strategy::Totals;
-use crate::threads::Work;
+use crate::threads::FrameWork;
 use crate::volume::DirectionSet;
 
 /// Which volumes are updated.
@@ -33,10 +33,10 @@ impl Needs {
     }
 
     /// The work of a frame with so many moving bodies, and with the tests of another.
-    pub fn work(&self, moving: u64, like: &Totals) -> Work {
+    pub fn work(&self, moving: u64, like: &Totals) -> FrameWork {
         let volumes = u64::from(self.balls) + u64::from(self.rows);
         let slabs = if self.intervals.is_some() { SLABS } else { 0 };
-        Work {
+        FrameWork {
             updates: (volumes + slabs) * moving,
             candidates: like.first.tests,
             refined: like.refining.tests,

@@ -10,7 +10,7 @@ use crate::rounding::{exp2, up};
 
 /// 15/16 of 2⁻²⁰: how far rounding may move a point of a mesh that stays where it is, as a multiple
 /// of the mesh's largest extent. The sixteenth is what re-centring moves at most.
-const NEAR: f64 = 15.0 * exp2(-24);
+const MOST_ROUNDING: f64 = 15.0 * exp2(-24);
 
 /// The least step of an offset: what f32 loses below is not won by another origin.
 const LEAST_STEP: f64 = exp2(-126);
@@ -28,7 +28,7 @@ pub(super) fn place(points: &[[f64; 3]]) -> Placed {
     let round = |offset: [f64; 3]| points.iter().map(|&p| vertex(p, offset)).collect();
     let bounds = Bounds::of(points.iter().copied());
     let moved = moved(points.iter().copied());
-    if moved <= 0.5 * NEAR * bounds.size() {
+    if moved <= 0.5 * MOST_ROUNDING * bounds.size() {
         return Placed {
             vertices: round([0.0; 3]),
             offset: [0.0; 3],
@@ -37,7 +37,7 @@ pub(super) fn place(points: &[[f64; 3]]) -> Placed {
     }
     let offset = bounds.settled_offset();
     let kept = || points.iter().map(|&p| kept(p, offset));
-    let far = self::moved(kept()) > NEAR * Bounds::of(kept()).size();
+    let far = self::moved(kept()) > MOST_ROUNDING * Bounds::of(kept()).size();
     let offset = if far { offset } else { [0.0; 3] };
     let tiny = bounds.size() < LEAST_STEP; // no offset mends what f32 can't hold of it
     Placed {

@@ -7,7 +7,7 @@
 //! are compared straight away ([`EndSlots`](crate::broad_phase::EndSlots)).
 
 use crate::bodies::Aabb;
-use crate::broad_phase::{Arranged, BallTest};
+use crate::broad_phase::{BallTest, SlotBodies};
 use crate::rounding::cube;
 use crate::simd::Lanes;
 
@@ -15,7 +15,7 @@ use crate::simd::Lanes;
 #[derive(Clone, Copy, Debug)]
 pub struct Cubes<'a> {
     /// The cubes; slots are named by box.
-    pub slots: Arranged<'a>,
+    pub slots: SlotBodies<'a>,
     /// All boxes by name.
     pub boxes: &'a [Aabb],
     /// See [`less_than_sure`](crate::rounding::cube::less_than_sure).
@@ -34,7 +34,7 @@ impl Cubes<'_> {
 
 impl BallTest for Cubes<'_> {
     #[inline(always)]
-    fn slots(&self) -> Arranged<'_> {
+    fn slots(&self) -> SlotBodies<'_> {
         self.slots
     }
 

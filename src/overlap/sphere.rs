@@ -5,17 +5,17 @@
 //!
 //! [`inflate_radius`]: crate::rounding::sphere::inflate_radius
 
-use crate::broad_phase::{Arranged, BallTest};
+use crate::broad_phase::{BallTest, SlotBodies};
 use crate::rounding::sphere;
 use crate::simd::Lanes;
 
 /// The finder's balls as they are.
 #[derive(Clone, Copy, Debug)]
-pub struct Spheres<'a>(pub Arranged<'a>);
+pub struct Spheres<'a>(pub SlotBodies<'a>);
 
 impl BallTest for Spheres<'_> {
     #[inline(always)]
-    fn slots(&self) -> Arranged<'_> {
+    fn slots(&self) -> SlotBodies<'_> {
         self.0
     }
 

@@ -3,7 +3,7 @@
 use super::PairList;
 
 /// Up to so many numbers are sorted by insertion.
-const FEW: usize = 12;
+const MOST_BY_INSERTION: usize = 12;
 
 /// Buffers of [`PairList::sort`], kept from list to list.
 #[derive(Clone, Debug, Default)]
@@ -66,7 +66,7 @@ impl PairList {
 /// Sorts numbers that are mostly few, without a call for these.
 #[inline(always)]
 fn sort_few(numbers: &mut [u32]) {
-    if numbers.len() > FEW {
+    if numbers.len() > MOST_BY_INSERTION {
         return numbers.sort_unstable();
     }
     for end in 1..numbers.len() {

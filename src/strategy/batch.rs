@@ -5,7 +5,7 @@
 //! refines. Where the output is in portions, so is the list.
 
 use super::interest::InterestFilter;
-use super::listing::{Listed, list};
+use super::listing::{PairNames, list};
 use super::output::Output;
 use super::refine::Refiner;
 use super::tasks::Tasks;
@@ -39,7 +39,7 @@ pub(super) fn flow(
     };
     let listed = match output {
         Output::List(out) => {
-            let listed = list(inputs, Listed::Places, tasks, Output::List(candidates));
+            let listed = list(inputs, PairNames::Places, tasks, Output::List(candidates));
             batch.refine(candidates, Some(tasks), out);
             listed
         }
@@ -49,7 +49,12 @@ pub(super) fn flow(
                 batch.refine(candidates, None, portion);
                 sink(portion);
             };
-            list(inputs, Listed::Places, tasks, Output::Portions(&mut take))
+            list(
+                inputs,
+                PairNames::Places,
+                tasks,
+                Output::Portions(&mut take),
+            )
         }
     };
     Totals {

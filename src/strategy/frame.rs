@@ -3,19 +3,19 @@
 
 use super::tasks::Tasks;
 #[cfg(feature = "serde")]
-use super::time_critical::Answers;
+use super::time_critical::RefinementRanks;
 use super::{SlotNames, Totals, batch, listing, output::Output, sequential, time_critical};
 use crate::bodies::{Groups, Places};
-use crate::broad_phase::{Arranged, PairFinder};
+use crate::broad_phase::{PairFinder, SlotBodies};
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::ordop::SlabTables;
 use crate::pairs::PairList;
 use crate::settings::{CullSettings, Flow, Updates};
 use crate::threads::Executor;
-use crate::update::{OrDopRows, Posed};
+use crate::update::{OrDopRows, UpdateInputs};
 
 /// Rows that the second-level cache holds.
-const FEW_ROWS: usize = 1 << 14;
+const ROWS_IN_CACHE: usize = 1 << 14;
 
 /// What culling a frame reads, once volumes are updated and bodies arranged in slots.
 #[derive(Clone, Copy)]
@@ -26,10 +26,10 @@ pub(crate) struct Inputs<'a> {
     pub is_canonical: bool,
     pub finder: &'a PairFinder,
     /// What the finder has arranged.
-    pub slots: Arranged<'a>,
+    pub slots: SlotBodies<'a>,
     pub names: SlotNames<'a>,
     /// The poses, and spheres by place where there are any.
-    pub posed: Posed<'a>,
+    pub posed: UpdateInputs<'a>,
     /// Each body's groups where not all collide with all.
     pub groups: Option<&'a [Groups]>,
     pub intervals: &'a IntervalSlots,
@@ -84,13 +84,13 @@ impl Scratch {
 
     /// When the pairs of the last frame were refined.
     #[cfg(feature = "serde")]
-    pub fn answers(&self) -> Answers {
+    pub fn answers(&self) -> RefinementRanks {
         self.history.answers()
     }
 
     /// Takes over when pairs were refined.
     #[cfg(feature = "serde")]
-    pub fn set_answers(&mut self, answers: &Answers) {
+    pub fn set_answers(&mut self, answers: &RefinementRanks) {
         self.history.set_answers(answers);
     }
 
@@ -114,7 +114,7 @@ pub(crate) fn makes_rows(settings: &CullSettings, places: &Places, output: &Outp
     settings.strategy.scheme().flow == Flow::Batch
         && settings.updates == Updates::Eager
         && !output.is_in_portions()
-        && places.moving > FEW_ROWS
+        && places.moving > ROWS_IN_CACHE
 }
 
 /// Culls one frame by the strategy of the settings.

@@ -72,7 +72,7 @@ impl InterestFilter<'_> {
 
 /// More than the cosine of the half angle, the axis' length and a product may be off by: what lies
 /// on the rim is in the cone, sideways at 90° and straight behind at 180°.
-const RIM: f64 = exp2(-48);
+const CONE_SLACK: f64 = exp2(-48);
 
 /// A view cone in the world frame.
 struct PlacedCone {
@@ -99,7 +99,7 @@ impl PlacedCone {
         Self {
             apex: apex.map(f64::from),
             direction: turned.map(|x| x / length),
-            cosine: libm::cos(f64::from(cone.half_angle).to_radians()) - RIM,
+            cosine: libm::cos(f64::from(cone.half_angle).to_radians()) - CONE_SLACK,
             range: cone.range.map_or(f64::INFINITY, f64::from),
         }
     }

@@ -20,29 +20,29 @@ use crate::simd::{CACHE_LINE, Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch
 use crate::threads::{Executor, Threads};
 
 /// Slots of a run that are tested before their hits are listed.
-const PIECE: usize = MOST_CANDIDATES;
+const SLOTS_PER_TEST: usize = MOST_CANDIDATES;
 
 /// How far beyond the farthest slot of a block names are prefetched: some twenty blocks ahead of
 /// their use.
-const AHEAD: usize = 256;
+const PREFETCH_DISTANCE: usize = 256;
 
 /// Up to so many names the second-level cache keeps, and prefetching only costs.
-const FEW_NAMES: usize = 1 << 16;
+const NAMES_IN_CACHE: usize = 1 << 16;
 
 /// Names in a cache line.
-const LINE: usize = CACHE_LINE / size_of::<u32>();
+const NAMES_PER_LINE: usize = CACHE_LINE / size_of::<u32>();
 
 /// The first volume test of a strategy.
 #[derive(Clone, Copy)]
-enum First<'a> {
-    #[cfg(feature = "shapes")]
+enum FirstVolume<'a> {
     /// Spheres in slot order.
-    Spheres(crate::broad_phase::Arranged<'a>),
     #[cfg(feature = "shapes")]
+    Spheres(crate::broad_phase::SlotBodies<'a>),
     /// World-aligned slabs.
-    Intervals(&'a IntervalSlots),
     #[cfg(feature = "shapes")]
+    Intervals(&'a IntervalSlots),
     /// None: every candidate passes.
+    #[cfg(feature = "shapes")]
     PassAll,
     /// Given boxes.
     Boxes(BoxTest<'a>),
@@ -57,10 +57,10 @@ pub(crate) enum BoxTest<'a> {
     Ends(&'a EndSlots),
 }
 
-#[cfg(feature = "shapes")]
 /// What is listed of a pair of slots.
+#[cfg(feature = "shapes")]
 #[derive(Clone, Copy)]
-pub(super) enum Listed {
+pub(super) enum PairNames {
     /// Its bodies, the lower first: what is reported.
     Bodies,
     /// Its places, that of the lower body first: what is refined.
@@ -83,9 +83,9 @@ fn in_order<L: Lanes>(l: L, listed: [L::I; 2], bodies: [L::I; 2]) -> [L::I; 2] {
 pub(super) struct Listing<'a> {
     tier: Tier,
     finder: &'a PairFinder,
-    first: First<'a>,
+    first: FirstVolume<'a>,
     #[cfg(feature = "shapes")]
-    listed: Listed,
+    listed: PairNames,
     #[cfg(feature = "shapes")]
     names: SlotNames<'a>,
     /// Each body's groups where not all collide with all.
@@ -94,11 +94,11 @@ pub(super) struct Listing<'a> {
 
 impl<'a> Listing<'a> {
     #[cfg(feature = "shapes")]
-    pub(super) fn new(inputs: Inputs<'a>, listed: Listed) -> Self {
+    pub(super) fn new(inputs: Inputs<'a>, listed: PairNames) -> Self {
         let first = match inputs.settings.strategy.scheme().first {
-            None => First::PassAll,
-            Some(TestedVolume::Sphere) => First::Spheres(inputs.slots),
-            Some(_) => First::Intervals(inputs.intervals),
+            None => FirstVolume::PassAll,
+            Some(TestedVolume::Sphere) => FirstVolume::Spheres(inputs.slots),
+            Some(_) => FirstVolume::Intervals(inputs.intervals),
         };
         Self {
             tier: inputs.executor.tier,
@@ -128,7 +128,7 @@ impl<'a> Listing<'a> {
     /// What is listed of hits with these entries, that of the lower body first.
     #[cfg(feature = "shapes")]
     #[inline(always)]
-    fn listed<L: Lanes>(&self, l: L, hits: Hits, hit: L::I, entries: [L::I; 2]) -> [L::I; 2] {
+    fn listed<L: Lanes>(&self, l: L, hits: HitSlots, hit: L::I, entries: [L::I; 2]) -> [L::I; 2] {
         let (mut names, mut bodies) = (entries, entries);
         match self.names {
             SlotNames::Bodies => {}
@@ -142,15 +142,15 @@ impl<'a> Listing<'a> {
             SlotNames::Slots(_) => names = hits.slots(l, hit),
         }
         let listed = match self.listed {
-            Listed::Bodies => bodies,
-            Listed::Places => names,
+            PairNames::Bodies => bodies,
+            PairNames::Places => names,
         };
         in_order(l, listed, bodies)
     }
 
     #[cfg(not(feature = "shapes"))]
     #[inline(always)]
-    fn listed<L: Lanes>(&self, l: L, _: Hits, _: L::I, entries: [L::I; 2]) -> [L::I; 2] {
+    fn listed<L: Lanes>(&self, l: L, _: HitSlots, _: L::I, entries: [L::I; 2]) -> [L::I; 2] {
         in_order(l, entries, entries)
     }
 
@@ -158,7 +158,7 @@ impl<'a> Listing<'a> {
     #[cfg(feature = "shapes")]
     fn body_of(&self, name: u32) -> u32 {
         match (self.listed, self.names) {
-            (Listed::Places, SlotNames::Places(body) | SlotNames::Slots(body)) => {
+            (PairNames::Places, SlotNames::Places(body) | SlotNames::Slots(body)) => {
                 body[name as usize]
             }
             _ => name,
@@ -179,7 +179,7 @@ impl<'a> Listing<'a> {
         enough: usize,
         flush: &mut dyn FnMut(&mut PairList),
     ) -> VolumeCounters {
-        let flush = Flush {
+        let flush = FlushRule {
             enough,
             call: flush,
         };
@@ -195,17 +195,17 @@ impl<'a> Listing<'a> {
     }
 }
 
-#[cfg(feature = "shapes")]
 /// Reports what passes the first test.
+#[cfg(feature = "shapes")]
 pub(super) fn flow(inputs: Inputs<'_>, scratch: &mut Scratch, output: Output<'_>) -> Totals {
-    list(inputs, Listed::Bodies, &mut scratch.tasks, output)
+    list(inputs, PairNames::Bodies, &mut scratch.tasks, output)
 }
 
-#[cfg(feature = "shapes")]
 /// Lists what passes the first test, on all threads.
+#[cfg(feature = "shapes")]
 pub(super) fn list(
     inputs: Inputs<'_>,
-    listed: Listed,
+    listed: PairNames,
     tasks: &mut Tasks,
     output: Output<'_>,
 ) -> Totals {
@@ -236,9 +236,9 @@ pub(crate) fn list_boxes(
     let listing = Listing {
         tier: inputs.executor.tier,
         finder: inputs.finder,
-        first: First::Boxes(inputs.test),
+        first: FirstVolume::Boxes(inputs.test),
         #[cfg(feature = "shapes")]
-        listed: Listed::Bodies,
+        listed: PairNames::Bodies,
         #[cfg(feature = "shapes")]
         names: SlotNames::Bodies,
         groups: inputs.groups,
@@ -260,7 +260,7 @@ fn list_parts(
 }
 
 /// What is done with a list that has grown long enough.
-struct Flush<'a> {
+struct FlushRule<'a> {
     enough: usize,
     call: &'a mut dyn FnMut(&mut PairList),
 }
@@ -269,7 +269,7 @@ struct List<'a> {
     listing: Listing<'a>,
     parts: Range<usize>,
     out: &'a mut PairList,
-    flush: Flush<'a>,
+    flush: FlushRule<'a>,
 }
 
 impl Kernel for List<'_> {
@@ -278,13 +278,13 @@ impl Kernel for List<'_> {
     fn run<L: Lanes>(self, l: L) -> VolumeCounters {
         match self.listing.first {
             #[cfg(feature = "shapes")]
-            First::Spheres(slots) => self.with(l, &Spheres(slots)),
+            FirstVolume::Spheres(slots) => self.with(l, &Spheres(slots)),
             #[cfg(feature = "shapes")]
-            First::Intervals(intervals) => self.with(l, intervals),
+            FirstVolume::Intervals(intervals) => self.with(l, intervals),
             #[cfg(feature = "shapes")]
-            First::PassAll => self.with(l, &PassAll),
-            First::Boxes(BoxTest::Cubes(cubes)) => self.with(l, &cubes),
-            First::Boxes(BoxTest::Ends(ends)) => self.with(l, ends),
+            FirstVolume::PassAll => self.with(l, &PassAll),
+            FirstVolume::Boxes(BoxTest::Cubes(cubes)) => self.with(l, &cubes),
+            FirstVolume::Boxes(BoxTest::Ends(ends)) => self.with(l, ends),
         }
     }
 }
@@ -302,15 +302,15 @@ impl List<'_> {
             flush: self.flush,
             counters: VolumeCounters::default(),
             prefetched: 0,
-            hits: [0; PIECE + MAX_WIDTH],
+            hits: [0; SLOTS_PER_TEST + MAX_WIDTH],
         };
         finder.find(l, self.parts, &mut lister);
         lister.counters
     }
 }
 
-#[cfg(feature = "shapes")]
 /// The test that every candidate passes.
+#[cfg(feature = "shapes")]
 struct PassAll;
 
 #[cfg(feature = "shapes")]
@@ -337,12 +337,12 @@ struct Lister<'a, 'f, T> {
     by_slot: &'a [u32],
     listing: Listing<'a>,
     out: &'f mut PairList,
-    flush: Flush<'f>,
+    flush: FlushRule<'f>,
     counters: VolumeCounters,
     /// Up to this slot, names are prefetched.
     prefetched: usize,
     /// Of the piece or block at hand.
-    hits: [u32; PIECE + MAX_WIDTH],
+    hits: [u32; SLOTS_PER_TEST + MAX_WIDTH],
 }
 
 impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
@@ -351,36 +351,36 @@ impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
         self.counters.tests += run.len() as u64;
         let mut start = run.start;
         while start < run.end {
-            let piece = start..run.end.min(start + PIECE);
+            let piece = start..run.end.min(start + SLOTS_PER_TEST);
             start = piece.end;
             let found = self.test.run(l, i, piece, &mut self.hits);
-            self.append(l, found, Hits::With(i));
+            self.append(l, found, HitSlots::With(i));
         }
     }
 
     #[cfg_attr(not(unoptimised), inline(always))]
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>) {
         self.counters.tests += block.codes().len() as u64;
-        if self.by_slot.len() > FEW_NAMES {
+        if self.by_slot.len() > NAMES_IN_CACHE {
             self.prefetch_beyond(block);
         }
         let found = self.test.block(l, block, &mut self.hits);
-        self.append(l, found, Hits::Codes(block.first()));
+        self.append(l, found, HitSlots::Codes(block.first()));
     }
 }
 
 /// What hits stand for.
 #[derive(Clone, Copy)]
-enum Hits {
+enum HitSlots {
     /// Slots that this one meets.
     With(usize),
     /// Codes of a block whose lane 0 is this slot.
     Codes(usize),
 }
 
-impl Hits {
-    #[cfg(feature = "shapes")]
+impl HitSlots {
     /// The slots of a vector of pairs.
+    #[cfg(feature = "shapes")]
     #[inline(always)]
     fn slots<L: Lanes>(self, l: L, hit: L::I) -> [L::I; 2] {
         match self {
@@ -416,18 +416,20 @@ impl<T> Lister<'_, '_, T> {
     #[inline(never)]
     fn prefetch_beyond(&mut self, block: &Block<'_>) {
         let farthest = block.codes().last().map_or(0, |code| code >> 4) as usize;
-        let end = self.by_slot.len().min(farthest + AHEAD);
-        let mut slot = self.prefetched.max(end.saturating_sub(2 * AHEAD));
+        let end = self.by_slot.len().min(farthest + PREFETCH_DISTANCE);
+        let mut slot = self
+            .prefetched
+            .max(end.saturating_sub(2 * PREFETCH_DISTANCE));
         while slot < end {
             prefetch(&self.by_slot[slot]);
-            slot += LINE;
+            slot += NAMES_PER_LINE;
         }
         self.prefetched = slot;
     }
 
     /// Lists the first `found` hits.
     #[inline(always)]
-    fn append<L: Lanes>(&mut self, l: L, found: usize, hits: Hits) {
+    fn append<L: Lanes>(&mut self, l: L, found: usize, hits: HitSlots) {
         let listed = self.out.len();
         self.name(l, found, hits);
         if let Some(groups) = self.listing.groups {
@@ -442,7 +444,7 @@ impl<T> Lister<'_, '_, T> {
     /// Lists them all, a vector at a time; what is computed of the lanes behind the last hit is
     /// overwritten by the next pairs.
     #[inline(always)]
-    fn name<L: Lanes>(&mut self, l: L, found: usize, hits: Hits) {
+    fn name<L: Lanes>(&mut self, l: L, found: usize, hits: HitSlots) {
         let (first, second) = self.out.room(found);
         let mut start = 0;
         while start < found {

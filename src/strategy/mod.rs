@@ -32,14 +32,14 @@ pub(crate) use listing::{BoxInputs, BoxTest, list_boxes};
 pub(crate) use output::Output;
 pub(crate) use tasks::Tasks;
 #[cfg(all(feature = "shapes", feature = "serde"))]
-pub(crate) use time_critical::Answers;
+pub(crate) use time_critical::RefinementRanks;
 
-#[cfg(feature = "shapes")]
 /// What the finder's slots are named by.
 ///
 /// Volumes other than spheres are looked up by place. With spheres alone, names are bodies, so that
 /// no hit needs a look at its places: naming slots by place under every strategy took 2.5 % more
 /// instructions of a frame of spheres (10,000 bodies, grid, AVX2).
+#[cfg(feature = "shapes")]
 #[derive(Clone, Copy)]
 pub(crate) enum SlotNames<'a> {
     /// Bodies, in the order of the user's columns.
@@ -57,8 +57,8 @@ pub(crate) struct Totals {
     pub first: VolumeCounters,
     /// Of the refining test, with the rows made on demand as updates.
     pub refining: VolumeCounters,
-    #[cfg(feature = "shapes")]
     /// Pairs reported untested because the budget had ended.
+    #[cfg(feature = "shapes")]
     pub untested: u64,
     /// Wall time of the refining test: its seconds over the threads.
     pub refining_seconds: f64,

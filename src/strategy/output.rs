@@ -11,18 +11,18 @@ use std::sync::{Condvar, Mutex, MutexGuard};
 use crate::pairs::PairList;
 
 /// Pairs in a portion; a block of candidates more may come with the last of them.
-pub(crate) const PORTION: usize = 1 << 16;
+pub(crate) const PAIRS_PER_PORTION: usize = 1 << 16;
 
 /// Where the pairs of a frame go.
 pub(crate) enum Output<'a> {
     /// All into one list.
     List(&'a mut PairList),
     /// Portions to a function, which empties each.
-    Portions(&'a mut Sink<'a>),
+    Portions(&'a mut PortionSink<'a>),
 }
 
 /// Takes a portion.
-pub(crate) type Sink<'a> = dyn FnMut(&mut PairList) + Send + 'a;
+pub(crate) type PortionSink<'a> = dyn FnMut(&mut PairList) + Send + 'a;
 
 #[cfg(feature = "shapes")]
 impl Output<'_> {
@@ -36,7 +36,7 @@ pub(super) enum Outlet<'t, 's> {
     /// It is kept until all tasks are done.
     Kept,
     /// It is handed over whenever it is a portion.
-    HandedOver(Turn<'t, 's>),
+    HandedOver(TaskTurn<'t, 's>),
 }
 
 impl Outlet<'_, '_> {
@@ -44,14 +44,14 @@ impl Outlet<'_, '_> {
     pub fn worth(&self) -> usize {
         match self {
             Self::Kept => usize::MAX,
-            Self::HandedOver(_) => PORTION,
+            Self::HandedOver(_) => PAIRS_PER_PORTION,
         }
     }
 
     /// Hands the list over, and empties it, if that is worth it.
     pub fn offer(&self, list: &mut PairList) {
         if let Self::HandedOver(turn) = self
-            && list.len() >= PORTION
+            && list.len() >= PAIRS_PER_PORTION
         {
             turn.hand_over(list);
         }
@@ -76,17 +76,17 @@ struct State<'s> {
     task: usize,
     /// Whether a task panicked: nothing is handed over from then on.
     abandoned: bool,
-    sink: &'s mut Sink<'s>,
+    sink: &'s mut PortionSink<'s>,
 }
 
 /// One task's turn.
-pub(super) struct Turn<'t, 's> {
+pub(super) struct TaskTurn<'t, 's> {
     turns: &'t Turns<'s>,
     task: usize,
 }
 
 impl<'s> Turns<'s> {
-    pub fn new(sink: &'s mut Sink<'s>) -> Self {
+    pub fn new(sink: &'s mut PortionSink<'s>) -> Self {
         let state = State {
             task: 0,
             abandoned: false,
@@ -98,12 +98,12 @@ impl<'s> Turns<'s> {
         }
     }
 
-    pub fn of(&self, task: usize) -> Turn<'_, 's> {
-        Turn { turns: self, task }
+    pub fn of(&self, task: usize) -> TaskTurn<'_, 's> {
+        TaskTurn { turns: self, task }
     }
 }
 
-impl<'t, 's> Turn<'t, 's> {
+impl<'t, 's> TaskTurn<'t, 's> {
     /// Hands a list over when it is this task's turn, and empties it.
     fn hand_over(&self, list: &mut PairList) {
         if let Some(mut state) = self.wait()
@@ -124,7 +124,7 @@ impl<'t, 's> Turn<'t, 's> {
     }
 }
 
-impl Drop for Turn<'_, '_> {
+impl Drop for TaskTurn<'_, '_> {
     fn drop(&mut self) {
         // A poisoned lock means that the sink panicked: waiting tasks see that by themselves once
         // they are woken.
@@ -157,7 +157,9 @@ mod tests {
                 });
                 later.join().is_err()
             });
-            let mut list: PairList = (0..PORTION as u32).map(|pair| [pair, pair + 1]).collect();
+            let mut list: PairList = (0..PAIRS_PER_PORTION as u32)
+                .map(|pair| [pair, pair + 1])
+                .collect();
             let outlet = Outlet::HandedOver(turns.of(0));
             outlet.offer(&mut list);
             outlet.end(&mut list);

@@ -11,11 +11,11 @@ use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 use crate::threads::Executor;
-use crate::update::{MOST_ROWS, OrDopRows, Posed, RowsByNumber};
+use crate::update::{MOST_ROWS, OrDopRows, RowsByNumber, UpdateInputs};
 
 /// Pairs whose rows are made together, and how many of such stretches one thread looks at.
-const STRETCH: usize = 1024;
-const STRETCHES: usize = 16;
+const PAIRS_PER_STRETCH: usize = 1024;
+const STRETCHES_PER_TASK: usize = 16;
 
 /// The or-DOP test with the rows as they are: takes pairs of places, leaves pairs of bodies.
 #[derive(Clone, Copy)]
@@ -59,11 +59,19 @@ impl<'a> Refine<'a> {
     }
 
     /// Tests a task's pairs, stretch after stretch, and makes the rows of each when it is its turn.
-    fn test_in_windows(&self, posed: Posed<'_>, [first, second]: [&[u32]; 2], task: &mut Task) {
+    fn test_in_windows(
+        &self,
+        posed: UpdateInputs<'_>,
+        [first, second]: [&[u32]; 2],
+        task: &mut Task,
+    ) {
         let moving = posed.places.moving;
         let mut window = std::mem::take(&mut task.window);
         window.clear();
-        for (first, second) in first.chunks(STRETCH).zip(second.chunks(STRETCH)) {
+        for (first, second) in first
+            .chunks(PAIRS_PER_STRETCH)
+            .zip(second.chunks(PAIRS_PER_STRETCH))
+        {
             let start = Instant::now();
             let wanted = places_of(self.tier, moving, [first, second]);
             window.cover(self.tier, posed, &self.columns.rows, wanted);
@@ -84,8 +92,8 @@ impl<'a> Refine<'a> {
 /// places, and of the others.
 fn places_of(tier: Tier, moving: usize, pairs: [&[u32]; 2]) -> [Range<usize>; 2] {
     /// The least place and the one behind the greatest.
-    struct Ends<'a>(u32, [&'a [u32]; 2]);
-    impl Kernel for Ends<'_> {
+    struct FindEnds<'a>(u32, [&'a [u32]; 2]);
+    impl Kernel for FindEnds<'_> {
         type Output = [[u32; 2]; 2];
         #[inline(always)]
         fn run<L: Lanes>(self, _: L) -> [[u32; 2]; 2] {
@@ -110,7 +118,7 @@ fn places_of(tier: Tier, moving: usize, pairs: [&[u32]; 2]) -> [Range<usize>; 2]
             [moving, still]
         }
     }
-    dispatch(tier, Ends(moving as u32, pairs))
+    dispatch(tier, FindEnds(moving as u32, pairs))
         .map(|[least, end]| least.min(end) as usize..end as usize)
 }
 
@@ -142,7 +150,11 @@ impl<'a> Refiner<'a> {
         }
         let refine = Refine::new(self.inputs, self.rows);
         // Tasks begin where stretches do, which were looked at one by one.
-        let unit = if in_windows { STRETCH } else { MAX_WIDTH };
+        let unit = if in_windows {
+            PAIRS_PER_STRETCH
+        } else {
+            MAX_WIDTH
+        };
         let work = |units: Range<usize>, task: &mut Task, _: &Outlet<'_, '_>| {
             let pairs = units.start * unit..(units.end * unit).min(list.len());
             let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
@@ -164,15 +176,21 @@ impl<'a> Refiner<'a> {
     fn are_near(&self, list: &PairList) -> bool {
         let Executor { tier, pool } = self.inputs.executor;
         let moving = self.inputs.posed.places.moving;
-        pool.all(list.len(), STRETCHES * STRETCH, |range| {
-            let [first, second] =
-                [list.first(), list.second()].map(|column| &column[range.clone()]);
-            let mut stretches = first.chunks(STRETCH).zip(second.chunks(STRETCH));
-            stretches.all(|(first, second)| {
-                let places = places_of(tier, moving, [first, second]);
-                places.iter().all(|places| places.len() <= MOST_ROWS)
-            })
-        })
+        pool.all(
+            list.len(),
+            STRETCHES_PER_TASK * PAIRS_PER_STRETCH,
+            |range| {
+                let [first, second] =
+                    [list.first(), list.second()].map(|column| &column[range.clone()]);
+                let mut stretches = first
+                    .chunks(PAIRS_PER_STRETCH)
+                    .zip(second.chunks(PAIRS_PER_STRETCH));
+                stretches.all(|(first, second)| {
+                    let places = places_of(tier, moving, [first, second]);
+                    places.iter().all(|places| places.len() <= MOST_ROWS)
+                })
+            },
+        )
     }
 
     /// Tests some pairs of a list on the calling thread and appends the survivors to `out`.
@@ -229,7 +247,7 @@ mod tests {
     use crate::settings::{CullSettings, DirectionSet, Updates};
     use crate::strategy::SlotNames;
     use crate::threads::Threads;
-    use crate::update::{Posed, ShapeFrame};
+    use crate::update::{ShapeFrame, UpdateInputs};
     use crate::volume::{Shape, ShapeSpec};
 
     /// Hands over a refiner of three boxes in one place that move, with such updates.
@@ -241,7 +259,7 @@ mod tests {
             bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
         }
         let (places, pool) = (Places::new(&bodies), Threads::default());
-        let posed = Posed {
+        let posed = UpdateInputs {
             frames: &[ShapeFrame::new(&shape, &shape.ordop.basis)]
                 .into_iter()
                 .collect(),
@@ -294,13 +312,13 @@ mod tests {
             refiner(Updates::Eager, |refiner| refiner.are_near(&list))
         };
         let most = MOST_ROWS as u32;
-        let mut pairs: Vec<_> = (0..40 * STRETCH as u32)
+        let mut pairs: Vec<_> = (0..40 * PAIRS_PER_STRETCH as u32)
             .map(|pair| [pair % 3, 3 + 10 * pair])
             .collect();
         assert!(is_near(&pairs));
-        pairs[20 * STRETCH + 7][0] = pairs[20 * STRETCH][1] + most - 1;
+        pairs[20 * PAIRS_PER_STRETCH + 7][0] = pairs[20 * PAIRS_PER_STRETCH][1] + most - 1;
         assert!(is_near(&pairs));
-        pairs[20 * STRETCH + 7][0] += 1;
+        pairs[20 * PAIRS_PER_STRETCH + 7][0] += 1;
         assert!(!is_near(&pairs));
     }
 

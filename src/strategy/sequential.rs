@@ -1,7 +1,7 @@
 //! S-DOP, sequential (paper, section 4a): a pair whose spheres overlap goes to the or-DOP test at
 //! once.
 //!
-//! "At once" means a block of some [`BLOCK`] pairs here, since one pair can't fill a vector; no
+//! "At once" means a block of some [`PAIRS_PER_BLOCK`] pairs here, since one pair can't fill a vector; no
 //! list of the potentially colliding set is kept. The same flow serves the object of interest
 //! (section 4c), where some pairs of the block are not refined, and oriented volumes without a
 //! sphere stage.
@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use super::interest::InterestFilter;
-use super::listing::{Listed, Listing};
+use super::listing::{Listing, PairNames};
 use super::output::{Outlet, Output};
 use super::refine::Refine;
 use super::tasks::{Task, split_work};
@@ -19,7 +19,7 @@ use crate::update::OrDopRows;
 
 /// Pairs that flow through the or-DOP test at once where no list is kept: few enough for the
 /// first-level cache, enough to make the clock's cost vanish.
-const BLOCK: usize = 256;
+const PAIRS_PER_BLOCK: usize = 256;
 
 /// Candidates that pass the first test, then or-DOPs block by block; with `interest`, only for
 /// pairs that have a body of interest.
@@ -30,7 +30,7 @@ pub(super) fn flow(
     interest: Option<&[bool]>,
     output: Output<'_>,
 ) -> Totals {
-    let listing = Listing::new(inputs, Listed::Places);
+    let listing = Listing::new(inputs, PairNames::Places);
     let refine = Refine::new(inputs, rows);
     let work = |parts: Range<usize>, task: &mut Task, outlet: &Outlet<'_, '_>| {
         refine_blocks(&listing, parts, &refine, interest, task, outlet);
@@ -83,6 +83,6 @@ fn refine_blocks(
         block.clear();
         outlet.offer(out);
     };
-    *first = listing.run(parts, block, BLOCK, &mut flush);
+    *first = listing.run(parts, block, PAIRS_PER_BLOCK, &mut flush);
     flush(block);
 }

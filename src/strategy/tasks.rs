@@ -24,8 +24,8 @@ pub(super) struct Task {
     pub selected: PairList,
     /// Those of them that survived.
     pub survivors: PairList,
-    #[cfg(feature = "shapes")]
     /// Rows that are made where they are tested.
+    #[cfg(feature = "shapes")]
     pub window: RowWindow,
     pub first: VolumeCounters,
     pub refining: VolumeCounters,

@@ -3,14 +3,14 @@
 //! (Dingliana & O'Sullivan 2000).
 //!
 //! A budget of tests gives the same pairs everywhere; a budget of time is compared with the clock
-//! after every [`SLICE`] tests.
+//! after every [`TESTS_PER_CLOCK_READING`] tests.
 
 use std::collections::HashMap;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use super::listing::{Listed, list};
-use super::output::{Output, PORTION};
+use super::listing::{PairNames, list};
+use super::output::{Output, PAIRS_PER_PORTION};
 use super::refine::Refiner;
 use super::{Inputs, Scratch, Totals};
 use crate::pairs::PairList;
@@ -18,7 +18,7 @@ use crate::settings::{Budget, Order};
 use crate::update::OrDopRows;
 
 /// Tests between two readings of the clock: some microseconds.
-const SLICE: usize = 128;
+const TESTS_PER_CLOCK_READING: usize = 128;
 
 /// What a frame leaves to the next: when pairs were refined, and buffers.
 #[derive(Clone, Debug, Default)]
@@ -35,10 +35,10 @@ pub(super) struct History {
 /// histories are equal, whatever the frames' numbers.
 #[cfg(feature = "serde")]
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Answers(pub Vec<([u32; 2], u32)>);
+pub(crate) struct RefinementRanks(pub Vec<([u32; 2], u32)>);
 
 #[cfg(feature = "serde")]
-impl Answers {
+impl RefinementRanks {
     /// The largest rank.
     pub fn latest(&self) -> u32 {
         self.0.iter().map(|&(_, rank)| rank).max().unwrap_or(0)
@@ -78,10 +78,15 @@ pub(super) fn flow(
                 spender.report(candidates, 0..candidates.len(), portion);
                 sink(portion);
             };
-            list(inputs, Listed::Places, tasks, Output::Portions(&mut take))
+            list(
+                inputs,
+                PairNames::Places,
+                tasks,
+                Output::Portions(&mut take),
+            )
         }
         output => {
-            let listed = list(inputs, Listed::Places, tasks, Output::List(candidates));
+            let listed = list(inputs, PairNames::Places, tasks, Output::List(candidates));
             if is_sorted {
                 arrange(inputs, history, candidates);
             }
@@ -89,9 +94,9 @@ pub(super) fn flow(
             match output {
                 Output::List(out) => spender.report(candidates, all, out),
                 Output::Portions(sink) => {
-                    for start in all.step_by(PORTION) {
+                    for start in all.step_by(PAIRS_PER_PORTION) {
                         portion.clear();
-                        let end = candidates.len().min(start + PORTION);
+                        let end = candidates.len().min(start + PAIRS_PER_PORTION);
                         spender.report(candidates, start..end, portion);
                         sink(portion);
                     }
@@ -146,7 +151,7 @@ impl<'a> Spender<'a> {
     fn report(&mut self, candidates: &PairList, range: Range<usize>, out: &mut PairList) {
         let limit = range.end.min(range.start.saturating_add(self.tests_left));
         let slice = if self.deadline.is_some() {
-            SLICE
+            TESTS_PER_CLOCK_READING
         } else {
             limit.max(1)
         };
@@ -218,7 +223,7 @@ impl History {
 
     /// When pairs were refined, apart from the numbers of frames.
     #[cfg(feature = "serde")]
-    pub fn answers(&self) -> Answers {
+    pub fn answers(&self) -> RefinementRanks {
         let mut answers: Vec<_> = self.refined.iter().map(|(&pair, &at)| (pair, at)).collect();
         let mut frames: Vec<u32> = answers.iter().map(|&(_, at)| at).collect();
         frames.push(0);
@@ -228,13 +233,13 @@ impl History {
             *at = frames.partition_point(|frame| frame < at) as u32;
         }
         answers.sort_unstable();
-        Answers(answers)
+        RefinementRanks(answers)
     }
 
     /// Takes over when pairs were refined; the coming frames have larger numbers than the latest
     /// rank.
     #[cfg(feature = "serde")]
-    pub fn set_answers(&mut self, answers: &Answers) {
+    pub fn set_answers(&mut self, answers: &RefinementRanks) {
         self.refined = answers.0.iter().copied().collect();
     }
 

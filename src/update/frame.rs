@@ -15,11 +15,11 @@ pub const BASIS: usize = 0;
 pub const CENTRE: usize = 9;
 /// Where one over the length of each of the basis' columns begins, a number of f64 as the sum of
 /// three of f32.
-pub const UNIT: usize = 12;
+pub const INVERSE_LENGTHS: usize = 12;
 
 /// The frames of all shapes.
 #[derive(Clone, Debug, Default)]
-pub struct Frames {
+pub struct ShapeFrames {
     frames: Vec<ShapeFrame>,
     /// What or-DOPs are turned by: records that are read as columns, a vector of shapes at a time.
     pub(super) records: Vec<[f32; ROW]>,
@@ -27,7 +27,7 @@ pub struct Frames {
     some_eccentric: bool,
 }
 
-impl Frames {
+impl ShapeFrames {
     /// Adds the next shape's.
     pub fn push(&mut self, frame: ShapeFrame) {
         self.records.push(frame.record());
@@ -57,14 +57,14 @@ impl Frames {
     }
 }
 
-impl Deref for Frames {
+impl Deref for ShapeFrames {
     type Target = [ShapeFrame];
     fn deref(&self) -> &[ShapeFrame] {
         &self.frames
     }
 }
 
-impl FromIterator<ShapeFrame> for Frames {
+impl FromIterator<ShapeFrame> for ShapeFrames {
     fn from_iter<I: IntoIterator<Item = ShapeFrame>>(frames: I) -> Self {
         let mut all = Self::default();
         frames.into_iter().for_each(|frame| all.push(frame));
@@ -163,11 +163,11 @@ impl ShapeFrame {
     fn record(&self) -> [f32; ROW] {
         let mut record = [0.0; ROW];
         record[BASIS..CENTRE].copy_from_slice(self.basis.as_flattened());
-        record[CENTRE..UNIT].copy_from_slice(&self.centre);
+        record[CENTRE..INVERSE_LENGTHS].copy_from_slice(&self.centre);
         // Lengths are in (1/2, 1], so each part takes 24 bits of what the ones before it leave, and
         // none is left of 53.
         let mut rest = over_norm(self.basis[0]);
-        for part in &mut record[UNIT..UNIT + 3] {
+        for part in &mut record[INVERSE_LENGTHS..INVERSE_LENGTHS + 3] {
             *part = rest as f32;
             rest -= f64::from(*part);
         }

@@ -7,8 +7,8 @@
 
 use std::ops::Range;
 
-use super::Posed;
-use super::eight::{EIGHT, Eight};
+use super::UpdateInputs;
+use super::f64x8::{F64x8, LANES};
 use crate::rounding::pose::{Rotation, norm, refit, rotate_of, rotation};
 use crate::rounding::{down, up};
 use crate::simd::{Kernel, Lanes, dispatch};
@@ -16,14 +16,14 @@ use crate::threads::Executor;
 use crate::volume::{DirectionSet, Hull, Shape};
 
 /// Bodies that one thread re-fits at a time.
-const BODIES: usize = 32;
+const BODIES_PER_TASK: usize = 32;
 
 /// World-aligned slabs by place, re-fitted each frame from the hull's vertices and rounded outward.
 #[derive(Clone, Debug)]
 pub struct Intervals {
     directions: DirectionSet,
     /// Hull vertices of each shape, body frame, in eights; the last is filled up by its first.
-    hulls: Vec<Vec<[Eight; 3]>>,
+    hulls: Vec<Vec<[F64x8; 3]>>,
     /// `ends[place·slabs + slab]` = [lo, hi].
     pub ends: Vec<[f32; 2]>,
 }
@@ -74,7 +74,7 @@ impl Intervals {
         &mut self,
         executor: Executor<'_>,
         cubes: &mut [[f32; 4]],
-        posed: Posed<'_>,
+        posed: UpdateInputs<'_>,
         range: Range<usize>,
     ) {
         let Executor { tier, pool } = executor;
@@ -82,7 +82,7 @@ impl Intervals {
         let slabs = coefficients.len();
         let (first, hulls) = (range.start, &self.hulls);
         let ends = &mut self.ends[range.start * slabs..range.end * slabs];
-        pool.pieces(ends, BODIES * slabs, |start, ends| {
+        pool.pieces(ends, BODIES_PER_TASK * slabs, |start, ends| {
             let refit = Refit {
                 posed,
                 hulls,
@@ -99,11 +99,11 @@ impl Intervals {
     }
 }
 
-fn hull_in_eights(shape: &Shape) -> Vec<[Eight; 3]> {
+fn hull_in_eights(shape: &Shape) -> Vec<[F64x8; 3]> {
     let used = Hull::of(&shape.vertices).vertices;
-    let in_eights = used.chunks(EIGHT).map(|some| {
-        let mut eights = [Eight::splat(0.0); 3];
-        for lane in 0..EIGHT {
+    let in_eights = used.chunks(LANES).map(|some| {
+        let mut eights = [F64x8::splat(0.0); 3];
+        for lane in 0..LANES {
             let vertex = shape.vertices[*some.get(lane).unwrap_or(&some[0]) as usize];
             for axis in 0..3 {
                 eights[axis].0[lane] = f64::from(vertex[axis]);
@@ -129,8 +129,8 @@ fn cube_about(ends: &[[f32; 2]]) -> [f32; 4] {
 
 /// The slabs of consecutive places.
 struct Refit<'a> {
-    posed: Posed<'a>,
-    hulls: &'a [Vec<[Eight; 3]>],
+    posed: UpdateInputs<'a>,
+    hulls: &'a [Vec<[F64x8; 3]>],
     coefficients: &'static [[i8; 3]],
     first: usize,
     ends: &'a mut [[f32; 2]],
@@ -141,7 +141,7 @@ impl Kernel for Refit<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
         let slabs = self.coefficients.len();
-        let Posed {
+        let UpdateInputs {
             frames,
             bodies,
             places,
@@ -165,29 +165,29 @@ impl Kernel for Refit<'_> {
 fn fit(
     ends: &mut [[f32; 2]],
     coefficients: &[[i8; 3]],
-    hull: &[[Eight; 3]],
+    hull: &[[F64x8; 3]],
     turn: &Rotation,
     t: [f32; 3],
     reach: f32,
 ) {
-    let mut wide = [[Eight::splat(0.0); 3]; 3];
-    let mut origin = [Eight::splat(0.0); 3];
+    let mut wide = [[F64x8::splat(0.0); 3]; 3];
+    let mut origin = [F64x8::splat(0.0); 3];
     for i in 0..3 {
-        origin[i] = Eight::splat(f64::from(t[i]));
+        origin[i] = F64x8::splat(f64::from(t[i]));
         for j in 0..3 {
-            wide[i][j] = Eight::splat(turn[i][j]);
+            wide[i][j] = F64x8::splat(turn[i][j]);
         }
     }
-    let mut lo = [Eight::splat(f64::INFINITY); 13];
-    let mut hi = [Eight::splat(f64::NEG_INFINITY); 13];
+    let mut lo = [F64x8::splat(f64::INFINITY); 13];
+    let mut hi = [F64x8::splat(f64::NEG_INFINITY); 13];
     for &vertices in hull {
         let [x, y, z] = rotate_of(&wide, vertices);
         let p = [x + origin[0], y + origin[1], z + origin[2]];
         for (slab, c) in coefficients.iter().enumerate() {
             let [x, y, z] = [
-                Eight::splat(f64::from(c[0])) * p[0],
-                Eight::splat(f64::from(c[1])) * p[1],
-                Eight::splat(f64::from(c[2])) * p[2],
+                F64x8::splat(f64::from(c[0])) * p[0],
+                F64x8::splat(f64::from(c[1])) * p[1],
+                F64x8::splat(f64::from(c[2])) * p[2],
             ];
             let along = (x + y) + z;
             lo[slab] = lo[slab].min(along);
@@ -196,7 +196,7 @@ fn fit(
     }
     for (slab, end) in ends.iter_mut().enumerate() {
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for lane in 0..EIGHT {
+        for lane in 0..LANES {
             least = least.min(lo[slab].0[lane]);
             most = most.max(hi[slab].0[lane]);
         }
@@ -241,7 +241,7 @@ mod tests {
         bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], t);
         let mut intervals = Intervals::new(DirectionSet::K6, &[shape], 1);
         for (frame, margin) in [(frame, 0.0), (grown, 0.25)] {
-            let posed = Posed {
+            let posed = UpdateInputs {
                 frames: &[frame].into_iter().collect(),
                 bodies: &bodies,
                 places: &Places::new(&bodies),
@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn slabs_are_those_of_the_vertices_in_the_world() {
         let vertices = [[1.0, 2.0, 3.0], [-2.0, 0.5, 1.0], [0.25, -4.0, -0.5]];
-        let mut hull = [Eight::splat(0.0); 3];
+        let mut hull = [F64x8::splat(0.0); 3];
         for (axis, eight) in hull.iter_mut().enumerate() {
             eight.0 = std::array::from_fn(|lane| vertices[lane % 3][axis]);
         }

@@ -4,20 +4,20 @@
 //! (ball-centred shapes) or one transformed point, an or-DOP update turns the basis. World-aligned
 //! volumes alone are re-fitted, from hull vertices.
 
-mod eight;
+mod aligned_rows;
+mod f64_lanes;
+mod f64x8;
 mod frame;
 mod intervals;
-mod lines;
-mod lookup;
 pub mod row;
 mod rows;
-mod wide;
+mod rows_by_number;
 mod window;
 
-pub use frame::{Frames, ShapeFrame};
+pub use frame::{ShapeFrame, ShapeFrames};
 pub use intervals::Intervals;
-pub use lookup::RowsByNumber;
-pub use rows::{OrDopRows, Posed};
+pub use rows::{OrDopRows, UpdateInputs};
+pub use rows_by_number::RowsByNumber;
 pub use window::{MOST_ROWS, RowWindow};
 
 use std::ops::Range;
@@ -30,15 +30,15 @@ use crate::threads::Executor;
 
 /// How many places ahead a pose is prefetched: bodies that are neighbours in space lie anywhere in
 /// the user's columns, and a cache miss takes as long as some ten updates.
-const AHEAD: usize = 64;
+const PREFETCH_DISTANCE: usize = 64;
 
 /// Translations that are read ahead, up to so many bytes: of more, the second-level cache has lost
 /// the first when the last are read, and a third-level cache that is shared with others may have,
 /// too.
-const LONGEST: usize = 4 << 20;
+const MOST_READ_AHEAD_BYTES: usize = 4 << 20;
 
 /// Bodies whose spheres one thread updates at a time: some ten microseconds.
-const SPHERES: usize = 4096;
+const BODIES_PER_TASK: usize = 4096;
 
 /// Updates the spheres (x, y, z, R) of the bodies in a range of places. Returns whether all
 /// translations, and the centres that a rotation takes part in, are within the contract: checked
@@ -53,14 +53,20 @@ pub fn update_spheres(
 ) -> bool {
     let Executor { tier, pool } = executor;
     let (first, is_sound) = (range.start, AtomicBool::new(true));
-    let is_near = read_ahead(pool, &bodies.translation, range.len(), LONGEST, |t| t[0]);
+    let is_near = read_ahead(
+        pool,
+        &bodies.translation,
+        range.len(),
+        MOST_READ_AHEAD_BYTES,
+        |t| t[0],
+    );
     let ahead = if is_near { &[] } else { &*places.body };
-    pool.pieces(&mut spheres[range], SPHERES, |start, spheres| {
+    pool.pieces(&mut spheres[range], BODIES_PER_TASK, |start, spheres| {
         let start = first + start;
         let (mut turned, mut sound) = (false, true);
         let who = places.body[start..].iter().zip(&places.shape[start..]);
         for (place, (sphere, (&body, &shape))) in (start..).zip(spheres.iter_mut().zip(who)) {
-            if let Some(&later) = ahead.get(place + AHEAD) {
+            if let Some(&later) = ahead.get(place + PREFETCH_DISTANCE) {
                 prefetch_ends(&bodies.translation[later as usize]);
             }
             let (body, frame) = (body as usize, &frames[shape as usize]);

@@ -4,11 +4,11 @@
 
 use std::ops::Range;
 
-use super::AHEAD;
-use super::frame::{BASIS, CENTRE, Frames, UNIT};
-use super::lines::Lines;
+use super::PREFETCH_DISTANCE;
+use super::aligned_rows::AlignedRows;
+use super::f64_lanes::F64Lanes;
+use super::frame::{BASIS, CENTRE, INVERSE_LENGTHS, ShapeFrames};
 use super::row::{O, Q, S, SHAPE, T};
-use super::wide::Wide;
 use crate::bodies::Bodies;
 use crate::bodies::Places;
 use crate::rounding::pose::{axes_of, rotate_of, rotation_of};
@@ -18,25 +18,25 @@ use crate::simd::{
 use crate::threads::Executor;
 
 /// Bodies whose rows one thread makes at a time: some microseconds.
-const ROWS: usize = 512;
+const ROWS_PER_TASK: usize = 512;
 
 /// Bodies whose rows are made together.
-pub(super) const BODIES: usize = MAX_WIDTH;
+pub(super) const BODIES_PER_BATCH: usize = MAX_WIDTH;
 
 /// or-DOP rows by place, each with the frame in which it was last made.
 #[derive(Clone, Debug, Default)]
 pub struct OrDopRows {
     /// One row per body.
-    pub rows: Lines,
+    pub rows: AlignedRows,
     made: Vec<u32>,
     missing: Vec<u32>,
 }
 
 /// The inputs of an or-DOP update.
 #[derive(Clone, Copy)]
-pub struct Posed<'a> {
+pub struct UpdateInputs<'a> {
     /// Of every shape.
-    pub frames: &'a Frames,
+    pub frames: &'a ShapeFrames,
     /// The poses.
     pub bodies: &'a Bodies,
     /// The body in each place.
@@ -65,16 +65,16 @@ impl OrDopRows {
     pub fn update(
         &mut self,
         executor: Executor<'_>,
-        posed: Posed<'_>,
+        posed: UpdateInputs<'_>,
         range: Range<usize>,
         stamp: u32,
     ) {
         let Executor { tier, pool } = executor;
         let first = range.start;
         self.made[range.clone()].fill(stamp);
-        pool.pieces(&mut self.rows[range], ROWS, |start, rows| {
+        pool.pieces(&mut self.rows[range], ROWS_PER_TASK, |start, rows| {
             let first = first + start;
-            dispatch(tier, InTurn { posed, first, rows });
+            dispatch(tier, ConsecutiveRows { posed, first, rows });
         });
     }
 
@@ -83,7 +83,7 @@ impl OrDopRows {
     pub fn update_missing(
         &mut self,
         tier: Tier,
-        posed: Posed<'_>,
+        posed: UpdateInputs<'_>,
         wanted: &[u32],
         stamp: u32,
     ) -> u64 {
@@ -98,7 +98,7 @@ impl OrDopRows {
         let (places, rows) = (self.missing.as_slice(), &mut *self.rows);
         dispatch(
             tier,
-            Listed {
+            ListedRows {
                 posed,
                 places,
                 rows,
@@ -109,20 +109,20 @@ impl OrDopRows {
 }
 
 /// Rows of consecutive places.
-pub(super) struct InTurn<'a> {
-    pub posed: Posed<'a>,
+pub(super) struct ConsecutiveRows<'a> {
+    pub posed: UpdateInputs<'a>,
     pub first: usize,
     pub rows: &'a mut [[f32; ROW]],
 }
 
-impl Kernel for InTurn<'_> {
+impl Kernel for ConsecutiveRows<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
         let places = self.posed.places;
         let mut first = self.first;
-        for rows in self.rows.chunks_mut(BODIES) {
-            self.posed.prefetch(first + AHEAD);
+        for rows in self.rows.chunks_mut(BODIES_PER_BATCH) {
+            self.posed.prefetch(first + PREFETCH_DISTANCE);
             let (count, here) = (rows.len(), first..first + rows.len());
             let (bodies, shapes) = (&places.body[here.clone()], &places.shape[here]);
             match (
@@ -131,37 +131,37 @@ impl Kernel for InTurn<'_> {
                 rows.first_chunk_mut(),
             ) {
                 (Some(bodies), Some(shapes), Some(rows)) => {
-                    let mut buffer = [[0.0; 4]; BODIES];
+                    let mut buffer = [[0.0; 4]; BODIES_PER_BATCH];
                     let origins = self.posed.origins(first, bodies, &mut buffer);
                     self.posed.make(l, (bodies, shapes), origins, rows);
                 }
                 _ => {
                     let last = first + count - 1;
                     let places = std::array::from_fn(|lane| (first + lane).min(last) as u32);
-                    let mut made = [[0.0; ROW]; BODIES];
+                    let mut made = [[0.0; ROW]; BODIES_PER_BATCH];
                     self.posed.make_listed(l, &places, &mut made);
                     rows.copy_from_slice(&made[..count]);
                 }
             }
-            first += BODIES;
+            first += BODIES_PER_BATCH;
         }
     }
 }
 
 /// Rows of listed places.
-struct Listed<'a> {
-    posed: Posed<'a>,
+struct ListedRows<'a> {
+    posed: UpdateInputs<'a>,
     places: &'a [u32],
     rows: &'a mut [[f32; ROW]],
 }
 
-impl Kernel for Listed<'_> {
+impl Kernel for ListedRows<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
-        let mut made = [[0.0; ROW]; BODIES];
-        for some in self.places.chunks(BODIES) {
-            let mut places = [some[0]; BODIES];
+        let mut made = [[0.0; ROW]; BODIES_PER_BATCH];
+        for some in self.places.chunks(BODIES_PER_BATCH) {
+            let mut places = [some[0]; BODIES_PER_BATCH];
             places[..some.len()].copy_from_slice(some);
             self.posed.make_listed(l, &places, &mut made);
             for (&place, row) in some.iter().zip(&made) {
@@ -171,12 +171,12 @@ impl Kernel for Listed<'_> {
     }
 }
 
-impl Posed<'_> {
+impl UpdateInputs<'_> {
     /// Prefetches the poses of the bodies in sixteen places, from `place` on.
     #[inline(always)]
     fn prefetch(&self, place: usize) {
         let end = self.places.body.len();
-        for &body in &self.places.body[place.min(end)..end.min(place + BODIES)] {
+        for &body in &self.places.body[place.min(end)..end.min(place + BODIES_PER_BATCH)] {
             prefetch(&self.bodies.rotation[body as usize]);
             if !self.balls_are_at_origins() {
                 prefetch_ends(&self.bodies.translation[body as usize]);
@@ -196,9 +196,9 @@ impl Posed<'_> {
     fn origins<'b>(
         &'b self,
         first: usize,
-        bodies: &[u32; BODIES],
-        buffer: &'b mut [[f32; 4]; BODIES],
-    ) -> &'b [[f32; 4]; BODIES] {
+        bodies: &[u32; BODIES_PER_BATCH],
+        buffer: &'b mut [[f32; 4]; BODIES_PER_BATCH],
+    ) -> &'b [[f32; 4]; BODIES_PER_BATCH] {
         match self.balls.get(first..).and_then(<[_]>::first_chunk) {
             Some(balls) if self.balls_are_at_origins() => balls,
             _ => self.gather(bodies, buffer),
@@ -209,9 +209,9 @@ impl Posed<'_> {
     #[inline(always)]
     fn gather<'b>(
         &self,
-        bodies: &[u32; BODIES],
-        buffer: &'b mut [[f32; 4]; BODIES],
-    ) -> &'b [[f32; 4]; BODIES] {
+        bodies: &[u32; BODIES_PER_BATCH],
+        buffer: &'b mut [[f32; 4]; BODIES_PER_BATCH],
+    ) -> &'b [[f32; 4]; BODIES_PER_BATCH] {
         for (origin, &body) in buffer.iter_mut().zip(bodies) {
             let [x, y, z] = self.bodies.translation[body as usize];
             *origin = [x, y, z, 0.0];
@@ -221,13 +221,18 @@ impl Posed<'_> {
 
     /// The rows of the bodies in any sixteen places.
     #[inline(always)]
-    fn make_listed<L: Lanes>(&self, l: L, places: &[u32; BODIES], rows: &mut [[f32; ROW]; BODIES]) {
-        let (mut bodies, mut shapes) = ([0; BODIES], [0; BODIES]);
+    fn make_listed<L: Lanes>(
+        &self,
+        l: L,
+        places: &[u32; BODIES_PER_BATCH],
+        rows: &mut [[f32; ROW]; BODIES_PER_BATCH],
+    ) {
+        let (mut bodies, mut shapes) = ([0; BODIES_PER_BATCH], [0; BODIES_PER_BATCH]);
         for (lane, &place) in places.iter().enumerate() {
             bodies[lane] = self.places.body[place as usize];
             shapes[lane] = self.places.shape[place as usize];
         }
-        let mut buffer = [[0.0; 4]; BODIES];
+        let mut buffer = [[0.0; 4]; BODIES_PER_BATCH];
         let origins = self.gather(&bodies, &mut buffer);
         self.make(l, (&bodies, &shapes), origins, rows);
     }
@@ -239,37 +244,38 @@ impl Posed<'_> {
     fn make<L: Lanes>(
         &self,
         l: L,
-        (bodies, shapes): (&[u32; BODIES], &[u32; BODIES]),
-        origins: &[[f32; 4]; BODIES],
-        rows: &mut [[f32; ROW]; BODIES],
+        (bodies, shapes): (&[u32; BODIES_PER_BATCH], &[u32; BODIES_PER_BATCH]),
+        origins: &[[f32; 4]; BODIES_PER_BATCH],
+        rows: &mut [[f32; ROW]; BODIES_PER_BATCH],
     ) {
-        let (mut codes, mut made) = ([0; BODIES], [[0.0; BODIES]; ROW]);
-        for lane in 0..BODIES {
+        let (mut codes, mut made) = ([0; BODIES_PER_BATCH], [[0.0; BODIES_PER_BATCH]; ROW]);
+        for lane in 0..BODIES_PER_BATCH {
             // fits: the contract has fewer bodies than there are codes
             codes[lane] = bodies[lane] << 4;
             made[S][lane] = f32::from_bits(SHAPE + shapes[lane]);
         }
         let are_centred = self.frames.are_centred();
         let mut start = 0;
-        while start < BODIES {
+        while start < BODIES_PER_BATCH {
             // Loops and no closures, which would be compiled apart and without the tier's features.
             let q = l.gather_quads(&self.bodies.rotation, &codes[start..]);
             let record = l.load_transposed(&self.frames.records, &shapes[start..]);
             let translation = l.load_quads(&origins[start..]);
-            let zero = Wide(l, l.splat_f64(0.0));
+            let zero = F64Lanes(l, l.splat_f64(0.0));
             let (mut pose, mut shape) = ([zero; 4], [zero; ROW]);
             for (number, q) in pose.iter_mut().zip(q) {
-                *number = Wide::of(l, q);
+                *number = F64Lanes::of(l, q);
             }
             for (number, entry) in shape.iter_mut().zip(record) {
-                *number = Wide::of(l, entry);
+                *number = F64Lanes::of(l, entry);
             }
             let basis = [
                 column(&shape, BASIS),
                 column(&shape, BASIS + 3),
                 column(&shape, BASIS + 6),
             ];
-            let unit = (shape[UNIT] + shape[UNIT + 1]) + shape[UNIT + 2];
+            let unit =
+                (shape[INVERSE_LENGTHS] + shape[INVERSE_LENGTHS + 1]) + shape[INVERSE_LENGTHS + 2];
             let turn = rotation_of(pose);
             let axes = axes_of(&turn, basis, unit);
             for (number, along) in axes.as_flattened().iter().enumerate() {
@@ -342,7 +348,7 @@ mod tests {
     #[test]
     fn every_lane_of_every_tier_computes_what_one_f64_would() {
         let shapes = shapes();
-        let frames: Frames = shapes
+        let frames: ShapeFrames = shapes
             .iter()
             .map(|s| ShapeFrame::new(s, &s.ordop.basis))
             .collect();
@@ -359,7 +365,7 @@ mod tests {
             bodies.push(body as u32 % 2, true, rotation, [(); 3].map(|()| number(9)));
         }
         let places = Places::new(&bodies);
-        let posed = Posed {
+        let posed = UpdateInputs {
             frames: &frames,
             bodies: &bodies,
             places: &places,

@@ -8,9 +8,9 @@
 
 use std::ops::Range;
 
-use super::lines::Lines;
-use super::lookup::RowsByNumber;
-use super::rows::{BODIES, InTurn, Posed};
+use super::aligned_rows::AlignedRows;
+use super::rows::{BODIES_PER_BATCH, ConsecutiveRows, UpdateInputs};
+use super::rows_by_number::RowsByNumber;
 use crate::simd::{ROW, Tier, dispatch};
 
 /// The longest stretch that is covered; its ring takes 8 MB.
@@ -20,13 +20,13 @@ pub const MOST_ROWS: usize = 1 << 16;
 const FEWEST_ROWS: usize = 1 << 12;
 
 /// Rows are made so many at once, beyond those that are wanted.
-const TOGETHER: usize = 256;
+const ROWS_PER_BATCH: usize = 256;
 
 /// The rows of two stretches of consecutive places, of bodies that move and of bodies that don't.
 #[derive(Clone, Debug, Default)]
 pub struct RowWindow {
     /// Two rings, each a power of two of rows: the row of a place has the number of its lower bits.
-    rings: Lines,
+    rings: AlignedRows,
     /// The places whose rows are in each ring, of this frame.
     held: [Range<usize>; 2],
 }
@@ -43,13 +43,13 @@ impl RowWindow {
     pub fn cover(
         &mut self,
         tier: Tier,
-        posed: Posed<'_>,
+        posed: UpdateInputs<'_>,
         made: &[[f32; ROW]],
         wanted: [Range<usize>; 2],
     ) {
         let longest = wanted[0].len().max(wanted[1].len());
         debug_assert!(longest <= MOST_ROWS, "{wanted:?}");
-        let needed = (longest + BODIES + TOGETHER).next_power_of_two();
+        let needed = (longest + BODIES_PER_BATCH + ROWS_PER_BATCH).next_power_of_two();
         if 2 * needed > self.rings.len() {
             self.rings.resize(2 * needed.max(FEWEST_ROWS));
             self.clear(); // each row has another number now
@@ -58,7 +58,7 @@ impl RowWindow {
         let (first, second) = self.rings.split_at_mut(ring);
         let [moving, still] = &mut self.held;
         let [wanted, wanted_still] = wanted;
-        let update = |first, rows: &mut [_]| dispatch(tier, InTurn { posed, first, rows });
+        let update = |first, rows: &mut [_]| dispatch(tier, ConsecutiveRows { posed, first, rows });
         fill(first, moving, wanted, posed.places.moving, update);
         let copy = |first: usize, rows: &mut [[f32; ROW]]| {
             rows.copy_from_slice(&made[first..first + rows.len()]);
@@ -85,11 +85,11 @@ fn fill(
     if wanted.is_empty() {
         return;
     }
-    let start = wanted.start / BODIES * BODIES;
+    let start = wanted.start / BODIES_PER_BATCH * BODIES_PER_BATCH;
     if !(held.start..=held.end).contains(&start) {
         *held = start..start;
     }
-    let end = limit.min(wanted.end.next_multiple_of(TOGETHER));
+    let end = limit.min(wanted.end.next_multiple_of(ROWS_PER_BATCH));
     while held.end < end {
         let at = held.end % ring.len();
         let len = (end - held.end).min(ring.len() - at);
@@ -125,7 +125,7 @@ mod tests {
         let frames = [ShapeFrame::new(&shape, &shape.ordop.basis)]
             .into_iter()
             .collect();
-        let posed = Posed {
+        let posed = UpdateInputs {
             frames: &frames,
             bodies: &bodies,
             places: &places,

@@ -14,7 +14,7 @@ use crate::mesh::in_f64;
 /// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are
 /// whatever rounding makes of them. Far above f32 rounding (2⁻²⁴), so a symmetric mesh is seen as
 /// such after any rotation.
-const TIE: f64 = 1.0 / 8192.0;
+const EIGENVALUE_TIE: f64 = 1.0 / 8192.0;
 
 impl Axes {
     /// The basis for these vertices; only principal axes need their hull.
@@ -74,7 +74,7 @@ fn outer(v: DVec3) -> DMat3 {
 fn principal_rotation(covariance: DMat3) -> Option<DMat3> {
     let [(first, x), (second, y), (third, _)] = eigen(covariance);
     let gap = (first - second).min(second - third);
-    let separate = gap > TIE * first; // false for NaN
+    let separate = gap > EIGENVALUE_TIE * first; // false for NaN
     if !separate {
         return None;
     }
@@ -121,10 +121,13 @@ mod tests {
         let wanted = DMat3::from_cols(DVec3::Y, DVec3::X, DVec3::NEG_Z);
         for size in [1.0, 1e6, 1e-6] {
             assert_eq!(axes(2.0 * size, 3.0 * size, size), Some(wanted));
-            let near = 1.0 - 0.9 * TIE;
+            let near = 1.0 - 0.9 * EIGENVALUE_TIE;
             assert_eq!(axes(size, near * size, 0.1 * size), None);
-            assert_eq!(axes(size, 0.1 * size, (0.1 - 0.9 * TIE) * size), None);
-            let apart = 1.0 - 1.1 * TIE;
+            assert_eq!(
+                axes(size, 0.1 * size, (0.1 - 0.9 * EIGENVALUE_TIE) * size),
+                None
+            );
+            let apart = 1.0 - 1.1 * EIGENVALUE_TIE;
             assert!(axes(size, apart * size, 0.1 * size).is_some());
         }
         assert_eq!(axes(0.0, 0.0, 0.0), None);

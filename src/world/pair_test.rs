@@ -8,7 +8,7 @@
 
 use super::margins::check_margin;
 use crate::bodies::contract::{ContractError, check_pose, check_shape};
-use crate::culler::FAR;
+use crate::culler::FAR_SHAPE_HELP;
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
 use crate::settings::Overlap;
 use crate::simd::{ROW, in_default_mode};
@@ -66,7 +66,7 @@ impl PairTest {
                 body: self.models.len(),
                 quantity: "shape",
                 value: format!("{} lies far from the origin of its file", shape.name),
-                hint: FAR,
+                hint: FAR_SHAPE_HELP,
             });
         }
         let directions = self.tables.directions();

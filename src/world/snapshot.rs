@@ -13,7 +13,7 @@ use super::saved::{IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_len
 use super::shapes::{ShapeSlot, check_shape};
 use super::{BodyId, Groups, World, check_margin, check_pose};
 use crate::bodies::Bodies;
-use crate::strategy::Answers;
+use crate::strategy::RefinementRanks;
 
 /// A [`World`] at one moment, to be stored or sent in any format of serde.
 ///
@@ -189,7 +189,7 @@ fn check_shapes(
 }
 
 /// Answers of sorted pairs of slots, each once, with ranks no larger than there are pairs.
-fn checked(answers: &[([u32; 2], u32)], slots: usize) -> Result<Answers, SnapshotError> {
+fn checked(answers: &[([u32; 2], u32)], slots: usize) -> Result<RefinementRanks, SnapshotError> {
     let is_sound = |&([i, j], rank): &([u32; 2], u32)| {
         i < j && (j as usize) < slots && rank as usize <= answers.len()
     };
@@ -199,7 +199,7 @@ fn checked(answers: &[([u32; 2], u32)], slots: usize) -> Result<Answers, Snapsho
     let ranks: BTreeSet<u32> = answers.iter().map(|&(_, rank)| rank).chain([0]).collect();
     let is_dense = ranks.iter().copied().eq(0..ranks.len() as u32);
     if is_sorted && is_dense && answers.iter().all(is_sound) {
-        return Ok(Answers(answers.to_vec()));
+        return Ok(RefinementRanks(answers.to_vec()));
     }
     damaged("answers of pairs that there can't be")
 }

@@ -49,8 +49,8 @@ impl Part {
 }
 
 /// A digit of the selection: eight bits.
-const DIGIT: u32 = 8;
-const DIGITS: usize = 1 << DIGIT;
+const BITS_PER_DIGIT: u32 = 8;
+const DIGIT_VALUES: usize = 1 << BITS_PER_DIGIT;
 
 impl Cuts {
     /// One cell, that of rank 0.
@@ -253,18 +253,20 @@ fn select(
     let mut prefix = vec![0_u32; parts.len()];
     let mut wanted = vec![None; parts.len()];
     for shift in (0..u32::BITS)
-        .step_by(DIGIT as usize)
-        .map(|done| u32::BITS - DIGIT - done)
+        .step_by(BITS_PER_DIGIT as usize)
+        .map(|done| u32::BITS - BITS_PER_DIGIT - done)
     {
-        let mut counts = vec![[0_u64; DIGITS]; parts.len()];
+        let mut counts = vec![[0_u64; DIGIT_VALUES]; parts.len()];
         for (centre, part) in centres.iter().zip(part_of) {
             let Some(part) = part.map(|part| part as usize) else {
                 continue;
             };
             let key = key(centre[axes[part]]);
             // What the digits before have left; before the first, everything.
-            if (u64::from(key) >> (shift + DIGIT)) == (u64::from(prefix[part]) >> (shift + DIGIT)) {
-                counts[part][(key >> shift) as usize % DIGITS] += 1;
+            if (u64::from(key) >> (shift + BITS_PER_DIGIT))
+                == (u64::from(prefix[part]) >> (shift + BITS_PER_DIGIT))
+            {
+                counts[part][(key >> shift) as usize % DIGIT_VALUES] += 1;
             }
         }
         network.sum(counts.as_flattened_mut());
@@ -273,7 +275,7 @@ fn select(
             let all = || counts.iter().sum::<u64>() * part.below() as u64 / part.ranks as u64;
             let mut below = *wanted[number].get_or_insert_with(all);
             let mut digit = 0;
-            while digit + 1 < DIGITS && counts[digit] <= below {
+            while digit + 1 < DIGIT_VALUES && counts[digit] <= below {
                 below -= counts[digit];
                 digit += 1;
             }

@@ -1,7 +1,7 @@
 //! Ghosts: who sends which bodies where, and the poses that follow until owners change.
 
+use super::body_columns::{BodyColumns, BodyMessage, read_poses, write_pose};
 use super::cut::Cuts;
-use super::held::{Held, Record, read_poses, write_pose};
 use crate::network::Network;
 use sdop::rounding::border::may_meet;
 
@@ -40,7 +40,7 @@ impl Plan {
         network: &impl Network,
         cuts: &Cuts,
         border: &Border,
-        held: &mut Held,
+        held: &mut BodyColumns,
         balls: &Balls,
     ) -> (Self, u64) {
         let (rank, ranks) = (network.rank(), network.size());
@@ -68,9 +68,9 @@ impl Plan {
         let outgoing: Vec<_> = numbers.iter().map(message).collect();
         let bytes = outgoing.iter().map(|message| message.len() as u64).sum();
         let received = network.exchange(outgoing);
-        let ghosts: Vec<Vec<Record>> = received
+        let ghosts: Vec<Vec<BodyMessage>> = received
             .iter()
-            .map(|message| Record::read_all(message, false).collect())
+            .map(|message| BodyMessage::read_all(message, false).collect())
             .collect();
         held.change(|_| true, ghosts.concat());
         // Static bodies stay where they are, and so do their ghosts.
@@ -93,7 +93,7 @@ impl Plan {
     }
 
     /// Brings the ghosts' poses up to date; returns the bytes sent. Collective.
-    pub fn follow(&self, network: &impl Network, held: &mut Held) -> u64 {
+    pub fn follow(&self, network: &impl Network, held: &mut BodyColumns) -> u64 {
         let bodies = &mut held.bodies;
         let message = |places: &Vec<u32>| {
             let mut message = Vec::new();

@@ -22,11 +22,11 @@
 //! Ranks reach one another by a [`Network`](crate::network::Network): MPI, or threads of one
 //! process, which tests use.
 
+mod body_columns;
 mod cut;
 mod error;
 mod float_key;
 mod ghosts;
-mod held;
 mod rank;
 mod renew;
 mod run;

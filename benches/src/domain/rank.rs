@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
+use super::body_columns::BodyColumns;
 use super::cut::Cuts;
 use super::error::{DomainError, agree};
 use super::ghosts::{Balls, Plan};
-use super::held::Held;
 use super::run::BorderSeconds;
 use crate::effects::Effects;
 use crate::network::Network;
@@ -25,7 +25,7 @@ pub struct Rank<'a, N> {
     pub(super) scene: Scene,
     pub(super) culler: Culler,
     pub(super) effects: Effects,
-    pub(super) held: Held,
+    pub(super) held: BodyColumns,
     pub(super) cuts: Option<Cuts>,
     pub(super) plan: Plan,
     /// Centre and reach of each body held when owners were found last.
@@ -33,12 +33,12 @@ pub struct Rank<'a, N> {
     pub(super) skin: f32,
     pub(super) next: u32,
     pub(super) pairs: Vec<[u32; 2]>,
-    pub(super) work: Work,
+    pub(super) work: BorderCosts,
 }
 
 /// What borders cost a rank, besides what its culler counts. Sums over frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Work {
+pub(super) struct BorderCosts {
     pub seconds: BorderSeconds,
     /// Ghosts held.
     pub ghosts: u64,
@@ -105,14 +105,14 @@ impl<'a, N: Network> Rank<'a, N> {
             network,
             culler,
             effects,
-            held: Held::new(share.held.start, bodies),
+            held: BodyColumns::new(share.held.start, bodies),
             cuts: None,
             plan: Plan::none(network.size()),
             then: Vec::new(),
             skin: 0.0,
             next: 0,
             pairs: Vec::new(),
-            work: Work::default(),
+            work: BorderCosts::default(),
             scene,
         })
     }

@@ -3,9 +3,9 @@
 
 use std::time::Instant;
 
+use super::body_columns::BodyMessage;
 use super::cut::Cuts;
 use super::ghosts::{Border, Plan};
-use super::held::Record;
 use super::rank::Rank;
 use crate::effects::runs;
 use crate::network::Network;
@@ -15,12 +15,12 @@ use sdop::settings::{Interest, ViewCone};
 /// A skin of this share of the mean reach: a renewal costs a rank what some frames of all its
 /// bodies do, and a wider skin adds ghosts at its borders alone. Wider still pays in worlds of
 /// millions a rank, and not in small or crowded ones.
-const SKIN: f64 = 0.5;
+const SKIN_SHARE: f64 = 0.5;
 
 /// Space is cut anew when a rank owns this much more than its equal share, and more than a few
 /// bodies.
-const UNEQUAL: f64 = 1.1;
-const A_FEW: f64 = 16.0;
+const MOST_UNEQUAL: f64 = 1.1;
+const SPARE_BODIES: f64 = 16.0;
 
 impl<N: Network> Rank<'_, N> {
     /// Finds owners and ghosts anew.
@@ -67,7 +67,7 @@ impl<N: Network> Rank<'_, N> {
             network.sum(&mut owned);
             let most = owned.iter().max().map_or(0.0, |&most| most as f64);
             let equal = owned.iter().sum::<u64>() as f64 / ranks as f64;
-            most <= UNEQUAL * equal + A_FEW
+            most <= MOST_UNEQUAL * equal + SPARE_BODIES
         };
         let kept = self.cuts.take().filter(fair);
         let cuts = kept.unwrap_or_else(|| {
@@ -90,7 +90,7 @@ impl<N: Network> Rank<'_, N> {
         let received = network.exchange(outgoing);
         let arrived = received
             .iter()
-            .flat_map(|message| Record::read_all(message, true));
+            .flat_map(|message| BodyMessage::read_all(message, true));
         self.held.change(|place| stays[place], arrived.collect());
     }
 
@@ -119,7 +119,7 @@ impl<N: Network> Rank<'_, N> {
                 .iter()
                 .map(|[.., widest]| f32::from_bits(*widest as u32))
                 .collect(),
-            skin: border::skin(mean, SKIN),
+            skin: border::skin(mean, SKIN_SHARE),
             everywhere,
         }
     }

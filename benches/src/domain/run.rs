@@ -14,7 +14,7 @@ use sdop::settings::{TestedVolume, Updates};
 
 /// Up to so many bodies, rank 0 gathers all pairs for `pairs_sha256`, which needs them sorted;
 /// beyond, there is the digest alone.
-const GATHERED: usize = 1 << 20;
+const MOST_GATHERED: usize = 1 << 20;
 
 /// Wall time that borders add to [`Seconds`]. Sums over frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -94,7 +94,7 @@ pub fn run<N: Network>(
     mut observe: impl FnMut(u32),
 ) -> Result<DomainSummary, DomainError> {
     let network = rank.network;
-    let gathers = rank.scene.share().all <= GATHERED;
+    let gathers = rank.scene.share().all <= MOST_GATHERED;
     let (mut hash, mut digest) = (PairsHash::default(), PairsDigest::default());
     let mut reported = 0;
     let mut frames = Vec::new();

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::estimate::Estimate;
 
 /// Intervals wider than this share of their mean, to either side, are a disturbance.
-const WIDE: f64 = 0.1;
+const WIDE_INTERVAL: f64 = 0.1;
 /// Processes beside ours that want to run, on average, from which on the machine counts as
 /// disturbed.
-const BUSY: f64 = 0.5;
+const BUSY_PROCESSES: f64 = 0.5;
 
 /// What the machine was like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -41,7 +41,10 @@ impl Conditions {
         let others = load().map(|load| (load - 1.0).max(0.0));
         Self {
             others: [self.others[0], others],
-            wide: times.iter().filter(|time| time.relative() > WIDE).count(),
+            wide: times
+                .iter()
+                .filter(|time| time.relative() > WIDE_INTERVAL)
+                .count(),
             of: times.len(),
         }
     }
@@ -49,7 +52,12 @@ impl Conditions {
     /// Whether the times shouldn't be quoted.
     #[must_use]
     pub fn disturbed(&self) -> bool {
-        self.wide > 0 || self.others.iter().flatten().any(|&others| others > BUSY)
+        self.wide > 0
+            || self
+                .others
+                .iter()
+                .flatten()
+                .any(|&others| others > BUSY_PROCESSES)
     }
 
     /// What to say of it; `None` of an undisturbed machine.

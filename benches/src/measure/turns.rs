@@ -30,7 +30,7 @@ const SEED: u64 = 0x5a3e_7100_0000_0000;
 const PREPARED_BODIES: usize = 1 << 13;
 /// From this many seconds on, waiting is looked at before and after a frame: looking takes a
 /// microsecond or two and leaves its traces in the caches, and short frames are rarely interrupted.
-const WATCHED: f64 = 100e-6;
+const LEAST_WATCHED_SECONDS: f64 = 100e-6;
 /// The most frames of a turn.
 const MOST_FRAMES: usize = 8;
 
@@ -95,7 +95,7 @@ impl Turns {
                 let after = if watched { waiting.seconds() } else { 0.0 };
                 let waited = (after - before).clamp(0.0, seconds);
                 let seconds = seconds - waited;
-                watched = seconds > WATCHED;
+                watched = seconds > LEAST_WATCHED_SECONDS;
                 contestant.settle();
                 let regime = if frame == 0 {
                     Regime::Cold

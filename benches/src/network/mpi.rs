@@ -9,7 +9,7 @@ use super::Network;
 use crate::mpi::Ranks;
 
 /// Bytes of one call: MPI counts them in an i32.
-const MOST: usize = 1 << 30;
+const MOST_BYTES_PER_CALL: usize = 1 << 30;
 
 /// This process among all that `mpirun` started.
 pub struct MpiNetwork {
@@ -25,7 +25,7 @@ impl MpiNetwork {
         Self { ranks, world }
     }
 
-    /// Hands each rank a piece of at most [`MOST`] bytes over all, and returns the pieces received.
+    /// Hands each rank a piece of at most [`MOST_BYTES_PER_CALL`] bytes over all, and returns the pieces received.
     fn exchange_pieces(&self, outgoing: &[&[u8]], lengths: &[usize]) -> Vec<u8> {
         let (counts, starts) = table(outgoing.iter().map(|piece| piece.len()));
         let (their_counts, their_starts) = table(lengths.iter().copied());
@@ -65,7 +65,7 @@ impl Network for MpiNetwork {
     }
 
     fn exchange(&self, outgoing: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
-        let piece = MOST / self.size();
+        let piece = MOST_BYTES_PER_CALL / self.size();
         let lengths: Vec<u64> = outgoing
             .iter()
             .map(|message| message.len() as u64)

@@ -36,7 +36,7 @@ pub struct Check {
 
 /// A claim with its numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Claim {
+pub struct PaperClaim {
     /// Where it stands: a section of the paper, or our own study.
     pub source: &'static str,
     /// What it says, in our words.
@@ -45,7 +45,7 @@ pub struct Claim {
     pub checks: Vec<Check>,
 }
 
-impl Claim {
+impl PaperClaim {
     /// All checks together.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
@@ -188,7 +188,7 @@ mod tests {
                 ..Check::computed(String::new(), 0.0, [0.0, 1.0])
             };
             let checks = verdicts.iter().map(check).collect();
-            Claim {
+            PaperClaim {
                 source: "",
                 claim: "",
                 checks,

@@ -3,7 +3,7 @@
 //! Frame rates are compared as ratios, seed by seed, for its 500 objects in the small and in the
 //! usual box and for both F.
 
-use super::check::{Check, Claim};
+use super::check::{Check, PaperClaim};
 use super::experiment::{PaperScene, Results, STRATEGIES};
 use super::immediate::{Handing, Immediacy};
 use super::rates::{ELSEWHERE, ratio};
@@ -21,14 +21,14 @@ const SIMILAR: [f64; 2] = [0.95, 1.05];
 
 /// All claims, in the paper's order.
 #[must_use]
-pub fn all(results: &Results) -> Vec<Claim> {
+pub fn all(results: &Results) -> Vec<PaperClaim> {
     let mut claims = frame_rates(results);
     claims.extend(percentages(results));
     claims.extend(conclusion(results));
     claims
 }
 
-fn frame_rates(results: &Results) -> Vec<Claim> {
+fn frame_rates(results: &Results) -> Vec<PaperClaim> {
     let faster = |pairs: &[[Strategy; 2]]| {
         let check = |pair: &[Strategy; 2]| rate_checks(results, *pair, [1.0, f64::INFINITY]);
         pairs.iter().flat_map(check).collect::<Vec<_>>()
@@ -38,7 +38,7 @@ fn frame_rates(results: &Results) -> Vec<Claim> {
     };
     let mut order = faster(&[[Control, Sphere], [Ooi, Seq], [Seq, All], [All, OrDop]]);
     order.extend(rate_checks(results, [Ooi, Sphere], SIMILAR));
-    let claim = |claim, checks| Claim {
+    let claim = |claim, checks| PaperClaim {
         source: "6.1",
         claim,
         checks,
@@ -110,8 +110,8 @@ fn at_once(results: &Results) -> Vec<Check> {
     checks
 }
 
-fn percentages(results: &Results) -> Vec<Claim> {
-    let claim = |claim, checks| Claim {
+fn percentages(results: &Results) -> Vec<PaperClaim> {
+    let claim = |claim, checks| PaperClaim {
         source: "6.2",
         claim,
         checks,
@@ -146,8 +146,8 @@ fn percentages(results: &Results) -> Vec<Claim> {
     ]
 }
 
-fn conclusion(results: &Results) -> Vec<Claim> {
-    let claim = |claim, checks| Claim {
+fn conclusion(results: &Results) -> Vec<PaperClaim> {
+    let claim = |claim, checks| PaperClaim {
         source: "7",
         claim,
         checks,

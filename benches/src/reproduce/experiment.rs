@@ -207,13 +207,13 @@ pub fn run_scene(
 }
 
 /// Hashes what each variant reports, between turns.
-struct Hashing {
+struct VariantHashes {
     hashes: Vec<PairsHash>,
     /// Variant, frame and pairs.
     reported: Vec<(usize, u32, Vec<[u32; 2]>)>,
 }
 
-impl Observer for Hashing {
+impl Observer for VariantHashes {
     fn frame(&mut self, number: usize, frame: u32, culling: &Culling) {
         self.reported.push((number, frame, culling.pairs()));
     }
@@ -234,7 +234,7 @@ pub(super) fn run_pass(
     tier: Tier,
     calibration: Option<&mut Calibration>,
 ) -> Result<(Vec<Run>, Pass), SimulationError> {
-    let mut hashing = Hashing {
+    let mut hashing = VariantHashes {
         hashes: vec![PairsHash::default(); variants.len()],
         reported: Vec::new(),
     };

@@ -78,7 +78,7 @@ pub struct Interpretation {
 }
 
 /// Sphere tests and hits, or-DOP tests and hits: for each N of Table 1.
-pub type Counted = [[u64; 4]; 4];
+pub type TestCounts = [[u64; 4]; 4];
 
 /// Every way to read what the paper doesn't state.
 #[must_use]
@@ -91,7 +91,7 @@ pub fn ways() -> Vec<(Start, Bounce)> {
 ///
 /// # Errors
 /// Scenes that can't be read, built or simulated.
-pub fn counted(plan: &Plan, way: (Start, Bounce)) -> Result<Vec<Counted>, ReproduceError> {
+pub fn counted(plan: &Plan, way: (Start, Bounce)) -> Result<Vec<TestCounts>, ReproduceError> {
     let lengths = lengths(plan);
     let mut all = vec![[[0; 4]; 4]; lengths.len() * kinds().len()];
     for (column, bodies) in TABLE_1_BODIES.into_iter().enumerate() {
@@ -109,7 +109,7 @@ pub fn counted(plan: &Plan, way: (Start, Bounce)) -> Result<Vec<Counted>, Reprod
 pub fn interpretations(
     plan: &Plan,
     (start, bounce): (Start, Bounce),
-    counted: &[Counted],
+    counted: &[TestCounts],
 ) -> Vec<Interpretation> {
     let lengths = lengths(plan);
     let of = |frames: u32| kinds().into_iter().map(move |kind| (frames, kind));
@@ -210,7 +210,7 @@ fn run(scene: &Scene, lengths: &[u32], tier: Tier) -> Result<Vec<Vec<Counters>>,
 fn interpretation(
     (start, bounce, frames): (Start, Bounce, u32),
     (k, axes, overlap): (DirectionSet, Axes, Overlap),
-    counted: &Counted,
+    counted: &TestCounts,
 ) -> Interpretation {
     let share = |hits: u64, tests: u64| 100.0 * hits as f64 / tests as f64;
     let sphere = counted.map(|[tests, hits, ..]| share(hits, tests));

@@ -1,6 +1,6 @@
 //! Our own reading of Table 1, checked: what its rows can and cannot be.
 
-use super::check::{Check, Claim};
+use super::check::{Check, PaperClaim};
 use super::closed_form::{inverse, probability, relative_reach};
 use super::experiment::Results;
 use super::readings::Reading;
@@ -16,8 +16,8 @@ const EXTRA_TESTS: f64 = 0.28;
 
 /// All of them.
 #[must_use]
-pub fn all(results: &Results) -> Vec<Claim> {
-    let claim = |claim, checks| Claim {
+pub fn all(results: &Results) -> Vec<PaperClaim> {
+    let claim = |claim, checks| PaperClaim {
         source: SOURCE,
         claim,
         checks,

@@ -12,7 +12,7 @@ use super::experiment::{
     COMPARED, PaperScene, Plan, ReproduceError, Results, Run, STRATEGIES, run_pass, variants,
 };
 use super::immediate::{self, Immediacy};
-use super::sensitivity::{self, Counted};
+use super::sensitivity::{self, TestCounts};
 use super::survival::Survival;
 use crate::cost::calibrate::{Calibration, Effort};
 use crate::cost::pass::Pass;
@@ -32,7 +32,7 @@ const VOLUMES: &str = "volumes";
 /// go together.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Settings {
+pub struct ExperimentSettings {
     names: Vec<PaperScene>,
     seeds: Vec<u64>,
     frames: u32,
@@ -47,14 +47,14 @@ pub struct Experiments {
     plan: Plan,
     interpretations: bool,
     compared: SceneFile,
-    prepared: Vec<Prepared>,
+    prepared: Vec<PreparedScene>,
     inputs: BTreeMap<String, String>,
     /// By scene, from its first unit in this process on.
     calibrations: Mutex<BTreeMap<PaperScene, Calibration>>,
 }
 
 /// A scene of the plan, and what is made for it once.
-struct Prepared {
+struct PreparedScene {
     name: PaperScene,
     file: SceneFile,
     /// Whether no scene has more bodies.
@@ -75,7 +75,7 @@ enum Unit {
 /// What a unit found.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub enum Found {
+pub enum UnitResult {
     /// Of a scene with one seed.
     Scene {
         /// Which.
@@ -92,7 +92,7 @@ pub enum Found {
     /// A share an or-DOP and test.
     Survival(Vec<f64>),
     /// What is counted under a reading, by its number.
-    Reading(usize, Vec<Counted>),
+    Reading(usize, Vec<TestCounts>),
 }
 
 impl Experiments {
@@ -120,7 +120,7 @@ impl Experiments {
             scenes.push((name, file, scene));
         }
         let most = scenes.iter().map(|(.., scene)| scene.bodies.len()).max();
-        let prepared = scenes.into_iter().map(|(name, file, scene)| Prepared {
+        let prepared = scenes.into_iter().map(|(name, file, scene)| PreparedScene {
             name,
             file,
             largest: Some(scene.bodies.len()) == most,
@@ -143,8 +143,8 @@ impl Experiments {
 
     /// The settings, of this machine.
     #[must_use]
-    pub fn settings(&self) -> Settings {
-        Settings {
+    pub fn settings(&self) -> ExperimentSettings {
+        ExperimentSettings {
             names: self.plan.names.clone(),
             seeds: self.plan.seeds.clone(),
             frames: self.plan.frames,
@@ -180,24 +180,24 @@ impl Experiments {
     ///
     /// # Errors
     /// Scenes that can't be built with the seed or don't suit the strategies.
-    pub fn find(&self, unit: usize) -> Result<Found, ReproduceError> {
+    pub fn find(&self, unit: usize) -> Result<UnitResult, ReproduceError> {
         match self.unit(unit) {
             Unit::Scene(number, seed) => self.scene(&self.prepared[number], seed),
             Unit::Survival(seed) => {
                 let scene = with_seed(&self.compared, seed)?;
                 let share = |row: Survival| row.share(&scene, self.plan.tier);
                 let shares = Survival::every().into_iter().map(share);
-                Ok(Found::Survival(shares.collect::<Result<_, _>>()?))
+                Ok(UnitResult::Survival(shares.collect::<Result<_, _>>()?))
             }
             Unit::Reading(number) => {
                 let counted = sensitivity::counted(&self.plan, sensitivity::ways()[number])?;
-                Ok(Found::Reading(number, counted))
+                Ok(UnitResult::Reading(number, counted))
             }
         }
     }
 
-    fn scene(&self, prepared: &Prepared, seed: u64) -> Result<Found, ReproduceError> {
-        let Prepared {
+    fn scene(&self, prepared: &PreparedScene, seed: u64) -> Result<UnitResult, ReproduceError> {
+        let PreparedScene {
             name,
             file,
             largest,
@@ -219,7 +219,7 @@ impl Experiments {
         let (runs, pass) = run_pass(&scene, variants, frames, tier, Some(&mut calibration))?;
         held.insert(*name, calibration);
         let immediacy = largest.then(|| immediate::measure(&scene, *name, tier));
-        Ok(Found::Scene {
+        Ok(UnitResult::Scene {
             name: *name,
             runs,
             pass,
@@ -267,7 +267,7 @@ impl Results {
     /// # Errors
     /// Another command's header, a tier that this CPU lacks.
     pub fn of_header(header: &Header) -> miette::Result<Self> {
-        let settings: Settings = header.settings().into_diagnostic()?;
+        let settings: ExperimentSettings = header.settings().into_diagnostic()?;
         let plan = Plan {
             scenes: Default::default(),
             names: settings.names,
@@ -304,9 +304,9 @@ impl Results {
     }
 
     /// The same of what a unit found.
-    pub(super) fn add(&mut self, found: Found) {
+    pub(super) fn add(&mut self, found: UnitResult) {
         match found {
-            Found::Scene {
+            UnitResult::Scene {
                 name,
                 runs,
                 pass,
@@ -320,12 +320,12 @@ impl Results {
                     self.variants.push((name, variants));
                 }
             }
-            Found::Survival(shares) => {
+            UnitResult::Survival(shares) => {
                 for (row, share) in self.survival.iter_mut().zip(shares) {
                     row.shares.push(share);
                 }
             }
-            Found::Reading(number, counted) => {
+            UnitResult::Reading(number, counted) => {
                 if let Some(&way) = sensitivity::ways().get(number) {
                     let found = sensitivity::interpretations(&self.plan, way, &counted);
                     self.interpretations.extend(found);

@@ -9,7 +9,7 @@ use super::density::PowerSums;
 use super::error::SceneError;
 use super::file::{Placement, SceneFile};
 use super::fine::FineTranslations;
-use super::group::{Draws, Group, Purpose};
+use super::group::{BodyGroup, Draws, Purpose};
 use super::library::{Form, Library};
 use super::placement::Placer;
 use super::{Scene, Share};
@@ -113,7 +113,7 @@ impl SceneFile {
     /// dynamic entry a body held.
     fn add_shapes(
         &self,
-        group: &Group<'_>,
+        group: &BodyGroup<'_>,
         held: Range<usize>,
         library: &mut Library,
         bodies: &mut Bodies,
@@ -161,7 +161,7 @@ impl SceneFile {
     }
 
     /// The box's side: given, or from the seeded bodies' radii and the wished density.
-    fn side(&self, groups: &[Group<'_>], sizes: &Sizes) -> Result<Option<f32>, SceneError> {
+    fn side(&self, groups: &[BodyGroup<'_>], sizes: &Sizes) -> Result<Option<f32>, SceneError> {
         let Some(bounds) = &self.spec.bounds else {
             return Ok(None);
         };
@@ -210,7 +210,7 @@ impl SceneFile {
     /// largest ball.
     fn place(
         &self,
-        group: &Group<'_>,
+        group: &BodyGroup<'_>,
         held: Range<usize>,
         (side, widest): (Option<f32>, f32),
         library: &Library,
@@ -267,7 +267,12 @@ impl SceneFile {
 
     /// Draws or copies velocities, and the angular velocities of dynamic bodies where the scene
     /// lists `spin`.
-    fn add_velocities(&self, group: &Group<'_>, held: Range<usize>, velocities: &mut Velocities) {
+    fn add_velocities(
+        &self,
+        group: &BodyGroup<'_>,
+        held: Range<usize>,
+        velocities: &mut Velocities,
+    ) {
         let (spec, all) = (group.spec, velocities.linear.len() + held.len());
         let (linear, angular) = (&mut velocities.linear, &mut velocities.angular);
         if let Some(given) = &spec.velocities {
@@ -288,13 +293,13 @@ impl SceneFile {
     }
 
     /// Points at what the file says of the body: its velocity, its pose, or its group.
-    fn contract_error(&self, groups: &[Group<'_>], error: &ContractError) -> SceneError {
+    fn contract_error(&self, groups: &[BodyGroup<'_>], error: &ContractError) -> SceneError {
         let span = self.span_of(groups, error.body, error.quantity == "velocity");
         self.wrong(span, &error.to_string(), error.hint)
     }
 
     /// Where the file has a body's pose or velocity, or its group.
-    fn span_of(&self, groups: &[Group<'_>], body: usize, velocity: bool) -> Range<usize> {
+    fn span_of(&self, groups: &[BodyGroup<'_>], body: usize, velocity: bool) -> Range<usize> {
         let mut of_body = runs(groups).zip(&self.spec.bodies);
         let Some(((group, run), table)) = of_body.find(|((_, run), _)| run.contains(&body)) else {
             return 0..0;
@@ -330,8 +335,8 @@ struct Sizes {
 
 /// Each group with its run of bodies in the whole scene.
 fn runs<'a, 'b>(
-    groups: &'b [Group<'a>],
-) -> impl Iterator<Item = (&'b Group<'a>, Range<usize>)> + use<'a, 'b> {
+    groups: &'b [BodyGroup<'a>],
+) -> impl Iterator<Item = (&'b BodyGroup<'a>, Range<usize>)> + use<'a, 'b> {
     groups.iter().scan(0, |next, group| {
         let first = *next;
         *next += group.bodies;
@@ -339,7 +344,7 @@ fn runs<'a, 'b>(
     })
 }
 
-fn share_of(groups: &[Group<'_>], rank: usize, ranks: usize) -> Share {
+fn share_of(groups: &[BodyGroup<'_>], rank: usize, ranks: usize) -> Share {
     let moving = runs(groups).filter(|(group, _)| !group.spec.fixed);
     let moving = moving.map(|(_, run)| run).collect();
     let all = groups.iter().map(|group| group.bodies).sum();

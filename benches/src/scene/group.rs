@@ -28,7 +28,7 @@ pub(super) enum Purpose {
 }
 
 /// A checked group: what it looks like and how many bodies it has.
-pub(super) struct Group<'a> {
+pub(super) struct BodyGroup<'a> {
     pub(super) spec: &'a GroupSpec,
     pub(super) number: u64,
     pub(super) seed: u64,
@@ -38,7 +38,7 @@ pub(super) struct Group<'a> {
     pub(super) bodies: usize,
 }
 
-impl Group<'_> {
+impl BodyGroup<'_> {
     /// The group's stream of draws for one purpose: what one purpose draws leaves the others as
     /// they are.
     pub(super) fn stream(&self, purpose: Purpose) -> Stream {
@@ -101,7 +101,7 @@ impl Draws {
 
 impl SceneFile {
     /// Checks each group's keys against each other, of a scene that so many ranks share.
-    pub(super) fn groups(&self, ranks: usize) -> Result<Vec<Group<'_>>, SceneError> {
+    pub(super) fn groups(&self, ranks: usize) -> Result<Vec<BodyGroup<'_>>, SceneError> {
         let mut groups = Vec::new();
         let mut total = 0_usize;
         for (number, spec) in self.spec.bodies.iter().enumerate() {
@@ -131,7 +131,7 @@ impl SceneFile {
         &self,
         number: u64,
         spanned: &'a Spanned<GroupSpec>,
-    ) -> Result<Group<'a>, SceneError> {
+    ) -> Result<BodyGroup<'a>, SceneError> {
         let spec = spanned.get_ref();
         let form = self.form_of(spanned)?;
         let bodies = self.bodies_of(spanned)?;
@@ -142,7 +142,7 @@ impl SceneFile {
         };
         self.check_motion(spec, bodies)?;
         self.check_place(spec, origin)?;
-        Ok(Group {
+        Ok(BodyGroup {
             spec,
             number,
             seed: self.spec.seed,

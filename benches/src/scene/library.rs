@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::error::{SceneError, Source};
 use super::file::SceneFile;
-use super::group::Group;
+use super::group::BodyGroup;
 use crate::number::{Factors, Real};
 use sdop::choice::suggest;
 use sdop::mesh::{MeshError, ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError};
@@ -45,7 +45,7 @@ impl Library {
     pub(super) fn mesh(
         &mut self,
         file: &SceneFile,
-        group: &Group<'_>,
+        group: &BodyGroup<'_>,
     ) -> Result<usize, SceneError> {
         let number = self.meshes.len();
         let scale = group.spec.scale.as_ref();

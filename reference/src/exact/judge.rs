@@ -10,7 +10,7 @@ use crate::linear::largest;
 use crate::overlap::Overlap;
 use crate::pose::separation;
 use crate::shape::Body;
-use crate::strategy::{Judge, Strategy, run};
+use crate::strategy::{OverlapTests, Strategy, run};
 use crate::volume::DirectionSet;
 
 /// The pairs i < j that the strategy reports, sorted, decided exactly, and by which stage.
@@ -63,7 +63,7 @@ impl<'a> Exact<'a> {
     }
 }
 
-impl Judge for Exact<'_> {
+impl OverlapTests for Exact<'_> {
     fn spheres(&self, i: u32, j: u32) -> bool {
         let (a, b) = self.pair(i, j);
         self.note(sphere::overlap(a, b))

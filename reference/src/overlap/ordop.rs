@@ -29,7 +29,7 @@ impl Overlap {
 
 /// A polytope under a rotation, its position aside.
 #[derive(Clone, Debug)]
-pub struct Turned {
+pub struct TurnedPolytope {
     /// Corners, world axes, seen from the body's origin.
     pub corners: Vec<Vector<f64>>,
     /// Face normals, world axes.
@@ -38,7 +38,7 @@ pub struct Turned {
     pub edges: Vec<Vector<f64>>,
 }
 
-impl Turned {
+impl TurnedPolytope {
     /// The polytope turned by the pose.
     pub fn new(polytope: &Polytope, pose: &Pose) -> Self {
         let rotation = pose.rotation();
@@ -61,14 +61,19 @@ impl Turned {
 /// Whether the posed or-DOPs overlap, as far as the axes of `test` can tell.
 pub fn overlap(a: &Body, b: &Body, test: Overlap) -> bool {
     let (turned_a, turned_b) = (
-        Turned::new(&a.shape.polytope, &a.pose),
-        Turned::new(&b.shape.polytope, &b.pose),
+        TurnedPolytope::new(&a.shape.polytope, &a.pose),
+        TurnedPolytope::new(&b.shape.polytope, &b.pose),
     );
     overlap_turned(&turned_a, &turned_b, &separation(&a.pose, &b.pose), test)
 }
 
 /// [`overlap`] of polytopes already turned, B's origin at `delta` from A's.
-pub fn overlap_turned(a: &Turned, b: &Turned, delta: &Vector<f64>, test: Overlap) -> bool {
+pub fn overlap_turned(
+    a: &TurnedPolytope,
+    b: &TurnedPolytope,
+    delta: &Vector<f64>,
+    test: Overlap,
+) -> bool {
     let corners_b: Vec<_> = b.corners.iter().map(|x| add(x, delta)).collect();
     let apart_along = |axes: &[Vector<f64>]| separated(axes, &a.corners, &corners_b);
     let crossed = || {

@@ -11,10 +11,10 @@ use crate::simd::{Kernel, Lanes, Tier, dispatch};
 use crate::volume::Shape;
 
 /// How to mend a rotation.
-const INVERTIBLE: &str = "a quaternion (x, y, z, w) has a finite norm above zero";
+const ROTATION_HELP: &str = "a quaternion (x, y, z, w) has a finite norm above zero";
 
 /// How to mend a vector.
-const WITHIN_LIMIT: &str = "coordinates are finite and at most 2^60 in size";
+const VECTOR_HELP: &str = "coordinates are finite and at most 2^60 in size";
 
 /// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, a shape that exists and is no
 /// larger than 2⁶⁰, no more than [`MOST_BODIES`](super::MOST_BODIES).
@@ -64,10 +64,10 @@ pub(crate) fn check_shape(body: usize, number: u32, shapes: &[Shape]) -> Result<
 #[doc(hidden)]
 pub fn check_pose(body: usize, q: &[f32; 4], t: &[f64; 3]) -> Result<(), ContractError> {
     if !is_invertible(q) {
-        return refuse(body, "rotation", format!("{q:?}"), INVERTIBLE);
+        return refuse(body, "rotation", format!("{q:?}"), ROTATION_HELP);
     }
     if !t.iter().all(|x| x.abs() <= f64::from(LIMIT)) {
-        return refuse(body, "translation", format!("{t:?}"), WITHIN_LIMIT);
+        return refuse(body, "translation", format!("{t:?}"), VECTOR_HELP);
     }
     Ok(())
 }
@@ -82,7 +82,7 @@ pub fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), ContractE
         None => Ok(()),
         Some(at) => {
             let value = format!("{:?}", rotations[at]);
-            refuse(first + at, "rotation", value, INVERTIBLE)
+            refuse(first + at, "rotation", value, ROTATION_HELP)
         }
     }
 }
@@ -123,7 +123,7 @@ pub fn check_vectors(
         return Ok(());
     }
     let at = column.iter().position(|v| !is_within_limit(v)).unwrap_or(0);
-    refuse(first + at, name, format!("{:?}", column[at]), WITHIN_LIMIT)
+    refuse(first + at, name, format!("{:?}", column[at]), VECTOR_HELP)
 }
 
 // All limits are written as `x ≤ limit`, and what isn't so is refused: a NaN fails.
@@ -162,15 +162,15 @@ struct BallsWithinLimit<'a>(&'a [[f32; 4]]);
 
 /// Numbers that are looked at together: some vectors of any tier, so that what a loop takes by
 /// itself is little beside them.
-const TOGETHER: usize = 64;
+const NUMBERS_PER_CHECK: usize = 64;
 
 impl Kernel for BallsWithinLimit<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) -> bool {
         // The largest of each column, for two instructions a vector.
-        let mut largest = [0; TOGETHER];
-        let (many, rest) = self.0.as_flattened().as_chunks::<TOGETHER>();
+        let mut largest = [0; NUMBERS_PER_CHECK];
+        let (many, rest) = self.0.as_flattened().as_chunks::<NUMBERS_PER_CHECK>();
         for numbers in many {
             enlarge(&mut largest, numbers);
         }
@@ -185,7 +185,7 @@ impl Kernel for BallsWithinLimit<'_> {
 }
 
 #[inline(always)]
-fn enlarge(largest: &mut [u32; TOGETHER], numbers: &[f32]) {
+fn enlarge(largest: &mut [u32; NUMBERS_PER_CHECK], numbers: &[f32]) {
     for (largest, number) in largest.iter_mut().zip(numbers) {
         *largest = size(*number).max(*largest);
     }
@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     /// No coordinates: an ulp beyond the limit, and more.
-    const BEYOND: [f32; 5] = [
+    const BEYOND_LIMIT: [f32; 5] = [
         LIMIT.next_up(),
         -LIMIT.next_up(),
         f32::INFINITY,
@@ -217,7 +217,7 @@ mod tests {
             let fine = vec![[LIMIT, -LIMIT, -0.0]; count];
             assert_eq!(check_vectors("translation", &fine, 7), Ok(()));
             for (at, axis) in (0..count).flat_map(|at| [0, 1, 2].map(|axis| (at, axis))) {
-                for bad in BEYOND {
+                for bad in BEYOND_LIMIT {
                     let mut column = fine.clone();
                     column[at][axis] = bad;
                     assert!(!is_within_limit(&column[at]));
@@ -237,7 +237,7 @@ mod tests {
                 for (ball, axis) in
                     (0..count).flat_map(|ball| [0, 1, 2, 3].map(|axis| (ball, axis)))
                 {
-                    for bad in BEYOND {
+                    for bad in BEYOND_LIMIT {
                         let mut balls = fine.clone();
                         balls[ball][axis] = bad;
                         let is_fine = axis == 3 && bad.is_finite();

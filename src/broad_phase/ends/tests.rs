@@ -43,7 +43,7 @@ fn grown_boxes_hold_their_own_and_are_no_longer_than_they_may_be() {
 #[test]
 fn boxes_are_held_until_one_of_them_leaves_wherever_it_is_in_every_tier() {
     let pool = Threads::default();
-    for count in [1, 15, 16, 17, 40, PIECE + 3] {
+    for count in [1, 15, 16, 17, 40, BOXES_PER_TASK + 3] {
         let mut boxes: Vec<Aabb> = (0..count)
             .map(|i| Aabb::new([i as f32, -2.0, 3.0], [i as f32 + 1.0, 5.0, 4.0]))
             .collect();

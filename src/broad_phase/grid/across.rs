@@ -12,7 +12,7 @@ use crate::simd::Lanes;
 
 /// How the bodies of one level find those of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Search {
+pub enum LevelSearch {
     /// Each looks into the cells around it.
     Cells,
     /// Each is tested against all.
@@ -25,9 +25,9 @@ const ROW_COST: f64 = 15.0;
 
 /// The cheapest way to the pairs of two levels: which one seeks (true: `a`), and how. By bodies and
 /// sizes alone.
-pub fn plan(a: &Level, b: &Level) -> (bool, Search) {
+pub fn plan(a: &Level, b: &Level) -> (bool, LevelSearch) {
     let all = a.range.len() as f64 * b.range.len() as f64;
-    let mut best = (a.range.len() < b.range.len(), Search::All, all);
+    let mut best = (a.range.len() < b.range.len(), LevelSearch::All, all);
     for (seeker, target, is_a) in [(a, b, true), (b, a, false)] {
         let across = 2.0 * (seeker.widest + target.widest) / target.cells.size();
         // Nearly always: roundings and the place of the seeker may make it one more.
@@ -42,7 +42,7 @@ pub fn plan(a: &Level, b: &Level) -> (bool, Search) {
                 .product::<f64>();
         let cost = seeker.range.len() as f64 * cells(1) * cells(2) * ROW_COST + found;
         if cost < best.2 {
-            best = (is_a, Search::Cells, cost);
+            best = (is_a, LevelSearch::Cells, cost);
         }
     }
     (best.0, best.1)
@@ -106,7 +106,7 @@ impl Grid {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cells::{Cells, Layout};
+    use super::super::cells::{Cells, TableLayout};
     use super::*;
     use crate::broad_phase::{Block, Bounds};
     use crate::simd::{Kernel, Tier, dispatch};
@@ -156,8 +156,8 @@ mod tests {
                 })
                 .collect();
             let names: Vec<u32> = (0..balls.len() as u32).collect();
-            let levels =
-                [0..TARGETS, TARGETS..balls.len()].map(|range| Level::new(range, Layout::Wrapped));
+            let levels = [0..TARGETS, TARGETS..balls.len()]
+                .map(|range| Level::new(range, TableLayout::Wrapped));
             let mut grid = Grid {
                 levels: levels.to_vec(),
                 moving_levels: 2,
@@ -183,7 +183,7 @@ mod tests {
 
     /// So many bodies, the widest of that radius, in cells of at least its size and so many of them
     /// each way.
-    fn level(bodies: usize, widest: f32, cells: [u8; 3], layout: Layout) -> Level {
+    fn level(bodies: usize, widest: f32, cells: [u8; 3], layout: TableLayout) -> Level {
         let mut level = Level::new(0..bodies, layout);
         let hi = cells.map(|count| 2.0 * widest * (f32::from(count) - 1.0));
         let bounds = Bounds {
@@ -207,9 +207,9 @@ mod tests {
             (0.25, [9, 9, 9], 95),
         ] {
             for seekers in [1, 7] {
-                let seekers = level(seekers, radius, [1; 3], Layout::Box);
-                let target = |bodies| level(bodies, 0.5, cells, Layout::Box);
-                for (bodies, search) in [(most, Search::All), (most + 1, Search::Cells)] {
+                let seekers = level(seekers, radius, [1; 3], TableLayout::Box);
+                let target = |bodies| level(bodies, 0.5, cells, TableLayout::Box);
+                for (bodies, search) in [(most, LevelSearch::All), (most + 1, LevelSearch::Cells)] {
                     let target = target(bodies);
                     assert_eq!(
                         plan(&seekers, &target),
@@ -228,17 +228,17 @@ mod tests {
 
     #[test]
     fn the_fewer_bodies_seek_among_all_and_the_second_of_as_many() {
-        let level = |bodies| level(bodies, 0.5, [1; 3], Layout::Box);
+        let level = |bodies| level(bodies, 0.5, [1; 3], TableLayout::Box);
         for (a, b) in [(2, 3), (3, 3), (3, 2)] {
-            assert_eq!(plan(&level(a), &level(b)), (a < b, Search::All));
+            assert_eq!(plan(&level(a), &level(b)), (a < b, LevelSearch::All));
         }
     }
 
     #[test]
     fn a_wrapped_table_is_looked_through_by_seekers_of_its_own_size_alone() {
-        let target = level(10_000, 0.5, [200; 3], Layout::Wrapped);
-        for (radius, search) in [(0.5, Search::Cells), (0.6, Search::All)] {
-            let seeker = level(1, radius, [1; 3], Layout::Box);
+        let target = level(10_000, 0.5, [200; 3], TableLayout::Wrapped);
+        for (radius, search) in [(0.5, LevelSearch::Cells), (0.6, LevelSearch::All)] {
+            let seeker = level(1, radius, [1; 3], TableLayout::Box);
             assert_eq!(plan(&seeker, &target), (true, search), "{radius}");
         }
     }

@@ -24,11 +24,11 @@ const MOST_CELLS: f64 = (1u32 << 29) as f64;
 
 /// Cells a body that a table may have, and a few more for small scenes.
 const CELLS_PER_BODY: f64 = 6.0;
-const FEW_CELLS: f64 = 512.0;
+const SPARE_CELLS: f64 = 512.0;
 
 /// Rows that a body looks at besides its own: (0, +1, 0) and (0, −1…+1, +1). The other half finds
 /// it in turn.
-const FORWARD: [[i32; 2]; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
+const FORWARD_ROWS: [[i32; 2]; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
 
 /// Cells each way that one look into a wrapped table may span: there all rows lie apart, in every
 /// length of table, and rows of a fourth cell would overlap in short ones and give some bodies
@@ -37,7 +37,7 @@ pub const WRAPPED_SPAN: u32 = 3;
 
 /// How cells find their place in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Layout {
+pub enum TableLayout {
     /// Every cell of the bodies' box has its own.
     Box,
     /// Modulo the table's length.
@@ -49,12 +49,12 @@ pub enum Layout {
 /// of them reverses an order: a coordinate between two others falls in a cell between theirs,
 /// whatever the roundings, and none falls beyond the cell of the farthest.
 #[derive(Clone, Copy, Debug)]
-struct Rule {
+struct CellRule {
     origin: [f64; 3],
     inverse: f64,
 }
 
-impl Rule {
+impl CellRule {
     /// The number of a coordinate's cell along an axis, plus [`TO_INTEGER`]: an exact f64 in order,
     /// whose low 32 bits are the number.
     #[inline(always)]
@@ -77,7 +77,7 @@ fn number(cell: f64) -> u32 {
 /// The cells of one level.
 #[derive(Clone, Debug)]
 pub struct Cells {
-    rule: Rule,
+    rule: CellRule,
     size: f64,
     count: [u32; 3],
     row: u32,
@@ -91,19 +91,19 @@ pub struct Cells {
 impl Cells {
     /// Cells for `bodies` balls within the bounds, of the size that the widest needs; in a box,
     /// larger ones where the table would grow too long.
-    pub fn fit(bounds: &Bounds, bodies: usize, layout: Layout) -> Self {
+    pub fn fit(bounds: &Bounds, bodies: usize, layout: TableLayout) -> Self {
         // Bounds that aren't finite come of bodies outside the contract. They get some cells, so
         // that nothing here runs on.
         let [lo, hi] = [bounds.lo, bounds.hi].map(|end| end.map(finite));
         let longest = (0..3).map(|i| hi[i] - lo[i]).fold(0.0, f64::max);
         let needed = 2.0 * f64::from(widen(bounds.widest)) * (1.0 + 1.0 / 65536.0);
         let mut size = needed.max(longest / MOST_CELLS);
-        let rule = |size: f64| Rule {
+        let rule = |size: f64| CellRule {
             origin: lo,
             inverse: 1.0 / size,
         };
-        if layout == Layout::Box {
-            let most = CELLS_PER_BODY * bodies as f64 + FEW_CELLS;
+        if layout == TableLayout::Box {
+            let most = CELLS_PER_BODY * bodies as f64 + SPARE_CELLS;
             let fits = |size: f64| {
                 let count = rule(size).count(hi);
                 count.map(|n| f64::from(n) + 1.0).iter().product::<f64>() <= most
@@ -129,8 +129,8 @@ impl Cells {
             forward_len: 0,
         };
         match layout {
-            Layout::Box => cells.lay_out_box(),
-            Layout::Wrapped => cells.wrap(bodies),
+            TableLayout::Box => cells.lay_out_box(),
+            TableLayout::Wrapped => cells.wrap(bodies),
         }
         cells
     }
@@ -156,7 +156,7 @@ impl Cells {
     }
 
     fn take_forward(&mut self, has: impl Fn([i32; 2]) -> bool) {
-        for step in FORWARD.into_iter().filter(|&step| has(step)) {
+        for step in FORWARD_ROWS.into_iter().filter(|&step| has(step)) {
             let [y, z] = step.map(|k| k as u32);
             let offset = y
                 .wrapping_mul(self.row)
@@ -193,11 +193,11 @@ impl Cells {
     }
 
     /// The layout.
-    pub fn layout(&self) -> Layout {
+    pub fn layout(&self) -> TableLayout {
         if self.mask == u32::MAX {
-            Layout::Box
+            TableLayout::Box
         } else {
-            Layout::Wrapped
+            TableLayout::Wrapped
         }
     }
 
@@ -205,16 +205,16 @@ impl Cells {
     #[inline(always)]
     pub fn most_span(&self) -> u32 {
         match self.layout() {
-            Layout::Box => u32::MAX,
-            Layout::Wrapped => WRAPPED_SPAN,
+            TableLayout::Box => u32::MAX,
+            TableLayout::Wrapped => WRAPPED_SPAN,
         }
     }
 
     /// The highest table index that a centre can fall in: beyond it a box has empty cells only.
     pub fn last(&self) -> u32 {
         match self.layout() {
-            Layout::Box => self.index(self.count.map(|n| n - 1)),
-            Layout::Wrapped => self.mask,
+            TableLayout::Box => self.index(self.count.map(|n| n - 1)),
+            TableLayout::Wrapped => self.mask,
         }
     }
 

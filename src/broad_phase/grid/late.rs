@@ -7,13 +7,13 @@
 
 use std::ops::Range;
 
-use super::{Grid, Level, REORDER};
+use super::{FRAMES_PER_REORDER, Grid, Level};
 
 /// Late bodies, whatever their sizes: so many, or this share of all, but never more than so many,
 /// since all of them may lie in one cell.
-const FEW: usize = 64;
-const SHARE: usize = 16;
-const MANY: usize = 4096;
+const FEW_LATE: usize = 64;
+const LATE_SHARE: usize = 16;
+const MOST_LATE: usize = 4096;
 
 impl Grid {
     /// Takes up another set of bodies in the order that
@@ -32,11 +32,14 @@ impl Grid {
         self.take_levels(static_levels, stays, moving..bodies);
         // Slots are the former set's: no order of places is taken from them before bodies are
         // sorted again.
-        self.age = self.age.next_multiple_of(REORDER).max(REORDER);
+        self.age = self
+            .age
+            .next_multiple_of(FRAMES_PER_REORDER)
+            .max(FRAMES_PER_REORDER);
         (self.fixed_sorted, self.candidates) = (false, 0);
         let late = self.levels.iter().filter(|level| level.is_late);
         let late: usize = late.map(|level| level.range.len()).sum();
-        late <= FEW.max(MANY.min(bodies / SHARE))
+        late <= FEW_LATE.max(MOST_LATE.min(bodies / LATE_SHARE))
     }
 
     /// Shares `places` out among the levels whose bodies stay, in their order, and one for the late

@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::cells::{Cells, Layout};
+use super::cells::{Cells, TableLayout};
 use crate::broad_phase::{Bounds, Slots};
 use crate::rounding::skin::Reach;
 use crate::rounding::widen;
@@ -30,12 +30,12 @@ pub struct Level {
     pub reach: Reach,
     /// Whether its bodies came after the levels had been planned.
     pub is_late: bool,
-    layout: Layout,
+    layout: TableLayout,
 }
 
 impl Level {
     /// A level for the bodies in a range of places.
-    pub fn new(range: Range<usize>, layout: Layout) -> Self {
+    pub fn new(range: Range<usize>, layout: TableLayout) -> Self {
         Self {
             cells: Cells::fit(&Bounds::EMPTY, range.len(), layout),
             starts: Vec::new(),
@@ -51,7 +51,7 @@ impl Level {
     pub fn late(range: Range<usize>) -> Self {
         Self {
             is_late: true,
-            ..Self::new(range, Layout::Box)
+            ..Self::new(range, TableLayout::Box)
         }
     }
 
@@ -79,9 +79,9 @@ impl Level {
         self.widest = f64::from(widen(bounds.widest));
         self.cells = Cells::fit(&bounds, range.len(), self.layout);
         let (cells, place_cells) = (&self.cells, &mut place_cells[range.clone()]);
-        pool.pieces(place_cells, PIECE, |start, to| {
+        pool.pieces(place_cells, BODIES_PER_TASK, |start, to| {
             let balls = &balls[start..start + to.len()];
-            dispatch(tier, Assign { cells, balls, to });
+            dispatch(tier, AssignCells { cells, balls, to });
         });
         let entries = self.cells.table_len() + 1;
         if entries > self.starts.capacity() {
@@ -99,7 +99,7 @@ impl Level {
                 names,
                 cells: place_cells,
             };
-            let to = Share {
+            let to = CellShare {
                 first_cell: 0,
                 ends: &mut self.starts[1..],
                 first_slot: range.start as u32,
@@ -150,7 +150,7 @@ impl Level {
 }
 
 /// Bodies whose cells one thread finds at a time.
-const PIECE: usize = 4096;
+const BODIES_PER_TASK: usize = 4096;
 
 /// Bodies that are worth sharing a sort for.
 const WORTH_SHARING: usize = 1 << 15;
@@ -177,7 +177,7 @@ struct Columns<'a> {
 }
 
 /// What one thread sorts: the bodies in a range of cells, whose slots are a range too.
-struct Share<'a> {
+struct CellShare<'a> {
     first_cell: u32,
     /// The end of each cell.
     ends: &'a mut [u32],
@@ -187,7 +187,7 @@ struct Share<'a> {
     cells: &'a mut [u32],
 }
 
-impl<'a> Share<'a> {
+impl<'a> CellShare<'a> {
     /// Sorts all cells, split among the threads: each reads all bodies and takes those of its own
     /// cells, so that the order is that of one thread. False, and nothing is sorted, if a body's
     /// cell isn't in the table.
@@ -218,7 +218,7 @@ impl<'a> Share<'a> {
         if shares.iter().map(|(_, _, bodies)| bodies).sum::<usize>() < from.cells.len() {
             return false;
         }
-        let mut shares: Vec<Share<'_>> = shares
+        let mut shares: Vec<CellShare<'_>> = shares
             .into_iter()
             .map(|(first_cell, ends, bodies)| {
                 let (balls, rest) = std::mem::take(&mut self.balls).split_at_mut(bodies);
@@ -229,7 +229,7 @@ impl<'a> Share<'a> {
                 self.cells = rest;
                 let first_slot = self.first_slot;
                 self.first_slot += bodies as u32;
-                Share {
+                CellShare {
                     first_cell,
                     ends,
                     first_slot,
@@ -279,13 +279,13 @@ fn count(cells: &[u32], first: u32, counts: &mut [u32]) -> usize {
 }
 
 /// Compiled once a tier, for wide conversions to f64 and back.
-pub(super) struct Assign<'a> {
+pub(super) struct AssignCells<'a> {
     pub cells: &'a Cells,
     pub balls: &'a [[f32; 4]],
     pub to: &'a mut [u32],
 }
 
-impl Kernel for Assign<'_> {
+impl Kernel for AssignCells<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
@@ -299,8 +299,8 @@ mod tests {
 
     /// Checks a level of two bodies whose slots have these names.
     fn check(slotted: [u32; 2], names: [u32; 2]) {
-        let (mut level, balls) = (Level::new(0..2, Layout::Box), [[0.25; 4]; 2]);
-        level.cells = Cells::fit(&Bounds::of(Tier::SCALAR, &balls), 2, Layout::Box);
+        let (mut level, balls) = (Level::new(0..2, TableLayout::Box), [[0.25; 4]; 2]);
+        level.cells = Cells::fit(&Bounds::of(Tier::SCALAR, &balls), 2, TableLayout::Box);
         (level.starts, level.widest) = (vec![0, 2], widen(0.25).into());
         let slots = Slots {
             names: slotted.to_vec(),
@@ -354,7 +354,7 @@ mod tests {
     /// A box that breathes allocates nothing.
     #[test]
     fn a_table_that_grows_takes_an_eighth_to_spare() {
-        let mut level = Level::new(0..100, Layout::Box);
+        let mut level = Level::new(0..100, TableLayout::Box);
         let names: Vec<u32> = (0..100).collect();
         let sorted = |level: &mut Level, step: f32| {
             let ball = |&i: &u32| [step * i as f32, 0.0, 0.0, 1.0];
@@ -389,7 +389,7 @@ mod tests {
         let balls: Vec<_> = (0..len).map(ball).collect();
         let names: Vec<u32> = (0..len as u32).rev().collect();
         let sorted = |threads| {
-            let mut level = Level::new(0..len, Layout::Box);
+            let mut level = Level::new(0..len, TableLayout::Box);
             let (slots, slot_cells) = sort(&mut level, threads, &balls, &names);
             (
                 level.starts,

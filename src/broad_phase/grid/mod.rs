@@ -15,9 +15,9 @@ mod plan;
 
 use std::ops::Range;
 
-pub use self::cells::{Cells, Layout};
+pub use self::cells::{Cells, TableLayout};
 
-use self::across::Search;
+use self::across::LevelSearch;
 use self::level::Level;
 use super::{FirstTest, Page, Reorder, Slots, bytes};
 use crate::rounding::skin::Reach;
@@ -27,7 +27,7 @@ use crate::threads::Executor;
 /// Frames after which places take the order of slots. Bodies that move a tenth of their radius a
 /// frame are then in their cell still, or beside it; each frame would spare the sort no more than
 /// following the order costs.
-const REORDER: u32 = 4;
+const FRAMES_PER_REORDER: u32 = 4;
 
 /// Frames between two looks at whether the levels still fit, and the growth of the candidates that
 /// calls for new ones.
@@ -35,7 +35,7 @@ const PLAN_PAUSE: u32 = 8;
 const PLAN_GROWTH: u64 = 2;
 
 /// Slots in one part of the work.
-const PART: usize = 1024;
+const SLOTS_PER_PART: usize = 1024;
 
 /// Parts are ordered by shares of their levels, in steps of such a power of two.
 const SHARE_BITS: u32 = 24;
@@ -76,7 +76,7 @@ struct Part {
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Near,
-    Across(Search),
+    Across(LevelSearch),
 }
 
 impl Grid {
@@ -106,7 +106,7 @@ impl Grid {
             self.fixed_sorted = false;
             return Reorder::All;
         }
-        if self.age.is_multiple_of(REORDER) {
+        if self.age.is_multiple_of(FRAMES_PER_REORDER) {
             order.extend_from_slice(&self.slots.names[..moving]);
             order.extend_from_slice(&names[moving..]);
             return Reorder::Moving;
@@ -196,7 +196,7 @@ impl Grid {
                 level: index,
                 kind: Kind::Near,
             };
-            push_parts(&mut self.parts, near, PART);
+            push_parts(&mut self.parts, near, SLOTS_PER_PART);
             for (other_index, other) in self.levels.iter().enumerate().skip(index + 1) {
                 let (seeks, search) = across::plan(level, other);
                 let (seeker, target) = if seeks {
@@ -205,8 +205,8 @@ impl Grid {
                     (other_index, index)
                 };
                 let size = match search {
-                    Search::Cells => SEEKERS_BY_CELLS,
-                    Search::All => SEEKERS_OF_ALL,
+                    LevelSearch::Cells => SEEKERS_BY_CELLS,
+                    LevelSearch::All => SEEKERS_OF_ALL,
                 };
                 let across = Part {
                     slots: self.levels[seeker].range.clone(),
@@ -268,11 +268,11 @@ impl Grid {
             let (slots, level) = (part.slots.clone(), &self.levels[part.level]);
             match part.kind {
                 Kind::Near => self.near(l, level, slots, &mut page, test),
-                Kind::Across(Search::Cells) => {
+                Kind::Across(LevelSearch::Cells) => {
                     let grown = self.levels[part.seeker].reach;
                     self.across(l, (slots, grown), level, &mut page, test);
                 }
-                Kind::Across(Search::All) => {
+                Kind::Across(LevelSearch::All) => {
                     for i in slots {
                         test.run(l, i, level.range.clone());
                     }
@@ -308,7 +308,7 @@ mod tests {
     /// Of one level of that many moving bodies, and one of as many static ones, planned some frames
     /// ago.
     fn planned(each: usize) -> Grid {
-        let level = |range| Level::new(range, Layout::Box);
+        let level = |range| Level::new(range, TableLayout::Box);
         Grid {
             levels: vec![level(0..each), level(each..2 * each)],
             moving_levels: 1,
@@ -377,7 +377,7 @@ mod tests {
             slots: 3..40,
             seeker: 1,
             level: 2,
-            kind: Kind::Across(Search::All),
+            kind: Kind::Across(LevelSearch::All),
         };
         let mut parts = Vec::new();
         push_parts(&mut parts, whole, 16);

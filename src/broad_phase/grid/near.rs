@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::Grid;
-use super::cells::Layout;
+use super::cells::TableLayout;
 use super::level::Level;
 use crate::broad_phase::{BLOCK_BODIES, FirstTest, Page, Pen};
 use crate::simd::Lanes;
@@ -29,9 +29,9 @@ impl Grid {
             let bodies = first..range.end.min(first + BLOCK_BODIES);
             let pen = page.restart(first);
             match (level.cells.layout(), level.cells.forward().try_into()) {
-                (Layout::Box, Ok(rows)) => self.in_space(level, bodies, rows, pen),
-                (Layout::Box, Err(_)) => self.in_box(level, bodies, pen),
-                (Layout::Wrapped, _) => self.wrapped(level, bodies, pen),
+                (TableLayout::Box, Ok(rows)) => self.in_space(level, bodies, rows, pen),
+                (TableLayout::Box, Err(_)) => self.in_box(level, bodies, pen),
+                (TableLayout::Wrapped, _) => self.wrapped(level, bodies, pen),
             }
             hand_over(l, page, test);
             first += BLOCK_BODIES;

@@ -7,14 +7,14 @@
 
 use std::ops::Range;
 
-use super::cells::{Cells, Layout};
-use super::level::{Assign, Level};
+use super::cells::{Cells, TableLayout};
+use super::level::{AssignCells, Level};
 use crate::broad_phase::Bounds;
 use crate::simd::{self, dispatch};
 
 /// Bodies that a body may find in its own cell, itself included, in the mean, before wide ones are
 /// split off. Uniform scenes reach it at 13 sphere partners a body.
-const CROWD: u64 = 4;
+const MOST_PER_CELL: u64 = 4;
 
 /// Levels for moving or for static bodies each.
 const MOST_LEVELS: usize = 24;
@@ -33,7 +33,7 @@ pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec
         let (mut layout, crowd) = fit(&level);
         let half = 0.5 * Bounds::of(simd::Tier::SCALAR, &level).widest;
         let wide = |place: &u32| balls[*place as usize][3] > half;
-        let crowded = crowd > CROWD * rest.len() as u64 && levels.len() + 1 < MOST_LEVELS;
+        let crowded = crowd > MOST_PER_CELL * rest.len() as u64 && levels.len() + 1 < MOST_LEVELS;
         let mut count = rest.len();
         // None is wide where the widest radius is infinite.
         let wide_count = rest.iter().filter(|place| wide(place)).count();
@@ -56,24 +56,24 @@ fn gather(balls: &[[f32; 4]], places: &[u32]) -> Vec<[f32; 4]> {
 
 /// The better layout for some balls, and how crowded its cells are: the sum over balls of the balls
 /// in the same cell.
-fn fit(balls: &[[f32; 4]]) -> (Layout, u64) {
+fn fit(balls: &[[f32; 4]]) -> (TableLayout, u64) {
     let bounds = Bounds::of(simd::Tier::SCALAR, balls);
-    let [in_box, wrapped] =
-        [Layout::Box, Layout::Wrapped].map(|layout| Cells::fit(&bounds, balls.len(), layout));
+    let [in_box, wrapped] = [TableLayout::Box, TableLayout::Wrapped]
+        .map(|layout| Cells::fit(&bounds, balls.len(), layout));
     let crowd_in_box = crowd(&in_box, balls);
     if in_box.size() > wrapped.size() {
         let crowd_wrapped = crowd(&wrapped, balls);
         if WORTH_WRAPPING * crowd_wrapped < crowd_in_box {
-            return (Layout::Wrapped, crowd_wrapped);
+            return (TableLayout::Wrapped, crowd_wrapped);
         }
     }
-    (Layout::Box, crowd_in_box)
+    (TableLayout::Box, crowd_in_box)
 }
 
 fn crowd(cells: &Cells, balls: &[[f32; 4]]) -> u64 {
     let mut cell_of = vec![0; balls.len()];
     let to = &mut cell_of;
-    dispatch(simd::Tier::SCALAR, Assign { cells, balls, to });
+    dispatch(simd::Tier::SCALAR, AssignCells { cells, balls, to });
     let mut counts = vec![0u64; cells.table_len()];
     for &cell in &cell_of {
         // A centre that is NaN has no cell.
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     /// The places of each level that some balls get, and its layout.
-    fn planned(balls: &[[f32; 4]]) -> Vec<(Vec<u32>, Layout)> {
+    fn planned(balls: &[[f32; 4]]) -> Vec<(Vec<u32>, TableLayout)> {
         let mut order: Vec<u32> = (0..balls.len() as u32).collect();
         let levels = levels(balls, 10..10 + balls.len(), &mut order);
         let places = levels.iter().map(|level| {
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn giants_leave_crowds_of_small_bodies_and_no_others() {
-        let alone = |range: Range<u32>| (range.collect::<Vec<_>>(), Layout::Box);
+        let alone = |range: Range<u32>| (range.collect::<Vec<_>>(), TableLayout::Box);
         // In the mean (n² + 1)/(n + 1) bodies are in a body's cell: 4 at most, and they stay.
         for small in 1..5 {
             assert_eq!(planned(&giants(small, 1)), [alone(0..small + 1)]);
@@ -142,15 +142,15 @@ mod tests {
                 .map(|level| level.1)
                 .collect::<Vec<_>>()
         };
-        assert_eq!(diagonal(1000, 1.5), [Layout::Wrapped]);
-        assert_eq!(diagonal(8, 1.5), [Layout::Box]);
+        assert_eq!(diagonal(1000, 1.5), [TableLayout::Wrapped]);
+        assert_eq!(diagonal(8, 1.5), [TableLayout::Box]);
     }
 
     #[test]
     fn a_crowd_is_the_sum_over_bodies_of_those_in_their_cells() {
         let at = |x: f32| [x, 0.0, 0.0, 0.5];
         let balls = [0.0, 50.0, 0.1, 50.1, 50.2, 100.0].map(at);
-        let cells = Cells::fit(&Bounds::of(simd::Tier::SCALAR, &balls), 6, Layout::Box);
+        let cells = Cells::fit(&Bounds::of(simd::Tier::SCALAR, &balls), 6, TableLayout::Box);
         assert_eq!(crowd(&cells, &balls), 4 + 9 + 1);
         assert_eq!(fit(&balls).1, 14);
     }
@@ -183,14 +183,14 @@ mod tests {
             let at = |i: usize| i as f32 * step;
             let balls: Vec<_> = (0..n).map(|i| [at(i), at(i), at(i), 0.5]).collect();
             let bounds = Bounds::of(simd::Tier::SCALAR, &balls);
-            let [in_box, others] =
-                [Layout::Box, Layout::Wrapped].map(|layout| Cells::fit(&bounds, n, layout));
+            let [in_box, others] = [TableLayout::Box, TableLayout::Wrapped]
+                .map(|layout| Cells::fit(&bounds, n, layout));
             let crowds = [&in_box, &others].map(|cells| crowd(cells, &balls));
             let halves = in_box.size() > others.size() && 2 * crowds[1] < crowds[0];
             let expected = if halves {
-                (Layout::Wrapped, crowds[1])
+                (TableLayout::Wrapped, crowds[1])
             } else {
-                (Layout::Box, crowds[0])
+                (TableLayout::Box, crowds[0])
             };
             assert_eq!(fit(&balls), expected, "{n}, {step}");
             wrapped[usize::from(halves)] += 1;

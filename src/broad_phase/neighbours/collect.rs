@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::Volume;
-use super::effort::{Effort, STEP};
+use super::effort::{CANDIDATES_PER_REPORT, Effort};
 use super::list::Chunk;
 use crate::broad_phase::{
-    Arranged, BLOCK_BODIES, BallTest, Block, FirstTest, MOST_CANDIDATES, SlotTest,
+    BLOCK_BODIES, BallTest, Block, FirstTest, MOST_CANDIDATES, SlotBodies, SlotTest,
 };
 use crate::rounding::skin::Reach;
 use crate::rounding::{cube, sphere};
@@ -14,18 +14,18 @@ use crate::simd::{Lanes, MAX_WIDTH};
 
 /// Balls, or the cubes that they stand for, grown by a skin.
 #[derive(Clone, Copy)]
-pub struct Grown<'a> {
+pub struct GrownBalls<'a> {
     /// The balls as they are.
-    pub slots: Arranged<'a>,
+    pub slots: SlotBodies<'a>,
     /// How the balls of seekers grow, and those of the bodies that they look for.
     pub by: [Reach; 2],
     /// What balls stand for.
     pub volume: Volume,
 }
 
-impl BallTest for Grown<'_> {
+impl BallTest for GrownBalls<'_> {
     #[inline(always)]
-    fn slots(&self) -> Arranged<'_> {
+    fn slots(&self) -> SlotBodies<'_> {
         self.slots
     }
 
@@ -41,7 +41,7 @@ impl BallTest for Grown<'_> {
 
 /// Tests the grid's candidates and keeps the neighbours, until there are more of either than a list
 /// may take.
-pub struct Collect<'a, T> {
+pub struct Collector<'a, T> {
     test: &'a T,
     chunk: &'a mut Chunk,
     effort: &'a Effort,
@@ -51,7 +51,7 @@ pub struct Collect<'a, T> {
     hits: [u32; MOST_CANDIDATES + MAX_WIDTH],
 }
 
-impl<'a, T: SlotTest> Collect<'a, T> {
+impl<'a, T: SlotTest> Collector<'a, T> {
     #[inline(always)]
     pub fn new(test: &'a T, chunk: &'a mut Chunk, effort: &'a Effort) -> Self {
         Self {
@@ -76,7 +76,7 @@ impl<'a, T: SlotTest> Collect<'a, T> {
         self.chunk.append(&self.hits[..found]);
         self.pairs += found as u64;
         self.candidates += candidates as u64;
-        if self.candidates >= STEP {
+        if self.candidates >= CANDIDATES_PER_REPORT {
             self.finish();
         }
     }
@@ -89,7 +89,7 @@ impl<'a, T: SlotTest> Collect<'a, T> {
     }
 }
 
-impl<T: SlotTest> FirstTest for Collect<'_, T> {
+impl<T: SlotTest> FirstTest for Collector<'_, T> {
     #[inline(always)]
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
         let holds = |first: usize| (first..first + BLOCK_BODIES).contains(&i);
@@ -134,9 +134,9 @@ mod tests {
     use crate::simd::{Kernel, Tier, dispatch};
 
     /// Hands runs of slots to a list.
-    struct Runs<'a, 's>(Collect<'a, Grown<'s>>, &'a [(usize, Range<usize>)]);
+    struct HandRuns<'a, 's>(Collector<'a, GrownBalls<'s>>, &'a [(usize, Range<usize>)]);
 
-    impl Kernel for Runs<'_, '_> {
+    impl Kernel for HandRuns<'_, '_> {
         type Output = ();
         fn run<L: Lanes>(mut self, l: L) {
             for (i, run) in self.1 {
@@ -147,9 +147,9 @@ mod tests {
     }
 
     /// The pairs that a list is read as.
-    struct Read(Vec<(usize, usize)>);
+    struct ListedPairs(Vec<(usize, usize)>);
 
-    impl FirstTest for Read {
+    impl FirstTest for ListedPairs {
         fn run<L: Lanes>(&mut self, _: L, _: usize, _: Range<usize>) {
             unreachable!("a list has blocks alone");
         }
@@ -159,9 +159,9 @@ mod tests {
         }
     }
 
-    struct Find<'a>(&'a List, &'a mut Read);
+    struct FindPairs<'a>(&'a List, &'a mut ListedPairs);
 
-    impl Kernel for Find<'_> {
+    impl Kernel for FindPairs<'_> {
         type Output = ();
         fn run<L: Lanes>(self, l: L) {
             self.0.find(l, 0..1, self.1);
@@ -194,7 +194,7 @@ mod tests {
             .flat_map(|(i, run)| run.clone().map(|j| (*i, j)));
         let seen = all.clone().count() as u64;
         let expected: Vec<_> = all.filter(|&(_, j)| !is_far(j)).collect();
-        let test = Grown {
+        let test = GrownBalls {
             slots: slots.arranged(),
             by: [Reach::NONE; 2],
             volume: Volume::Ball,
@@ -202,10 +202,13 @@ mod tests {
         for tier in Tier::available() {
             let mut chunk = Chunk::default();
             let effort = Effort::unlimited();
-            dispatch(tier, Runs(Collect::new(&test, &mut chunk, &effort), &runs));
+            dispatch(
+                tier,
+                HandRuns(Collector::new(&test, &mut chunk, &effort), &runs),
+            );
             assert_eq!((chunk.len(), effort.tested()), (expected.len(), seen));
-            let mut read = Read(Vec::new());
-            dispatch(tier, Find(&List::of(chunk), &mut read));
+            let mut read = ListedPairs(Vec::new());
+            dispatch(tier, FindPairs(&List::of(chunk), &mut read));
             assert!(read.0 == expected, "{tier}");
         }
     }

@@ -6,12 +6,12 @@ use crate::simd::{Kernel, Lanes, dispatch};
 use crate::threads::Executor;
 
 /// Balls that one thread looks at at a time.
-pub const PIECE: usize = 4096;
+pub const BALLS_PER_TASK: usize = 4096;
 
 /// Whether none has drifted by its skin since `then`.
 pub fn all_stay(executor: Executor<'_>, skin: Skin, now: &[[f32; 4]], then: &[[f32; 4]]) -> bool {
     let Executor { tier, pool } = executor;
-    pool.all(now.len(), PIECE, |range| {
+    pool.all(now.len(), BALLS_PER_TASK, |range| {
         let (now, then) = (&now[range.clone()], &then[range]);
         dispatch(tier, Measure { skin, now, then })
     })

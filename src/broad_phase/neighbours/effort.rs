@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use super::list::Limits;
 
 /// Candidates after which a thread adds its counts to those of all.
-pub const STEP: u64 = 1024;
+pub const CANDIDATES_PER_REPORT: u64 = 1024;
 
 /// Counts of all threads. They only grow, so whether the search ends beyond its limits depends on
-/// no thread; how far beyond does, by a [`STEP`] and one piece of the work for each of them.
+/// no thread; how far beyond does, by a [`CANDIDATES_PER_REPORT`] and one piece of the work for each of them.
 #[derive(Debug)]
 pub struct Effort {
     limits: Limits,
@@ -56,7 +56,8 @@ impl Effort {
 
     /// Checks in debug builds that no thread went on beyond the limits.
     pub fn check(&self, threads: usize) {
-        let slack = threads as u64 * (STEP + 2 * crate::broad_phase::MOST_CANDIDATES as u64);
+        let slack = threads as u64
+            * (CANDIDATES_PER_REPORT + 2 * crate::broad_phase::MOST_CANDIDATES as u64);
         debug_assert!(
             self.pairs.load(Relaxed) <= self.limits.pairs + slack
                 && self.candidates.load(Relaxed) <= self.limits.candidates + slack,

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::Volume;
-use super::collect::{Collect, Grown};
+use super::collect::{Collector, GrownBalls};
 use super::effort::Effort;
 use crate::broad_phase::{Block, EndSlots, FirstTest, Grid, MOST_CANDIDATES, SlotTest, bytes};
 use crate::rounding::skin::{Reach, Skin};
@@ -23,11 +23,11 @@ const GROWTH_OF_CANDIDATES: u64 = 3;
 const CANDIDATES_PER_BODY: u64 = 48;
 
 /// Room that a list is given, in lengths of its own.
-const ROOM: f64 = 1.5;
+const CAPACITY_FACTOR: f64 = 1.5;
 
 /// What must touch, grown by the skin, for a pair to be listed.
 #[derive(Clone, Copy)]
-pub enum Near<'a> {
+pub enum ListedVolume<'a> {
     /// Balls, or what they stand for.
     Balls(Volume),
     /// Boxes, which have been grown.
@@ -97,7 +97,7 @@ impl List {
         executor: Executor<'_>,
         (grid, candidates): (&Grid, u64),
         (skin, spare): (Skin, f64),
-        near: Near<'_>,
+        near: ListedVolume<'_>,
     ) -> Outcome {
         self.parts = grid.parts();
         if self.chunks.len() < self.parts {
@@ -226,7 +226,7 @@ impl Chunk {
 fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
     let needed = column.len() + more;
     if column.capacity() < needed {
-        let room = (ROOM * spare * needed as f64) as usize;
+        let room = (CAPACITY_FACTOR * spare * needed as f64) as usize;
         column.reserve_exact(room.max(needed) - column.len());
     }
 }
@@ -234,7 +234,8 @@ fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
 /// Lists breathe from one to the next: a column that was filled to the brim would be allocated anew
 /// by the next one.
 fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
-    let [least, room] = [1.0, ROOM].map(|times| (times * spare * column.len() as f64) as usize);
+    let [least, room] =
+        [1.0, CAPACITY_FACTOR].map(|times| (times * spare * column.len() as f64) as usize);
     if column.capacity() < least {
         column.reserve_exact(room - column.len());
     }
@@ -243,7 +244,7 @@ fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
 struct Make<'a> {
     grid: &'a Grid,
     part: usize,
-    near: Near<'a>,
+    near: ListedVolume<'a>,
     skin: Skin,
     chunk: &'a mut Chunk,
     effort: &'a Effort,
@@ -254,14 +255,14 @@ impl Kernel for Make<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
         match self.near {
-            Near::Balls(volume) => {
+            ListedVolume::Balls(volume) => {
                 let still = Skin::share(0.0);
                 let moves = self.grid.moves(self.part);
                 let by = moves.map(|moves| Reach::with_skin(if moves { self.skin } else { still }));
                 let slots = self.grid.slots().arranged();
-                self.collect(l, &Grown { slots, by, volume });
+                self.collect(l, &GrownBalls { slots, by, volume });
             }
-            Near::Ends(ends) => self.collect(l, ends),
+            ListedVolume::Ends(ends) => self.collect(l, ends),
         }
     }
 }
@@ -269,7 +270,7 @@ impl Kernel for Make<'_> {
 impl Make<'_> {
     #[inline(always)]
     fn collect<L: Lanes>(self, l: L, test: &impl SlotTest) {
-        let mut collect = Collect::new(test, self.chunk, self.effort);
+        let mut collect = Collector::new(test, self.chunk, self.effort);
         self.grid.find(l, self.part..self.part + 1, &mut collect);
         collect.finish();
         self.chunk.close();

@@ -27,9 +27,9 @@ mod motion;
 mod policy;
 
 pub(super) use self::list::List;
-use self::list::{Near, Outcome};
-use self::motion::{Motion, Sizes, are_specks, typical_radius};
-use self::policy::{Ended, Policy};
+use self::list::{ListedVolume, Outcome};
+use self::motion::{LargestDrift, SizeSummary, are_specks, typical_radius};
+use self::policy::{EndedList, Policy};
 use super::{Boxes, EndSlots, Grid, Reorder, Slots};
 use crate::rounding::cube;
 use crate::rounding::skin::{Reach, Skin};
@@ -56,14 +56,14 @@ pub struct Neighbours {
     state: State,
     policy: Policy,
     /// Candidates of the grid without a skin.
-    candidates: Known,
+    candidates: CandidateEstimate,
     /// Candidates tested in this frame in the search for a list.
     list_tests: u64,
 }
 
 /// A number of candidates, and how well it is known.
 #[derive(Clone, Copy, Debug, Default)]
-struct Known {
+struct CandidateEstimate {
     number: u64,
     /// Whether the grid has counted them in the frame before.
     is_counted: bool,
@@ -164,11 +164,11 @@ impl Neighbours {
                 return;
             }
             let sizes = sizes(balls, names, long);
-            self.policy.ended(&Ended {
+            self.policy.ended(&EndedList {
                 pairs: self.list.len(),
                 candidates: self.list.tested(),
                 bodies: balls.len(),
-                motion: Motion::of(executor, now, then, sizes.typical),
+                motion: LargestDrift::of(executor, now, then, sizes.typical),
                 sizes,
             });
         }
@@ -198,7 +198,7 @@ impl Neighbours {
         // The grid plans by the candidates that it would have handed out without a skin.
         let number = (self.list_tests as f64 / self.policy.more_candidates()) as u64;
         self.grid.observe(number);
-        self.candidates = Known {
+        self.candidates = CandidateEstimate {
             number,
             is_counted: false,
         };
@@ -218,12 +218,12 @@ impl Neighbours {
         long: Option<Boxes<'_>>,
     ) -> Outcome {
         let near = match long {
-            None => Near::Balls(self.volume),
+            None => ListedVolume::Balls(self.volume),
             Some(Boxes { all, .. }) => {
                 let Slots { names, balls, .. } = self.grid.slots();
                 let (names, cubes) = (&names[..self.grid.bodies()], &balls[..moving]);
                 (self.grown).fill_grown(executor, names, all, (cubes, skin));
-                Near::Ends(&self.grown)
+                ListedVolume::Ends(&self.grown)
             }
         };
         let skin = (skin, self.policy.widest());
@@ -268,7 +268,7 @@ impl Neighbours {
     pub(super) fn observe(&mut self, candidates: u64) {
         if self.state == State::Searching {
             self.grid.observe(candidates);
-            self.candidates = Known {
+            self.candidates = CandidateEstimate {
                 number: candidates,
                 is_counted: true,
             };
@@ -277,7 +277,7 @@ impl Neighbours {
 }
 
 /// The sizes of balls, or of long boxes in them.
-fn sizes(balls: &[[f32; 4]], names: &[u32], long: Option<Boxes<'_>>) -> Sizes {
+fn sizes(balls: &[[f32; 4]], names: &[u32], long: Option<Boxes<'_>>) -> SizeSummary {
     let of_balls = typical_radius(balls.len(), |place| [balls[place][3]; 3]);
     let of_boxes = long.map(|Boxes { all, .. }| {
         typical_radius(balls.len(), |place| {
@@ -285,7 +285,7 @@ fn sizes(balls: &[[f32; 4]], names: &[u32], long: Option<Boxes<'_>>) -> Sizes {
             half_sides.map(|half| half / cube::SCALE)
         })
     });
-    Sizes::new(of_boxes.unwrap_or(of_balls), of_balls)
+    SizeSummary::new(of_boxes.unwrap_or(of_balls), of_balls)
 }
 
 #[cfg(test)]

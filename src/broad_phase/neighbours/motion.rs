@@ -3,39 +3,39 @@
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-use super::drift::{PIECE, padded};
+use super::drift::{BALLS_PER_TASK, padded};
 use crate::broad_phase::BLOCK_BODIES;
 use crate::rounding::skin::{REACH_FLOOR, SKIN_FLOOR};
 use crate::simd::{Kernel, Lanes, dispatch, quads_in_columns};
 use crate::threads::Executor;
 
 /// Balls whose radii are asked, at most.
-const ASKED: usize = 256;
+const SAMPLE_SIZE: usize = 256;
 
 /// How many times the smallest radius the typical one may be.
-const MOST_OF_SMALLEST: f64 = 16.0;
+const MOST_SIZE_RATIO: f64 = 16.0;
 
 /// 2⁻⁶⁰: smaller radii count as this one, whose square is no subnormal.
-const LEAST: f32 = SKIN_FLOOR as f32;
+const LEAST_RADIUS: f32 = SKIN_FLOOR as f32;
 
 /// The farthest that any ball has drifted: sums of squares of what the centre has moved and the
 /// radius has grown.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
+pub struct LargestDrift {
     /// In radii of the ball's own.
     pub own: f64,
     /// In typical radii.
     pub typical: f64,
 }
 
-impl Motion {
+impl LargestDrift {
     /// Of balls since `then`.
     pub fn of(executor: Executor<'_>, now: &[[f32; 4]], then: &[[f32; 4]], typical: f64) -> Self {
         // Bits of numbers that aren't negative are in their order.
         let farthest = [const { AtomicU32::new(0) }; 2];
-        executor.pool.ranges(now.len(), PIECE, |range| {
+        executor.pool.ranges(now.len(), BALLS_PER_TASK, |range| {
             let (now, then) = (&now[range.clone()], &then[range]);
-            let found = dispatch(executor.tier, Farthest { now, then });
+            let found = dispatch(executor.tier, FindFarthest { now, then });
             for (farthest, found) in farthest.iter().zip(found) {
                 farthest.fetch_max(found.to_bits(), Relaxed);
             }
@@ -56,12 +56,12 @@ impl Motion {
 /// which is Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)² of balls.
 ///
 /// Zero, so that any drift is infinitely many of it and no skin goes by it, where it is more than
-/// [`MOST_OF_SMALLEST`] times the longest half side of the smallest body: a skin of a giant's size
+/// [`MOST_SIZE_RATIO`] times the longest half side of the smallest body: a skin of a giant's size
 /// would make all the small ones neighbours.
 pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> f64 {
     let (mut sums, mut asked, mut smallest) = ([0.0; 7], 0.0, f64::INFINITY);
-    for body in (0..bodies).step_by(bodies.div_ceil(ASKED).max(1)) {
-        let [x, y, z] = half_sides(body).map(|half| f64::from(half.max(LEAST)));
+    for body in (0..bodies).step_by(bodies.div_ceil(SAMPLE_SIZE).max(1)) {
+        let [x, y, z] = half_sides(body).map(|half| f64::from(half.max(LEAST_RADIUS)));
         for (sum, product) in sums
             .iter_mut()
             .zip([x, y, z, y * z, z * x, x * y, x * y * z])
@@ -75,7 +75,7 @@ pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> 
     let product = 2.0 * (xyz + x * yz + y * zx + z * xy);
     let of_two = 2.0 * ((yz + y * z) + (zx + z * x) + (xy + x * y));
     let typical = 3.0 * product / (2.0 * of_two);
-    if typical > MOST_OF_SMALLEST * smallest {
+    if typical > MOST_SIZE_RATIO * smallest {
         0.0
     } else {
         typical
@@ -86,7 +86,7 @@ pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> 
 /// it, is wider than they are. A list would then hold pairs that have nothing to do with the
 /// bodies' sizes.
 pub fn are_specks(radii: impl ExactSizeIterator<Item = f32>) -> bool {
-    let step = radii.len().div_ceil(ASKED).max(1);
+    let step = radii.len().div_ceil(SAMPLE_SIZE).max(1);
     let (mut specks, mut asked) = (0, 0);
     for radius in radii.step_by(step) {
         specks += usize::from(f64::from(radius) < REACH_FLOOR);
@@ -97,7 +97,7 @@ pub fn are_specks(radii: impl ExactSizeIterator<Item = f32>) -> bool {
 
 /// What is known of the sizes of bodies of which lists are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sizes {
+pub struct SizeSummary {
     /// The typical radius, of boxes where these are listed.
     pub typical: f64,
     /// The same in typical radii of the balls that the grid searches by: 1 but for boxes that are
@@ -105,7 +105,7 @@ pub struct Sizes {
     pub of_balls: f64,
 }
 
-impl Sizes {
+impl SizeSummary {
     /// Of boxes, or of balls that are listed themselves.
     pub fn new(typical: f64, of_balls: f64) -> Self {
         let of_balls = if typical > 0.0 && of_balls > typical {
@@ -117,12 +117,12 @@ impl Sizes {
     }
 }
 
-struct Farthest<'a> {
+struct FindFarthest<'a> {
     now: &'a [[f32; 4]],
     then: &'a [[f32; 4]],
 }
 
-impl Kernel for Farthest<'_> {
+impl Kernel for FindFarthest<'_> {
     /// Squares, in radii of their own and as lengths.
     type Output = [f32; 2];
     #[inline(always)]
@@ -155,7 +155,7 @@ fn raise<L: Lanes>(
         );
         let growth = larger(now[3][i] - then[3][i], 0.0);
         let square = dx * dx + dy * dy + dz * dz + growth * growth;
-        let radius = larger(then[3][i], LEAST);
+        let radius = larger(then[3][i], LEAST_RADIUS);
         // NaN, of a body outside the contract, is no farther than anything.
         own[i] = larger(square / (radius * radius), own[i]);
         length[i] = larger(square, length[i]);
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn the_farthest_counts_wherever_it_is_in_every_tier() {
         let pool = Threads::default();
-        for n in [1, 15, 16, 33, PIECE + 1] {
+        for n in [1, 15, 16, 33, BALLS_PER_TASK + 1] {
             let then: Vec<_> = (0..n).map(|i| [i as f32, 2.0, -3.0, 4.0]).collect();
             for (wide, far) in [(0, n - 1), (n - 1, 0), (n / 2, n / 2)] {
                 let (mut then, mut now) = (then.clone(), then.clone());
@@ -194,7 +194,7 @@ mod tests {
                 };
                 for tier in Tier::available() {
                     let executor = pool.executor(tier);
-                    let found = Motion::of(executor, &now, &then, 0.5);
+                    let found = LargestDrift::of(executor, &now, &then, 0.5);
                     let found = [found.own, 0.5 * found.typical];
                     for (found, expected) in found.into_iter().zip(expected) {
                         let off = (found / expected - 1.0).abs();
@@ -209,12 +209,12 @@ mod tests {
     fn balls_that_shrink_or_stay_or_have_no_radius_are_no_trouble() {
         let pool = Threads::default();
         let executor = pool.executor(Tier::SCALAR);
-        let motion = |now| Motion::of(executor, now, &[[0.0, 0.0, 0.0, 1.0]; 2], 1.0);
-        assert_eq!(motion(&[[0.0, 0.0, 0.0, 0.25]; 2]), Motion::default());
-        assert_eq!(motion(&[[f32::NAN; 4]; 2]), Motion::default());
+        let motion = |now| LargestDrift::of(executor, now, &[[0.0, 0.0, 0.0, 1.0]; 2], 1.0);
+        assert_eq!(motion(&[[0.0, 0.0, 0.0, 0.25]; 2]), LargestDrift::default());
+        assert_eq!(motion(&[[f32::NAN; 4]; 2]), LargestDrift::default());
         let still = [[5.0, 0.0, 0.0, 0.0]; 1];
-        let motion = Motion::of(executor, &still, &still, 1.0);
-        assert_eq!(motion, Motion::default());
+        let motion = LargestDrift::of(executor, &still, &still, 1.0);
+        assert_eq!(motion, LargestDrift::default());
     }
 
     #[test]

@@ -7,7 +7,7 @@
 //! list would have lasted: σ/v frames and one more. A wider skin makes fewer lists, each of (1 +
 //! σ)³ as many pairs, from as many more candidates.
 
-use super::motion::{Motion, Sizes};
+use super::motion::{LargestDrift, SizeSummary};
 use crate::rounding::skin::Skin;
 
 /// Skins to choose from, in radii.
@@ -19,31 +19,31 @@ const SKINS: [f64; 8] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.5, 0.75];
 const GREATEST_GROWTH: f64 = 2.6;
 
 /// The first one, before anything is known of the motion.
-const FIRST: usize = 3;
+const FIRST_SKIN: usize = 3;
 
 /// Costs in instructions of AVX2, what it takes to name pairs included: lines through the counts of
 /// frames of 4,000 uniform spheres with 2 to 18 candidates each, update excepted.
 ///
 /// The grid's frame, a body and a candidate.
-const SORT: f64 = 240.0;
-const SEARCH: f64 = 9.5;
+const GRID_BODY_COST: f64 = 240.0;
+const GRID_CANDIDATE_COST: f64 = 9.5;
 /// What a frame that makes a list takes beyond one that follows it.
-const MAKE: f64 = 260.0;
-const COLLECT: f64 = 11.0;
+const LIST_BODY_COST: f64 = 260.0;
+const LIST_CANDIDATE_COST: f64 = 11.0;
 /// A frame of a list, a body and a pair.
-const FOLLOW: f64 = 35.0;
-const PAIR: f64 = 14.0;
+const FRAME_BODY_COST: f64 = 35.0;
+const FRAME_PAIR_COST: f64 = 14.0;
 
 /// A list must promise to take at most this share of the grid's time: where it hardly pays, it may
 /// as well cost.
-const WORTH: f64 = 0.8;
+const MOST_GRID_SHARE: f64 = 0.8;
 
 /// By how much skins by other radii must be cheaper than those at hand: where all bodies have one
 /// size both are the same.
 const WORTH_CHANGING: f64 = 0.9;
 
 /// Frames of the grid between two attempts: at first, and at most.
-const PAUSE: u32 = 16;
+const FIRST_PAUSE: u32 = 16;
 const LONGEST_PAUSE: u32 = 256;
 
 /// Whose radii a skin is measured in.
@@ -59,7 +59,7 @@ pub struct Policy {
     radii: Radii,
     skin: usize,
     /// Of the bodies of the list at hand.
-    sizes: Sizes,
+    sizes: SizeSummary,
     /// Whether lists are made of long boxes.
     is_by_boxes: bool,
     /// Frames that the present list has served.
@@ -74,20 +74,20 @@ impl Default for Policy {
     fn default() -> Self {
         Self {
             radii: Radii::Own,
-            skin: FIRST,
-            sizes: Sizes::new(0.0, 0.0),
+            skin: FIRST_SKIN,
+            sizes: SizeSummary::new(0.0, 0.0),
             is_by_boxes: false,
             served: 0,
             // The first frame places bodies and isn't searched.
             wait: 1,
-            pause: PAUSE,
+            pause: FIRST_PAUSE,
         }
     }
 }
 
 /// What is known of a list that can't be followed any longer.
 #[derive(Clone, Copy, Debug)]
-pub struct Ended {
+pub struct EndedList {
     /// Its pairs.
     pub pairs: usize,
     /// The candidates that it was made of.
@@ -95,9 +95,9 @@ pub struct Ended {
     /// Bodies.
     pub bodies: usize,
     /// How far they got.
-    pub motion: Motion,
+    pub motion: LargestDrift,
     /// Their sizes.
-    pub sizes: Sizes,
+    pub sizes: SizeSummary,
 }
 
 impl Policy {
@@ -141,13 +141,13 @@ impl Policy {
     }
 
     /// From now on, lists are made of balls, or of long boxes.
-    pub fn turn_to(&mut self, by_boxes: bool, sizes: impl Fn() -> Sizes) {
+    pub fn turn_to(&mut self, by_boxes: bool, sizes: impl Fn() -> SizeSummary) {
         if by_boxes == self.is_by_boxes {
             return;
         }
         (self.is_by_boxes, self.sizes) = (by_boxes, sizes());
         if self.knows_a_length() {
-            (self.radii, self.skin) = (Radii::Typical, FIRST);
+            (self.radii, self.skin) = (Radii::Typical, FIRST_SKIN);
         }
         self.skin = self.skin.min(self.widest_skin());
     }
@@ -179,7 +179,7 @@ impl Policy {
     }
 
     /// The list can't be followed any longer.
-    pub fn ended(&mut self, list: &Ended) {
+    pub fn ended(&mut self, list: &EndedList) {
         let [own, typical] = self.speeds(list.motion);
         // A body's, if there were no skin.
         let each = |number: f64, wider| number / list.bodies.max(1) as f64 / wider;
@@ -193,8 +193,9 @@ impl Policy {
             }
             for (index, &skin) in self.skins().iter().enumerate() {
                 let frames = (skin / speed).floor() + 1.0;
-                let make = MAKE + COLLECT * candidates * self.candidates(skin);
-                let cost = make / frames + FOLLOW + PAIR * pairs * wider(skin);
+                let make =
+                    LIST_BODY_COST + LIST_CANDIDATE_COST * candidates * self.candidates(skin);
+                let cost = make / frames + FRAME_BODY_COST + FRAME_PAIR_COST * pairs * wider(skin);
                 let penalty = if radii == self.radii {
                     1.0
                 } else {
@@ -206,8 +207,8 @@ impl Policy {
             }
         }
         (self.radii, self.skin) = (best.1, best.2);
-        if best.0 < WORTH * (SORT + SEARCH * candidates) {
-            self.pause = PAUSE;
+        if best.0 < MOST_GRID_SHARE * (GRID_BODY_COST + GRID_CANDIDATE_COST * candidates) {
+            self.pause = FIRST_PAUSE;
         } else {
             // Of a list that served one frame alone the widest skin tells most.
             self.skin = self.widest_skin();
@@ -216,7 +217,7 @@ impl Policy {
     }
 
     /// How many radii the fastest body moves in a frame, own ones and typical ones.
-    fn speeds(&self, Motion { own, typical }: Motion) -> [f64; 2] {
+    fn speeds(&self, LargestDrift { own, typical }: LargestDrift) -> [f64; 2] {
         let served = f64::from(self.served);
         let (skin, drift) = match self.radii {
             Radii::Own => (SKINS[self.skin], own),

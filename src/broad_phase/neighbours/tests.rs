@@ -38,9 +38,9 @@ impl FirstTest for &mut Candidates<'_> {
 }
 
 /// Of the list, or of the grid.
-struct Find<'a>(&'a Neighbours, bool);
+struct FindPairs<'a>(&'a Neighbours, bool);
 
-impl<'a> Kernel for Find<'a> {
+impl<'a> Kernel for FindPairs<'a> {
     type Output = BTreeMap<[u32; 2], u32>;
     fn run<L: Lanes>(self, l: L) -> Self::Output {
         let Self(finder, of_list) = self;
@@ -98,7 +98,7 @@ impl Followed {
     }
 
     fn candidates(&self, of_list: bool) -> BTreeMap<[u32; 2], u32> {
-        dispatch(Tier::SCALAR, Find(&self.finder, of_list))
+        dispatch(Tier::SCALAR, FindPairs(&self.finder, of_list))
     }
 
     /// How deep two bodies overlap, each grown by a share of its radius and by a length if it

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use super::quad;
 
 /// A tooth, in parts of the pitch: flank up to the tip, tip land, flank down, root land.
-const TOOTH: [(f64, bool); 4] = [(0.0, false), (0.2, true), (0.5, true), (0.7, false)];
+const TOOTH_PROFILE: [(f64, bool); 4] = [(0.0, false), (0.2, true), (0.5, true), (0.7, false)];
 
 /// A gear with the radii [tip, root, bore]: outline and bore share their angles, so plain quads
 /// join them.
@@ -17,7 +17,7 @@ pub(super) fn gear(radii: [f32; 3], thickness: f32, teeth: u32) -> (Vec<Vec3>, V
     let n = 4 * teeth;
     let mut vertices = Vec::new();
     for tooth in 0..teeth {
-        for (part, on_tip) in TOOTH {
+        for (part, on_tip) in TOOTH_PROFILE {
             let angle = TAU * (f64::from(tooth) + part) / f64::from(teeth);
             let (cos, sin) = (libm::cos(angle), libm::sin(angle));
             let outer = if on_tip { tip } else { root };

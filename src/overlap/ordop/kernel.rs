@@ -11,7 +11,7 @@ use crate::volume::DirectionSet;
 
 /// Pairs that go through the first bodies' normals before the rest: their survivors' frames fit the
 /// first-level cache.
-const BLOCK: usize = 128;
+const PAIRS_PER_BLOCK: usize = 128;
 
 /// How many pairs ahead rows are prefetched.
 const PREFETCH_AHEAD: usize = 48;
@@ -32,7 +32,7 @@ pub struct OrDopColumns<'a> {
 
 /// Outcome of a range of pair tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tested {
+pub struct TestOutcome {
     /// Pairs tested.
     pub tests: u64,
     /// Pairs that no tried axis separates.
@@ -48,12 +48,12 @@ impl OrDopColumns<'_> {
         first: &[u32],
         second: &[u32],
         out: &mut PairList,
-    ) -> Tested {
+    ) -> TestOutcome {
         struct Test<'a, 'b>(&'a OrDopColumns<'b>, &'a [u32], &'a [u32], &'a mut PairList);
         impl Kernel for Test<'_, '_> {
-            type Output = Tested;
+            type Output = TestOutcome;
             #[inline(always)]
-            fn run<L: Lanes>(self, l: L) -> Tested {
+            fn run<L: Lanes>(self, l: L) -> TestOutcome {
                 self.0.test(l, self.1, self.2, self.3)
             }
         }
@@ -93,7 +93,13 @@ impl OrDopColumns<'_> {
     }
 
     #[inline(always)]
-    fn test<L: Lanes>(&self, l: L, first: &[u32], second: &[u32], out: &mut PairList) -> Tested {
+    fn test<L: Lanes>(
+        &self,
+        l: L,
+        first: &[u32],
+        second: &[u32],
+        out: &mut PairList,
+    ) -> TestOutcome {
         match self.tables.directions() {
             DirectionSet::K6 => self.test_k::<L, 6>(l, first, second, out),
             DirectionSet::K14 => self.test_k::<L, 14>(l, first, second, out),
@@ -109,7 +115,7 @@ impl OrDopColumns<'_> {
         first: &[u32],
         second: &[u32],
         out: &mut PairList,
-    ) -> Tested {
+    ) -> TestOutcome {
         // Only a vector of 16 has a permutation for 16 shapes; with two halves each, rows are as
         // quick.
         let few = L::WIDTH == 16 && !self.tables.columns().is_empty();
@@ -127,18 +133,18 @@ impl OrDopColumns<'_> {
         first: &[u32],
         second: &[u32],
         out: &mut PairList,
-    ) -> Tested {
-        let (mut pairs, mut alive) = (Pairs::new(), Alive::new());
+    ) -> TestOutcome {
+        let (mut pairs, mut alive) = (Pairs::new(), Survivors::new());
         let listed = out.len();
-        for start in (0..first.len()).step_by(BLOCK) {
-            let end = first.len().min(start + BLOCK);
+        for start in (0..first.len()).step_by(PAIRS_PER_BLOCK) {
+            let end = first.len().min(start + PAIRS_PER_BLOCK);
             pairs.fill(&first[start..end], &second[start..end]);
             let later = first.len().min(start + PREFETCH_AHEAD);
             let later = [&first[later..], &second[later..]];
             self.by_first::<L, K, FEW>(l, &pairs, later, &mut alive);
             self.by_rest::<L, K, FEW>(l, &alive, out);
         }
-        Tested {
+        TestOutcome {
             tests: first.len() as u64,
             hits: (out.len() - listed) as u64,
         }
@@ -152,7 +158,7 @@ impl OrDopColumns<'_> {
         l: L,
         pairs: &Pairs,
         later: [&[u32]; 2],
-        alive: &mut Alive,
+        alive: &mut Survivors,
     ) {
         alive.pairs.len = 0;
         let mut start = 0;
@@ -181,7 +187,7 @@ impl OrDopColumns<'_> {
     fn by_rest<L: Lanes, const K: usize, const FEW: bool>(
         &self,
         l: L,
-        alive: &Alive,
+        alive: &Survivors,
         out: &mut PairList,
     ) {
         let pairs = &alive.pairs;
@@ -239,8 +245,8 @@ impl OrDopColumns<'_> {
 /// A block of pairs, padded by a vector of the first one.
 struct Pairs {
     len: usize,
-    first: [u32; BLOCK + MAX_WIDTH],
-    second: [u32; BLOCK + MAX_WIDTH],
+    first: [u32; PAIRS_PER_BLOCK + MAX_WIDTH],
+    second: [u32; PAIRS_PER_BLOCK + MAX_WIDTH],
 }
 
 impl Pairs {
@@ -248,8 +254,8 @@ impl Pairs {
     fn new() -> Self {
         Self {
             len: 0,
-            first: [0; BLOCK + MAX_WIDTH],
-            second: [0; BLOCK + MAX_WIDTH],
+            first: [0; PAIRS_PER_BLOCK + MAX_WIDTH],
+            second: [0; PAIRS_PER_BLOCK + MAX_WIDTH],
         }
     }
 
@@ -271,17 +277,17 @@ impl Pairs {
 }
 
 /// Pairs of a block that the first bodies' normals don't separate, with the frames already found.
-struct Alive {
+struct Survivors {
     pairs: Pairs,
-    frames: [[f32; BLOCK + MAX_WIDTH]; FRAMES],
+    frames: [[f32; PAIRS_PER_BLOCK + MAX_WIDTH]; FRAMES],
 }
 
-impl Alive {
+impl Survivors {
     #[inline(always)]
     fn new() -> Self {
         Self {
             pairs: Pairs::new(),
-            frames: [[0.0; BLOCK + MAX_WIDTH]; FRAMES],
+            frames: [[0.0; PAIRS_PER_BLOCK + MAX_WIDTH]; FRAMES],
         }
     }
 

@@ -40,6 +40,6 @@ pub mod slabs;
 pub mod support;
 pub mod table;
 
-pub use kernel::{OrDopColumns, Tested};
+pub use kernel::{OrDopColumns, TestOutcome};
 pub use posed::PosedOrDops;
 pub use table::SlabTables;

@@ -7,7 +7,7 @@ use crate::bodies::Places;
 use crate::settings::Overlap;
 use crate::simd::Tier;
 use crate::threads::Threads;
-use crate::update::{Frames, OrDopRows, Posed, RowsByNumber, ShapeFrame};
+use crate::update::{OrDopRows, RowsByNumber, ShapeFrame, ShapeFrames, UpdateInputs};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
 /// Rows and tables of bodies in the order of their columns, so that pairs of rows are pairs of
@@ -27,13 +27,13 @@ impl PosedOrDops {
         tier: Tier,
     ) -> Self {
         let directions = shapes.clone().next().map(|(_, ordop)| ordop.directions);
-        let frames: Frames = shapes
+        let frames: ShapeFrames = shapes
             .clone()
             .map(|(shape, ordop)| ShapeFrame::new(shape, &ordop.basis))
             .collect();
         let places = Places::as_given(bodies);
         let mut rows = OrDopRows::new(places.len());
-        let posed = Posed {
+        let posed = UpdateInputs {
             frames: &frames,
             bodies,
             places: &places,

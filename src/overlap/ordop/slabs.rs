@@ -20,9 +20,9 @@ pub struct Slabs<L: Lanes> {
 
 /// Which coordinates of a direction are negative, lane by lane.
 #[derive(Clone, Copy)]
-pub struct Signs<L: Lanes>([L::M; 3]);
+pub struct DirectionSigns<L: Lanes>([L::M; 3]);
 
-impl<L: Lanes> Signs<L> {
+impl<L: Lanes> DirectionSigns<L> {
     /// Of e. A zero's sign counts as it stands.
     #[inline(always)]
     pub fn of(l: L, e: [L::F; 3]) -> Self {
@@ -95,7 +95,7 @@ impl<L: Lanes> Slabs<L> {
 
     /// The ends that the axes face.
     #[inline(always)]
-    pub fn axes(&self, l: L, Signs([x, y, z]): Signs<L>) -> [L::F; 3] {
+    pub fn axes(&self, l: L, DirectionSigns([x, y, z]): DirectionSigns<L>) -> [L::F; 3] {
         [
             pick(l, x, self.ends[0]),
             pick(l, y, self.ends[1]),
@@ -105,7 +105,7 @@ impl<L: Lanes> Slabs<L> {
 
     /// The ends that the face diagonals xy, xz, yz face.
     #[inline(always)]
-    pub fn pairs(&self, l: L, Signs([x, y, z]): Signs<L>) -> [L::F; 3] {
+    pub fn pairs(&self, l: L, DirectionSigns([x, y, z]): DirectionSigns<L>) -> [L::F; 3] {
         [
             self.pair(l, 3, x, y),
             self.pair(l, 5, x, z),
@@ -129,7 +129,7 @@ impl<L: Lanes> Slabs<L> {
 
     /// The end that the cube diagonal faces, then those of its neighbours bent over at x, y, z.
     #[inline(always)]
-    pub fn cube(&self, l: L, Signs([x, y, z]): Signs<L>) -> (L::F, [L::F; 3]) {
+    pub fn cube(&self, l: L, DirectionSigns([x, y, z]): DirectionSigns<L>) -> (L::F, [L::F; 3]) {
         if L::WIDTH == 1 {
             let (x, y, z) = (bit(l, x), bit(l, y), bit(l, z));
             let facing = |x: usize, y: usize, z: usize| self.ends[9 + (x ^ z) + 2 * (y ^ z)][z];

@@ -11,7 +11,7 @@ use sdop::settings::Strategy;
 use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::measure::conditions::Conditions;
 pub use sdop_bench::reproduce::units::NAME;
-use sdop_bench::reproduce::units::{Experiments, Settings};
+use sdop_bench::reproduce::units::{ExperimentSettings, Experiments};
 use sdop_bench::reproduce::{Plan, Results};
 use sdop_bench::sweep::{Merged, Sweep as _};
 
@@ -118,7 +118,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 /// # Errors
 /// Results of another command, a CPU that lacks the tier, files that can't be written.
 pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
-    let settings: Settings = merged.header.settings().into_diagnostic()?;
+    let settings: ExperimentSettings = merged.header.settings().into_diagnostic()?;
     let mut results = Results::of_header(&merged.header)?;
     for result in merged.done.values() {
         results.take(result)?;

@@ -10,7 +10,7 @@ use sdop_bench::cost::table::{self, Cost, PriceRow};
 use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::measure::machine::Machine;
 use sdop_bench::measure::turns::Regime;
-use sdop_bench::reproduce::check::{Claim, Verdict};
+use sdop_bench::reproduce::check::{PaperClaim, Verdict};
 use sdop_bench::reproduce::closed_form::{probability, relative_reach};
 use sdop_bench::reproduce::rates::{self, Rate};
 use sdop_bench::reproduce::readings::{self, Cell};
@@ -42,8 +42,8 @@ pub struct Tables {
     /// Cold frames.
     pub cold_costs: Vec<Cost>,
     pub survival: Vec<SurvivalRow>,
-    pub claims: Vec<Claim>,
-    pub study: Vec<Claim>,
+    pub claims: Vec<PaperClaim>,
+    pub study: Vec<PaperClaim>,
     /// What the paper doesn't state, swept; none of a quick look.
     pub interpretations: Vec<Interpretation>,
     #[serde(skip)]

@@ -7,7 +7,7 @@ use rand::{Rng, RngExt};
 use super::Drawn;
 use crate::case::Frame;
 use crate::ours::contact::Kind;
-use crate::ours::draw::{ContactSpec, Turn, probe};
+use crate::ours::draw::{ContactSpec, TurnKind, probe};
 use crate::ours::forms::{self, Form, FormError};
 use sdop::volume::{Axes, DirectionSet};
 
@@ -51,7 +51,7 @@ pub fn volumes(number: u32) -> (DirectionSet, Axes) {
 /// A dynamic probe among static partners, each in contact with it.
 pub fn around_a_probe(
     kind: Kind,
-    turn: Turn,
+    turn: TurnKind,
     origin: Option<[f64; 2]>,
     number: u32,
     partners: usize,

@@ -17,7 +17,7 @@ use rand_chacha::ChaCha8Rng;
 use super::case::{Case, Frame, matches};
 use super::claim::Claim;
 use crate::ours::contact::Kind;
-use crate::ours::draw::Turn;
+use crate::ours::draw::TurnKind;
 use crate::ours::forms::FormError;
 use crate::ours::hard::{self, GroupError, Recipe};
 use sdop::mesh::MeshError;
@@ -54,7 +54,7 @@ pub(super) struct Drawn {
 #[derive(Clone, Copy, Debug)]
 enum Draw {
     /// Bodies in contact with a probe.
-    Contact(Kind, Turn),
+    Contact(Kind, TurnKind),
     /// The same far from the world's origin.
     Far(Kind),
     /// Cubes and octahedra on short binary coordinates.
@@ -92,18 +92,18 @@ macro_rules! groups {
 }
 
 groups! {
-    "touch/ball-ball", 12, Draw::Contact(Kind::Ball, Turn::Any), "a radius or a distance rounded down";
-    "touch/edge-edge", 12, Draw::Contact(Kind::Edges, Turn::Any), "an axis that is a rounded cross product";
-    "touch/face-corner", 12, Draw::Contact(Kind::FirstFace, Turn::Any), "a slab of the first body rounded inward";
-    "touch/corner-face", 12, Draw::Contact(Kind::SecondFace, Turn::Any), "a slab of the second body rounded inward";
-    "touch/oriented-box", 12, Draw::Contact(Kind::Box, Turn::Any), "an oriented box smaller than its mesh";
-    "touch/world-extent", 12, Draw::Contact(Kind::World, Turn::Any), "a world-aligned extent rounded inward";
-    "touch/vertex", 12, Draw::Contact(Kind::Mesh, Turn::Any), "vertices that only just meet";
-    "touch/triangle", 12, Draw::Contact(Kind::Triangle, Turn::Any), "a vertex that only just meets a triangle";
-    "touch/near-parallel", 8, Draw::Contact(Kind::Edges, Turn::NearlyParallel), "edges nearly parallel: a cross product of noise";
-    "touch/quarter-turns", 8, Draw::Contact(Kind::Mesh, Turn::Quarter), "coinciding faces and edges";
-    "pose/norms", 8, Draw::Contact(Kind::Mesh, Turn::Norm), "a quaternion taken for a unit one";
-    "pose/signs", 8, Draw::Contact(Kind::Mesh, Turn::Sign), "q and -q told apart, negative zeros";
+    "touch/ball-ball", 12, Draw::Contact(Kind::Ball, TurnKind::Any), "a radius or a distance rounded down";
+    "touch/edge-edge", 12, Draw::Contact(Kind::Edges, TurnKind::Any), "an axis that is a rounded cross product";
+    "touch/face-corner", 12, Draw::Contact(Kind::FirstFace, TurnKind::Any), "a slab of the first body rounded inward";
+    "touch/corner-face", 12, Draw::Contact(Kind::SecondFace, TurnKind::Any), "a slab of the second body rounded inward";
+    "touch/oriented-box", 12, Draw::Contact(Kind::Box, TurnKind::Any), "an oriented box smaller than its mesh";
+    "touch/world-extent", 12, Draw::Contact(Kind::World, TurnKind::Any), "a world-aligned extent rounded inward";
+    "touch/vertex", 12, Draw::Contact(Kind::Mesh, TurnKind::Any), "vertices that only just meet";
+    "touch/triangle", 12, Draw::Contact(Kind::Triangle, TurnKind::Any), "a vertex that only just meets a triangle";
+    "touch/near-parallel", 8, Draw::Contact(Kind::Edges, TurnKind::NearlyParallel), "edges nearly parallel: a cross product of noise";
+    "touch/quarter-turns", 8, Draw::Contact(Kind::Mesh, TurnKind::Quarter), "coinciding faces and edges";
+    "pose/norms", 8, Draw::Contact(Kind::Mesh, TurnKind::Norm), "a quaternion taken for a unit one";
+    "pose/signs", 8, Draw::Contact(Kind::Mesh, TurnKind::Sign), "q and -q told apart, negative zeros";
     "pose/far", 12, Draw::Far(Kind::Mesh), "differences of large world coordinates";
     "exact/face-to-face", 8, Draw::Exact(exact::Touch::Faces), "touching taken for apart: < in place of <=";
     "exact/edge-to-edge", 8, Draw::Exact(exact::Touch::Edges), "touching taken for apart: < in place of <=";
@@ -232,9 +232,14 @@ impl Group {
             Draw::Contact(kind, turn) => {
                 contacts::around_a_probe(kind, turn, None, number, 1, &mut rng)?
             }
-            Draw::Far(kind) => {
-                contacts::around_a_probe(kind, Turn::Any, Some([8.0, 20.0]), number, 1, &mut rng)?
-            }
+            Draw::Far(kind) => contacts::around_a_probe(
+                kind,
+                TurnKind::Any,
+                Some([8.0, 20.0]),
+                number,
+                1,
+                &mut rng,
+            )?,
             Draw::Exact(touch) => exact::touching(touch, number, 1, &mut rng)?,
             Draw::Boxes(kind) => boxes::boxes(kind, 2, &mut rng)?,
             Draw::CellBorder | Draw::Crowd(_) | Draw::Hard(_) => return Ok(None),
@@ -265,7 +270,7 @@ impl Group {
             }
             Draw::Far(kind) => Ok(contacts::around_a_probe(
                 kind,
-                Turn::Any,
+                TurnKind::Any,
                 Some([8.0, 20.0]),
                 number,
                 12,

@@ -9,7 +9,7 @@
 //! guided.
 
 use sdop::bodies::Bodies;
-use sdop::broad_phase::{Bounds, Cells, Layout};
+use sdop::broad_phase::{Bounds, Cells, TableLayout};
 use sdop::culler::{CullError, Culler};
 use sdop::mesh::TriangleMesh;
 use sdop::rounding::{sphere::inflate_radius, widen};
@@ -146,7 +146,7 @@ impl Borders {
 
 /// What lies on a border along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum On {
+enum BorderItem {
     /// Nothing: all centres have one coordinate.
     Nothing,
     /// The farthest centre.
@@ -177,7 +177,7 @@ struct Plan {
     /// The level's widest ball, as inflated.
     widest: f32,
     bodies: usize,
-    layout: Layout,
+    layout: TableLayout,
 }
 
 impl Plan {
@@ -252,7 +252,7 @@ impl Draw<'_> {
             radii,
             widest: inflate_radius(if joint { radius.max(other) } else { radius }),
             bodies: (CORNERS + fill) as usize,
-            layout: self.pick(&[Layout::Box, Layout::Box, Layout::Wrapped]),
+            layout: self.pick(&[TableLayout::Box, TableLayout::Box, TableLayout::Wrapped]),
         };
         let (axes, size, divides) = self.axes(&plan);
         let mut scene = Borders {
@@ -274,21 +274,21 @@ impl Draw<'_> {
     /// that size.
     fn axes(&mut self, plan: &Plan) -> ([Axis; 3], f64, bool) {
         let least = plan.cells(&[Axis::default(); 3]).size();
-        let on: [On; 3] = std::array::from_fn(|_| {
+        let on: [BorderItem; 3] = std::array::from_fn(|_| {
             self.pick(&[
-                On::Nothing,
-                On::Nothing,
-                On::Extent,
-                On::Extent,
-                On::Extent,
-                On::Centre,
-                On::Below,
-                On::Above,
+                BorderItem::Nothing,
+                BorderItem::Nothing,
+                BorderItem::Extent,
+                BorderItem::Extent,
+                BorderItem::Extent,
+                BorderItem::Centre,
+                BorderItem::Below,
+                BorderItem::Above,
             ])
         });
         let scale = self.pick(&[0, 0, 0, 1, 1, 2]);
         let cells: [f64; 3] = std::array::from_fn(|k| match (on[k], scale) {
-            (On::Nothing, _) => 0.0,
+            (BorderItem::Nothing, _) => 0.0,
             (_, 0) => f64::from(self.below(6)),
             (_, 1) => f64::from(self.below(90)),
             // Far clusters, within the contract.
@@ -312,34 +312,34 @@ impl Draw<'_> {
         (axes, size, divides)
     }
 
-    fn axis(&mut self, plan: &Plan, on: On, number: f64, size: f64) -> Axis {
+    fn axis(&mut self, plan: &Plan, on: BorderItem, number: f64, size: f64) -> Axis {
         let border = (number + 0.5) * size;
         let border = self.nudge(border);
         let beyond = self.pick(&[0.0, 0.0, 1.0, 2.0]) * self.unit() * size;
         let (lo, x) = match on {
-            On::Nothing => return Axis::default(),
-            On::Extent | On::Centre => self.apart(border),
-            On::Below => self.apart(border + plan.reach()),
-            On::Above => self.apart(border - plan.reach()),
+            BorderItem::Nothing => return Axis::default(),
+            BorderItem::Extent | BorderItem::Centre => self.apart(border),
+            BorderItem::Below => self.apart(border + plan.reach()),
+            BorderItem::Above => self.apart(border - plan.reach()),
         };
         let touching = match on {
-            On::Below => f64::from(x) - plan.touch(),
-            On::Above => f64::from(x) + plan.touch(),
+            BorderItem::Below => f64::from(x) - plan.touch(),
+            BorderItem::Above => f64::from(x) + plan.touch(),
             _ => f64::from(x),
         };
         let mut target = touching as f32;
-        if matches!(on, On::Below | On::Above) {
+        if matches!(on, BorderItem::Below | BorderItem::Above) {
             target = self.nudge_f32(target);
         }
         let hi = match on {
-            On::Extent => x,
+            BorderItem::Extent => x,
             _ => (f64::from(target) + beyond) as f32,
         };
         Axis {
             lo,
             hi,
             target,
-            seeker: matches!(on, On::Below | On::Above).then_some(x),
+            seeker: matches!(on, BorderItem::Below | BorderItem::Above).then_some(x),
         }
     }
 

@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 use sdop_reference as reference;
 
 use super::judged::Shapes;
-use reference::overlap::ordop::Turned;
+use reference::overlap::ordop::TurnedPolytope;
 use sdop::rounding::U;
 
 /// What touches.
@@ -188,12 +188,12 @@ impl<'a> Side<'a> {
         self.matrix * in_f64(&self.built.ball.centre)
     }
 
-    fn turned(&self) -> Turned {
-        Turned::new(&self.judged.polytope, &self.pose)
+    fn turned(&self) -> TurnedPolytope {
+        TurnedPolytope::new(&self.judged.polytope, &self.pose)
     }
 
-    fn turned_box(&self) -> Turned {
-        Turned::new(&self.judged.obb, &self.pose)
+    fn turned_box(&self) -> TurnedPolytope {
+        TurnedPolytope::new(&self.judged.obb, &self.pose)
     }
 
     fn vertices(&self) -> Vec<[f64; 3]> {

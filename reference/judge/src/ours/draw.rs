@@ -11,7 +11,7 @@ use sdop::rounding::pose;
 /// How the second body's orientation relates to the first's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Turn {
+pub enum TurnKind {
     /// Both any, norms from 0.1 to 1.
     #[default]
     Any,
@@ -49,7 +49,7 @@ pub fn direction(rng: &mut impl Rng) -> [f64; 3] {
     [x, y, z].map(f64::from)
 }
 
-impl Turn {
+impl TurnKind {
     /// The first body's orientation.
     pub fn first(self, rng: &mut impl Rng) -> [f32; 4] {
         match self {
@@ -116,7 +116,7 @@ pub struct ContactSpec {
     /// What may touch.
     pub kinds: Vec<Kind>,
     /// How orientations relate.
-    pub turn: Turn,
+    pub turn: TurnKind,
     /// The largest gap or overlap, in u = 2⁻²⁴ of the bodies' reach; 0 is as close as rounding
     /// allows.
     pub gap: f64,
@@ -132,7 +132,7 @@ impl Default for ContactSpec {
     fn default() -> Self {
         Self {
             kinds: Kind::ALL[..8].to_vec(),
-            turn: Turn::Any,
+            turn: TurnKind::Any,
             gap: 4.0,
             origin: None,
             span: Vec::new(),

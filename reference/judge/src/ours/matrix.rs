@@ -106,8 +106,8 @@ impl Matrix {
         &self,
         rotation: &Rotation,
         name: impl Fn(&Cell) -> K,
-    ) -> Vec<(K, Filled)> {
-        let mut folded: Vec<(K, Filled)> = Vec::new();
+    ) -> Vec<(K, MatrixPart)> {
+        let mut folded: Vec<(K, MatrixPart)> = Vec::new();
         for cell in Cell::all(rotation) {
             let (name, lists) = (name(&cell), self.lists(&cell));
             let known = folded.iter_mut().find(|(known, _)| *known == name);
@@ -116,7 +116,7 @@ impl Matrix {
                 filled.filled += u64::from(lists > 0);
                 filled.fewest = filled.fewest.min(lists);
             } else {
-                let filled = Filled {
+                let filled = MatrixPart {
                     cells: 1,
                     filled: u64::from(lists > 0),
                     fewest: lists,
@@ -130,7 +130,7 @@ impl Matrix {
 
 /// A part of the matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct Filled {
+pub struct MatrixPart {
     /// Cells that can be filled.
     pub cells: u64,
     /// Cells that are.

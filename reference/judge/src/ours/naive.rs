@@ -52,13 +52,13 @@ impl Misses {
         bodies: &Bodies,
         answers: &Answers,
     ) -> Result<Self, InvalidInput> {
-        let posed: Vec<Posed> = (0..bodies.len())
+        let posed: Vec<PosedVolumes> = (0..bodies.len())
             .map(|i| {
                 let pose = (bodies.rotation[i], bodies.translation[i]);
-                Posed::new(shapes, bodies.shape[i] as usize, pose)
+                PosedVolumes::new(shapes, bodies.shape[i] as usize, pose)
             })
             .collect();
-        let lost = |predicate: Predicate, test: fn(&Posed, &Posed) -> bool| {
+        let lost = |predicate: Predicate, test: fn(&PosedVolumes, &PosedVolumes) -> bool| {
             let asked = answers.pairs.iter().zip(answers.of(predicate));
             let denied = asked.filter(|&(&[i, j], &overlap)| {
                 overlap && !test(&posed[i as usize], &posed[j as usize])
@@ -94,7 +94,7 @@ fn contained(shapes: &Shapes, bodies: &Bodies, answers: &Answers) -> Result<u64,
 }
 
 /// World-space volumes, everything rounded to nearest.
-struct Posed {
+struct PosedVolumes {
     centre: Vector,
     radius: f32,
     lo: Vector,
@@ -109,7 +109,7 @@ fn dot(a: Vector, b: Vector) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-impl Posed {
+impl PosedVolumes {
     fn new(shapes: &Shapes, shape: usize, (q, t): ([f32; 4], Vector)) -> Self {
         let (shape, polytope) = (&shapes.built[shape], &shapes.judged[shape].polytope);
         let length = q.iter().map(|x| x * x).sum::<f32>().sqrt();
@@ -145,22 +145,22 @@ impl Posed {
     }
 }
 
-fn spheres(a: &Posed, b: &Posed) -> bool {
+fn spheres(a: &PosedVolumes, b: &PosedVolumes) -> bool {
     let d = [0, 1, 2].map(|i| b.centre[i] - a.centre[i]);
     let reach = a.radius + b.radius;
     dot(d, d) <= reach * reach
 }
 
-fn boxes(a: &Posed, b: &Posed) -> bool {
+fn boxes(a: &PosedVolumes, b: &PosedVolumes) -> bool {
     (0..3).all(|i| a.lo[i] <= b.hi[i] && b.lo[i] <= a.hi[i])
 }
 
 /// Each one's slabs against the other's corners.
-fn ordops(a: &Posed, b: &Posed) -> bool {
+fn ordops(a: &PosedVolumes, b: &PosedVolumes) -> bool {
     slabs_meet(a, b) && slabs_meet(b, a)
 }
 
-fn slabs_meet(a: &Posed, b: &Posed) -> bool {
+fn slabs_meet(a: &PosedVolumes, b: &PosedVolumes) -> bool {
     a.slabs.iter().all(|&(normal, lo, hi)| {
         let along = b.corners.iter().map(|&v| dot(normal, v));
         let (min, max) = along.fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), x| {

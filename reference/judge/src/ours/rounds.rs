@@ -179,7 +179,7 @@ impl Run<'_> {
             return Ok(());
         };
         let row = settings(row.strategy, row, first.len());
-        let mut expected = Expected::new(self, &row);
+        let mut expected = ExpectedLists::new(self, &row);
         for (finder, &pairs) in Finder::ALL.iter().enumerate() {
             let mode = modes[(n * Finder::ALL.len() + finder) % modes.len()];
             let way = CullSettings {
@@ -196,7 +196,7 @@ impl Run<'_> {
         &self,
         way: &CullSettings,
         mode: Mode,
-        expected: &mut Expected<'_>,
+        expected: &mut ExpectedLists<'_>,
         ledger: &mut Ledger,
     ) -> Result<(), RoundError> {
         let mut culler = culler(&self.shapes.built, &self.frames[0], way, mode)?;
@@ -231,7 +231,7 @@ impl Run<'_> {
 }
 
 /// What the lists of one strategy and overlap test are held against, whichever finder and mode.
-struct Expected<'a> {
+struct ExpectedLists<'a> {
     run: &'a Run<'a>,
     row: &'a CullSettings,
     /// What all-pairs finds in the plainest mode, a list a frame, by tier: flush-to-zero may decide
@@ -241,7 +241,7 @@ struct Expected<'a> {
     explained: BTreeMap<(usize, [u32; 2]), bool>,
 }
 
-impl<'a> Expected<'a> {
+impl<'a> ExpectedLists<'a> {
     fn new(run: &'a Run<'a>, row: &'a CullSettings) -> Self {
         Self {
             run,
@@ -337,7 +337,7 @@ pub fn boxes(seed: u64, rotation: &Rotation) -> Result<Ledger, RoundError> {
 }
 
 /// Partners of a near round's probe.
-pub const PARTNERS: usize = 1024;
+pub const PROBE_PARTNERS: usize = 1024;
 
 /// Bodies of a random round.
 pub const CROWD: usize = 150;
@@ -359,7 +359,7 @@ pub fn round(
     let frame = match source {
         Source::Near => {
             let shape = seed as usize % shapes.built.len();
-            probe(&shapes, &contacts(seed), shape, PARTNERS, &mut rng)
+            probe(&shapes, &contacts(seed), shape, PROBE_PARTNERS, &mut rng)
         }
         // About a tenth of the pairs' spheres overlap.
         Source::Random => crowd(&shapes, CROWD, 6.5, &mut rng),

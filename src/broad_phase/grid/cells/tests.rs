@@ -10,7 +10,7 @@ fn rows_of_a_wrapped_table_lie_apart() {
         widest: 1.0,
     };
     for bodies in (0..=28).map(|e| 1usize << e) {
-        let cells = Cells::fit(&bounds, bodies, Layout::Wrapped);
+        let cells = Cells::fit(&bounds, bodies, TableLayout::Wrapped);
         let (table, most) = (cells.table_len() as u32, WRAPPED_SPAN as i32 - 1);
         for y in -most..=most {
             for z in -most..=most {
@@ -44,7 +44,7 @@ fn bounds_beyond_the_contract_get_some_cells() {
             hi: [ends[hi], ends[hi], 2.0],
             widest: ends[widest].max(0.0),
         };
-        for layout in [Layout::Box, Layout::Wrapped] {
+        for layout in [TableLayout::Box, TableLayout::Wrapped] {
             let cells = Cells::fit(&bounds, 10, layout);
             assert!(cells.count().iter().all(|&n| n > 0), "{bounds:?}");
             assert!(cells.table_len() < 2000, "{bounds:?}");
@@ -59,7 +59,7 @@ fn the_farthest_centre_falls_in_the_last_cell() {
             widest: radius,
             ..Bounds::EMPTY
         };
-        let size = Cells::fit(&widest, 1000, Layout::Box).size();
+        let size = Cells::fit(&widest, 1000, TableLayout::Box).size();
         let far = ((f64::from(n) + 0.5) * size) as f32;
         for lo in [0.0, (f64::from(far) - (f64::from(n) + 0.5) * size) as f32] {
             let bounds = Bounds {
@@ -67,13 +67,13 @@ fn the_farthest_centre_falls_in_the_last_cell() {
                 hi: [far, lo, lo],
                 widest: radius,
             };
-            let cells = Cells::fit(&bounds, 1000, Layout::Box);
+            let cells = Cells::fit(&bounds, 1000, TableLayout::Box);
             let mut found = [0; 2];
             let balls = [[lo, lo, lo, radius], [far, lo, lo, radius]];
             let (tier, to) = (crate::simd::Tier::SCALAR, &mut found);
             crate::simd::dispatch(
                 tier,
-                super::super::level::Assign {
+                super::super::level::AssignCells {
                     cells: &cells,
                     balls: &balls,
                     to,
@@ -99,8 +99,8 @@ fn cells_of_a_box_are_as_small_as_its_bodies_allow() {
             for widest in [0.01, 0.5, 3.0, 1000.0] {
                 let lo = [-7.0, 3.0, 100.0];
                 let hi = [0, 1, 2].map(|i| lo[i] + sides[i]);
-                let cells = Cells::fit(&Bounds { lo, hi, widest }, bodies, Layout::Box);
-                let most = CELLS_PER_BODY * bodies as f64 + FEW_CELLS;
+                let cells = Cells::fit(&Bounds { lo, hi, widest }, bodies, TableLayout::Box);
+                let most = CELLS_PER_BODY * bodies as f64 + SPARE_CELLS;
                 let needed = 2.0 * f64::from(widen(widest)) * (1.0 + 1.0 / 65536.0);
                 let in_box = |size: f64| -> f64 {
                     let ends = (0..3).map(|i| f64::from(hi[i]) - f64::from(lo[i]));
@@ -126,7 +126,7 @@ fn cells(count: [u8; 3]) -> Cells {
         hi: count.map(|n| 2.0 * f32::from(n) - 2.0),
         widest: 1.0,
     };
-    let cells = Cells::fit(&bounds, 1000, Layout::Box);
+    let cells = Cells::fit(&bounds, 1000, TableLayout::Box);
     assert_eq!(cells.count(), count.map(u32::from));
     cells
 }
@@ -166,6 +166,6 @@ fn cells_far_from_the_origin_are_as_small_as_others() {
         hi: [lo + 4096.0; 3],
         widest: 1.0,
     };
-    let size = Cells::fit(&bounds, 1000, Layout::Wrapped).size();
+    let size = Cells::fit(&bounds, 1000, TableLayout::Wrapped).size();
     assert!((2.0..2.001).contains(&size), "{size}");
 }

@@ -5,20 +5,20 @@ impl Policy {
     pub(in super::super) fn of_typical(typical: f64) -> Self {
         Self {
             radii: Radii::Typical,
-            sizes: Sizes::new(typical, typical),
+            sizes: SizeSummary::new(typical, typical),
             ..Self::default()
         }
     }
 }
 
 /// A list of a million bodies that ended.
-fn list(pairs: usize, candidates: u64, [own, typical]: [f64; 2]) -> Ended {
-    Ended {
+fn list(pairs: usize, candidates: u64, [own, typical]: [f64; 2]) -> EndedList {
+    EndedList {
         pairs,
         candidates,
         bodies: 1_000_000,
-        motion: Motion { own, typical },
-        sizes: Sizes::new(2.0, 2.0),
+        motion: LargestDrift { own, typical },
+        sizes: SizeSummary::new(2.0, 2.0),
     }
 }
 
@@ -92,7 +92,7 @@ fn a_skin_is_a_share_or_a_length_and_brings_its_cube_of_pairs() {
     let of = |radii, skin| Policy {
         radii,
         skin,
-        sizes: Sizes::new(3.0, 3.0),
+        sizes: SizeSummary::new(3.0, 3.0),
         ..Policy::default()
     };
     assert_eq!(of(Radii::Own, 1).skin(), Skin::share(0.125));
@@ -125,7 +125,7 @@ fn one_that_jumps_tells_nothing_of_the_others() {
             ..Policy::default()
         };
         let [own, typical] = drifts;
-        assert_eq!(policy.speeds(Motion { own, typical }), speeds);
+        assert_eq!(policy.speeds(LargestDrift { own, typical }), speeds);
     }
 }
 
@@ -192,17 +192,17 @@ fn the_next_skin_is_the_cheapest_to_the_pair() {
             let mut policy = Policy {
                 radii,
                 skin,
-                sizes: Sizes::new(1.0, 1.0),
+                sizes: SizeSummary::new(1.0, 1.0),
                 is_by_boxes: false,
                 served,
                 wait: 0,
-                pause: PAUSE,
+                pause: FIRST_PAUSE,
             };
             let pairs = pairs + more;
             policy.ended(&list(pairs, candidates * pairs as u64, drifts));
             let found = policy.next().map(|_| (policy.radii, policy.skin));
             assert_eq!(found, next, "{at:?}, {served}: {pairs}");
-            assert_eq!(policy.sizes, Sizes::new(2.0, 2.0));
+            assert_eq!(policy.sizes, SizeSummary::new(2.0, 2.0));
         }
     }
 }
@@ -210,7 +210,8 @@ fn the_next_skin_is_the_cheapest_to_the_pair() {
 /// Sizes of boxes that are longer than wide, of cubes beside them, and where no length suits all.
 #[test]
 fn lists_of_long_boxes_have_a_length_for_a_skin_and_wider_ones() {
-    let [long, cubes, giant] = [(3.0, 24.0), (2.0, 2.0), (0.0, 5.0)].map(|(a, b)| Sizes::new(a, b));
+    let [long, cubes, giant] =
+        [(3.0, 24.0), (2.0, 2.0), (0.0, 5.0)].map(|(a, b)| SizeSummary::new(a, b));
     let mut policy = Policy::default();
     policy.turn_to(false, || unreachable!("they are balls as before"));
     policy.turn_to(true, || long);
@@ -223,7 +224,7 @@ fn lists_of_long_boxes_have_a_length_for_a_skin_and_wider_ones() {
     // Slow ones with many candidates, of which the longest sides would make more.
     (policy.served, policy.wait) = (2, 0);
     let slow = list(3_000_000, 200_000_000, [0.01, 0.26]);
-    policy.ended(&Ended {
+    policy.ended(&EndedList {
         sizes: long,
         ..slow
     });

@@ -9,9 +9,9 @@ use crate::rounding::cube::{Cube, SCALE};
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
 /// The cube about a box, as a ball.
-struct About(Aabb);
+struct CubeAbout(Aabb);
 
-impl Kernel for About {
+impl Kernel for CubeAbout {
     type Output = [f32; 4];
     fn run<L: Lanes>(self, l: L) -> [f32; 4] {
         let [min, max] = [self.0.min, self.0.max].map(|corner| corner.map(|end| l.splat(end)));
@@ -56,7 +56,7 @@ impl Needles {
     fn step(&mut self) {
         let Self { bodies, boxes, .. } = self;
         for (ball, &aabb) in bodies.balls.iter_mut().zip(&*boxes) {
-            *ball = dispatch(Tier::SCALAR, About(aabb));
+            *ball = dispatch(Tier::SCALAR, CubeAbout(aabb));
         }
         let all = boxes.as_slice();
         let are_long = self.are_long;

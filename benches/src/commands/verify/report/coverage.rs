@@ -3,7 +3,7 @@
 
 use sdop::settings::Strategy;
 use sdop_judge::ours::boxes::{BoxCell, BoxLedger};
-use sdop_judge::ours::matrix::{Cell, Filled, Matrix};
+use sdop_judge::ours::matrix::{Cell, Matrix, MatrixPart};
 use sdop_judge::ours::ways::Rotation;
 use serde::Serialize;
 
@@ -45,13 +45,15 @@ struct CoverageLine {
 struct Part {
     name: String,
     #[serde(flatten)]
-    filled: Filled,
+    filled: MatrixPart,
 }
 
 impl Coverage {
     pub fn of(matrix: &Matrix, boxes: &BoxLedger, rotation: &Rotation) -> Self {
         let all = matrix.fold(rotation, |_| ());
-        let all = all.first().map_or_else(Filled::default, |(_, all)| *all);
+        let all = all
+            .first()
+            .map_or_else(MatrixPart::default, |(_, all)| *all);
         let unrefined = Strategy::ALL
             .iter()
             .filter(|strategy| !strategy.scheme().has_overlap_test());
@@ -123,7 +125,7 @@ fn projection(rows: &[CoverageLine]) -> comfy_table::Table {
 }
 
 /// Rows and their parts in the order of their first cells.
-fn rows(folded: impl IntoIterator<Item = ((String, String), Filled)>) -> Vec<CoverageLine> {
+fn rows(folded: impl IntoIterator<Item = ((String, String), MatrixPart)>) -> Vec<CoverageLine> {
     let mut rows: Vec<CoverageLine> = Vec::new();
     for ((name, part), filled) in folded {
         let part = Part { name: part, filled };
@@ -157,10 +159,10 @@ fn threads(number: usize) -> String {
 }
 
 /// The line and column of a cell of given boxes, and what it holds.
-fn box_part(cell: &BoxCell, boxes: &BoxLedger) -> ((String, String), Filled) {
+fn box_part(cell: &BoxCell, boxes: &BoxLedger) -> ((String, String), MatrixPart) {
     let line = format!("{} {}", cell.tier, threads(cell.threads));
     let lists = boxes.lists(cell);
-    let filled = Filled {
+    let filled = MatrixPart {
         cells: 1,
         filled: u64::from(lists > 0),
         fewest: lists,

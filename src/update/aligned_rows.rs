@@ -6,19 +6,19 @@ use std::ops::{Deref, DerefMut};
 use crate::simd::ROW;
 
 /// Bytes of a cache line, as many as a row has.
-const LINE: usize = ROW * size_of::<f32>();
+const CACHE_LINE_BYTES: usize = ROW * size_of::<f32>();
 
 /// Rows, each on one cache line. Those of a clone may lie across two, which takes time and changes
 /// nothing.
 #[derive(Clone, Debug, Default)]
-pub struct Lines {
+pub struct AlignedRows {
     floats: Vec<f32>,
     /// Where the first row begins.
     first: usize,
     len: usize,
 }
 
-impl Lines {
+impl AlignedRows {
     /// Room for `len` rows: the first ones stay, new ones are zero.
     pub fn resize(&mut self, len: usize) {
         let needed = (len + 1) * ROW;
@@ -26,7 +26,7 @@ impl Lines {
             let mut floats = vec![0.0; needed];
             // At most a row less a float; the hint to the contrary that the function may give costs
             // alignment alone.
-            let first = floats.as_ptr().align_offset(LINE).min(ROW - 1);
+            let first = floats.as_ptr().align_offset(CACHE_LINE_BYTES).min(ROW - 1);
             floats[first..first + self.len * ROW].copy_from_slice(self.as_flattened());
             (self.floats, self.first) = (floats, first);
         } else if len > self.len {
@@ -37,7 +37,7 @@ impl Lines {
     }
 }
 
-impl Deref for Lines {
+impl Deref for AlignedRows {
     type Target = [[f32; ROW]];
     fn deref(&self) -> &Self::Target {
         self.floats[self.first..self.first + self.len * ROW]
@@ -46,7 +46,7 @@ impl Deref for Lines {
     }
 }
 
-impl DerefMut for Lines {
+impl DerefMut for AlignedRows {
     fn deref_mut(&mut self) -> &mut Self::Target {
         self.floats[self.first..self.first + self.len * ROW]
             .as_chunks_mut()
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn rows_lie_on_lines_and_stay_when_their_number_changes() {
-        let mut lines = Lines::default();
+        let mut lines = AlignedRows::default();
         assert!(lines.is_empty());
         for len in [3, 100, 7, 40, 1000] {
             let kept: Vec<_> = lines.iter().take(len).copied().collect();

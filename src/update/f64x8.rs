@@ -10,26 +10,26 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::rounding::pose::Real;
 
-/// Numbers in an [`Eight`].
-pub const EIGHT: usize = 8;
+/// Numbers in an [`F64x8`].
+pub const LANES: usize = 8;
 
 /// Eight f64.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub struct Eight(pub [f64; EIGHT]);
+pub struct F64x8(pub [f64; LANES]);
 
-impl Eight {
+impl F64x8 {
     /// `x` in every lane.
     #[inline(always)]
     pub fn splat(x: f64) -> Self {
-        Self([x; EIGHT])
+        Self([x; LANES])
     }
 
     /// Smaller lane by lane.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
-        let mut out = [0.0; EIGHT];
-        for lane in 0..EIGHT {
+        let mut out = [0.0; LANES];
+        for lane in 0..LANES {
             out[lane] = self.0[lane].min(other.0[lane]);
         }
         Self(out)
@@ -38,8 +38,8 @@ impl Eight {
     /// Larger lane by lane.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
-        let mut out = [0.0; EIGHT];
-        for lane in 0..EIGHT {
+        let mut out = [0.0; LANES];
+        for lane in 0..LANES {
             out[lane] = self.0[lane].max(other.0[lane]);
         }
         Self(out)
@@ -49,12 +49,12 @@ impl Eight {
 // Loops and not closures: a closure is compiled without the tier's features.
 macro_rules! lane_by_lane {
     ($($operator:ident, $name:ident, $sign:tt;)+) => {
-        $(impl $operator for Eight {
+        $(impl $operator for F64x8 {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                let mut out = [0.0; EIGHT];
-                for lane in 0..EIGHT {
+                let mut out = [0.0; LANES];
+                for lane in 0..LANES {
                     out[lane] = self.0[lane] $sign other.0[lane];
                 }
                 Self(out)
@@ -64,19 +64,19 @@ macro_rules! lane_by_lane {
 }
 lane_by_lane! { Add, add, +; Sub, sub, -; Mul, mul, *; Div, div, /; }
 
-impl Neg for Eight {
+impl Neg for F64x8 {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        let mut out = [0.0; EIGHT];
-        for lane in 0..EIGHT {
+        let mut out = [0.0; LANES];
+        for lane in 0..LANES {
             out[lane] = -self.0[lane];
         }
         Self(out)
     }
 }
 
-impl Real for Eight {
+impl Real for F64x8 {
     #[inline(always)]
     fn like(self, x: f64) -> Self {
         Self::splat(x)

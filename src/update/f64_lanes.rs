@@ -11,9 +11,9 @@ use crate::simd::Lanes;
 
 /// As many f64 as the tier has f32.
 #[derive(Clone, Copy)]
-pub struct Wide<L: Lanes>(pub L, pub L::D);
+pub struct F64Lanes<L: Lanes>(pub L, pub L::D);
 
-impl<L: Lanes> Wide<L> {
+impl<L: Lanes> F64Lanes<L> {
     /// The same numbers.
     #[inline(always)]
     pub fn of(l: L, numbers: L::F) -> Self {
@@ -29,7 +29,7 @@ impl<L: Lanes> Wide<L> {
 
 macro_rules! lane_by_lane {
     ($($operator:ident, $name:ident, $sign:tt;)+) => {
-        $(impl<L: Lanes> $operator for Wide<L> {
+        $(impl<L: Lanes> $operator for F64Lanes<L> {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
@@ -40,7 +40,7 @@ macro_rules! lane_by_lane {
 }
 lane_by_lane! { Add, add, +; Sub, sub, -; Mul, mul, *; Div, div, /; }
 
-impl<L: Lanes> Neg for Wide<L> {
+impl<L: Lanes> Neg for F64Lanes<L> {
     type Output = Self;
     /// −0 − x, which is −x for zeros too.
     #[inline(always)]
@@ -49,7 +49,7 @@ impl<L: Lanes> Neg for Wide<L> {
     }
 }
 
-impl<L: Lanes> Real for Wide<L> {
+impl<L: Lanes> Real for F64Lanes<L> {
     #[inline(always)]
     fn like(self, x: f64) -> Self {
         Self(self.0, self.0.splat_f64(x))

@@ -7,7 +7,7 @@ use sdop::bodies::Bodies;
 
 /// Bodies as columns of one length, by ascending number.
 #[derive(Debug, Default)]
-pub(super) struct Held {
+pub(super) struct BodyColumns {
     /// Each body's number in the scene.
     pub numbers: Vec<u32>,
     /// Whether this rank owns it; the others are ghosts.
@@ -19,7 +19,7 @@ pub(super) struct Held {
 
 /// One body on its way from rank to rank.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Record {
+pub(super) struct BodyMessage {
     pub number: u32,
     pub shape: u32,
     pub dynamic: bool,
@@ -30,17 +30,17 @@ pub(super) struct Record {
 }
 
 /// Number and shape, with a bit for `dynamic`; the pose; velocities.
-const POSE: usize = 28;
-const GHOST: usize = 8 + POSE;
-const MOVER: usize = GHOST + 24;
+const POSE_BYTES: usize = 28;
+const GHOST_BYTES: usize = 8 + POSE_BYTES;
+const MOVER_BYTES: usize = GHOST_BYTES + 24;
 
 /// Shapes are fewer than bodies, whose number leaves this bit free.
-const DYNAMIC: u32 = 1 << 31;
+const DYNAMIC_BIT: u32 = 1 << 31;
 
-impl Record {
+impl BodyMessage {
     /// Appends the body's bytes.
     pub fn write(&self, out: &mut Vec<u8>) {
-        let kind = self.shape | if self.dynamic { DYNAMIC } else { 0 };
+        let kind = self.shape | if self.dynamic { DYNAMIC_BIT } else { 0 };
         out.extend(self.number.to_le_bytes());
         out.extend(kind.to_le_bytes());
         write_pose(self.rotation, self.translation, out);
@@ -51,7 +51,7 @@ impl Record {
 
     /// The bodies of a message, all with velocities or all without.
     pub fn read_all(message: &[u8], movers: bool) -> impl Iterator<Item = Self> {
-        let size = if movers { MOVER } else { GHOST };
+        let size = if movers { MOVER_BYTES } else { GHOST_BYTES };
         message.chunks_exact(size).map(move |bytes| {
             let (head, rest) = bytes.split_at(8);
             let word = |at: usize| {
@@ -59,13 +59,13 @@ impl Record {
             };
             let (rotation, translation) = read_pose(rest);
             let velocities = movers.then(|| {
-                let [a, b, c, d, e, f] = read_numbers(&rest[POSE..]);
+                let [a, b, c, d, e, f] = read_numbers(&rest[POSE_BYTES..]);
                 [[a, b, c], [d, e, f]]
             });
             Self {
                 number: word(0),
-                shape: word(4) & !DYNAMIC,
-                dynamic: word(4) & DYNAMIC != 0,
+                shape: word(4) & !DYNAMIC_BIT,
+                dynamic: word(4) & DYNAMIC_BIT != 0,
                 rotation,
                 translation,
                 velocities,
@@ -82,7 +82,7 @@ pub(super) fn write_pose(rotation: [f32; 4], translation: [f32; 3], out: &mut Ve
 
 /// The poses of a message.
 pub(super) fn read_poses(message: &[u8]) -> impl Iterator<Item = ([f32; 4], [f32; 3])> {
-    message.chunks_exact(POSE).map(read_pose)
+    message.chunks_exact(POSE_BYTES).map(read_pose)
 }
 
 fn read_pose(bytes: &[u8]) -> ([f32; 4], [f32; 3]) {
@@ -99,7 +99,7 @@ fn read_numbers<const N: usize>(bytes: &[u8]) -> [f32; N] {
     std::array::from_fn(|i| f32::from_le_bytes(words[i]))
 }
 
-impl Held {
+impl BodyColumns {
     /// All of a scene's share, owned.
     pub fn new(first: usize, bodies: Bodies) -> Self {
         // A scene has fewer than 2³¹ bodies.
@@ -123,7 +123,7 @@ impl Held {
     }
 
     /// The body in a place, with velocities where it goes to another owner.
-    pub fn record(&self, place: usize, moves: bool) -> Record {
+    pub fn record(&self, place: usize, moves: bool) -> BodyMessage {
         let Bodies {
             shape,
             dynamic,
@@ -131,7 +131,7 @@ impl Held {
             translation,
         } = &self.bodies;
         let Velocities { linear, angular } = &self.velocities;
-        Record {
+        BodyMessage {
             number: self.numbers[place],
             shape: shape[place],
             dynamic: dynamic[place],
@@ -148,7 +148,7 @@ impl Held {
 
     /// Keeps the bodies for which `stays`, and adds others: with velocities as owned ones, without
     /// as ghosts.
-    pub fn change(&mut self, stays: impl Fn(usize) -> bool, mut incoming: Vec<Record>) {
+    pub fn change(&mut self, stays: impl Fn(usize) -> bool, mut incoming: Vec<BodyMessage>) {
         incoming.sort_unstable_by_key(|record| record.number);
         let old = std::mem::take(self);
         self.reserve(old.len() + incoming.len());
@@ -174,7 +174,7 @@ impl Held {
         self.velocities.angular.reserve(bodies);
     }
 
-    fn push(&mut self, record: Record) {
+    fn push(&mut self, record: BodyMessage) {
         self.numbers.push(record.number);
         self.owned.push(record.velocities.is_some());
         self.bodies.push(
@@ -193,9 +193,9 @@ impl Held {
 mod tests {
     use super::*;
 
-    fn record(number: u32, owned: bool) -> Record {
+    fn record(number: u32, owned: bool) -> BodyMessage {
         let x = number as f32;
-        Record {
+        BodyMessage {
             number,
             shape: number % 3,
             dynamic: number.is_multiple_of(2),
@@ -211,15 +211,18 @@ mod tests {
             let sent: Vec<_> = (0..5).map(|number| record(number, owned)).collect();
             let mut message = Vec::new();
             sent.iter().for_each(|record| record.write(&mut message));
-            assert_eq!(message.len(), 5 * if owned { MOVER } else { GHOST });
-            let received: Vec<_> = Record::read_all(&message, owned).collect();
+            assert_eq!(
+                message.len(),
+                5 * if owned { MOVER_BYTES } else { GHOST_BYTES }
+            );
+            let received: Vec<_> = BodyMessage::read_all(&message, owned).collect();
             assert_eq!(received, sent);
         }
     }
 
     #[test]
     fn a_change_keeps_the_order_of_numbers() {
-        let mut held = Held::default();
+        let mut held = BodyColumns::default();
         held.change(
             |_| true,
             vec![record(9, true), record(2, true), record(5, false)],
