@@ -1,9 +1,9 @@
 //! Files, read within a limit and written whole.
 //!
-//! What is written appears under its name only when all of it is there: it is written beside, and
-//! renamed. A crash, a full disk or a kill leaves the former file or none, and at worst a `.part`
-//! file next to it, which the next writer of that name removes. A `.part` file is locked as long as
-//! somebody writes it.
+//! What is written appears under its name only when all of it is there: it is written under a
+//! temporary name, and renamed. A crash, a full disk or a kill leaves the former file or none, and
+//! at worst a `.part` file next to it, which the next writer of that name removes. A `.part` file
+//! is locked as long as somebody writes it.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};

@@ -22,7 +22,7 @@ fn bytes<T>(column: &Vec<T>) -> usize {
 /// lack of memory.
 ///
 /// Kernels write a whole vector and then advance by the lanes they kept, so the columns always have
-/// [`MAX_WIDTH`] elements of room behind the last pair.
+/// [`MAX_WIDTH`] elements of room after the last pair.
 #[derive(Clone, Debug, Default)]
 pub struct PairList {
     first: Vec<u32>,
@@ -114,7 +114,7 @@ impl PairList {
         }
     }
 
-    /// Gives back the memory behind the last pair.
+    /// Gives back the memory after the last pair.
     pub fn shrink_to_fit(&mut self) {
         let size = if self.len == 0 {
             0
@@ -156,7 +156,7 @@ impl PairList {
         self.len = kept;
     }
 
-    /// Both columns behind the last pair, with room for `pairs` of them and a vector more.
+    /// Both columns after the last pair, with room for `pairs` of them and a vector more.
     #[inline(always)]
     pub(crate) fn room(&mut self, pairs: usize) -> (&mut [u32], &mut [u32]) {
         let needed = self.len + pairs + MAX_WIDTH;

@@ -235,7 +235,7 @@ impl Threads {
 
 /// Calls `work` for each item, on the calling thread and on those of the pool.
 ///
-/// A worker of another pool that waits takes up that pool's next job on top of this one, and the
+/// A worker of another pool that waits starts that pool's next job on top of this one, and the
 /// next on top of that, until its stack ends. So a thread made for it waits in its place.
 fn distribute<T>(
     pool: &ThreadPool,

@@ -197,7 +197,7 @@ fn memory_of_a_crowd_is_counted_and_given_back() {
         assert!(crowded >= 8 * listed, "{crowded}: {settings:?}");
         culler.shrink_to_fit();
         let kept = culler.pair_bytes();
-        // A vector more behind each column.
+        // A vector more after each column.
         assert!(kept <= 8 * (listed + 2 * 16), "{kept}: {settings:?}");
     }
 }

@@ -21,7 +21,7 @@ use sdop::{
 
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
-/// A cube about its body's origin, and one beside it, whose ball's centre turns with the body.
+/// A cube about its body's origin, and one next to it, whose ball's centre turns with the body.
 fn shapes() -> Vec<Shape> {
     let cube = ProceduralShape::Box {
         x: 1.0,
@@ -68,7 +68,7 @@ fn cullers(bodies: &Bodies) -> Vec<Culler> {
         .collect()
 }
 
-/// What is wrong with a body, as an error tells it.
+/// What is wrong with a body, as an error states it.
 fn refused(result: Result<&sdop::PairList, CullError>) -> String {
     result.map(sdop::PairList::len).unwrap_err().to_string()
 }

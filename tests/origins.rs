@@ -1,5 +1,5 @@
 //! Poses refer to the mesh's own origin: what a user writes first, every example and Bullet's seam
-//! are judged in the coordinates of the file, by an L-shaped bracket that lies beside its origin.
+//! are judged in the coordinates of the file, by an L-shaped bracket that lies next to its origin.
 //! Rapier's seam is judged in its own package.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]

@@ -147,7 +147,7 @@ fn a_stream_of_shapes_leaves_nothing_behind() {
     }
 }
 
-/// Where each of so many bodies stands once the crowd has gone.
+/// Where each of so many bodies is once the crowd has gone.
 fn dispersed(body: usize) -> [f32; 3] {
     [body % 50, body / 50 % 50, body / 2500].map(|x| 1.5 * x as f32)
 }

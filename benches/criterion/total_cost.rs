@@ -1,6 +1,6 @@
 //! The paper's formula reproduced by seeded benches: Co, Cu, F and Cv of hits and of misses from
-//! calibration scenes, whole frames of another seed beside them, and at the end predicted, measured
-//! and residual of every strategy.
+//! calibration scenes, whole frames of another seed next to them, and at the end predicted,
+//! measured and residual of every strategy.
 //!
 //! An iteration is a pass, exactly as `sdop cost` makes it, with another seed each time; what
 //! criterion shows is the mean seconds of a frame. `cargo bench --bench total_cost` takes some

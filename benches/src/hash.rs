@@ -52,7 +52,7 @@ impl PairsHash {
 ///
 /// Each pair of each frame becomes two numbers of 64 bits, scrambled from frame, i and j; each is
 /// summed modulo 2⁶⁴ over all. Two runs whose digests differ report different pairs. Equal digests
-/// of different pairs are a chance in 2¹²⁸, but no secret: whoever wants to, finds some.
+/// of different pairs are a chance in 2¹²⁸, but no secret: anyone who wants to can find some.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PairsDigest(pub [u64; 2]);
 

@@ -121,8 +121,8 @@ mod started {
     }
 
     impl Ranks {
-        /// Starts MPI, once: a second call tells the same numbers. Its functions are for the thread
-        /// that starts it.
+        /// Starts MPI, once: a second call returns the same numbers. Its functions are for the
+        /// thread that starts it.
         #[must_use]
         pub fn start() -> Self {
             let mut universe = UNIVERSE.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,6 +1,6 @@
 //! Arrays of numpy as rows of numbers, and back.
 //!
-//! One rule for all columns of f32: an array of float32 whose rows lie one behind the other is read
+//! One rule for all columns of f32: an array of float32 whose rows lie one after the other is read
 //! where it is; any other array of numbers is copied; a number that float32 can't hold is refused,
 //! since the answer would be about another one.
 

@@ -2,7 +2,7 @@
 //! vectors.
 //!
 //! At 1.5 sphere partners per body a run holds one candidate in the mean. A vector for each run
-//! then leaves 15 of 16 lanes idle (90 cycles per body, measured); written one behind the other,
+//! then leaves 15 of 16 lanes idle (90 cycles per body, measured); written one after the other,
 //! the runs of sixteen bodies fill five vectors (19 cycles).
 
 use std::ops::Range;
@@ -37,7 +37,7 @@ pub struct Block<'a> {
 
 impl<'a> Block<'a> {
     /// The candidates `padded[..len]` of the slots from `first` on; a vector of whatever codes
-    /// stands behind them.
+    /// stands after them.
     #[inline(always)]
     pub(crate) fn new(first: usize, padded: &'a [u32], len: usize) -> Self {
         Self {
@@ -60,7 +60,7 @@ impl<'a> Block<'a> {
         self.codes
     }
 
-    /// The same and a vector of whatever codes behind them.
+    /// The same and a vector of whatever codes after them.
     #[inline(always)]
     pub fn padded_codes(&self) -> &'a [u32] {
         self.padded
@@ -90,7 +90,7 @@ impl<'a> Block<'a> {
     }
 }
 
-/// What a search writes a block on, and long runs beside it.
+/// What a search writes a block on, and long runs next to it.
 #[derive(Clone, Debug)]
 pub struct Page {
     first: usize,

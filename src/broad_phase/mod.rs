@@ -225,7 +225,7 @@ impl PairFinder {
         matches!(self, Self::Neighbours(finder) if finder.slots_are_places())
     }
 
-    /// The name of each slot's body, and a vector of names behind them.
+    /// The name of each slot's body, and a vector of names after them.
     #[must_use]
     pub fn names(&self) -> &[u32] {
         &self.own_slots().names

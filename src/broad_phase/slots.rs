@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 use super::bytes;
 use crate::simd::MAX_WIDTH;
 
-/// World balls (x, y, z, R) by place. Behind them stands a vector of finite entries, so that tests
+/// World balls (x, y, z, R) by place. After them comes a vector of finite entries, so that tests
 /// may read them where they are.
 #[derive(Clone, Debug)]
 pub struct Balls {

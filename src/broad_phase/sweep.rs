@@ -146,7 +146,7 @@ impl Sweep {
         }
     }
 
-    /// Where in a sorted range the balls begin behind the end of slot `i`.
+    /// Where in a sorted range the balls begin after the end of slot `i`.
     #[inline(always)]
     fn end<L: Lanes>(&self, l: L, i: usize, range: Range<usize>) -> usize {
         let hi = l.splat(self.hi[i]);

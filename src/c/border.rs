@@ -201,7 +201,7 @@ pub unsafe fn put<T>(out: *mut T, value: T, what: &str) -> Result<(), Refusal> {
 /// A column of so many entries.
 ///
 /// # Safety
-/// The pointer is null, or so many entries behind it may be read for as long as the call lasts.
+/// The pointer is null, or so many entries after it may be read for as long as the call lasts.
 pub unsafe fn column<'a, T>(first: *const T, count: usize, what: &str) -> Result<&'a [T], Refusal> {
     if count == 0 {
         return Ok(&[]);
@@ -241,7 +241,7 @@ pub unsafe fn text(text: *const c_char, default: &str) -> Result<&str, Refusal> 
 /// Copies values into a caller's buffer; `count` gets their number, whether they fit or not.
 ///
 /// # Safety
-/// `capacity` entries behind `buffer` may be written, if there are any; `count` is null or may be
+/// `capacity` entries after `buffer` may be written, if there are any; `count` is null or may be
 /// written.
 pub unsafe fn fill<T>(
     values: impl ExactSizeIterator<Item = T>,

@@ -155,7 +155,7 @@ impl Culler {
     /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a
     /// body.
     ///
-    /// Pairs are filtered behind the first test, whose hits are few, and before anything else is
+    /// Pairs are filtered after the first test, whose hits are few, and before anything else is
     /// done with them.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Given boxes: apart iff on some axis one begins behind the other's end. Ends are compared as they
+//! Given boxes: apart iff on some axis one begins after the other's end. Ends are compared as they
 //! are, so the answer is exact, in either of two ways.
 //!
 //! Nearly cubic boxes leave little between the cube about them and the one within

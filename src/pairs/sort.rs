@@ -97,7 +97,7 @@ mod tests {
                 list.sort(numbers as usize, &mut sorter);
                 assert!(list.iter().eq(wanted.iter().copied()), "{numbers}, {count}");
             }
-            // There is room for a vector behind the last pair, as kernels need it.
+            // There is room for a vector after the last pair, as kernels need it.
             list.room(1);
             list.push(numbers, 0);
             assert_eq!(list.len(), wanted.len() + 1);

@@ -179,7 +179,7 @@ mod tests {
         }
 
         /// The nearest ends that an f32 can tell apart, and those that touch: inner cubes thin
-        /// beside the outer ones.
+        /// next to the outer ones.
         #[test]
         fn thin_boxes_side_by_side_are_told_apart(
             thin in -30_i32..2, offset in -8.0_f32..8.0, steps in -3_i32..4, axis in 0_usize..3,

@@ -11,8 +11,8 @@
 //! with |ε| ≤ u and
 //! |φ| ≤ [`FLUSH`], with denormals on, with results flushed to zero, or with operands read as zero alike.
 //!
-//! Each constant tells its derivation, the Gappa script in `paper/proofs/` that checks it (the
-//! control beside it is one notch tighter and must fail), and the largest error that hill climbing
+//! Each constant states its derivation, the Gappa script in `paper/proofs/` that checks it (the
+//! control next to it is one notch tighter and must fail), and the largest error that hill climbing
 //! has found in 10⁷ steps (`benches/criterion/worst_case.rs`; a shorter search is in the tests).
 
 pub mod border;

@@ -36,7 +36,7 @@ pub const fn inflate_radius(r: f32) -> f32 {
 /// test.
 ///
 /// The centre is the f64 image rounded to f32; with c = 0 it is t to the bit and r is unchanged.
-/// Otherwise the radius takes up the rounding, `up(r + 1.0001‖w64 − w‖ + 2⁻⁴⁷·max(|c|∞, |t|∞) +
+/// Otherwise the radius absorbs the rounding, `up(r + 1.0001‖w64 − w‖ + 2⁻⁴⁷·max(|c|∞, |t|∞) +
 /// 2⁻¹²⁵)`.
 pub fn world_ball(rotation: &Rotation, t: [f32; 3], c: [f32; 3], r: f32) -> ([f32; 3], f32) {
     if c == [0.0; 3] {

@@ -82,7 +82,7 @@ pub enum Interest {
 }
 
 /// A cone of view over sphere centres. With `body` it moves and turns with that body, with `apex`
-/// it stands still.
+/// it rests.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -185,7 +185,7 @@ pub enum SettingsError {
         /// How to mend it.
         hint: &'static str,
     },
-    /// An interest that names no body of the scene, or a cone that is none.
+    /// An interest that names no body of the scene, or an invalid cone.
     #[error("interest: {problem}")]
     Interest {
         /// What is wrong.

@@ -7,7 +7,7 @@ use super::ROW;
 /// Only this crate's tiers implement [`Lanes`]; a kernel may rely on their bit-identical results.
 pub trait Sealed {}
 
-/// A tier of the CPU. Values of this type are tokens: whoever holds one has checked that the CPU
+/// A tier of the CPU. Values of this type are tokens: holding one means having checked that the CPU
 /// has the tier, and vectors come from tokens alone, so their operators need no further check.
 ///
 /// Semantics are those of IEEE 754 binary32, round to nearest even, with these choices where CPUs
@@ -89,7 +89,7 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     /// The upper 28 bits and the lower 4 bits.
     fn split_u32(self, a: Self::I) -> (Self::I, Self::I);
     /// Writes the lanes whose bit in `keep` is set to the front of `out`, in lane order; `out` has
-    /// at least `WIDTH` elements and those behind the kept ones are left in an unspecified state:
+    /// at least `WIDTH` elements and those after the kept ones are left in an unspecified state:
     /// vectors may be stored whole.
     fn compress(self, keep: u32, values: Self::I, out: &mut [u32]);
     /// As [`Self::compress`].
@@ -126,7 +126,7 @@ pub(super) fn pack_lanes<T: Copy, const N: usize>(keep: u32, lanes: [T; N], out:
     }
     let mut kept = 0;
     for (lane, value) in lanes.into_iter().enumerate() {
-        // `kept` ≤ lane, so a value that isn't kept is overwritten or lies behind the kept ones.
+        // `kept` ≤ lane, so a value that isn't kept is overwritten or lies after the kept ones.
         out[kept] = value;
         kept += (keep >> lane & 1) as usize;
     }

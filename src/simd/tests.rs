@@ -294,7 +294,7 @@ fn transposed<L: Lanes>(l: L, start: usize) {
     let rows: Vec<[f32; ROW]> = (0..40)
         .map(|row| std::array::from_fn(|column| (row * 100 + column) as f32))
         .collect();
-    // The seventh index lies behind the table and reads its end.
+    // The seventh index lies after the table and reads its end.
     let pick: Vec<u32> = (0..16)
         .map(|lane| {
             if lane == 6 {
@@ -318,7 +318,7 @@ fn quads<L: Lanes>(l: L, start: usize) {
     let quads: Vec<[f32; 4]> = (0..40)
         .map(|quad| std::array::from_fn(|column| (quad * 10 + column) as f32))
         .collect();
-    // Every other index lies behind the table and reads its end.
+    // Every other index lies after the table and reads its end.
     let pick: Vec<u32> = (start as u32..16)
         .map(|lane| (15 - lane) * 2 + lane % 2 * 80)
         .collect();

@@ -172,7 +172,7 @@ mod tests {
             portion: list(80),
             ..Scratch::default()
         };
-        // Two numbers a pair, and a vector more behind each column.
+        // Two numbers a pair, and a vector more after each column.
         let pairs = 3 * 1111 + 650_087 + 12 * crate::simd::MAX_WIDTH;
         assert_eq!(scratch.pair_bytes(), 8 * pairs);
         scratch.candidates.clear();

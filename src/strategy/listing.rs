@@ -441,7 +441,7 @@ impl<T> Lister<'_, '_, T> {
         }
     }
 
-    /// Lists them all, a vector at a time; what is computed of the lanes behind the last hit is
+    /// Lists them all, a vector at a time; what is computed of the lanes after the last hit is
     /// overwritten by the next pairs.
     #[inline(always)]
     fn name<L: Lanes>(&mut self, l: L, found: usize, hits: HitSlots) {

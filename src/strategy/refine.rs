@@ -91,7 +91,7 @@ impl<'a> Refine<'a> {
 /// The places in which some pairs are, and those between: of bodies that move, which have the first
 /// places, and of the others.
 fn places_of(tier: Tier, moving: usize, pairs: [&[u32]; 2]) -> [Range<usize>; 2] {
-    /// The least place and the one behind the greatest.
+    /// The least place and the one after the greatest.
     struct FindEnds<'a>(u32, [&'a [u32]; 2]);
     impl Kernel for FindEnds<'_> {
         type Output = [[u32; 2]; 2];

@@ -1,10 +1,10 @@
 //! S-DOP, sequential (paper, section 4a): a pair whose spheres overlap goes to the or-DOP test at
 //! once.
 //!
-//! "At once" means a block of some [`PAIRS_PER_BLOCK`] pairs here, since one pair can't fill a vector; no
-//! list of the potentially colliding set is kept. The same flow serves the object of interest
-//! (section 4c), where some pairs of the block are not refined, and oriented volumes without a
-//! sphere stage.
+//! "At once" means a block of some [`PAIRS_PER_BLOCK`] pairs here, since one pair can't fill a
+//! vector; no list of the potentially colliding set is kept. The same flow serves the object of
+//! interest (section 4c), where some pairs of the block are not refined, and oriented volumes
+//! without a sphere stage.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Where each body's row stands.
+//! Where each body's row is.
 
 use std::ops::Deref;
 
@@ -43,7 +43,7 @@ impl<'a> RowsByNumber<'a> {
         }
     }
 
-    /// Where a body's row stands.
+    /// Where a body's row is.
     #[inline(always)]
     #[must_use]
     pub fn find(&self, body: u32) -> u32 {

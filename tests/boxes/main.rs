@@ -203,7 +203,7 @@ fn a_crowd_comes_in_portions_in_the_order_of_the_list_and_takes_no_memory() {
             pairs as usize
         );
         culler.shrink_to_fit();
-        // The list itself, and a vector behind it.
+        // The list itself, and a vector after it.
         assert_eq!(culler.pair_bytes(), 8 * (pairs as usize + 16));
     }
 }

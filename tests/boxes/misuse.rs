@@ -12,7 +12,7 @@ use sdop::{Aabb, BoxCuller, BoxWorld, CullError, Finder, Groups, WorldError};
 
 use crate::scenes::{Kind, Random, boxes, expected};
 
-/// Boxes that are none.
+/// Invalid boxes.
 fn wrong() -> Vec<Aabb> {
     let (inf, nan) = (f32::INFINITY, f32::NAN);
     let slabs = [

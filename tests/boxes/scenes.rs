@@ -35,7 +35,7 @@ pub enum Kind {
     Cubes,
     /// On a lattice: they share ends, and cells of any grid have theirs on borders.
     Lattice,
-    /// Each begins where another ends, or a step of an f32 before or behind.
+    /// Each begins where another ends, or a step of an f32 before or after.
     Ulps,
     /// Sides 1 : 8 : 64 in any order.
     Needles,

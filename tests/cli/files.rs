@@ -25,7 +25,7 @@ motion = true
 walls = "specular"
 "#;
 
-/// The bytes of the unfinished file beside `path`.
+/// The bytes of the unfinished file next to `path`.
 fn unfinished(path: &Path) -> u64 {
     let entries = fs::read_dir(path.parent().unwrap()).unwrap();
     let parts = entries.map(|entry| entry.unwrap().path());

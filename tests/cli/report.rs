@@ -1,5 +1,5 @@
 //! Records, their comparison and the pages that quote them: one digit changed by hand is found
-//! wherever it stands.
+//! wherever it is.
 
 use std::path::Path;
 

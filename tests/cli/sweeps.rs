@@ -12,9 +12,9 @@ use super::{refusal, scene_file, stdout, text};
 struct Sweep {
     name: &'static str,
     /// Arguments of a run that takes a moment; they end before the output directory. A scene's path
-    /// goes where `SCENE` stands.
+    /// goes where `SCENE` is.
     arguments: &'static [&'static str],
-    /// Further ones, behind all others.
+    /// Further ones, after all others.
     last: &'static [&'static str],
     /// Where its shards are and its result, in the output directory.
     shards: &'static str,

@@ -34,7 +34,7 @@ fn build(text: &str) -> Scene {
     parse(text).build().unwrap()
 }
 
-/// A scene on so many ranks, as rank 0 tells it.
+/// A scene on so many ranks, as rank 0 reports it.
 fn on(ranks: usize, scene: &Scene) -> Result<DomainSummary, DomainError> {
     let mut all = on_ranks(ranks, |net| {
         let share = share_of(scene, net.rank(), ranks);

@@ -1,4 +1,4 @@
-//! The response beside its formula, and what it keeps.
+//! The response next to its formula, and what it keeps.
 
 use sdop::bodies::Bodies;
 use sdop_bench::effects::Velocities;

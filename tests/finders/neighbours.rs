@@ -105,7 +105,7 @@ fn bodies_that_move_by_their_skins_meet_whom_they_meet() {
     }
 }
 
-/// Small balls beside wide ones come together as above, by a skin of the same length for both: one
+/// Small balls next to wide ones come together as above, by a skin of the same length for both: one
 /// of six, since a frame in which all move by half a small one's radius has ended the first list.
 #[test]
 fn small_bodies_and_wide_ones_that_move_by_a_common_length_meet_whom_they_meet() {

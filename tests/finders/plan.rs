@@ -49,7 +49,7 @@ fn scenes() -> Vec<Scene> {
     scenes
 }
 
-/// Where bodies are in a frame, beside their own small steps.
+/// Where bodies are in a frame, apart from their own small steps.
 fn shift(scene: &Scene, frame: usize, home: [f32; 3], now: [f32; 3]) -> [f32; 3] {
     match scene.name {
         "gathering" => home.map(|x| x * (0.02 + (frame as f32 / 20.0 - 1.0).abs())),

@@ -220,7 +220,7 @@ fn change(
     }
 }
 
-/// Two unit cubes, one beside the other with a gap, under every strategy.
+/// Two unit cubes, one next to the other with a gap, under every strategy.
 #[test]
 fn margins_reach_as_far_as_they_say_and_little_farther() {
     let form = ProceduralShape::Box {

@@ -94,7 +94,7 @@ fn bodies_that_touch_to_the_ulp_once_grown_are_reported() {
                     };
                     let what = || format!("{way:?}, {margins:?}, {n} coordinates");
                     assert!(reported(gap), "{}", what());
-                    // Half a thousandth beyond, a slab across the contact tells.
+                    // Half a thousandth beyond, a slab across the contact decides.
                     let told = way.strategy == Strategy::OrDop && sees(k, n);
                     if told {
                         assert!(!reported(gap * 1.0005), "{}", what());

@@ -282,8 +282,8 @@ fn refused_frames_lose_no_change() {
     assert_eq!(world.cull().unwrap().sorted(), [[a, b]]);
 }
 
-/// A row of touching cubes through many cells and their borders, along each diagonal, beside a body
-/// far away.
+/// A row of touching cubes through many cells and their borders, along each diagonal, next to a
+/// body far away.
 #[test]
 fn chains_hold_across_cells() {
     for way in [

@@ -106,7 +106,7 @@ fn gain<const FLUSH: bool>(
     if d2 > t {
         return 1.0;
     }
-    // d² and t are few floats apart: the error behind them is what leads over the plateaus.
+    // d² and t are few floats apart: the exact error is what leads over the plateaus.
     let error = (d2 / t) * (reach * reach / squared).min(2.0);
     (d2 / t - 2.0) + 0.001 * error
 }

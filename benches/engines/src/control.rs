@@ -27,13 +27,13 @@ use crate::record::digits;
 use crate::scenes::{Course, Order, Schedule, Spread};
 use crate::turns::{Timed, take_turns};
 
-/// Measures what more threads gain us, beside loops that divide perfectly
+/// Measures what more threads gain us, next to loops that divide perfectly
 #[derive(clap::Args)]
 pub struct Args {
     /// Numbers of bodies
     #[arg(long, value_delimiter = ',', default_value = "10000,100000,1000000")]
     sizes: Vec<usize>,
-    /// Threads beside one
+    /// Threads next to one
     #[arg(long, default_value_t = 2)]
     threads: usize,
     /// What else runs on the machine, for the record

@@ -93,7 +93,7 @@ fn quoted(argument: String) -> String {
     }
 }
 
-/// The first number of the system's load average, where a file tells it.
+/// The first number of the system's load average, where a file has it.
 fn load() -> String {
     let text = fs::read_to_string("/proc/loadavg").unwrap_or_default();
     text.split(' ').next().unwrap_or("unknown").to_owned()

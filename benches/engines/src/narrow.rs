@@ -60,7 +60,7 @@ type Judge<'a> = Box<dyn Fn(&Bodies, [u32; 2]) -> miette::Result<bool> + 'a>;
 
 const PARRY: &str = "0.31.1";
 
-/// Tests of single pairs, asked for all of them: judged beside engines, and timed here alone.
+/// Tests of single pairs, asked for all of them: judged next to engines, and timed here alone.
 pub const ENTRIES: [Entry; 3] = [
     entry(
         "sdop GJK on hulls",

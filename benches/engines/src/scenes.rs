@@ -103,7 +103,7 @@ pub const EXPECTED: [(Spread, usize, usize); 19] = [
     (Spread::Long, 100_000, 148_841),
 ];
 
-/// A scene and where it stands.
+/// A scene and where it is.
 pub struct Course {
     /// The scene, its bodies in the wished order.
     pub scene: Scene,

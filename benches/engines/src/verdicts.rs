@@ -30,7 +30,7 @@ pub struct AnswerArgs {
 /// Judge every engine by the cases of its claim
 #[derive(clap::Args)]
 pub struct Args {
-    /// The seed of the cases beside the published ones
+    /// The seed of the cases next to the published ones
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Seconds that an engine has for a case
@@ -104,7 +104,7 @@ pub fn answer(args: &AnswerArgs) -> miette::Result<()> {
             engine.settle();
             pairs = engine.pairs();
         }
-        // Engines aren't told who is static: all boxes meet all.
+        // Engines do not know which bodies are static: all boxes meet all.
         pairs.retain(|pair| pair.iter().any(|&body| moves(&frame, body)));
         pairs.iter_mut().for_each(|pair| pair.sort_unstable());
         let line = serde_json::json!({ "frame": number, "pairs": pairs });

@@ -1,4 +1,4 @@
-//! Whether the machine did other work while it measured: whoever quotes a time should know.
+//! Whether the machine did other work while it measured: who quotes a time should know.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,14 +6,14 @@ use super::estimate::Estimate;
 
 /// Intervals wider than this share of their mean, to either side, are a disturbance.
 const WIDE_INTERVAL: f64 = 0.1;
-/// Processes beside ours that want to run, on average, from which on the machine counts as
+/// Processes next to ours that want to run, on average, from which on the machine counts as
 /// disturbed.
 const BUSY_PROCESSES: f64 = 0.5;
 
 /// What the machine was like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
-    /// Processes that wanted to run beside ours, before and after, where the system tells:
+    /// Processes that wanted to run next to ours, before and after, where the system reports them:
     /// one-minute means.
     pub others: [Option<f64>; 2],
     /// How many of the quoted times have an interval of more than ± 10 %.

@@ -47,7 +47,7 @@ impl From<TestedVolume> for Volume {
 pub struct Counts {
     /// The culler's counters.
     pub culler: Counters,
-    /// Those of the convex hulls behind it.
+    /// Those of the convex hulls after it.
     pub hulls: VolumeCounters,
 }
 

@@ -68,7 +68,7 @@ fn cpu() -> Option<String> {
     Some(format!("{name} (family {}, model {})", ids[0], ids[1]))
 }
 
-/// The system and its release, as far as a file tells.
+/// The system and its release, as far as a file says.
 fn os() -> String {
     let kernel = std::fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
     let release: String = kernel

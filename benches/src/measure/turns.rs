@@ -2,10 +2,10 @@
 //!
 //! In its turn a contestant takes some consecutive frames, then the next one does. Turns share out
 //! what the machine does meanwhile (other processes, clock changes) among all alike, and their
-//! order is drawn anew each time, since whoever always followed the same one would always find the
-//! caches that it leaves. The first frame of a turn is *cold*: others ran in between. Those behind
-//! it are *warm*: a culler's frames follow one another, as in a simulation. Which of the two a
-//! number is stands beside it.
+//! order is drawn anew each time, since a contestant that always followed the same one would always
+//! find the caches that it leaves. The first frame of a turn is *cold*: others ran in between.
+//! Those after it are *warm*: a culler's frames follow one another, as in a simulation. Which of
+//! the two a number is next to it.
 //!
 //! A machine that does other work takes the processor away in the midst of a frame, the likelier
 //! the longer the frame is: what a thread waited for a processor is taken off where the system

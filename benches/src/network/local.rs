@@ -73,7 +73,7 @@ impl Network for LocalRank {
     fn exchange(&self, outgoing: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
         assert_eq!(outgoing.len(), self.to.len(), "a message a rank");
         for (to, message) in self.to.iter().zip(outgoing) {
-            // A rank that has panicked receives nothing: whoever waits for it, panics next.
+            // A rank that has panicked receives nothing: a rank that waits for it panics next.
             let _ = to.send(message);
         }
         let received = self.from.iter().map(|from| match from.recv() {

@@ -25,7 +25,8 @@ impl MpiNetwork {
         Self { ranks, world }
     }
 
-    /// Hands each rank a piece of at most [`MOST_BYTES_PER_CALL`] bytes over all, and returns the pieces received.
+    /// Hands each rank a piece of at most [`MOST_BYTES_PER_CALL`] bytes over all, and returns the
+    /// pieces received.
     fn exchange_pieces(&self, outgoing: &[&[u8]], lengths: &[usize]) -> Vec<u8> {
         let (counts, starts) = table(outgoing.iter().map(|piece| piece.len()));
         let (their_counts, their_starts) = table(lengths.iter().copied());

@@ -1,4 +1,4 @@
-//! A program beside ours on the same frames: first both are judged, then they take turns, and each
+//! A program next to ours on the same frames: first both are judged, then they take turns, and each
 //! frame has a time.
 //!
 //! Ours is timed from outside, around its call. A program is believed: what it reports as `ns` is

@@ -141,7 +141,7 @@ impl Manifest {
         })
     }
 
-    /// Adds the digests of some scenes and of the meshes beside them, by their paths below `root`.
+    /// Adds the digests of some scenes and of the meshes next to them, by their paths below `root`.
     ///
     /// # Errors
     /// A file that can't be read.

@@ -115,7 +115,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// The load now, where the system tells it.
+    /// The load now, where the system reports it.
     #[must_use]
     pub fn now() -> Option<Self> {
         let text = std::fs::read_to_string("/proc/loadavg").ok()?;

@@ -37,7 +37,7 @@ pub struct Check {
 /// A claim with its numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PaperClaim {
-    /// Where it stands: a section of the paper, or our own study.
+    /// Where it is: a section of the paper, or our own study.
     pub source: &'static str,
     /// What it says, in our words.
     pub claim: &'static str,

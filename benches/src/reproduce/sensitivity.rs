@@ -4,8 +4,8 @@
 //!
 //! A cell's error is taken as normal in the logarithm of ours over the paper's, with one width for
 //! all sixteen cells that fits best: ln L = −(n/2)(ln 2πσ² + 1), σ² the mean square.
-//! Interpretations that differ by less than about 2 in ln L can't be told apart. The or-DOP row is
-//! taken as sphere × sequential, which the runs support to a percent.
+//! Interpretations that differ by less than about 2 in ln L cannot be distinguished. The or-DOP row
+//! is taken as sphere × sequential, which the runs support to a percent.
 
 use std::num::NonZeroU32;
 

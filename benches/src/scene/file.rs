@@ -1,4 +1,4 @@
-//! A scene file as written: TOML into plain structures, every value checked as far as it stands
+//! A scene file as written: TOML into plain structures, every value checked as far as it is
 //! alone.
 
 use std::collections::BTreeMap;
@@ -125,7 +125,7 @@ pub enum Placement {
 choices! {
     /// Which draws are a body's own.
     Seeding, "seeding", {
-        /// Bodies of a group draw one after the other: whoever wants the last draws for all.
+        /// Bodies of a group draw one after the other: who wants the last must draw for all.
         ByGroup = "by-group",
         /// Each body has streams of its own, so that any share of a scene can be made without the
         /// rest.
@@ -205,7 +205,7 @@ fn read_spec(text: &str) -> Result<SceneSpec, toml::de::Error> {
 }
 
 /// Finds the floats that, read as f64 and then rounded, would not become the f32 nearest to their
-/// *text*: a decimal just beside the midpoint of two f32 becomes the midpoint in f64, and its tie
+/// *text*: a decimal just next to the midpoint of two f32 becomes the midpoint in f64, and its tie
 /// may go to the other side. Collects the nearest f32 as text, by the float's place.
 fn find_double_roundings(value: &Spanned<DeValue<'_>>, nearest: &mut BTreeMap<usize, String>) {
     match value.get_ref() {

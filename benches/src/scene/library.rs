@@ -187,7 +187,7 @@ fn procedural(
     })
 }
 
-/// What stands beside a file that doesn't exist.
+/// What is next to a file that doesn't exist.
 fn nearest_file(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let relative = "mesh paths are relative to the scene file";

@@ -10,7 +10,7 @@ use sha2::{Digest as _, Sha256};
 use super::Shard;
 use crate::hash::hex;
 
-/// The form of a header and the lines behind it.
+/// The form of a header and the lines after it.
 const FORM: &str = "sdop units 1";
 
 /// What work is: all that decides the results of its units.

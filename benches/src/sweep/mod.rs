@@ -44,7 +44,7 @@ pub trait Sweep: Sync {
     /// What stands against it.
     fn run(&self, unit: usize) -> miette::Result<String>;
 
-    /// Whether a unit is timed, so that none may run beside it on a machine.
+    /// Whether a unit is timed, so that none may run next to it on a machine.
     fn timed(&self, _unit: usize) -> bool {
         false
     }

@@ -150,7 +150,7 @@ mod tests {
         }
     }
 
-    /// What each rank gets, and how many timed units ran beside others.
+    /// What each rank gets, and how many timed units ran next to others.
     fn run(ranks: usize, share_cores: bool) -> (Vec<BTreeMap<usize, String>>, usize) {
         let work = Squares {
             fails: usize::MAX,

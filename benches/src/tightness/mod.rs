@@ -1,4 +1,4 @@
-//! Every volume's size beside that of the convex hull, which no volume can be below.
+//! Every volume's size next to that of the convex hull, which no volume can be below.
 
 mod polytope;
 

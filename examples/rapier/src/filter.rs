@@ -79,7 +79,7 @@ impl PhysicsHooks for Filter {
     }
 }
 
-/// Seconds that the filter took beside its look-ups.
+/// Seconds that the filter took next to its look-ups.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
     /// How often all colliders were mirrored and culled.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use miette::{Context, IntoDiagnostic, Result};
 
-/// Writes beside, then renames.
+/// Writes under a temporary name, then renames.
 ///
 /// # Errors
 /// A file that can't be written.

@@ -28,7 +28,7 @@ pub enum Content {
 /// The tree; node 0 is the root. No triangles, no nodes.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
-    /// Nodes, a left child right behind its parent.
+    /// Nodes, a left child right after its parent.
     pub nodes: Vec<Node>,
     /// Triangle numbers, leaf by leaf.
     pub order: Vec<u32>,

@@ -289,7 +289,7 @@ fn certificates_that_do_not_hold_are_refused() {
 }
 
 /// Two k-DOPs on either side of a plane, turned so that f64 rounds every corner; A ends on the
-/// plane or next to nothing before or behind it.
+/// plane or next to nothing before or after it.
 #[test]
 fn turned_faces_that_touch() {
     let mut draws = Draws(29);

@@ -1,4 +1,4 @@
-//! Suites that need whole shapes; what one formula can show is tested beside it.
+//! Suites that need whole shapes; what one formula can show is tested next to it.
 #![allow(
     clippy::unwrap_used,
     reason = "a test that cannot build its input has failed"

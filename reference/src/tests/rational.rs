@@ -134,7 +134,7 @@ pub fn triangles_meet(a: &[Rational3; 3], b: &[Rational3; 3]) -> bool {
         return false;
     }
     // Perpendicular to a line and as near as may be to a difference: what tells a segment from a
-    // point beside it.
+    // point next to it.
     let beside: Vec<Rational3> = lines
         .iter()
         .flat_map(|l| between.iter().map(|d| cross(&cross(l, d), l)))

@@ -152,7 +152,7 @@ pub(crate) fn is_within_limit(v: &[f32; 3]) -> bool {
 }
 
 /// Whether the centres of all balls are within 2⁶⁰, and their radii finite. A function of its own,
-/// of which callgrind tells what the check costs (`.ci/instructions`).
+/// of which callgrind shows what the check costs (`.ci/instructions`).
 #[inline(never)]
 pub(crate) fn balls_are_within_limit(tier: Tier, balls: &[[f32; 4]]) -> bool {
     dispatch(tier, BallsWithinLimit(balls))
@@ -161,7 +161,7 @@ pub(crate) fn balls_are_within_limit(tier: Tier, balls: &[[f32; 4]]) -> bool {
 struct BallsWithinLimit<'a>(&'a [[f32; 4]]);
 
 /// Numbers that are looked at together: some vectors of any tier, so that what a loop takes by
-/// itself is little beside them.
+/// itself is little compared with them.
 const NUMBERS_PER_CHECK: usize = 64;
 
 impl Kernel for BallsWithinLimit<'_> {

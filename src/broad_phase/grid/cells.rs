@@ -6,7 +6,7 @@
 //! 1 − 2⁻¹⁷, and below 2³⁰ the three roundings of a quotient take 2⁻²² each.
 //!
 //! Cells stand in the table in rows along x, rows in layers: index = k_x + A·k_y + B·k_z. Where the
-//! bodies' box has few cells, A and B leave one empty cell behind each row and one empty row behind
+//! bodies' box has few cells, A and B leave one empty cell after each row and one empty row after
 //! each layer, so that neighbours across the border exist and are empty. Where the box is mostly
 //! void (a diagonal line, clusters far apart), indices are taken modulo a power of two instead,
 //! with A and B spread evenly over it: other cells may share a place in the table, which costs
@@ -44,9 +44,9 @@ pub enum TableLayout {
     Wrapped,
 }
 
-/// Where the cells of one size lie. The one place that tells the cell of a coordinate: which a body
-/// falls in, how many there are and where a body of another level looks. Each step rounds, but none
-/// of them reverses an order: a coordinate between two others falls in a cell between theirs,
+/// Where the cells of one size lie. The one place that computes the cell of a coordinate: which a
+/// body falls in, how many there are and where a body of another level looks. Each step rounds, but
+/// none of them reverses an order: a coordinate between two others falls in a cell between theirs,
 /// whatever the roundings, and none falls beyond the cell of the farthest.
 #[derive(Clone, Copy, Debug)]
 struct CellRule {

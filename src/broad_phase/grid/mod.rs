@@ -25,7 +25,7 @@ use crate::simd::Lanes;
 use crate::threads::Executor;
 
 /// Frames after which places take the order of slots. Bodies that move a tenth of their radius a
-/// frame are then in their cell still, or beside it; each frame would spare the sort no more than
+/// frame are then in their cell still, or next to it; each frame would spare the sort no more than
 /// following the order costs.
 const FRAMES_PER_REORDER: u32 = 4;
 

@@ -178,7 +178,7 @@ mod tests {
             balls: (0..len + MAX_WIDTH).map(ball).collect(),
             ..Slots::default()
         };
-        // Sixteen slots from the first one on share an entry; another before or behind them opens
+        // Sixteen slots from the first one on share an entry; another before or after them opens
         // one.
         let runs = [
             (5, 6..len),

@@ -9,7 +9,8 @@ use super::list::Limits;
 pub const CANDIDATES_PER_REPORT: u64 = 1024;
 
 /// Counts of all threads. They only grow, so whether the search ends beyond its limits depends on
-/// no thread; how far beyond does, by a [`CANDIDATES_PER_REPORT`] and one piece of the work for each of them.
+/// no thread; how far beyond does, by a [`CANDIDATES_PER_REPORT`] and one piece of the work for
+/// each of them.
 #[derive(Debug)]
 pub struct Effort {
     limits: Limits,

@@ -78,7 +78,7 @@ pub struct List {
 /// The neighbours that one part of the grid's work has found.
 #[derive(Clone, Debug, Default)]
 pub struct Chunk {
-    /// Codes of all entries, and a vector of whatever codes behind them.
+    /// Codes of all entries, and a vector of whatever codes after them.
     codes: Vec<u32>,
     len: usize,
     /// The slot of lane 0, and where the entry's codes end.

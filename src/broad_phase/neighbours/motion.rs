@@ -235,8 +235,8 @@ mod tests {
         assert!(typical(&[0.0]) > 0.0);
     }
 
-    /// What a skin adds to the pairs of boxes, beside what it adds to those of balls of the typical
-    /// radius.
+    /// What a skin adds to the pairs of boxes, next to what it adds to those of balls of the
+    /// typical radius.
     #[test]
     fn the_typical_radius_of_long_boxes_brings_as_many_pairs() {
         let sides = [

@@ -3,7 +3,7 @@
 //!
 //! A skin is so many radii σ: of each body's own, or the same length for all, in [typical
 //! radii](super::motion). Where the small move as fast as the wide, their own radii are soon used
-//! up, and a length lasts. The body that got farthest by the end of a list tells how long another
+//! up, and a length lasts. The body that got farthest by the end of a list shows how long another
 //! list would have lasted: σ/v frames and one more. A wider skin makes fewer lists, each of (1 +
 //! σ)³ as many pairs, from as many more candidates.
 
@@ -210,7 +210,7 @@ impl Policy {
         if best.0 < MOST_GRID_SHARE * (GRID_BODY_COST + GRID_CANDIDATE_COST * candidates) {
             self.pause = FIRST_PAUSE;
         } else {
-            // Of a list that served one frame alone the widest skin tells most.
+            // Of a list that served one frame alone the widest skin says most.
             self.skin = self.widest_skin();
             self.give_up();
         }
@@ -224,7 +224,7 @@ impl Policy {
             Radii::Typical => (SKINS[self.skin], typical),
         };
         // A body that has just used up its skin is within two of them, if it goes straight on.
-        // Beyond, it has jumped, and tells nothing of the others.
+        // Beyond, it has jumped, and says nothing about the others.
         if self.served > 1 && drift > 2.0 * skin {
             let speed = skin / (served - 0.5);
             return match self.radii {

@@ -1,4 +1,4 @@
-//! `.tri` files: one extension, many formats, told apart by structure and counts.
+//! `.tri` files: one extension, many formats, distinguished by structure and counts.
 //!
 //! | name | header | vertex | face | described by |
 //! |---|---|---|---|---|

@@ -23,7 +23,7 @@ pub struct Slabs<L: Lanes> {
 pub struct DirectionSigns<L: Lanes>([L::M; 3]);
 
 impl<L: Lanes> DirectionSigns<L> {
-    /// Of e. A zero's sign counts as it stands.
+    /// Of e. A zero's sign counts as it is.
     #[inline(always)]
     pub fn of(l: L, e: [L::F; 3]) -> Self {
         Self([l.negative(e[0]), l.negative(e[1]), l.negative(e[2])])

@@ -128,7 +128,7 @@ mod tests {
         (0..343).map(move |n| [0, 1, 2].map(|place| whole(n, place)))
     }
 
-    /// A bound is linear in the ends: one end of 1 among zeros tells its multiplier, and all of
+    /// A bound is linear in the ends: one end of 1 among zeros reveals its multiplier, and all of
     /// them put e together again.
     #[test]
     fn multipliers_are_no_less_than_zero_and_make_up_the_direction() {

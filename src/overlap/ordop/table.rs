@@ -66,7 +66,7 @@ macro_rules! each_direction {
 }
 pub(super) use each_direction;
 
-/// The tables of all shapes, one behind the other.
+/// The tables of all shapes, one after the other.
 #[derive(Clone, Debug)]
 pub struct SlabTables {
     directions: DirectionSet,

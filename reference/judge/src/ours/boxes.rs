@@ -90,7 +90,7 @@ impl BoxLedger {
 }
 
 /// Frames of boxes that are hard to tell apart: each begins where another ends, or a few last
-/// places before or behind, or lies anywhere; then all move, and some begin at another one's end
+/// places before or after, or lies anywhere; then all move, and some begin at another one's end
 /// again. `below(n)` draws a number below n.
 pub fn draw(below: &mut impl FnMut(u32) -> u32) -> Vec<Vec<Aabb>> {
     let unit = 2.0_f32.powi(UNITS[below(UNITS.len() as u32) as usize]);
@@ -178,7 +178,7 @@ pub fn meeting(boxes: &[Aabb]) -> Vec<[u32; 2]> {
 /// Culls the frames in every cell and holds each list against the definition.
 ///
 /// # Errors
-/// Threads that the system refuses, boxes that are none.
+/// Threads that the system refuses, invalid boxes.
 pub fn judge(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<BoxLedger, CullError> {
     let wanted: Vec<Vec<[u32; 2]>> = frames.iter().map(|boxes| meeting(boxes)).collect();
     let mut ledger = BoxLedger {

@@ -184,7 +184,7 @@ impl ContactSpec {
         }
     }
 
-    /// A body of `shape` in contact with `first`; beside it where the contact lies outside the
+    /// A body of `shape` in contact with `first`; next to it where the contact lies outside the
     /// contract.
     pub fn partner(
         &self,

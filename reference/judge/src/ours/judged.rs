@@ -75,7 +75,7 @@ fn body<'a>(
     })
 }
 
-/// The shape, wider by so many times the margins.
+/// The shape, wider by a multiple of the margins.
 fn shape(shape: &Shape, margins: f64) -> Result<reference::Shape, InvalidInput> {
     let radius = f64::from(shape.ball.radius);
     let wider = radius + margins * (15.0 * U * radius + exp2(-69));

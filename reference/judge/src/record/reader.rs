@@ -27,7 +27,7 @@ pub struct Reader<R> {
     frame: Option<u32>,
 }
 
-/// What tells a record from other files.
+/// What distinguishes a record from other files.
 #[derive(Deserialize)]
 struct Mark {
     format: String,

@@ -131,7 +131,7 @@ fn cells(count: [u8; 3]) -> Cells {
     cells
 }
 
-/// An empty cell lies behind each row, and an empty row behind each layer that has more than one;
+/// An empty cell lies after each row, and an empty row after each layer that has more than one;
 /// the table ends with the last cell that the last body looks at.
 #[test]
 fn a_box_has_as_few_cells_as_looks_allow() {

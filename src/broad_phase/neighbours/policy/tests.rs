@@ -207,7 +207,7 @@ fn the_next_skin_is_the_cheapest_to_the_pair() {
     }
 }
 
-/// Sizes of boxes that are longer than wide, of cubes beside them, and where no length suits all.
+/// Sizes of boxes that are longer than wide, of cubes next to them, and where no length suits all.
 #[test]
 fn lists_of_long_boxes_have_a_length_for_a_skin_and_wider_ones() {
     let [long, cubes, giant] =
