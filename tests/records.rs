@@ -6,6 +6,7 @@ use miette::Diagnostic as _;
 use sdop::simd::Tier;
 use sdop_bench::scene::SceneFile;
 use sdop_bench::simulate::Simulation;
+use sdop_judge::json;
 use sdop_judge::record::{FrameLine, Reader, RecordError, Recorder};
 
 const SCENE: &str = r#"
@@ -85,13 +86,13 @@ fn a_written_record_reads_back() {
             .any(|e| e.name == name && e.on)
     };
     assert!(lists("motion") && lists("walls") && !lists("gravity"));
-    let written = serde_json::to_string(header).unwrap();
+    let written = json::to_string(header).unwrap();
     assert_eq!(text.lines().next(), Some(written.as_str()));
     let frames = read(text.as_bytes()).unwrap();
     assert_eq!(frames.len(), 3);
     let lines = text.lines().skip(1);
     for (frame, line) in frames.iter().zip(lines) {
-        assert_eq!(serde_json::to_string(frame).unwrap(), line);
+        assert_eq!(json::to_string(frame).unwrap(), line);
     }
 }
 

@@ -27,7 +27,7 @@ const LIBRARY: &[&str] = &[
     "world",
     "boxes",
 ];
-const JUDGE: &[&str] = &["contestant", "record", "ours", REST];
+const JUDGE: &[&str] = &["contestant", "json", "record", "ours", REST];
 const BENCH: &[&str] = &[
     "number",
     "percentiles",

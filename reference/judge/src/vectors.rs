@@ -8,6 +8,7 @@ use serde_json::Value;
 use super::catalogue::{CatalogueError, Group, groups};
 use super::report::Named;
 use super::truth::Truth;
+use crate::json;
 use crate::ours::judged::InvalidInput;
 use crate::record::ShapeLine;
 
@@ -111,7 +112,7 @@ fn text(group: &Group, cases: &[Vector]) -> serde_json::Result<String> {
     );
     for (n, case) in cases.iter().enumerate() {
         let comma = if n + 1 < cases.len() { "," } else { "" };
-        text += &format!("{}{comma}\n", serde_json::to_string(case)?);
+        text += &format!("{}{comma}\n", json::to_string(case)?);
     }
     text.push_str("]\n}\n");
     Ok(text)

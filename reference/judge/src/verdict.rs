@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::answer::Trouble;
 use super::claim::Claim;
 use super::score::{Count, Miss, Outcome};
 use super::shrink::Smallest;
@@ -34,6 +35,16 @@ impl CaseVerdict {
         self.name
             .rsplit_once('/')
             .map_or(&self.name, |(group, _)| group)
+    }
+
+    /// Whether the program could not even be started.
+    #[must_use]
+    pub fn is_without_start(&self) -> bool {
+        let trouble = match &self.outcome {
+            Outcome::Error { trouble } => trouble,
+            _ => return false,
+        };
+        matches!(trouble, Trouble::Start { .. })
     }
 }
 
@@ -131,6 +142,49 @@ impl Verdict {
         groups
     }
 
+    /// What speaks against the claim, in one line; `None` of a pass.
+    #[must_use]
+    pub fn why(&self) -> Option<String> {
+        if self.passed() {
+            return None;
+        }
+        let mut against = self.cases.iter().filter(|case| self.counts_against(case));
+        if let Some(first) = against.next() {
+            let what = match &first.outcome {
+                Outcome::Error { trouble } => trouble.to_string(),
+                Outcome::Fail { why } => why.clone(),
+                Outcome::Pass | Outcome::Skipped { .. } => String::new(),
+            };
+            let (failed, of) = (1 + against.count(), self.cases.len());
+            let name = &first.name;
+            return Some(format!("{failed} of {of} cases fail, first {name}: {what}"));
+        }
+        if let (true, Some(limit)) = (self.is_beyond_limit(), self.extra_limit) {
+            let Count {
+                extra, required, ..
+            } = self.pairs();
+            return Some(format!(
+                "{extra} extra pairs to {required} required ones, more than the limit of {limit} for each"
+            ));
+        }
+        if let Some(name) = self.stale.first() {
+            let count = self.stale.len();
+            return Some(format!(
+                "{count} of the known failures are stale, first {name}"
+            ));
+        }
+        let count = |is: fn(&Outcome) -> bool| {
+            let cases = self.cases.iter().filter(|case| is(&case.outcome));
+            cases.count()
+        };
+        let skipped = count(|outcome| matches!(outcome, Outcome::Skipped { .. }));
+        let (without, of) = (skipped + self.not_run, self.cases.len() + self.not_run);
+        Some(match count(|outcome| *outcome == Outcome::Pass) {
+            0 => format!("no case passes: {without} of {of} were not judged, all others are known to fail"),
+            _ => format!("{without} of {of} cases were not judged"),
+        })
+    }
+
     /// Panics with the summary unless the verdict is a pass: what a test calls.
     ///
     /// # Panics
@@ -196,7 +250,9 @@ impl fmt::Display for Verdict {
             .take(3)
         {
             match &case.outcome {
-                Outcome::Fail { why } => writeln!(f, "{} {why} [{}]", case.name, case.flag)?,
+                Outcome::Fail { why } => {
+                    writeln!(f, "{} {why}\n  case aims at: {}", case.name, case.flag)?;
+                }
                 Outcome::Error { trouble } => writeln!(f, "{} {trouble}", case.name)?,
                 _ => {}
             }
@@ -212,40 +268,5 @@ impl fmt::Display for Verdict {
         self.smallest
             .as_ref()
             .map_or(Ok(()), |smallest| smallest.fmt(f))
-    }
-}
-
-impl fmt::Display for Smallest {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Miss {
-            frame,
-            pair: [i, j],
-        } = self.miss;
-        let bodies = self.case.frames[frame].bodies.len();
-        writeln!(
-            f,
-            "smallest: {bodies} bodies, {} frames; bodies {i} and {j} of frame {frame} share a point",
-            self.case.frames.len()
-        )?;
-        let Some(witness) = &self.witness else {
-            return Ok(());
-        };
-        let [x, y, z] = witness.decimals;
-        writeln!(f, "  ({x:?}, {y:?}, {z:?})")?;
-        if witness.point.iter().map(String::len).sum::<usize>() < 160 {
-            writeln!(f, "  exactly ({})", witness.point.join(", "))?;
-        }
-        match witness.depth_ulps {
-            Some(ulps) => writeln!(
-                f,
-                "  {ulps} ulp deep at most (an ulp is {:e} here)",
-                witness.ulp
-            ),
-            None => writeln!(
-                f,
-                "  deeper than 2^24 ulp (an ulp is {:e} here)",
-                witness.ulp
-            ),
-        }
     }
 }

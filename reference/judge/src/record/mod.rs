@@ -1,8 +1,9 @@
 //! `sdop-record`, version 1: a run as lines of JSON, enough for a stranger's oracle to judge the pairs.
 //!
 //! Line 1 holds shapes and bodies, every further line a frame with its poses and sorted pairs. Vertices, balls and slabs
-//! are the body-frame numbers exactly as built, before any inflation for rounding; floats are the shortest decimals that
-//! read back to the same f32. Bodies and frames are counted from 0; frame numbers ascend.
+//! are the body-frame numbers exactly as built, before any inflation for rounding. A number is written as the shortest
+//! text of the f64 that equals it ([`crate::json`]); records with the shorter text of an f32 are read as well. Bodies and
+//! frames are counted from 0; frame numbers ascend.
 //!
 //! ```text
 //! {"format":"sdop-record","version":1,"scene":name,"seed":n,"shapes":[{"name","vertices":[[x,y,z]…],"triangles":[[a,b,c]…],

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::{BodyLine, FORMAT, FrameLine, Header, MINOR, RecordError, ShapeLine, VERSION};
+use crate::json;
 use sdop::bodies::Bodies;
 use sdop::files::Whole;
 use sdop::volume::Shape;
@@ -83,7 +84,7 @@ impl Recorder {
     }
 
     fn line(&mut self, value: &impl Serialize) -> Result<(), RecordError> {
-        serde_json::to_writer(&mut self.file, value)
+        json::to_writer(&mut self.file, value)
             .map_err(std::io::Error::from)
             .and_then(|()| self.file.write_all(b"\n"))
             .map_err(|cause| RecordError::unwritable(&self.path, cause))

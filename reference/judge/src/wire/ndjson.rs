@@ -13,6 +13,7 @@ use crate::answer::{Answer, Trouble};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
 use crate::contestant::WorldBox;
+use crate::json;
 use crate::record::{BodyLine, FORMAT, FrameLine, Header, ShapeLine, VERSION};
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::check_bodies;
@@ -20,10 +21,18 @@ use sdop::files::read_line;
 use sdop::volume::Shape;
 
 /// A record's first line with what a case has on top.
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize)]
 struct CaseHeader {
     #[serde(flatten)]
     record: Header,
+    #[serde(flatten)]
+    about: About,
+}
+
+/// What a case's first line has on top of a record's. It is read on its own, because a number of a flattened structure
+/// would be rounded twice, to f64 and then to f32.
+#[derive(Serialize, Deserialize)]
+struct About {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     flag: String,
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -65,11 +74,14 @@ pub(crate) fn encode(
     let others = case.claims.iter().copied().filter(|other| *other != claim);
     let header = CaseHeader {
         record: Header::new(&case.name, 0, &case.shapes, first),
-        flag: case.flag.clone(),
-        source: case.source.clone(),
-        claims: std::iter::once(claim).chain(others).collect(),
+        about: About {
+            flag: case.flag.clone(),
+            source: case.source.clone(),
+            claims: std::iter::once(claim).chain(others).collect(),
+        },
     };
-    let mut bytes = serde_json::to_vec(&header)?;
+    let mut bytes = Vec::new();
+    json::to_writer(&mut bytes, &header)?;
     bytes.push(b'\n');
     for (number, frame) in case.frames.iter().enumerate() {
         let line = CaseFrame {
@@ -79,7 +91,7 @@ pub(crate) fn encode(
             boxes: (claim == Claim::Aabb).then(|| frame.boxes.clone()),
             pairs: reported.get(number).cloned(),
         };
-        serde_json::to_writer(&mut bytes, &line)?;
+        json::to_writer(&mut bytes, &line)?;
         bytes.push(b'\n');
     }
     Ok(bytes)
@@ -118,12 +130,13 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
     let Some((_, first)) = lines.next() else {
         return Err("no line in it: the first has the shapes and bodies".to_owned());
     };
-    let CaseHeader {
-        record: header,
+    let first = first.map_err(|e| format!("line 1: {e}"))?;
+    let header: Header = parse(1, &first)?;
+    let About {
         flag,
         source,
         claims,
-    } = parse(1, first)?;
+    } = parse(1, &first)?;
     if header.format != FORMAT || header.version != VERSION {
         return Err(format!(
             "line 1: {} {} is not {FORMAT} {VERSION}",
@@ -139,7 +152,7 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
     let (mut bodies, mut frames, mut pairs) = (header.bodies, Vec::new(), Vec::new());
     for (number, line) in lines {
         let at = |problem: String| format!("line {number}: {problem}");
-        let line: CaseFrame = parse(number, line)?;
+        let line: CaseFrame = parse(number, &line.map_err(|e| at(e.to_string()))?)?;
         let was = line.bodies.map(|changed| {
             let (set, was) = changed
                 .into_iter()
@@ -183,12 +196,8 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
     Ok(Read { case, pairs })
 }
 
-fn parse<T: for<'a> Deserialize<'a>>(
-    number: usize,
-    line: std::io::Result<Vec<u8>>,
-) -> Result<T, String> {
-    let line = line.map_err(|e| format!("line {number}: {e}"))?;
-    serde_json::from_slice(&line).map_err(|e| format!("line {number}: {e}"))
+fn parse<T: for<'a> Deserialize<'a>>(number: usize, line: &[u8]) -> Result<T, String> {
+    serde_json::from_slice(line).map_err(|e| format!("line {number}: {e}"))
 }
 
 fn checked(boxes: Vec<WorldBox>, bodies: usize) -> Result<Vec<WorldBox>, String> {
@@ -251,4 +260,51 @@ fn diagnose(expected: usize, line: &[u8], error: &serde_json::Error) -> Result<S
         line,
         format!("no answer ({error}); one is {{\"frame\":{expected},\"pairs\":[[i,j],…]}}"),
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use crate::catalogue::groups;
+
+    /// All numbers of a value.
+    fn numbers(value: &Value, found: &mut Vec<f64>) {
+        match value {
+            Value::Number(number) => found.extend(number.as_f64()),
+            Value::Array(items) => items.iter().for_each(|item| numbers(item, found)),
+            Value::Object(items) => items.values().for_each(|item| numbers(item, found)),
+            _ => {}
+        }
+    }
+
+    /// Whatever a program reads as a double is an f32: the number that the reference decides by.
+    #[test]
+    fn cases_have_exact_numbers() {
+        for group in groups().unwrap() {
+            let case = group.case(0, None).unwrap();
+            let text = encode(&case, case.claims[0], &[]).unwrap();
+            let mut found = Vec::new();
+            for line in text.split(|byte| *byte == b'\n').filter(|l| !l.is_empty()) {
+                numbers(&serde_json::from_slice(line).unwrap(), &mut found);
+            }
+            let rounded = found.iter().find(|x| f64::from(**x as f32) != **x);
+            assert_eq!(rounded, None, "{}", case.name);
+        }
+    }
+
+    /// Old text has 7.038531e-26, which is the f32 0x15ae43fd. By way of an f64 it would be the next one.
+    #[test]
+    fn old_cases_are_read_without_rounding_twice() {
+        let group = groups().unwrap().into_iter().find(|g| g.name == "exact/tip-to-tip");
+        let case = group.unwrap().case(0, None).unwrap();
+        let new = String::from_utf8(encode(&case, Claim::Mesh, &[]).unwrap()).unwrap();
+        let x = f64::from(case.shapes[0].ball.radius);
+        let old = new.replacen(&format!("{x:?}]"), "7.038531e-26]", 1);
+        assert_ne!(old, new);
+        let read = |text: &str| read(text.as_bytes(), 1 << 30).map(|read| read.case).unwrap();
+        assert_eq!(read(&old).shapes[0].ball.radius.to_bits(), 0x15ae_43fd);
+        assert_eq!(read(&new).frames, case.frames);
+        assert_eq!(read(&new).shapes, case.shapes);
+    }
 }
