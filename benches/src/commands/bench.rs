@@ -61,12 +61,18 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     };
     let table = compare(&args.exec, &program, &case, args.claims, args.rounds).into_diagnostic()?;
     emit(args.format, &table, |table| page(table, args))?;
-    let passed = table.iter().all(|row| row.outcome == CaseOutcome::Pass);
-    Ok(if passed {
-        Outcome::Passed
-    } else {
-        Outcome::Failed
-    })
+    let failed = table.iter().find(|row| row.outcome != CaseOutcome::Pass);
+    let why = failed.map(|row| format!("{}: {}", row.name, judged(row)));
+    Ok(Outcome::of(why.as_deref()))
+}
+
+fn judged(row: &ContestantTiming) -> String {
+    match &row.outcome {
+        CaseOutcome::Pass => "pass".to_owned(),
+        CaseOutcome::Fail { why } => format!("FAIL: {why}"),
+        CaseOutcome::Skipped { why } => format!("skipped: {why}"),
+        CaseOutcome::Error { trouble } => format!("ERROR: {trouble}"),
+    }
 }
 
 fn page(table: &[ContestantTiming], args: &Args) -> String {
@@ -78,18 +84,12 @@ fn page(table: &[ContestantTiming], args: &Args) -> String {
         "clock",
     ];
     let line = |row: &ContestantTiming| {
-        let judged = match &row.outcome {
-            CaseOutcome::Pass => "pass".to_owned(),
-            CaseOutcome::Fail { why } => format!("FAIL: {why}"),
-            CaseOutcome::Skipped { why } => format!("skipped: {why}"),
-            CaseOutcome::Error { trouble } => format!("ERROR: {trouble}"),
-        };
         let time = row
             .median_ns
             .map_or_else(|| "none".to_owned(), |ns| ns.to_string());
         vec![
             row.name.clone(),
-            judged,
+            judged(row),
             row.reported.to_string(),
             time,
             row.clock.to_owned(),

@@ -75,11 +75,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     };
     let verdict = examine_given(&Given(answers), &options, vec![read.case]).into_diagnostic()?;
     emit_verdict(args.format, &verdict)?;
-    Ok(if verdict.passed() {
-        Outcome::Passed
-    } else {
-        Outcome::Failed
-    })
+    Ok(Outcome::of(verdict.why().as_deref()))
 }
 
 fn recorded(args: &Args, pairs: Vec<Option<Vec<[u32; 2]>>>) -> miette::Result<Vec<Answer>> {

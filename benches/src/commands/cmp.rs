@@ -9,12 +9,13 @@ use sdop_bench::report::{Change, Code, Comparison, compare};
 use tempfile::TempDir;
 
 use super::Outcome;
-use super::output::{csv_text, print, rows};
+use super::output::{Reasoned, csv_text, print, rows};
 
 /// Compare two records: counts must be equal, times are ratios with intervals
 ///
-/// Counts that differ are named. Times are listed as the second over the first, the largest change first; "same" where the intervals of
-/// both meet, "?" where a record has no intervals.
+/// Rows that both have are compared, those of one alone are counted in one line. Counts that differ are named. Times are listed as
+/// the second over the first, the largest change first, the control last; "same" where the intervals of both meet, "?" where a
+/// record has no intervals.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop cmp data/record/epyc-2core-avx512/reproduce data/record/xeon-2core-avx512/reproduce\n         \
@@ -58,21 +59,25 @@ enum Format {
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let [first, second] = [place(&args.first)?, place(&args.second)?];
     let comparison = compare(first.path(), second.path())?;
+    let percent = args.fail_slower.unwrap_or(f64::INFINITY);
+    let why = if let Some(first) = comparison.differences.first() {
+        let count = comparison.differences.len();
+        Some(format!("{count} counts differ, first {}: {}", first.file, first.row))
+    } else {
+        let grown = 100.0 * comparison.slowest();
+        (grown > percent).then(|| format!("a time grew by {grown:.1} %, more than {percent} %"))
+    };
     let text = match args.format {
         Format::Table => table(&comparison, args.most),
         Format::Markdown => markdown(&comparison, args.most),
-        Format::Json => serde_json::to_string_pretty(&comparison).into_diagnostic()?,
+        Format::Json => {
+            let (result, why) = (&comparison, why.as_deref());
+            serde_json::to_string_pretty(&Reasoned { result, why }).into_diagnostic()?
+        }
         Format::Csv => csv_text(serde_json::to_value(&comparison.changes).into_diagnostic()?)?,
     };
     print(text.trim_end())?;
-    let slower = args
-        .fail_slower
-        .is_some_and(|percent| 100.0 * comparison.slowest() > percent);
-    if comparison.differences.is_empty() && !slower {
-        Ok(Outcome::Passed)
-    } else {
-        Ok(Outcome::Failed)
-    }
+    Ok(Outcome::of(why.as_deref()))
 }
 
 /// Where a record can be read.
@@ -148,9 +153,12 @@ fn head(comparison: &Comparison) -> String {
     );
     out.push_str(&comparison.equal.join(", "));
     out.push('\n');
+    for warning in &comparison.warnings {
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "WARNING {warning}");
+    }
     for difference in &comparison.differences {
         let column = difference.column.as_deref().unwrap_or("row");
-        // Writing to a String cannot fail.
         let _ = writeln!(
             out,
             "DIFFERS {}: {}, {column}: {} and {}",

@@ -109,6 +109,20 @@ pub enum Outcome {
     Told,
 }
 
+impl Outcome {
+    /// A failed check, with the reason on standard error, in one line. JSON has the same text as `why`.
+    fn failed(why: impl std::fmt::Display) -> Self {
+        // Nobody may be listening: that is no reason to panic.
+        let _ = writeln!(std::io::stderr(), "sdop: {why}");
+        Self::Failed
+    }
+
+    /// Whether there is no reason why a check failed.
+    fn of(why: Option<&str>) -> Self {
+        why.map_or(Self::Passed, Self::failed)
+    }
+}
+
 impl Cli {
     /// Refuses to share work that can't be, above all to be one of many ranks where each would do all of it.
     ///

@@ -78,6 +78,15 @@ pub fn rows<T>(header: &[&str], items: &[T], row: impl Fn(&T) -> Vec<String>) ->
     table
 }
 
+/// A result, and why the exit code isn't 0: JSON has the reason as `why`.
+#[derive(Serialize)]
+pub struct Reasoned<'a, T> {
+    #[serde(flatten)]
+    pub result: &'a T,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<&'a str>,
+}
+
 /// A number for people: six significant digits, plain unless it is tiny or huge, never minus zero.
 pub fn decimal(x: f64) -> String {
     if x == 0.0 {

@@ -3,6 +3,7 @@
 mod page;
 mod plot;
 mod tables;
+mod tidy;
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Outcome;
 use super::files::{self, command, write};
-use super::output::{Format, csv_text, emit};
+use super::output::{Format, Reasoned, csv_text, emit};
 use super::scene_args::{MachineArgs, SceneArgs};
 use super::sweep::{self, SweepArgs};
 
@@ -161,17 +162,18 @@ fn print(
     text: fn(&Tradeoff) -> String,
 ) -> miette::Result<Outcome> {
     let result = &recorded.result;
-    match format {
-        // A line a variant; the rest is in the other formats.
-        Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
-        format => emit(format, recorded, |recorded| text(&recorded.result))?,
-    }
     let failures: Vec<&str> = result.failures().collect();
-    if failures.is_empty() {
-        return Ok(Outcome::Passed);
+    let why = (!failures.is_empty())
+        .then(|| format!("true pairs were missed by: {}", failures.join("; ")));
+    match format {
+        // A line per number of a variant; the rest is in the other formats.
+        Format::Csv => emit(Format::Csv, &tidy::lines(result), |_| String::new())?,
+        format => {
+            let (result, why) = (recorded, why.as_deref());
+            emit(format, &Reasoned { result, why }, |_| text(&recorded.result))?;
+        }
     }
-    eprintln!("true pairs were missed by: {}", failures.join("; "));
-    Ok(Outcome::Failed)
+    Ok(Outcome::of(why.as_deref()))
 }
 
 fn plan(args: &Args) -> Plan {
@@ -211,9 +213,11 @@ fn read(path: &Path) -> miette::Result<Recorded> {
 fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Result<()> {
     let result = &recorded.result;
     let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
-    let csv = csv_text(serde_json::to_value(&result.rows).into_diagnostic()?)?;
+    let csv = csv_text(serde_json::to_value(tidy::lines(result)).into_diagnostic()?)?;
+    let seeds = csv_text(serde_json::to_value(tidy::seeds(result)).into_diagnostic()?)?;
     write(&numbers.join("tradeoff.json"), &json)?;
     write(&numbers.join("tradeoff.csv"), &csv)?;
+    write(&numbers.join("tradeoff-seeds.csv"), &seeds)?;
     let figures = paper.join("figures");
     write(&paper.join("tradeoff.md"), page::page(recorded))?;
     write(&figures.join("tradeoff.svg"), &plot::precision(result)?)?;

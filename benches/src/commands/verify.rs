@@ -203,9 +203,9 @@ impl Taken {
         let boxes = self.ledgers.get(&Origin::Boxes).unwrap_or(&none);
         report.finish(seconds, &boxes.boxes, run.rotation());
         emit(format, &report, Report::tables)?;
-        if report.passed() {
+        let Some(why) = report.why() else {
             return Ok(Outcome::Passed);
-        }
+        };
         if let Some((origin, &unit)) = self.failed.first_key_value() {
             let judged = run.judge(unit)?.into_iter().filter(|(of, _)| of == origin);
             let ledger = judged.map(|(_, ledger)| ledger).next().unwrap_or_default();
@@ -215,7 +215,7 @@ impl Taken {
                 (None, None) => print("the failure doesn't show on this machine")?,
             }
         }
-        Ok(Outcome::Failed)
+        Ok(Outcome::failed(why))
     }
 }
 

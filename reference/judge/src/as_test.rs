@@ -21,6 +21,18 @@ choices! {
     }
 }
 
+impl Language {
+    /// The ending of its files.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Rust => "rs",
+            Self::Cpp => "cpp",
+            Self::Python => "py",
+        }
+    }
+}
+
 /// Numbers in nested lists; every list of one depth holds items of one kind.
 enum Data {
     Float(f32),

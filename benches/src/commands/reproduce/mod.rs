@@ -17,7 +17,7 @@ use sdop_bench::sweep::{Merged, Sweep as _};
 
 use super::Outcome;
 use super::files::{command, write};
-use super::output::{Format, csv_text, emit};
+use super::output::{Format, Reasoned, csv_text, emit};
 use super::scene_args::MachineArgs;
 use super::sweep::{self, SweepArgs};
 pub use figures::draw_costs;
@@ -107,9 +107,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         paper,
         seconds: finished.seconds,
     };
-    written.write(&tables, args.format)?;
+    let why = why(&results);
+    written.write(&tables, why, args.format)?;
     finished.clear()?;
-    Ok(outcome(&results))
+    Ok(Outcome::of(why))
 }
 
 /// What merged shards give.
@@ -130,8 +131,9 @@ pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Out
         paper: out,
         seconds: merged.seconds,
     };
-    written.write(&tables, format)?;
-    Ok(outcome(&results))
+    let why = why(&results);
+    written.write(&tables, why, format)?;
+    Ok(Outcome::of(why))
 }
 
 /// Where results go, and how long they took.
@@ -142,27 +144,27 @@ struct Written<'a> {
 }
 
 impl Written<'_> {
-    fn write(&self, tables: &Tables, format: Format) -> miette::Result<()> {
+    fn write(&self, tables: &Tables, why: Option<&str>, format: Format) -> miette::Result<()> {
         write_tables(self.numbers, tables)?;
         figures::draw_all(&self.paper.join("figures"), tables)?;
         let summary = self.paper.join("summary.md");
         write(&summary, summary::write(tables))?;
         match format {
             Format::Csv => emit(Format::Csv, &tables.table_1, |_| String::new()),
-            format => emit(format, tables, |tables| {
-                let place = format!("{}, {}", summary.display(), self.numbers.display());
-                summary::brief(tables, self.seconds, &place)
-            }),
+            format => {
+                let result = tables;
+                emit(format, &Reasoned { result, why }, |_| {
+                    let place = format!("{}, {}", summary.display(), self.numbers.display());
+                    summary::brief(tables, self.seconds, &place)
+                })
+            }
         }
     }
 }
 
-fn outcome(results: &Results) -> Outcome {
-    if lists_agree(results) {
-        Outcome::Passed
-    } else {
-        Outcome::Failed
-    }
+/// What failed.
+fn why(results: &Results) -> Option<&'static str> {
+    (!lists_agree(results)).then_some("sequential and listed S-DOP report different pairs")
 }
 
 fn plan(args: &Args) -> miette::Result<Plan> {

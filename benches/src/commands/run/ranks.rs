@@ -7,6 +7,7 @@ use sdop::bodies::Bodies;
 use sdop_bench::domain::{DomainError, DomainSummary, MpiNetwork, Network as _, Rank};
 use sdop_bench::effects::Velocities;
 use sdop_bench::hash::volumes_sha256;
+use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::mpi::Ranks;
 use sdop_bench::scene::Scene;
 use sdop_bench::sweep::{code, digest};
@@ -81,7 +82,7 @@ fn tell(
         ranks,
     } = summary;
     match network.rank() {
-        0 => print(args, about, whole, Some((*border, ranks))),
+        0 => print(args, about, whole, Conditions::default(), Some((*border, ranks))),
         _ => Ok(()),
     }
 }

@@ -24,6 +24,9 @@ pub struct Report {
     missed: u64,
     /// Pairs on which a list and that of all-pairs differ, over all sources; of given boxes, a list and their definition.
     differ: u64,
+    /// Why the exit code isn't 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    why: Option<String>,
     sources: Vec<SourceReport>,
     coverage: Coverage,
     #[serde(skip)]
@@ -73,6 +76,7 @@ impl Report {
             seconds: 0.0,
             missed: 0,
             differ: 0,
+            why: None,
             sources: Vec::new(),
             coverage: Coverage::default(),
             matrix: Matrix::default(),
@@ -105,11 +109,18 @@ impl Report {
         self.seconds = seconds;
         self.differ += boxes.wrong();
         self.coverage = Coverage::of(&self.matrix, boxes, rotation);
+        self.why = match (self.missed, self.differ) {
+            (0, 0) if self.coverage.is_full() => None,
+            (0, 0) => Some("a combination of choices was not judged: see the matrix".to_owned()),
+            (missed, differ) => Some(format!(
+                "{missed} pairs are missed, {differ} differ from all-pairs or from the definition of boxes"
+            )),
+        };
     }
 
-    /// Whether no pair is missed, no finder disagrees with all-pairs, and no cell of the matrix is empty.
-    pub fn passed(&self) -> bool {
-        self.missed == 0 && self.differ == 0 && self.coverage.is_full()
+    /// What failed: a pair is missed, a finder disagrees with all-pairs, or a cell of the matrix is empty.
+    pub fn why(&self) -> Option<&str> {
+        self.why.as_deref()
     }
 
     /// Two tables a source, and those of the matrix.
