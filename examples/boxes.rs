@@ -19,12 +19,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         world.set_bounds(box_id, falling(6.0 - 0.25 * f32::from(step)))?;
         world.cull()?;
         let events = world.events();
-        let told = [("meets", &events.begun), ("leaves", &events.ended)];
-        for ([other, this], what) in told
-            .iter()
-            .flat_map(|(what, pairs)| pairs.iter().map(move |pair| (pair, what)))
-        {
-            println!("step {step}: {this} {what} {other}");
+        for [other, this] in events.begun() {
+            println!("step {step}: {this} meets {other}");
+        }
+        for [other, this] in events.ended() {
+            println!("step {step}: {this} leaves {other}");
         }
     }
 

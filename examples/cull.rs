@@ -1,5 +1,10 @@
 //! Which of 4096 tumbling rings might touch, frame after frame: by spheres first, then by or-DOPs.
-use sdop::{Bodies, Culler, ProceduralShape, Shape, ShapeSpec};
+use sdop::{Bodies, Culler, ProceduralShape, Shape, ShapeSpec, TriangleMesh, VolumeError};
+
+/// A mesh's volumes. Poses place the mesh's own origin, wherever the mesh lies about it.
+pub fn volumes(mesh: &TriangleMesh) -> Result<Shape, VolumeError> {
+    Shape::build(mesh, &ShapeSpec::default())
+}
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let ring = ProceduralShape::Torus {
@@ -8,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         segments: 32,
         sides: 12,
     };
-    let shapes = [Shape::build(&ring.build()?, &ShapeSpec::default())?];
+    let shapes = [volumes(&ring.build()?)?];
     let mut bodies = Bodies::default();
     for i in 0..4096_u16 {
         let cell = [i % 16, i / 16 % 16, i / 256].map(|n| 1.5 * f32::from(n));

@@ -43,8 +43,10 @@
 //! - **Axes**: right-handed. Which one points up doesn't matter: nothing here prefers an axis.
 //! - **Rotations**: quaternions in the order (x, y, z, w), of any non-zero norm. They turn the body frame into the world
 //!   frame: a vertex p of a body stands at R(q)·p + t.
-//! - **Translations**: of the body's origin, world frame. A [`Shape`] puts its mesh's smallest enclosing ball about the origin
-//!   unless [`Origin::File`] says otherwise.
+//! - **Translations**: of the body's origin, world frame. That is the mesh's own origin, as the file has it, unless
+//!   [`Origin::Ball`] moves the centre of the smallest enclosing ball there; [`Shape::offset`] keeps what was moved.
+//! - **Far meshes**: where rounding a mesh to f32 would move a vertex by more than 2⁻²⁰ of the mesh's size, its vertices are kept
+//!   about a point near it. A [`World`] adds that offset to the pose in f64; a [`Culler`], whose poses are f32, refuses it.
 //! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and at most 2⁶⁰.
 //! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair once, and its order depends on the
 //!   finder and the frames so far, never on the CPU or the number of threads; [`PairList::sorted`] gives an order of its own.
@@ -67,6 +69,7 @@
 //! | feature | brings |
 //! |---|---|
 //! | none | all of the above |
+//! | `serde` | snapshots of worlds that can be stored and sent |
 //! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
 //! | `serde` | settings, choices and counters as serde's data |
 //!
@@ -116,7 +119,7 @@ pub use settings::{
 pub use simd::{Tier, TierError};
 pub use threads::ThreadsError;
 pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
-pub use world::{Body, BodyId, Events, World, WorldError};
+pub use world::{Body, BodyId, Event, Events, World, WorldError};
 
 /// The README's example compiles and runs.
 #[cfg(all(doctest, feature = "readers"))]

@@ -1,5 +1,9 @@
 //! Lists of candidate or reported pairs.
 
+mod sort;
+
+pub(crate) use sort::PairSorter;
+
 use crate::simd::MAX_WIDTH;
 
 /// Room of the smallest list that has any.

@@ -12,14 +12,26 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::simd::Tier;
+use crate::simd::{Tier, in_default_mode};
 
 /// The fewest pieces of a column for which waking a thread pays.
 const FEWEST_PIECES: usize = 8;
 
+/// The most threads that can be asked for, the caller's included: more than machines have cores, and few
+/// enough that none of them takes seconds to start.
+pub const MOST_THREADS: usize = 1024;
+
 /// The caller's thread, or it and a pool of others.
 #[derive(Debug, Default)]
 pub struct Threads(Option<ThreadPool>);
+
+impl Clone for Threads {
+    /// As many threads, not the same ones: a clone may be used while the original's threads wait for their caller. The
+    /// caller's alone where the system refuses more; no result depends on it.
+    fn clone(&self) -> Self {
+        Self::new(self.threads()).unwrap_or_default()
+    }
+}
 
 /// A frame's work on one thread, in nanoseconds or so (measured with AVX-512 on an Intel and rounded): by counts, so that nothing
 /// depends on the machine.
@@ -44,7 +56,7 @@ impl Work {
 pub const WORTH_WAKING: u64 = 1 << 20;
 
 /// The threads of one frame after the other: all, or the caller's alone where a frame is little work.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct FrameThreads {
     all: Threads,
     alone: Threads,
@@ -85,7 +97,7 @@ pub struct Executor<'a> {
     pub pool: &'a Threads,
 }
 
-/// Threads that the system refused.
+/// Threads that can't be started: more than [`MOST_THREADS`], or refused by the system.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, miette::Diagnostic)]
 #[error("cannot start {threads} threads: {reason}")]
 #[diagnostic(help("ask for fewer threads"))]
@@ -98,10 +110,16 @@ impl Threads {
     /// A pool of so many threads; none or one means the caller's own.
     ///
     /// # Errors
-    /// The system refuses to start them.
+    /// More than [`MOST_THREADS`], of which none is started; the system refuses to start them.
     pub fn new(threads: usize) -> Result<Self, ThreadsError> {
         if threads <= 1 {
             return Ok(Self(None));
+        }
+        if threads > MOST_THREADS {
+            return Err(ThreadsError {
+                threads,
+                reason: format!("at most {MOST_THREADS} can be asked for"),
+            });
         }
         let others = threads - 1;
         let pool = ThreadPoolBuilder::new().num_threads(others).build();
@@ -225,10 +243,13 @@ fn share<T>(pool: &ThreadPool, items: impl Iterator<Item = T> + Send, work: impl
     let queue = Mutex::new(items);
     // Poisoned by a panic, which the scope passes on.
     let next = || queue.lock().ok().and_then(|mut items| items.next());
+    // A worker has the mode of the thread that started it, which may be the host's.
     let work_off = || {
-        while let Some(item) = next() {
-            work(item);
-        }
+        in_default_mode(|| {
+            while let Some(item) = next() {
+                work(item);
+            }
+        });
     };
     pool.in_place_scope(|scope| {
         for _ in 0..pool.current_num_threads() {
@@ -248,6 +269,7 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
+    use crate::simd::FpMode;
 
     #[test]
     fn others_are_woken_for_frames_that_are_worth_it_and_always_for_nothing() {
@@ -267,6 +289,32 @@ mod tests {
         assert_eq!(always.get().threads(), 2);
         always.expect(Work::default());
         assert_eq!(always.get().threads(), 2);
+    }
+
+    #[test]
+    fn too_many_threads_are_refused_at_once() {
+        for threads in [MOST_THREADS + 1, 5_000, usize::MAX] {
+            let refused = Threads::new(threads).unwrap_err().to_string();
+            let wanted = format!("cannot start {threads} threads: at most 1024 can be asked for");
+            assert_eq!(refused, wanted);
+        }
+    }
+
+    /// Pools that were started in another mode, and a caller that has one.
+    #[test]
+    fn work_runs_in_the_default_mode() {
+        for mode in FpMode::OTHERS {
+            mode.run(|| {
+                let threads = Threads::new(4).unwrap();
+                let (all, wakes) = (Barrier::new(4), &mut [FpMode::OTHERS[0]; 4]);
+                threads.each(wakes, |_, found| {
+                    all.wait(); // one item for each thread
+                    *found = FpMode::current();
+                });
+                assert_eq!(*wakes, [FpMode::DEFAULT; 4]);
+                assert_eq!(FpMode::current(), mode);
+            });
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@ use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Interest, Order, Strategy, Updates};
-use sdop::volume::{Shape, ShapeSpec};
+use sdop::volume::{Origin, Shape, ShapeSpec};
 
 /// The system's allocator, counting what each thread asks of it: tests run side by side.
 struct Counting;
@@ -62,6 +62,7 @@ impl Scene {
         let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
         let shape = |&radius: &f32| {
             let spec = ShapeSpec {
+                origin: Origin::Ball,
                 radius: Some(radius),
                 ..ShapeSpec::default()
             };

@@ -104,7 +104,12 @@ fn shapes_and_poses_are_those_of_the_scene() {
     let path = directory.path().join("scene.toml");
     std::fs::write(&path, SCENE).unwrap();
     let scene = SceneFile::read(&path).unwrap().build().unwrap();
-    assert_eq!(reader.shapes(), scene.shapes);
+    // A record has the vertices as culled, and not how the scene has scaled and moved them.
+    let mut shapes = scene.shapes.clone();
+    for shape in &mut shapes {
+        (shape.offset, shape.scale) = ([0.0; 3], 1.0);
+    }
+    assert_eq!(reader.shapes(), shapes);
     let mut simulation = Simulation::new(&scene, Tier::SCALAR).unwrap();
     while let Some(frame) = simulation.next_frame().unwrap() {
         let pairs = frame.pairs.sorted();

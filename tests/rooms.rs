@@ -177,7 +177,10 @@ fn an_upward_import_is_seen_however_it_is_written() {
     assert!(wrong(JUDGE, "case", "use crate::{ours::Shapes, claim::Claim};").is_empty());
     let below = "// see crate::world\nuse crate::volume::Shape;";
     assert!(wrong(LIBRARY, "bodies", below).is_empty());
-    assert_eq!(wrong(LIBRARY, "update", "use crate::tools::trick;").len(), 1);
+    assert_eq!(
+        wrong(LIBRARY, "update", "use crate::tools::trick;").len(),
+        1
+    );
     assert_eq!(
         wrong(LIBRARY, "update", "use crate::Culler;").len(),
         1,

@@ -10,7 +10,8 @@ use sdop::Bodies;
 use sdop::rounding::pose::{rotation, transform};
 use sdop_judge::{Claim, Contestant, JudgeError, Scene, judge};
 
-struct Grid {
+/// A grid over bounding balls, counted anew in each frame.
+pub struct Grid {
     /// Centre in the body frame and radius of each shape's ball.
     balls: Vec<([f32; 3], f64)>,
     tight: bool,
@@ -18,7 +19,8 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(scene: &Scene<'_>, tight: bool) -> Self {
+    /// The culler of a case's bodies; with `tight`, cells are as large as the largest ball.
+    pub fn new(scene: &Scene<'_>, tight: bool) -> Self {
         let ball =
             |shape: &sdop::Shape| (shape.ball.centre.to_array(), f64::from(shape.ball.radius));
         Self {

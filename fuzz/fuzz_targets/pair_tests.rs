@@ -8,13 +8,13 @@ use libfuzzer_sys::fuzz_target;
 use sdop::Tier;
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::check_bodies;
+use sdop::mesh::ProceduralShape;
+use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_judge::ours::contact::{Contact, Kind, Placed};
 use sdop_judge::ours::draw::add;
 use sdop_judge::ours::rounds::{Ledger, Run};
 use sdop_judge::ours::ways::Rotation;
 use sdop_judge::ours::{Answers, Predicate, Shapes};
-use sdop::mesh::ProceduralShape;
-use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 const NAMES: [&str; 4] = ["box", "l-shape", "needle", "plate"];
 

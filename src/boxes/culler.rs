@@ -22,7 +22,9 @@ use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 /// assert_eq!(culler.cull(&boxes)?.sorted(), [[0, 1]]); // touching is meeting
 /// # Ok::<(), sdop::CullError>(())
 /// ```
-#[derive(Debug)]
+///
+/// A clone culls on as the original would, on threads that it starts for itself.
+#[derive(Clone, Debug)]
 pub struct BoxCuller {
     frames: Frames,
     groups: Option<Vec<Groups>>,
@@ -57,7 +59,8 @@ impl BoxCullerBuilder {
         Self { finder, ..self }
     }
 
-    /// Number of threads, the caller's included; 0 is taken as 1. Frames of little work stay on the caller's. Lists and
+    /// Number of threads, the caller's included, at most 1,024 or
+    /// the culler isn't built; 0 is taken as 1. Frames of little work stay on the caller's. Lists and
     /// counters don't depend on it.
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }

@@ -11,7 +11,7 @@ use crate::counters::VolumeCounters;
 use crate::overlap::boxes::Cubes;
 use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
-use crate::simd::{Tier, dispatch};
+use crate::simd::{Tier, dispatch, in_default_mode};
 use crate::strategy::{BoxInputs, BoxTest, Output, Scratch, list_boxes};
 use crate::threads::{FrameThreads, Work};
 
@@ -30,7 +30,7 @@ const CUBIC: f32 = 32.0;
 const FEW: usize = 16;
 
 /// The boxes of a set, as a finder has them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Frames {
     tier: Tier,
     threads: FrameThreads,
@@ -97,6 +97,14 @@ impl Frames {
         }
     }
 
+    /// Forgets all boxes, and gives back their memory. The next [`Self::replace`] begins anew.
+    pub fn forget(&mut self) {
+        (self.places, self.order) = Default::default();
+        (self.ends, self.scratch) = Default::default();
+        self.cubes = Balls::new(0);
+        self.start_anew();
+    }
+
     fn start_anew(&mut self) {
         self.finder = finder(self.choice, self.len());
         self.cubes.resize(self.len());
@@ -106,6 +114,15 @@ impl Frames {
 
     /// Hands the boxes that meet, not both at rest, whose groups collide, to `output`. `boxes` and `groups` are by name.
     pub fn cull(
+        &mut self,
+        boxes: &[Aabb],
+        groups: Option<&[Groups]>,
+        output: Output<'_>,
+    ) -> Result<VolumeCounters, ContractError> {
+        in_default_mode(|| self.cull_frame(boxes, groups, output))
+    }
+
+    fn cull_frame(
         &mut self,
         boxes: &[Aabb],
         groups: Option<&[Groups]>,

@@ -7,11 +7,16 @@
 //! exact real arithmetic. No box is widened, none is missed, and none is reported that is an ulp away. Ends are any finite
 //! numbers. Lists depend on the calls alone, never on the CPU or on threads.
 
+mod crowds;
 mod cubes;
 mod culler;
 mod frame;
+#[cfg(feature = "serde")]
+mod snapshot;
 mod world;
 
 pub use crate::bodies::Aabb;
 pub use culler::{BoxCuller, BoxCullerBuilder};
+#[cfg(feature = "serde")]
+pub use snapshot::BoxWorldSnapshot;
 pub use world::{BoxBody, BoxWorld};

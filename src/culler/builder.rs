@@ -1,11 +1,11 @@
 //! How a culler is made: settings first, then the shapes and bodies.
 
-use super::{CullError, Culler};
+use super::{CullError, Culler, check};
 use crate::bodies::Bodies;
 use crate::settings::{
     Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, Strategy, Updates,
 };
-use crate::simd::Tier;
+use crate::simd::{Tier, in_default_mode};
 use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 use crate::volume::Shape;
 
@@ -87,7 +87,8 @@ impl CullerBuilder {
         self
     }
 
-    /// Number of threads, the caller's included; 0 is taken as 1. Frames of little work stay on the caller's. Lists, counters and hashes don't depend on it.
+    /// Number of threads, the caller's included, at most 1,024 or
+    /// the culler isn't built; 0 is taken as 1. Frames of little work stay on the caller's. Lists, counters and hashes don't depend on it.
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
     }
@@ -114,12 +115,23 @@ impl CullerBuilder {
     ///
     /// # Errors
     /// Bodies or shapes outside of the contract ([`check_bodies`](crate::bodies::contract::check_bodies)); settings that
-    /// can't be carried out (a missing interest or budget, a body that doesn't exist); threads that the system refuses.
+    /// can't be carried out (a missing interest or budget, a body that doesn't exist); threads that the system refuses; a shape
+    /// far from its origin ([`Shape::pose_offset`]).
     pub fn build(&self, shapes: &[Shape], bodies: &Bodies) -> Result<Culler, CullError> {
+        check::near(shapes)?;
+        self.build_about_vertices(shapes, bodies)
+    }
+
+    /// The same of poses that place the origin of each shape's vertices, however far that is from the mesh's own.
+    pub(crate) fn build_about_vertices(
+        &self,
+        shapes: &[Shape],
+        bodies: &Bodies,
+    ) -> Result<Culler, CullError> {
         let tier = self.tier.unwrap_or_else(Tier::detect);
         let worth_waking = self.worth_waking.unwrap_or(WORTH_WAKING);
         let threads = FrameThreads::new(Threads::new(self.threads)?, worth_waking);
-        Culler::build(shapes, bodies, &self.settings, tier, threads)
+        in_default_mode(|| Culler::build(shapes, bodies, &self.settings, tier, threads))
     }
 }
 

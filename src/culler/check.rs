@@ -8,6 +8,7 @@ use super::{CullError, Culler};
 use crate::bodies::Bodies;
 use crate::bodies::contract::{check_columns, check_numbers, check_poses, has_sound_size};
 use crate::settings::{CullSettings, DirectionSet};
+use crate::simd::in_default_mode;
 use crate::volume::Shape;
 
 /// What a culler keeps of the bodies: their shapes, which of them may move, and all poses where some may not.
@@ -19,6 +20,25 @@ pub(super) fn fixed(bodies: &Bodies) -> Bodies {
         shape: bodies.shape.clone(),
         dynamic: bodies.dynamic.clone(),
         ..Bodies::default()
+    }
+}
+
+/// How to mend a shape that is far from its origin.
+pub(crate) const FAR: &str = "keep its bodies in a `World`, whose translations are f64, or build it with `Origin::Ball` and \
+                              pose it by the centre of its ball, `Shape::offset`";
+
+/// Refuses shapes that f32 poses can't place: those far from the origin that the poses refer to.
+pub(super) fn near(shapes: &[Shape]) -> Result<(), CullError> {
+    match shapes.iter().find(|shape| shape.is_far()) {
+        None => Ok(()),
+        Some(shape) => Err(CullError::Shape {
+            shape: shape.name.clone(),
+            problem: format!(
+                "lies far from the origin of its file, about {:?}: too far for poses in f32",
+                shape.offset
+            ),
+            hint: FAR,
+        }),
     }
 }
 
@@ -61,15 +81,17 @@ impl Culler {
     /// # Errors
     /// Bodies outside of the contract, an interest in a body that is no longer there; the culler stays as it was.
     pub fn refresh(&mut self, bodies: &Bodies) -> Result<(), CullError> {
-        check_columns(bodies)?;
-        check_numbers(&bodies.shape, self.models.frames.len())?;
-        check_poses(bodies, 0..bodies.len())?;
-        self.settings.check(bodies.len())?;
-        if bodies.len() != self.fixed.len() {
-            self.groups = None;
-        }
-        self.replace(bodies, &vec![true; bodies.len()]);
-        Ok(())
+        in_default_mode(|| {
+            check_columns(bodies)?;
+            check_numbers(&bodies.shape, self.models.frames.len())?;
+            check_poses(bodies, 0..bodies.len())?;
+            self.settings.check(bodies.len())?;
+            if bodies.len() != self.fixed.len() {
+                self.groups = None;
+            }
+            self.replace(bodies, &vec![true; bodies.len()]);
+            Ok(())
+        })
     }
 
     /// Checks that there are as many bodies as there were, and that the same may move.

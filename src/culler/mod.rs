@@ -12,8 +12,10 @@ pub(crate) mod models;
 mod needs;
 mod portions;
 mod replace;
+mod shapes;
 
 pub use builder::CullerBuilder;
+pub(crate) use check::FAR;
 pub use error::CullError;
 
 use std::ops::Range;
@@ -28,16 +30,22 @@ use crate::counters::{Counters, Seconds};
 use crate::overlap::intervals::IntervalSlots;
 use crate::pairs::PairList;
 use crate::settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates};
-use crate::simd::Tier;
+use crate::simd::{Tier, in_default_mode};
+#[cfg(feature = "serde")]
+use crate::strategy::Answers;
 use crate::strategy::{self, Inputs, Output, Scratch, SlotNames, Totals};
 use crate::threads::FrameThreads;
 use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
 use crate::volume::Shape;
 
 /// Culls the frames of one scene: a fixed set of bodies whose poses change.
-#[derive(Debug)]
+///
+/// A clone culls on as the original would, on threads that it starts for itself.
+#[derive(Clone, Debug)]
 pub struct Culler {
     settings: CullSettings,
+    /// Whether budgets are spent on pairs in the order of their bodies, whatever the finder and the frames so far.
+    is_canonical: bool,
     scheme: Scheme,
     needs: Needs,
     tier: Tier,
@@ -100,6 +108,7 @@ impl Culler {
         threads.expect(needs.work(n as u64, &Totals::default()));
         let mut culler = Self {
             settings: settings.clone(),
+            is_canonical: false,
             scheme,
             needs,
             tier,
@@ -127,23 +136,6 @@ impl Culler {
         Ok(culler)
     }
 
-    /// Adds a shape. Bodies take it by the returned number in `bodies.shape`, from the next [`Self::refresh`] on.
-    ///
-    /// # Errors
-    /// A shape beyond the contract, or with other slab directions than those before; nothing is added.
-    pub fn add_shape(&mut self, shape: &Shape) -> Result<u32, CullError> {
-        check::shape(shape, self.models.directions())?;
-        if let Some(intervals) = &mut self.intervals {
-            intervals.add(shape);
-        }
-        Ok(self.models.add(shape))
-    }
-
-    /// Adds a model: another grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the returned number.
-    pub(crate) fn grow(&mut self, model: u32, margin: f32) -> u32 {
-        self.models.grow(model, margin)
-    }
-
     /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a body.
     ///
     /// Pairs are filtered behind the first test, whose hits are few, and before anything else is done with them.
@@ -156,6 +148,29 @@ impl Culler {
         }
         self.groups = groups;
         Ok(())
+    }
+
+    /// From now on, a budget that is spent on pairs as they are found is spent on them in the order of their bodies.
+    pub(crate) fn set_canonical(&mut self) {
+        self.is_canonical = true;
+    }
+
+    /// Exchanges the list of the last frame, whose memory serves for the next one.
+    pub(crate) fn swap_pairs(&mut self, pairs: &mut PairList) {
+        std::mem::swap(&mut self.pairs, pairs);
+    }
+
+    /// When the pairs of the last frame were refined, for strategies that take the oldest answers first.
+    #[cfg(feature = "serde")]
+    pub(crate) fn answers(&self) -> Answers {
+        self.scratch.answers()
+    }
+
+    /// Takes over the answers of another culler, in place of its own.
+    #[cfg(feature = "serde")]
+    pub(crate) fn set_answers(&mut self, answers: &Answers) {
+        self.stamp = self.stamp.max(answers.latest());
+        self.scratch.set_answers(answers);
     }
 
     /// From now on, these bodies are of interest.
@@ -215,6 +230,15 @@ impl Culler {
 
     /// Culls one frame, which began at `start`, and hands its pairs to `output`.
     fn cull_into(
+        &mut self,
+        bodies: &Bodies,
+        output: Output<'_>,
+        start: Instant,
+    ) -> Result<(), CullError> {
+        in_default_mode(|| self.cull_frame(bodies, output, start))
+    }
+
+    fn cull_frame(
         &mut self,
         bodies: &Bodies,
         output: Output<'_>,
@@ -366,6 +390,7 @@ impl Culler {
         let inputs = Inputs {
             executor: self.threads.get().executor(self.tier),
             settings: &self.settings,
+            is_canonical: self.is_canonical,
             finder: &self.finder,
             slots: self.finder.slots(&self.balls),
             names,

@@ -10,15 +10,18 @@ use crate::settings::CullSettings;
 use crate::update::{Frames, ShapeFrame};
 use crate::volume::{DirectionSet, Hull, OrDop, Shape};
 
-/// Frames and tables of all models.
-#[derive(Debug)]
+/// Frames and tables of all models. Numbers of models that are gone are given again.
+#[derive(Clone, Debug)]
 pub(crate) struct Models {
     pub frames: Frames,
     pub tables: SlabTables,
     /// The slabs of every model: an or-DOP, or an oriented box.
     ordops: Vec<OrDop>,
-    /// How many of the models are shapes as they were given.
-    shapes: u32,
+    /// Models that are gone.
+    free: Vec<u32>,
+    /// How many numbers of hulls there are, one a shape, and those of shapes that are gone.
+    hulls: u32,
+    free_hulls: Vec<u32>,
     /// Whether an oriented box takes the place of each or-DOP.
     boxes: bool,
     /// Whether the or-DOP decides without a sphere, and is binned by its own ball.
@@ -33,7 +36,9 @@ impl Models {
             frames: Frames::default(),
             tables: SlabTables::new(settings.k, std::iter::empty()),
             ordops: Vec::new(),
-            shapes: 0,
+            free: Vec::new(),
+            hulls: 0,
+            free_hulls: Vec::new(),
             boxes: scheme.has_boxes(),
             alone: scheme.is_oriented_alone(),
         };
@@ -43,39 +48,103 @@ impl Models {
         models
     }
 
-    /// The slab directions that a further shape must have: those of the first, unless its own box is taken.
+    /// The slab directions that a further shape must have: those of the others, unless its own box is taken.
     pub fn directions(&self) -> Option<DirectionSet> {
-        (!self.boxes && self.shapes > 0).then(|| self.tables.directions())
+        (!self.boxes && self.shapes() > 0).then(|| self.tables.directions())
     }
 
-    /// Adds the model of a shape; returns its number. The shapes' hulls are counted apart, from 0 in the order of these calls.
+    /// How many models are shapes as they were given.
+    fn shapes(&self) -> usize {
+        self.hulls as usize - self.free_hulls.len()
+    }
+
+    /// Adds the model of a shape; returns its number. Its hull has a number of its own ([`ShapeFrame::hull`]): from 0 in the
+    /// order of these calls, as long as no shape is removed.
     pub fn add(&mut self, shape: &Shape) -> u32 {
-        let ordop = if self.boxes {
-            shape.obb(&Hull::of(&shape.vertices))
-        } else {
-            shape.ordop.clone()
-        };
+        let ordop = self.ordop_of(shape);
         if self.frames.is_empty() {
             self.tables = SlabTables::new(ordop.directions, std::iter::empty());
         }
-        let frame = ShapeFrame::new(shape, &ordop.basis).numbered(self.shapes);
-        self.shapes += 1;
-        self.push(frame, ordop)
+        let hull = self.free_hulls.pop().unwrap_or_else(|| {
+            self.hulls += 1;
+            self.hulls - 1
+        });
+        let frame = ShapeFrame::new(shape, &ordop.basis).numbered(hull);
+        self.put(frame, ordop)
     }
 
     /// Adds the model of another grown by `margin`; returns its number.
     pub fn grow(&mut self, model: u32, margin: f32) -> u32 {
         let ordop = self.ordops[model as usize].grown(margin);
         let frame = self.frames[model as usize].grown(margin);
-        self.push(frame, ordop)
+        self.put(frame, ordop)
     }
 
-    fn push(&mut self, frame: ShapeFrame, ordop: OrDop) -> u32 {
+    /// Makes the model of a shape that of another one. Those that were grown of it stay as they are.
+    pub fn replace(&mut self, model: u32, shape: &Shape) {
+        let ordop = self.ordop_of(shape);
+        let hull = self.frames[model as usize].hull();
+        let frame = ShapeFrame::new(shape, &ordop.basis).numbered(hull);
+        self.set(model as usize, frame, ordop);
+    }
+
+    /// Removes a model that was grown of another.
+    pub fn remove(&mut self, model: u32) {
+        self.free.push(model);
+    }
+
+    /// Removes the model of a shape, after all that were grown of it; returns the number of its hull.
+    pub fn remove_shape(&mut self, model: u32) -> u32 {
+        let hull = self.frames[model as usize].hull();
+        self.free_hulls.push(hull);
+        self.remove(model);
+        if self.shapes() == 0 {
+            (self.free, self.ordops) = Default::default();
+            (self.frames, self.hulls, self.free_hulls) = Default::default();
+            self.tables = SlabTables::new(self.tables.directions(), std::iter::empty());
+        }
+        hull
+    }
+
+    /// Gives back the memory of models and hulls that are gone, as far as they are the last ones; returns how many
+    /// hulls are left.
+    pub fn shrink_to_fit(&mut self) -> usize {
+        let models = without_last(&mut self.free, self.ordops.len());
+        self.ordops.truncate(models);
+        self.ordops.shrink_to_fit();
+        self.frames.shrink_to(models);
+        self.tables.shrink_to(models);
+        let hulls = without_last(&mut self.free_hulls, self.hulls as usize);
+        self.hulls = hulls as u32;
+        hulls
+    }
+
+    fn ordop_of(&self, shape: &Shape) -> OrDop {
+        if self.boxes {
+            shape.obb(&Hull::of(&shape.vertices))
+        } else {
+            shape.ordop.clone()
+        }
+    }
+
+    /// Adds a model, in the place of one that is gone if there is any; returns its number.
+    fn put(&mut self, frame: ShapeFrame, ordop: OrDop) -> u32 {
+        if let Some(number) = self.free.pop() {
+            self.set(number as usize, frame, ordop);
+            return number;
+        }
         let number = self.frames.len();
         self.tables.push(&ordop, frame.centre(), frame.reach());
         self.ordops.push(ordop);
         self.frames.push(self.binned(frame, number));
         number as u32
+    }
+
+    fn set(&mut self, number: usize, frame: ShapeFrame, ordop: OrDop) {
+        self.tables
+            .set(number, &ordop, frame.centre(), frame.reach());
+        self.ordops[number] = ordop;
+        self.frames.set(number, self.binned(frame, number));
     }
 
     /// The frame with the radius that a pair finder needs.
@@ -86,5 +155,38 @@ impl Models {
         let k = self.tables.directions().k();
         let radius = up(reach(self.tables.shape(number), k, frame.reach()));
         frame.with_radius(radius)
+    }
+}
+
+/// How many of `all` numbers are left without those at the end that are free; they are no longer among the free ones.
+fn without_last(free: &mut Vec<u32>, all: usize) -> usize {
+    free.sort_unstable();
+    let mut left = all;
+    while let Some(last) = free.pop() {
+        if last as usize + 1 != left {
+            free.push(last);
+            break;
+        }
+        left -= 1;
+    }
+    free.shrink_to_fit();
+    left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn free_numbers_at_the_end_are_dropped() {
+        for (mut free, all, left, kept) in [
+            (vec![], 5, 5, vec![]),
+            (vec![4, 1, 3], 5, 3, vec![1]),
+            (vec![0, 1], 2, 0, vec![]),
+            (vec![1, 0], 3, 3, vec![0, 1]),
+        ] {
+            assert_eq!(without_last(&mut free, all), left);
+            assert_eq!(free, kept);
+        }
     }
 }

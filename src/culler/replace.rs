@@ -3,8 +3,10 @@
 use super::needs;
 use super::{Culler, check};
 use crate::bodies::Bodies;
-use crate::broad_phase::{PairFinder, Reorder};
+use crate::broad_phase::{Balls, PairFinder, Reorder};
 use crate::settings::Flow;
+use crate::simd::in_default_mode;
+use crate::update::OrDopRows;
 
 impl Culler {
     /// Re-reads `bodies.shape` after a change of margin class.
@@ -16,14 +18,16 @@ impl Culler {
     /// Takes up another set of bodies, those that are `present`, as far as it is new: what is known of the others' neighbours
     /// is kept. Volumes of static bodies are placed anew.
     pub(crate) fn exchange(&mut self, bodies: &Bodies, present: &[bool]) {
-        let stays = self.take_places(bodies, present);
-        let population = needs::population(self.scheme, &self.models, &self.places);
-        let finder = self.settings.pairs;
-        if (self.finder).replace(finder, &population, &stays, self.places.moving) {
-            self.place_static(bodies); // the others in the frame to come
-        } else {
-            self.begin(bodies);
-        }
+        in_default_mode(|| {
+            let stays = self.take_places(bodies, present);
+            let population = needs::population(self.scheme, &self.models, &self.places);
+            let finder = self.settings.pairs;
+            if (self.finder).replace(finder, &population, &stays, self.places.moving) {
+                self.place_static(bodies); // the others in the frame to come
+            } else {
+                self.begin(bodies);
+            }
+        });
     }
 
     /// Replaces the set of bodies by those that are `present`, of which nothing is known.
@@ -33,6 +37,23 @@ impl Culler {
         let population = needs::population(self.scheme, &self.models, &self.places);
         self.finder = PairFinder::new(self.settings.pairs, &population);
         self.begin(bodies);
+    }
+
+    /// Forgets all bodies, and gives back the memory of them and of models that are gone. What was answered of pairs stays. The
+    /// next [`Self::exchange`] begins anew.
+    pub(crate) fn forget(&mut self) {
+        let hulls = self.models.shrink_to_fit();
+        if let Some(intervals) = &mut self.intervals {
+            intervals.shrink_to(hulls);
+            intervals.forget_bodies();
+        }
+        self.scratch.forget_lists();
+        self.pairs.shrink_to_fit();
+        self.groups = None;
+        (self.places, self.fixed, self.order) = Default::default();
+        (self.interest, self.interval_slots) = Default::default();
+        (self.balls, self.rows) = (Balls::new(0), OrDopRows::default());
+        self.replace(&Bodies::default(), &[]);
     }
 
     /// Gives places to the bodies that are `present`; whether each former place's body keeps its order.

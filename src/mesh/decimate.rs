@@ -41,7 +41,7 @@ pub fn decimate(mesh: &TriangleMesh, target: usize) -> TriangleMesh {
             );
         }
     }
-    surface.into_mesh(&mesh.name)
+    surface.into_mesh(mesh)
 }
 
 /// Q(x) = x·Ax + 2b·x + c.
@@ -353,7 +353,7 @@ impl Surface {
     }
 
     /// The living triangles with the vertices that they use, in their old order.
-    fn into_mesh(self, name: &str) -> TriangleMesh {
+    fn into_mesh(self, mesh: &TriangleMesh) -> TriangleMesh {
         let mut new_index = vec![None; self.positions.len()];
         let mut vertices = Vec::new();
         for (vertex, position) in self.positions.iter().enumerate() {
@@ -373,9 +373,11 @@ impl Surface {
             .filter_map(renumber)
             .collect();
         TriangleMesh {
-            name: name.to_owned(),
+            name: mesh.name.clone(),
             vertices,
             triangles,
+            offset: mesh.offset,
+            rounding: mesh.rounding,
         }
     }
 }

@@ -8,6 +8,7 @@
 
 pub mod decimate;
 mod error;
+mod far;
 #[cfg(feature = "readers")]
 mod files;
 pub mod shapes;
@@ -23,15 +24,23 @@ use glam::Vec3;
 /// The largest coordinate size a mesh may have: 2⁶⁰ (the culler's contract).
 pub const MAX_COORDINATE: f32 = (1_u64 << 60) as f32;
 
-/// An indexed triangle mesh. Vertices are in the file's own units and frame (right-handed).
-#[derive(Clone, Debug, PartialEq)]
+/// An indexed triangle mesh, in the file's own units and axes (right-handed): a point of the file is offset + vertex.
+///
+/// Vertices are f32 and, within their `rounding`, what the promise is about. The offset is zero, and coordinates are rounded
+/// to f32 where they are, unless that would move one by more than 2⁻²⁰ of the mesh's largest extent: such a mesh is far from
+/// its origin, and kept about a point near it.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
     /// What messages and tables call the mesh: the file's stem or the procedural shape's name.
     pub name: String,
-    /// Vertex positions, all finite.
+    /// Vertex positions about `offset`, all finite.
     pub vertices: Vec<Vec3>,
     /// Vertex indices of each triangle, all in range.
     pub triangles: Vec<[u32; 3]>,
+    /// Where the origin of `vertices` lies in the file's coordinates: zero unless the mesh is far from its origin.
+    pub offset: [f64; 3],
+    /// How far any vertex of a far mesh is at most from the f64 point that it stands for; volumes are grown by it.
+    pub rounding: f32,
 }
 
 impl TriangleMesh {
@@ -46,14 +55,76 @@ impl TriangleMesh {
         triangles: Vec<[u32; 3]>,
     ) -> Result<Self, MeshError> {
         let name = name.into();
-        match check(&vertices, &triangles) {
+        let points: Vec<[f64; 3]> = vertices
+            .iter()
+            .map(|v| v.to_array().map(f64::from))
+            .collect();
+        match check(&points, &triangles) {
             Ok(()) => Ok(Self {
                 name,
                 vertices,
                 triangles,
+                ..Self::default()
             }),
             Err(problem) => Err(problem.at(&name, None)),
         }
+    }
+
+    /// A mesh of vertices in f64, without a name: rounded to f32, or kept about an offset where it is far from its origin.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn from_f64(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        match check(vertices, triangles) {
+            Ok(()) => Ok(Self::placed(far::place(vertices), triangles.to_vec())),
+            Err(problem) => Err(problem.at("mesh", None)),
+        }
+    }
+
+    /// The same of three points a triangle, of which those at equal positions become one vertex.
+    #[cfg(feature = "readers")]
+    fn from_soup(points: &[[f64; 3]]) -> Result<Self, Problem> {
+        let corners: Vec<[u32; 3]> = (0..points.len() as u32 / 3)
+            .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
+            .collect();
+        check(points, &corners)?;
+        let mut placed = far::place(points);
+        let triangles = files::weld(&mut placed.vertices);
+        Ok(Self::placed(placed, triangles))
+    }
+
+    fn placed(placed: far::Placed, triangles: Vec<[u32; 3]>) -> Self {
+        let vertices = placed.vertices.into_iter().map(Vec3::from_array);
+        Self {
+            name: String::new(),
+            vertices: vertices.collect(),
+            triangles,
+            offset: placed.offset,
+            rounding: placed.rounding,
+        }
+    }
+
+    /// The same under a name.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// The vertices in the file's coordinates. Exact: an offset has few enough bits.
+    pub fn points(&self) -> impl ExactSizeIterator<Item = [f64; 3]> + '_ {
+        let coordinate = |offset: f64, x: f32| match offset {
+            0.0 => f64::from(x), // 0 + −0 would be 0
+            _ => offset + f64::from(x),
+        };
+        let point = move |v: &Vec3| std::array::from_fn(|i| coordinate(self.offset[i], v[i]));
+        self.vertices.iter().map(point)
+    }
+
+    /// Whether the mesh is kept about a point other than its origin.
+    #[must_use]
+    pub fn is_far(&self) -> bool {
+        self.offset != [0.0; 3]
     }
 
     /// The same of vertices that are arrays, or turn into arrays as those of any version of glam do.
@@ -70,7 +141,7 @@ impl TriangleMesh {
     }
 }
 
-fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), Problem> {
+fn check(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(), Problem> {
     if vertices.is_empty() {
         return Err(Problem::NoVertices);
     }
@@ -94,8 +165,8 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), Problem> {
     Ok(())
 }
 
-fn check_vertex(vertex: usize, position: Vec3) -> Result<(), Problem> {
-    for value in position.to_array() {
+fn check_vertex(vertex: usize, position: [f64; 3]) -> Result<(), Problem> {
+    for value in position.map(|x| x as f32) {
         if !value.is_finite() {
             return Err(Problem::NotFinite { vertex, value });
         }

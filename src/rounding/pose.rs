@@ -16,6 +16,10 @@ pub type Rotation = [[f64; 3]; 3];
 /// Proofs: `pose_entry.g`, `pose_point.g`.
 pub const COORDINATE_ERROR: f64 = 24.0 * exp2(-53);
 
+/// 2⁻⁴⁷ ≥ √3·[`COORDINATE_ERROR`]: how far t + R·o in f64 may lie from the exact point, as a multiple of max(|o|∞, |t|∞) for any
+/// o and t in f64. Proof: `pose_offset.g`.
+pub const OFFSET_ERROR: f64 = exp2(-47);
+
 /// 2⁻⁴⁶ = 128·2⁻⁵³, the margin of a re-fitted world extent as a multiple of max(ρ, |t|∞): for a direction with
 /// coefficients in {−1, 0, 1} the three coordinates bring 3·24, the two sums at most 4 + 6, the addition of the margin 6.
 pub const REFIT_MARGIN: f64 = exp2(-46);

@@ -1,4 +1,5 @@
-//! The one room with `unsafe`: vectors of f32 in every tier of the CPU behind one sealed trait.
+//! The one room with `unsafe`: vectors of f32 in every tier of the CPU behind one sealed trait, and the
+//! floating-point mode that they run in.
 //!
 //! A kernel is written once, generic over [`Lanes`], with plain `+ − ×`, comparisons and table look-ups and never a
 //! fused multiply-add, so that every tier computes the same bits (design, section 4). [`Tier`] says which tiers this
@@ -10,10 +11,11 @@
 
 #![allow(
     unsafe_code,
-    reason = "the intrinsics of std::arch are unsafe; this room alone holds them"
+    reason = "the intrinsics of std::arch and the floating-point mode are unsafe; this room alone holds them"
 )]
 
 mod columns;
+mod fp_mode;
 mod lanes;
 mod scalar;
 mod tier;
@@ -28,6 +30,7 @@ mod neon;
 mod sse2;
 
 pub use columns::{quads_in_columns, turn_rows};
+pub use fp_mode::{FpMode, in_default_mode};
 pub use lanes::Lanes;
 pub use tier::{Tier, TierError};
 

@@ -26,6 +26,8 @@ mod time_critical;
 pub(crate) use interest::mark;
 pub(crate) use listing::{BoxInputs, BoxTest, list_boxes};
 pub(crate) use output::Output;
+#[cfg(feature = "serde")]
+pub(crate) use time_critical::Answers;
 
 /// Pairs that flow through the or-DOP test at once where no list is kept: few enough for the first-level cache, enough to
 /// make the clock's cost vanish.
@@ -54,6 +56,8 @@ pub(crate) enum SlotNames<'a> {
 pub(crate) struct Inputs<'a> {
     pub executor: Executor<'a>,
     pub settings: &'a CullSettings,
+    /// Whether budgets are spent on pairs in the order of their bodies.
+    pub is_canonical: bool,
     pub finder: &'a PairFinder,
     /// What the finder has arranged.
     pub slots: Arranged<'a>,
@@ -85,7 +89,7 @@ impl Inputs<'_> {
 }
 
 /// What stays from frame to frame: buffers, and when time-critical culling refined which pair.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     tasks: Vec<tasks::Task>,
     /// The potentially colliding set by places, where a list of it is kept.
@@ -104,6 +108,24 @@ impl Scratch {
         self.candidates.shrink_to_fit();
         self.history.shrink_to_fit();
         (self.tasks, self.selected, self.survivors, self.portion) = Default::default();
+    }
+
+    /// Gives back the memory of all lists of pairs, the last potentially colliding set included.
+    pub fn forget_lists(&mut self) {
+        self.candidates.clear();
+        self.shrink_to_fit();
+    }
+
+    /// When the pairs of the last frame were refined.
+    #[cfg(feature = "serde")]
+    pub fn answers(&self) -> Answers {
+        self.history.answers()
+    }
+
+    /// Takes over when pairs were refined.
+    #[cfg(feature = "serde")]
+    pub fn set_answers(&mut self, answers: &Answers) {
+        self.history.set_answers(answers);
     }
 
     /// Bytes that lists of pairs hold.

@@ -255,6 +255,7 @@ mod tests {
                 updates,
                 ..CullSettings::default()
             },
+            is_canonical: false,
             finder: &PairFinder::AllPairs(AllPairs::default()),
             slots: slots.arranged(),
             names: SlotNames::Places(&places.body),

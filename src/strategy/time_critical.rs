@@ -28,6 +28,20 @@ pub(super) struct History {
     ranked: Vec<RankedPair>,
 }
 
+/// When pairs were refined: sorted pairs of bodies, each with a rank that is 0 for never and grows by one from each frame in
+/// which some were refined last to the next such frame. So equal histories are equal, whatever the frames' numbers.
+#[cfg(feature = "serde")]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Answers(pub Vec<([u32; 2], u32)>);
+
+#[cfg(feature = "serde")]
+impl Answers {
+    /// The largest rank.
+    pub fn latest(&self) -> u32 {
+        self.0.iter().map(|&(_, rank)| rank).max().unwrap_or(0)
+    }
+}
+
 /// A pair in the order of refinement: by rank, then by body, so that the order is the same for every pair finder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct RankedPair {
@@ -52,8 +66,9 @@ pub(super) fn flow(
         ..
     } = scratch;
     let order = inputs.settings.order;
+    let is_sorted = inputs.is_canonical || order != Order::AsFound;
     let listed = match output {
-        Output::Portions(sink) if order == Order::AsFound => {
+        Output::Portions(sink) if !is_sorted => {
             let mut take = |candidates: &mut PairList| {
                 portion.clear();
                 spender.report(candidates, 0..candidates.len(), portion);
@@ -63,7 +78,9 @@ pub(super) fn flow(
         }
         output => {
             let listed = list(inputs, Listed::Places, tasks, Output::List(candidates));
-            arrange(inputs, history, candidates);
+            if is_sorted {
+                arrange(inputs, history, candidates);
+            }
             let all = 0..candidates.len();
             match output {
                 Output::List(out) => spender.report(candidates, all, out),
@@ -152,9 +169,6 @@ impl<'a> Spender<'a> {
 /// Sorts the potentially colliding set into the order of refinement.
 fn arrange(inputs: Inputs<'_>, history: &mut History, candidates: &mut PairList) {
     let order = inputs.settings.order;
-    if order == Order::AsFound {
-        return;
-    }
     let History {
         refined, ranked, ..
     } = history;
@@ -198,6 +212,27 @@ impl History {
         (self.before, self.ranked) = Default::default();
     }
 
+    /// When pairs were refined, apart from the numbers of frames.
+    #[cfg(feature = "serde")]
+    pub fn answers(&self) -> Answers {
+        let mut answers: Vec<_> = self.refined.iter().map(|(&pair, &at)| (pair, at)).collect();
+        let mut frames: Vec<u32> = answers.iter().map(|&(_, at)| at).collect();
+        frames.push(0);
+        frames.sort_unstable();
+        frames.dedup();
+        for (_, at) in &mut answers {
+            *at = frames.partition_point(|frame| frame < at) as u32;
+        }
+        answers.sort_unstable();
+        Answers(answers)
+    }
+
+    /// Takes over when pairs were refined; the coming frames have larger numbers than the latest rank.
+    #[cfg(feature = "serde")]
+    pub fn set_answers(&mut self, answers: &Answers) {
+        self.refined = answers.0.iter().copied().collect();
+    }
+
     /// Notes in which frame each of the sphere hits was last refined: the first `refined` of `pairs` in this one.
     fn remember(&mut self, pairs: impl Iterator<Item = [u32; 2]>, refined: usize, stamp: u32) {
         std::mem::swap(&mut self.refined, &mut self.before);
@@ -218,6 +253,22 @@ mod tests {
         let spheres = [[9.0; 4], [1.0, 2.0, 3.0, 1.0], [-3.0, 6.0, -4.0, 2.0]];
         // Apart by (4, −4, 7), whose length is 9, of radii that are 3 together.
         assert_eq!(relative_distance(&spheres, [1, 2]), 9.0);
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn answers_have_ranks_in_the_order_of_frames() {
+        let mut history = History::default();
+        history.remember([[0, 5], [0, 2], [3, 4]].into_iter(), 2, 7);
+        history.remember([[3, 4], [0, 5], [1, 2]].into_iter(), 1, 900);
+        let answers = history.answers();
+        assert_eq!(answers.0, [([0, 5], 1), ([1, 2], 0), ([3, 4], 2)]);
+        assert_eq!(answers.latest(), 2);
+        let mut other = History::default();
+        other.set_answers(&answers);
+        assert_eq!(other.answers(), answers);
+        other.remember([[3, 4], [0, 5]].into_iter(), 0, 3);
+        assert_eq!(other.answers().0, [([0, 5], 1), ([3, 4], 2)]);
     }
 
     #[test]

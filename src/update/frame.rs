@@ -34,6 +34,22 @@ impl Frames {
         self.frames.push(frame);
     }
 
+    /// Puts another in the place of one.
+    pub(crate) fn set(&mut self, number: usize, frame: ShapeFrame) {
+        self.records[number] = frame.record();
+        self.some_eccentric |= frame.inflated.is_none();
+        self.frames[number] = frame;
+    }
+
+    /// Keeps the first ones, and no room for more.
+    pub(crate) fn shrink_to(&mut self, len: usize) {
+        self.records.truncate(len);
+        self.frames.truncate(len);
+        self.records.shrink_to_fit();
+        self.frames.shrink_to_fit();
+        self.some_eccentric = self.frames.iter().any(|frame| frame.inflated.is_none());
+    }
+
     /// Whether the centre of each body's ball is its origin.
     pub(super) fn are_centred(&self) -> bool {
         !self.some_eccentric
@@ -58,7 +74,7 @@ impl FromIterator<ShapeFrame> for Frames {
 /// The numbers of a shape from which a body's volumes are updated, in the body frame.
 #[derive(Clone, Debug)]
 pub struct ShapeFrame {
-    /// The shape, and how far it is grown.
+    /// The shape, and how far it is grown beyond its vertices.
     pub(super) shape: u32,
     pub(super) margin: f32,
     centre: [f32; 3],
@@ -76,7 +92,7 @@ impl ShapeFrame {
     pub fn new(shape: &Shape, basis: &Basis) -> Self {
         let frame = Self {
             shape: 0,
-            margin: 0.0,
+            margin: shape.rounding,
             centre: shape.ball.centre.to_array(),
             radius: 0.0,
             inflated: None,
@@ -103,12 +119,21 @@ impl ShapeFrame {
         Self { shape, ..self }
     }
 
+    /// The number of its shape's hull.
+    pub(crate) fn hull(&self) -> u32 {
+        self.shape
+    }
+
     /// The same, grown by `margin` all around.
     #[must_use]
     pub fn grown(&self, margin: f32) -> Self {
         let grow = |size: f32| up(f64::from(size) + f64::from(margin));
         let frame = Self {
-            margin,
+            margin: if self.margin == 0.0 {
+                margin
+            } else {
+                grow(self.margin)
+            },
             reach: grow(self.reach),
             ..*self
         };

@@ -39,15 +39,33 @@ impl Intervals {
         }
     }
 
-    /// Takes up a further shape, the next in number.
-    pub(crate) fn add(&mut self, shape: &Shape) {
-        self.hulls.push(hull_in_eights(shape));
+    /// Takes a shape as the one of this number: in place of another, or the next.
+    pub(crate) fn set(&mut self, hull: usize, shape: &Shape) {
+        self.hulls
+            .resize_with(self.hulls.len().max(hull + 1), Vec::new);
+        self.hulls[hull] = hull_in_eights(shape);
+    }
+
+    /// Forgets the shape of this number.
+    pub(crate) fn clear(&mut self, hull: usize) {
+        self.hulls[hull] = Vec::new();
+    }
+
+    /// Keeps the first shapes, and no room for more.
+    pub(crate) fn shrink_to(&mut self, hulls: usize) {
+        self.hulls.truncate(hulls);
+        self.hulls.shrink_to_fit();
     }
 
     /// Room for another number of bodies.
     pub(crate) fn resize(&mut self, bodies: usize) {
         let slabs = self.directions.slabs();
         self.ends.resize(bodies * slabs, [0.0; 2]);
+    }
+
+    /// Room for no body, and no memory kept for any.
+    pub(crate) fn forget_bodies(&mut self) {
+        self.ends = Vec::new();
     }
 
     /// Re-fits the slabs of the bodies in a range of places, and the cubes about their boxes: centre and half side.

@@ -41,9 +41,11 @@ fn rotate(a: &mut [[f64; 3]; 3], vectors: &mut [[f64; 3]; 3], p: usize, q: usize
     let r = 3 - p - q; // the third axis
     (a[r][p], a[r][q]) = turn(a[r][p], a[r][q]);
     (a[p][r], a[q][r]) = (a[r][p], a[r][q]);
-    for k in 0..3 {
-        (vectors[p][k], vectors[q][k]) = turn(vectors[p][k], vectors[q][k]);
-    }
+    let [first, second] = [vectors[p], vectors[q]];
+    (vectors[p], vectors[q]) = (
+        std::array::from_fn(|k| turn(first[k], second[k]).0),
+        std::array::from_fn(|k| turn(first[k], second[k]).1),
+    );
 }
 
 #[cfg(test)]
@@ -67,13 +69,7 @@ mod tests {
             // Entries of one size, of very different sizes, small integers, and nearly tied diagonals.
             let scale = |i: i32| match round % 4 {
                 1 => 2f64.powi(-12 * i),
-                3 => {
-                    if i == 1 {
-                        1e-9
-                    } else {
-                        1.0
-                    }
-                }
+                3 if i == 1 => 1e-9,
                 _ => 1.0,
             };
             let mut entry = |i| match round % 4 {

@@ -1,13 +1,24 @@
 //! A mesh made ready for culling: placed in its body frame, with its volumes (the paper's one-off construction, Co).
 //!
-//! `origin = "ball"` moves the smallest enclosing ball's centre into the body origin, so that the sphere of a posed body
-//! is a copy of its translation; `origin = "file"` leaves the coordinates alone. Either way every volume is computed
-//! from, and contains exactly, the f32 vertices as culled.
+//! `origin = "file"`, the default, keeps the mesh's own origin, to which an engine's poses refer. `origin = "ball"` moves the
+//! smallest enclosing ball's centre into the body origin, so that the sphere of a posed body is a copy of its translation.
+//! Either way every volume is computed from, and contains exactly, the f32 vertices as culled:
+//!
+//! > vertex = scale · (point of the file − offset), rounded to f32
+//!
+//! with the [`Shape::offset`] and [`Shape::scale`] that the shape keeps. A mesh that is far from its own origin is the
+//! exception to "keeps": its vertices are about a point near it, and its [`Shape::pose_offset`] says where that lies, seen from
+//! the point that poses refer to. Its volumes are grown by what rounding has moved, [`Shape::rounding`].
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, ball};
-use crate::{choice::choices, mesh::TriangleMesh, rounding::LIMIT};
+use crate::{
+    choice::choices,
+    mesh::TriangleMesh,
+    rounding::{LIMIT, exp2, up},
+    simd::in_default_mode,
+};
 
 choices! {
     /// Which point of the mesh becomes the body's origin.
@@ -22,9 +33,9 @@ choices! {
 /// How a mesh becomes a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeSpec {
-    /// The body's origin.
+    /// The body's origin: the point that poses place. By default the mesh's own, [`Origin::File`].
     pub origin: Origin,
-    /// The radius to which the smallest enclosing ball is scaled; `None` keeps the mesh's size. Needs [`Origin::Ball`].
+    /// The radius to which the smallest enclosing ball is scaled, about the body's origin; `None` keeps the mesh's size.
     pub radius: Option<f32>,
     /// The or-DOP's directions.
     pub directions: DirectionSet,
@@ -35,7 +46,7 @@ pub struct ShapeSpec {
 impl Default for ShapeSpec {
     fn default() -> Self {
         Self {
-            origin: Origin::Ball,
+            origin: Origin::File,
             radius: None,
             directions: DirectionSet::K18,
             axes: Axes::Principal,
@@ -48,10 +59,22 @@ impl Default for ShapeSpec {
 pub struct Shape {
     /// The mesh's name.
     pub name: String,
-    /// Vertices as culled (body frame; for `origin = "ball"` re-centred and scaled, rounded to f32).
+    /// Vertices as culled, in the body frame: scale · (point of the mesh − offset), rounded to f32.
     pub vertices: Vec<Vec3>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
+    /// The point of the file's coordinates that is the origin of `vertices`: zero for [`Origin::File`], unless the mesh is far
+    /// from its origin.
+    pub offset: [f64; 3],
+    /// By how much the mesh was scaled: 1 without a [`ShapeSpec::radius`].
+    pub scale: f64,
+    /// Where the origin of `vertices` lies in the frame that poses place: zero, or scale · offset for a mesh that is far from
+    /// its origin and keeps it. A pose (q, t) stands for vertices at (q, t + R(q)·pose_offset), which a
+    /// [`World`](crate::World) composes in f64; what has poses in f32 refuses such a shape.
+    pub pose_offset: [f64; 3],
+    /// How far a vertex of a far mesh is at most from the f64 point that it stands for: 0 for any other mesh. Ball, reach and
+    /// slabs are grown by it.
+    pub rounding: f32,
     /// Smallest enclosing ball of `vertices`, rounded up.
     pub ball: Ball,
     /// ρ: the largest vertex norm about the body origin, rounded up.
@@ -66,113 +89,202 @@ impl Shape {
     /// # Errors
     /// An empty or non-finite mesh, a radius that can't be reached, or a size beyond 2⁶⁰.
     pub fn build(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
-        let Placed {
-            vertices,
-            ball,
-            reach,
-        } = place(mesh, spec)?;
+        in_default_mode(|| Self::place(mesh, spec))
+    }
+
+    fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
+        let placement = Placement::of(mesh, spec)?;
+        let vertices: Vec<Vec3> = mesh
+            .vertices
+            .iter()
+            .map(|v| placement.point(v).as_vec3())
+            .collect();
+        let rounding = placement.rounding(mesh, &vertices);
+        let mut ball = match spec.origin {
+            Origin::File => Ball::smallest(&vertices),
+            Origin::Ball => Ball::about(Vec3::ZERO, &vertices),
+        };
+        ball.radius = grown(ball.radius, rounding);
+        let reach = grown(ball::farthest_distance(Vec3::ZERO, &vertices), rounding);
+        let within = reach <= LIMIT; // false for NaN; bounds the centre and the ball's radius too
+        if !within {
+            return Err(VolumeError::TooLarge {
+                shape: mesh.name.clone(),
+                reach,
+            });
+        }
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.clone(),
+            offset: placement.offset.to_array(),
+            scale: placement.scale,
+            pose_offset: placement.pose_offset.to_array(),
+            rounding,
             reach,
-            ordop: OrDop::build(&vertices, spec.axes.basis(&vertices), spec.directions),
+            ordop: slabs(
+                &vertices,
+                spec.axes.basis(&vertices),
+                spec.directions,
+                rounding,
+            ),
             ball,
             vertices,
         })
     }
 
+    /// Whether poses refer to a point other than the origin of the vertices.
+    #[must_use]
+    pub fn is_far(&self) -> bool {
+        self.pose_offset != [0.0; 3]
+    }
+
+    /// The or-DOP along a basis, with what rounding has moved.
+    pub(crate) fn slabs(&self, basis: Basis, directions: DirectionSet) -> OrDop {
+        in_default_mode(|| slabs(&self.vertices, basis, directions, self.rounding))
+    }
+
     /// Exchanges the or-DOP's directions; ball, basis and placement stay.
     #[must_use]
     pub fn with_directions(mut self, directions: DirectionSet) -> Self {
-        self.ordop = OrDop::build(&self.vertices, self.ordop.basis, directions);
+        self.ordop = self.slabs(self.ordop.basis, directions);
         self
     }
 
     /// The or-DOP of these vertices along other axes, with other directions.
     #[must_use]
     pub fn ordop_along(&self, axes: Axes, directions: DirectionSet) -> OrDop {
-        OrDop::build(&self.vertices, axes.basis(&self.vertices), directions)
+        in_default_mode(|| self.slabs(axes.basis(&self.vertices), directions))
     }
 
     /// The oriented bounding box: an or-DOP of three slabs along the principal axes, whatever the or-DOP's own axes.
     #[must_use]
     pub fn obb(&self, hull: &Hull) -> OrDop {
-        OrDop::build(
-            &self.vertices,
-            Basis::principal(hull, &self.vertices),
-            DirectionSet::K6,
-        )
+        in_default_mode(|| self.slabs(Basis::principal(hull, &self.vertices), DirectionSet::K6))
     }
 }
 
-/// Vertices in the body frame with what depends on the placement alone.
-struct Placed {
-    vertices: Vec<Vec3>,
-    ball: Ball,
-    reach: f32,
+/// The or-DOP of vertices that rounding has moved.
+fn slabs(vertices: &[Vec3], basis: Basis, directions: DirectionSet, rounding: f32) -> OrDop {
+    let ordop = OrDop::build(vertices, basis, directions);
+    if rounding == 0.0 {
+        ordop
+    } else {
+        ordop.grown(rounding)
+    }
 }
 
-fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Placed, VolumeError> {
-    let shape = || mesh.name.clone();
-    if mesh.vertices.is_empty() {
-        return Err(VolumeError::Empty { shape: shape() });
+/// A size, with what rounding has moved.
+fn grown(size: f32, rounding: f32) -> f32 {
+    if rounding == 0.0 {
+        size
+    } else {
+        up(f64::from(size) + f64::from(rounding))
     }
-    if let Some(vertex) = mesh.vertices.iter().position(|v| !v.is_finite()) {
-        return Err(VolumeError::NotFinite {
-            shape: shape(),
-            vertex,
-        });
-    }
-    let (vertices, ball) = match (spec.origin, spec.radius) {
-        (Origin::File, Some(radius)) => {
-            return Err(VolumeError::FixedSize {
+}
+
+/// Where the origin of the vertices lies, and by how much the mesh is scaled.
+struct Placement {
+    /// In the mesh's coordinates, which are about an offset of its own.
+    centre: DVec3,
+    /// In the file's.
+    offset: DVec3,
+    scale: f64,
+    pose_offset: DVec3,
+}
+
+impl Placement {
+    fn of(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
+        let shape = || mesh.name.clone();
+        if mesh.vertices.is_empty() {
+            return Err(VolumeError::Empty { shape: shape() });
+        }
+        if let Some(vertex) = mesh.vertices.iter().position(|v| !v.is_finite()) {
+            return Err(VolumeError::NotFinite {
                 shape: shape(),
-                radius,
+                vertex,
             });
         }
-        (Origin::File, None) => (mesh.vertices.clone(), Ball::smallest(&mesh.vertices)),
-        (Origin::Ball, radius) => {
-            let vertices = centred(mesh, radius)?;
-            let ball = Ball::about(Vec3::ZERO, &vertices);
-            (vertices, ball)
+        if spec.origin == Origin::File && spec.radius.is_none() {
+            return Ok(Self::at(mesh, spec.origin, DVec3::ZERO, 1.0));
         }
-    };
-    let reach = ball::farthest_distance(Vec3::ZERO, &vertices);
-    let within = reach <= LIMIT; // false for NaN; bounds the centre and the ball's radius too
-    if !within {
-        return Err(VolumeError::TooLarge {
-            shape: shape(),
-            reach,
-        });
+        let (centre, size) = ball::smallest_enclosing(&mesh.vertices);
+        let scale = match spec.radius {
+            None => 1.0,
+            Some(radius) if !(radius > 0.0 && radius <= LIMIT) => {
+                return Err(VolumeError::Radius {
+                    shape: shape(),
+                    radius,
+                });
+            }
+            Some(radius) if size == 0.0 => {
+                return Err(VolumeError::NoExtent {
+                    shape: shape(),
+                    radius,
+                });
+            }
+            Some(radius) => f64::from(radius) / size,
+        };
+        Ok(Self::at(mesh, spec.origin, centre, scale))
     }
-    Ok(Placed {
-        vertices,
-        ball,
-        reach,
-    })
-}
 
-/// fl32(s·(v − c)): the ball's centre moved into the origin and its radius scaled to `radius`.
-fn centred(mesh: &TriangleMesh, radius: Option<f32>) -> Result<Vec<Vec3>, VolumeError> {
-    let (centre, size) = ball::smallest_enclosing(&mesh.vertices);
-    let scale = match radius {
-        None => 1.0,
-        Some(radius) if !(radius > 0.0 && radius <= LIMIT) => {
-            return Err(VolumeError::Radius {
-                shape: mesh.name.clone(),
-                radius,
-            });
+    fn at(mesh: &TriangleMesh, origin: Origin, centre: DVec3, scale: f64) -> Self {
+        let base = DVec3::from_array(mesh.offset);
+        match origin {
+            Origin::File => Self {
+                centre: DVec3::ZERO,
+                offset: base,
+                scale,
+                pose_offset: base * scale,
+            },
+            Origin::Ball => {
+                // Of a far mesh, what their sum keeps of the centre.
+                let offset = if mesh.is_far() { base + centre } else { centre };
+                let centre = if mesh.is_far() { offset - base } else { centre };
+                Self {
+                    centre,
+                    offset,
+                    scale,
+                    pose_offset: DVec3::ZERO,
+                }
+            }
         }
-        Some(radius) if size == 0.0 => {
-            return Err(VolumeError::NoExtent {
-                shape: mesh.name.clone(),
-                radius,
-            });
+    }
+
+    /// A vertex before it is rounded.
+    fn point(&self, vertex: &Vec3) -> DVec3 {
+        (vertex.as_dvec3() - self.centre) * self.scale
+    }
+
+    /// How far a vertex is at most from scale · (point of the file − offset), or with the pose's offset from scale · point: 0
+    /// for a mesh that has been rounded where it is, whose own vertices count.
+    fn rounding(&self, mesh: &TriangleMesh, vertices: &[Vec3]) -> f32 {
+        if !mesh.is_far() && mesh.rounding == 0.0 {
+            return 0.0;
         }
-        Some(radius) => f64::from(radius) / size,
-    };
-    let place = |v: &Vec3| ((v.as_dvec3() - centre) * scale).as_vec3();
-    Ok(mesh.vertices.iter().map(place).collect())
+        let pairs = mesh.vertices.iter().zip(vertices);
+        let (mut placed, mut size) = (0.0_f64, 0.0_f64);
+        for (vertex, rounded) in pairs {
+            placed = placed.max(self.point(vertex).distance(rounded.as_dvec3()));
+            size = size.max(vertex.as_dvec3().abs().max_element());
+        }
+        // In f64 the difference and the product round each coordinate twice, and a scaled offset once.
+        let size = (size + self.centre.abs().max_element()) * self.scale;
+        let scaled = if self.scale == 1.0 {
+            0.0
+        } else {
+            self.pose_offset.abs().max_element()
+        };
+        let exact = self.centre == DVec3::ZERO && self.scale == 1.0;
+        let lost = if exact {
+            0.0
+        } else {
+            exp2(-50) * (size + scaled)
+        };
+        match f64::from(mesh.rounding) * self.scale + placed + lost {
+            0.0 => 0.0,
+            moved => up(moved),
+        }
+    }
 }
 
 /// Why a mesh has no volumes.
@@ -207,15 +319,6 @@ pub enum VolumeError {
     #[error("shape `{shape}` is a single point and can't be scaled to radius {radius}")]
     #[diagnostic(help("leave the radius out: the point is culled as a ball of radius 0"))]
     NoExtent {
-        /// The mesh's name.
-        shape: String,
-        /// The radius as given.
-        radius: f32,
-    },
-    /// A radius together with `origin = "file"`.
-    #[error("shape `{shape}` keeps its file's coordinates and can't be scaled to radius {radius}")]
-    #[diagnostic(help("leave the radius out, or use origin = \"ball\""))]
-    FixedSize {
         /// The mesh's name.
         shape: String,
         /// The radius as given.

@@ -26,4 +26,21 @@ pub enum WorldError {
     #[error("bodies lie farther apart than 2^60: {0} is out of reach of the others")]
     #[diagnostic(help("keep separate worlds for what can't meet"))]
     Apart(BodyId),
+    /// A shape that some body has can't be removed.
+    #[error("shape {shape} (`{name}`) is the shape of body {body}")]
+    #[diagnostic(help("remove the bodies that have it first, or give them another shape"))]
+    ShapeInUse {
+        /// The shape's number.
+        shape: u32,
+        /// Its name.
+        name: String,
+        /// A body that has it.
+        body: BodyId,
+    },
+    /// A number that no shape has.
+    #[error("no shape of this world has the number {0}")]
+    #[diagnostic(help(
+        "numbers come from `World::add_shape`, or count the shapes that the world began with"
+    ))]
+    NoShape(u32),
 }

@@ -1,11 +1,13 @@
 //! Ids that stay: slots, and how often each has been given.
 
 use std::fmt;
+use std::sync::Arc;
 
 use super::WorldError;
 
 /// A body of a world. Stays the same until the body is removed, and is never given to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyId {
     pub(super) slot: u32,
     pub(super) generation: u32,
@@ -29,11 +31,15 @@ impl fmt::Display for BodyId {
 /// The slots of a world, and who lives in them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ids {
-    present: Vec<bool>,
-    generation: Vec<u32>,
+    pub(super) present: Vec<bool>,
+    /// How often each slot was given before; shared with the lists of pairs that name slots.
+    pub(super) generation: Arc<Vec<u32>>,
     /// Empty slots, and those emptied since the last cull, which its pairs still name.
-    free: Vec<u32>,
-    emptied: Vec<u32>,
+    pub(super) free: Vec<u32>,
+    pub(super) emptied: Vec<u32>,
+    /// The generation of a new slot, above all of the slots that were given back ([`Self::shrink`]).
+    pub(super) first_generation: u32,
+    pub(super) bodies: usize,
 }
 
 impl Ids {
@@ -44,14 +50,16 @@ impl Ids {
 
     /// Gives [`Self::next`] to a body. True if the slot is new, so that columns lack it.
     pub fn take(&mut self) -> bool {
+        self.bodies += 1;
+        let generation = Arc::make_mut(&mut self.generation);
         if let Some(slot) = self.free.pop() {
             let slot = slot as usize;
-            self.generation[slot] += 1;
+            generation[slot] += 1;
             self.present[slot] = true;
             return false;
         }
         self.present.push(true);
-        self.generation.push(0);
+        generation.push(self.first_generation);
         true
     }
 
@@ -60,12 +68,37 @@ impl Ids {
         let slot = self.slot(id)?;
         self.present[slot] = false;
         self.emptied.push(id.slot);
+        self.bodies -= 1;
         Ok(())
     }
 
-    /// A cull's pairs name none of the bodies that have been removed: their slots may be given away.
+    /// A cull's pairs name none of the bodies that have been removed: their slots may be given away, unless all their
+    /// generations have been.
     pub fn settle(&mut self) {
-        self.free.append(&mut self.emptied);
+        let generation = &self.generation;
+        let emptied = self.emptied.drain(..);
+        let lasting = emptied.filter(|&slot| generation[slot as usize] < u32::MAX);
+        self.free.extend(lasting);
+    }
+
+    /// Gives back free slots at the end; returns how many slots are left. Ids that they had are never given again.
+    pub fn shrink(&mut self) -> usize {
+        let mut is_free = vec![false; self.slots()];
+        for &slot in &self.free {
+            is_free[slot as usize] = true;
+        }
+        let gone = is_free.iter().rev().take_while(|is_free| **is_free).count();
+        let left = self.slots() - gone;
+        // Free slots have generations below the largest number.
+        let after = self.generation[left..].iter().map(|&used| used + 1);
+        self.first_generation = after.fold(self.first_generation, u32::max);
+        self.free.retain(|&slot| (slot as usize) < left);
+        self.present.truncate(left);
+        self.generation = Arc::new(self.generation[..left].to_vec());
+        self.present.shrink_to_fit();
+        self.free.shrink_to_fit();
+        self.emptied.shrink_to_fit();
+        left
     }
 
     /// Who is in a slot, or was last.
@@ -74,6 +107,14 @@ impl Ids {
             slot,
             generation: self.generation[slot as usize],
         }
+    }
+
+    /// The bodies that are there, by slot.
+    pub fn iter(&self) -> impl Iterator<Item = BodyId> + '_ {
+        let slots = (0..).zip(&self.present);
+        slots
+            .filter(|(_, is_present)| **is_present)
+            .map(|(slot, _)| self.id(slot))
     }
 
     /// The slot of a body that is there.
@@ -88,6 +129,11 @@ impl Ids {
         &self.present
     }
 
+    /// How often each slot was given before.
+    pub fn generation(&self) -> &Arc<Vec<u32>> {
+        &self.generation
+    }
+
     /// Number of slots.
     pub fn slots(&self) -> usize {
         self.present.len()
@@ -95,6 +141,54 @@ impl Ids {
 
     /// Number of bodies.
     pub fn len(&self) -> usize {
-        self.present.len() - self.free.len() - self.emptied.len()
+        self.bodies
+    }
+}
+
+/// Keeps the first entries of a column by slot, and no room for more.
+pub(crate) fn shrink_column<T>(column: &mut Vec<T>, len: usize) {
+    column.truncate(len);
+    column.shrink_to_fit();
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    fn filled(slots: u32) -> Ids {
+        let mut ids = Ids::default();
+        (0..slots).for_each(|_| assert!(ids.take()));
+        ids
+    }
+
+    #[test]
+    fn slots_at_the_end_are_given_back() {
+        let mut ids = filled(6);
+        for slot in [1, 4, 5] {
+            ids.remove(ids.id(slot)).unwrap();
+        }
+        assert_eq!(ids.shrink(), 6, "pairs may name what was emptied");
+        ids.settle();
+        assert_eq!((ids.shrink(), ids.len(), ids.next()), (4, 3, 1));
+        assert!(!ids.take() && ids.take());
+        let given = [1, 4].map(|slot| ids.id(slot).to_string());
+        assert_eq!(given, ["1.1", "4.1"], "4.0 was another's");
+        assert_eq!(ids.iter().count(), 5);
+    }
+
+    #[test]
+    fn a_slot_without_generations_left_is_retired() {
+        let mut ids = filled(2);
+        ids.generation = Arc::new(vec![u32::MAX - 1, 7]);
+        for _ in 0..2 {
+            ids.remove(ids.id(0)).unwrap();
+            ids.settle();
+            ids.take();
+        }
+        let given: Vec<_> = ids.iter().map(|id| id.to_string()).collect();
+        assert_eq!(given, ["1.7".to_owned(), "2.0".to_owned()]);
+        assert_eq!((ids.len(), ids.slots(), ids.shrink()), (2, 3, 3));
     }
 }

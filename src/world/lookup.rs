@@ -27,25 +27,19 @@ pub struct PairLookup {
 }
 
 impl PairLookup {
-    /// Takes up the pairs of the world's last cull in place of what was here: two passes over the list.
+    /// Takes up the pairs of the world's last cull in place of what was here.
     pub fn refill(&mut self, world: &World) {
         self.starts.clear();
         self.starts.resize(world.slots() + 1, 0);
         self.pairs.clear();
-        self.pairs.resize(world.pairs().len(), NOBODY);
-        for [first, _] in world.pairs() {
-            self.starts[first.slot()] += 1;
+        self.pairs.extend(world.pairs());
+        for [first, _] in &self.pairs {
+            self.starts[first.slot() + 1] += 1;
         }
-        // Ends now, starts once each pair has been put in front of the ones before it.
         let mut end = 0;
         for start in &mut self.starts {
             end += *start;
             *start = end;
-        }
-        for pair in world.pairs() {
-            let place = &mut self.starts[pair[0].slot()];
-            *place -= 1;
-            self.pairs[*place] = pair;
         }
     }
 
@@ -60,9 +54,3 @@ impl PairLookup {
         }
     }
 }
-
-/// What a place holds before its pair is put there.
-const NOBODY: [BodyId; 2] = [BodyId {
-    slot: u32::MAX,
-    generation: u32::MAX,
-}; 2];

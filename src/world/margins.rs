@@ -11,10 +11,15 @@ use crate::rounding::{LIMIT, exp2};
 /// Errors of placement up to this share of a shape's size are rounded up to it.
 const FINE: f64 = exp2(-12);
 
+/// Classes that are kept without a look at which of them are in use.
+const FEW_CLASSES: usize = 64;
+
 /// The model of each shape in each class in use.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Margins {
     models: HashMap<(u32, u32), u32>,
+    /// How many were in use at the last [`Self::sweep`].
+    in_use: usize,
 }
 
 impl Margins {
@@ -41,6 +46,37 @@ impl Margins {
             .models
             .entry((shape, class))
             .or_insert_with(|| grow(shape, f32::from_bits(class)))
+    }
+
+    /// Removes the models grown of that of a shape, by `remove`.
+    pub fn remove(&mut self, shape: u32, remove: impl FnMut(u32)) {
+        self.keep(|of, _| of != shape, remove);
+    }
+
+    /// Whether more models than at the last sweep may be out of use than in use.
+    pub fn are_many(&self) -> bool {
+        self.models.len() > FEW_CLASSES + 2 * self.in_use
+    }
+
+    /// Removes the models that are not in use.
+    pub fn sweep(&mut self, used: &[bool], remove: impl FnMut(u32)) {
+        self.keep(|_, grown| used[grown as usize], remove);
+        self.in_use = self.models.len();
+    }
+
+    /// Gives back the memory of what was removed.
+    pub fn shrink_to_fit(&mut self) {
+        self.models.shrink_to_fit();
+    }
+
+    fn keep(&mut self, is_kept: impl Fn(u32, u32) -> bool, mut remove: impl FnMut(u32)) {
+        self.models.retain(|&(shape, _), &mut grown| {
+            let is_kept = is_kept(shape, grown);
+            if !is_kept {
+                remove(grown);
+            }
+            is_kept
+        });
     }
 }
 

@@ -6,9 +6,10 @@
 
 use super::margins::check_margin;
 use crate::bodies::contract::{ContractError, check_pose, check_shape};
+use crate::culler::FAR;
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
 use crate::settings::Overlap;
-use crate::simd::ROW;
+use crate::simd::{ROW, in_default_mode};
 use crate::update::{RowsByNumber, ShapeFrame};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
@@ -55,11 +56,23 @@ impl PairTest {
     /// Adds a shape; returns the number that tests know it by.
     ///
     /// # Errors
-    /// A shape larger than 2⁶⁰.
+    /// A shape larger than 2⁶⁰, or far from its origin ([`Shape::pose_offset`]).
     pub fn add(&mut self, shape: &Shape) -> Result<u32, ContractError> {
         check_shape(self.models.len(), 0, std::slice::from_ref(shape))?;
-        let ordop = OrDop::build(&shape.vertices, shape.ordop.basis, self.tables.directions());
-        let frame = ShapeFrame::new(shape, &ordop.basis);
+        if shape.is_far() {
+            return Err(ContractError {
+                body: self.models.len(),
+                quantity: "shape",
+                value: format!("{} lies far from the origin of its file", shape.name),
+                hint: FAR,
+            });
+        }
+        let directions = self.tables.directions();
+        let (ordop, frame) = in_default_mode(|| {
+            let ordop = shape.slabs(shape.ordop.basis, directions);
+            let frame = ShapeFrame::new(shape, &ordop.basis);
+            (ordop, frame)
+        });
         Ok(self.push(ordop, frame))
     }
 
@@ -76,8 +89,10 @@ impl PairTest {
                 hint: "numbers come from `add` and `grown`",
             });
         };
-        check_margin(shape as usize, model.frame.reach(), margin)?;
-        let (ordop, frame) = (model.ordop.grown(margin), model.frame.grown(margin));
+        let (ordop, frame) = in_default_mode(|| {
+            check_margin(shape as usize, model.frame.reach(), margin)?;
+            Ok((model.ordop.grown(margin), model.frame.grown(margin)))
+        })?;
         Ok(self.push(ordop, frame))
     }
 
@@ -98,16 +113,18 @@ impl PairTest {
         let (Some(a), Some(b)) = (model(first), model(second)) else {
             return true;
         };
-        if check_pose(0, &rotation, &translation.map(f64::from)).is_err() {
-            return true;
-        }
-        let rows = [a.unturned, b.frame.row(second, rotation, translation)];
-        let columns = OrDopColumns {
-            rows: RowsByNumber::all(&rows),
-            tables: &self.tables,
-            overlap: Overlap::TwoSided,
-        };
-        columns.may_overlap(0, 1)
+        in_default_mode(|| {
+            if check_pose(0, &rotation, &translation.map(f64::from)).is_err() {
+                return true;
+            }
+            let rows = [a.unturned, b.frame.row(second, rotation, translation)];
+            let columns = OrDopColumns {
+                rows: RowsByNumber::all(&rows),
+                tables: &self.tables,
+                overlap: Overlap::TwoSided,
+            };
+            columns.may_overlap(0, 1)
+        })
     }
 
     fn push(&mut self, ordop: OrDop, frame: ShapeFrame) -> u32 {

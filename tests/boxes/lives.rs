@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use sdop::boxes::BoxBody;
-use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Tier};
+use sdop::boxes::{BoxBody, BoxWorldSnapshot};
+use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Tier, WorldError};
 
 use crate::scenes::{Kind, Random, boxes, expected, moved};
 
@@ -36,13 +36,15 @@ fn pairs(bodies: &BTreeMap<BodyId, BoxBody>) -> BTreeSet<[BodyId; 2]> {
         .collect()
 }
 
-/// Inserts, removes, changes and moves boxes, and holds what the world says against the definition.
-fn live(world: &mut BoxWorld, kind: Kind, seed: u64) {
+/// Inserts, removes, changes and moves boxes, and holds what the world says against the definition. `before_frame` may put
+/// another world in the place of this one, if it makes no difference.
+fn live(world: &mut BoxWorld, kind: Kind, seed: u64, before_frame: fn(&mut BoxWorld, usize)) {
     let random = &mut Random(seed);
     let mut bodies: BTreeMap<BodyId, BoxBody> = BTreeMap::new();
     let mut gone: Vec<BodyId> = Vec::new();
     let mut before = BTreeSet::new();
     for frame in 0..40 {
+        before_frame(world, frame);
         let calls = [0, 1, 30][random.below(3)];
         for _ in 0..calls {
             let body = drawn(random, kind);
@@ -83,21 +85,25 @@ fn live(world: &mut BoxWorld, kind: Kind, seed: u64) {
         );
         let listed: Vec<[BodyId; 2]> = world.pairs().collect();
         let found: BTreeSet<[BodyId; 2]> = listed.iter().copied().collect();
+        assert!(listed.iter().is_sorted(), "{kind:?}, frame {frame}");
+        assert!(world.ids().eq(bodies.keys().copied()));
         assert!(
             found == wanted && listed.len() == found.len(),
             "{kind:?}, frame {frame}"
         );
         let events = world.events();
         assert!(
-            events.begun.iter().eq(wanted.difference(&before)),
+            events.begun().eq(wanted.difference(&before).copied()),
             "{kind:?}, frame {frame}"
         );
         assert!(
-            events.persisting.iter().eq(wanted.intersection(&before)),
+            events
+                .persisting()
+                .eq(wanted.intersection(&before).copied()),
             "{kind:?}, frame {frame}"
         );
         assert!(
-            events.ended.iter().eq(before.difference(&wanted)),
+            events.ended().eq(before.difference(&wanted).copied()),
             "{kind:?}, frame {frame}"
         );
         before = wanted;
@@ -107,16 +113,121 @@ fn live(world: &mut BoxWorld, kind: Kind, seed: u64) {
 #[test]
 fn whatever_comes_and_goes_pairs_and_events_are_those_of_the_definition() {
     for (kind, seed) in Kind::ALL.into_iter().zip(10..) {
-        live(&mut BoxWorld::new(), kind, seed);
+        live(&mut BoxWorld::new(), kind, seed, |_, _| ());
         for &finder in Finder::ALL {
             let way = BoxCuller::builder()
                 .finder(finder)
                 .tier(Tier::SCALAR)
                 .threads(2)
                 .worth_waking(0);
-            live(&mut BoxWorld::with(&way).unwrap(), kind, seed + 100);
+            live(
+                &mut BoxWorld::with(&way).unwrap(),
+                kind,
+                seed + 100,
+                |_, _| (),
+            );
         }
     }
+}
+
+fn through_text(world: &BoxWorld) -> BoxWorldSnapshot {
+    serde_json::from_str(&serde_json::to_string(&world.snapshot()).unwrap()).unwrap()
+}
+
+/// Goes astray in a clone and rolls it back, or restores the world in another that culls by another finder.
+fn restore(world: &mut BoxWorld, frame: usize) {
+    let saved = through_text(world);
+    let mut other = if frame % 3 == 0 {
+        world.clone()
+    } else {
+        let finder = Finder::ALL[frame % Finder::ALL.len()];
+        BoxWorld::with(&BoxCuller::builder().finder(finder)).unwrap()
+    };
+    let ids: Vec<BodyId> = other.ids().collect();
+    for &id in ids.iter().step_by(2) {
+        other.remove(id).unwrap();
+    }
+    other.cull().unwrap();
+    other.events();
+    other
+        .insert(Aabb::new([-1.0e9; 3], [1.0e9; 3]))
+        .and_then(|id| other.remove(id))
+        .unwrap();
+    other.restore(&saved).unwrap();
+    assert_eq!(other.snapshot(), saved);
+    if frame % 5 == 4 {
+        other.shrink_to_fit();
+    }
+    *world = other;
+}
+
+#[test]
+fn restored_worlds_of_boxes_go_on() {
+    for (kind, seed) in Kind::ALL.into_iter().zip(40..) {
+        live(&mut BoxWorld::new(), kind, seed, restore);
+    }
+}
+
+/// Numbers that no world has written.
+#[test]
+fn damaged_snapshots_of_boxes_are_refused() {
+    let (mut world, mut random) = (BoxWorld::new(), Random(3));
+    let ids: Vec<BodyId> = (0..20)
+        .map(|_| world.insert(drawn(&mut random, Kind::ALL[0])).unwrap())
+        .collect();
+    world.cull().unwrap();
+    world.events();
+    world.remove(ids[3]).unwrap();
+    world.cull().unwrap();
+    world.remove(ids[5]).unwrap();
+    let whole = serde_json::to_value(world.snapshot()).unwrap();
+    for (path, value) in [
+        ("/version", serde_json::json!(2)),
+        ("/bounds/7/0/1", serde_json::json!(f32::NAN.to_bits())),
+        ("/bounds/7/0/1", serde_json::json!(f32::MAX.to_bits())),
+        ("/bounds", serde_json::json!([])),
+        ("/dynamic", serde_json::json!([true])),
+        ("/groups", serde_json::json!([])),
+        ("/ids/generation", serde_json::json!([1])),
+        ("/ids/free/0", serde_json::json!(5)),
+        ("/ids/emptied/0", serde_json::json!(6)),
+        ("/ids/present/5", serde_json::json!(true)),
+        ("/ids/present/8", serde_json::json!(false)),
+        ("/pairs/last", serde_json::json!([[2, 1], [4, 4]])),
+        ("/pairs/last", serde_json::json!([[3], [4]])),
+        ("/pairs/last", serde_json::json!([[1], [20]])),
+        ("/pairs/watched/pairs", serde_json::json!([[1], [20]])),
+    ] {
+        let mut text = whole.clone();
+        *text.pointer_mut(path).unwrap() = value;
+        let mut other = world.clone();
+        let outcome = serde_json::from_value::<BoxWorldSnapshot>(text);
+        if let Ok(snapshot) = outcome {
+            assert!(other.restore(&snapshot).is_err(), "{path}");
+        }
+        assert_eq!(other.snapshot(), world.snapshot());
+    }
+}
+
+#[test]
+fn crowds_of_a_world_come_in_portions_or_up_to_a_limit() {
+    let mut world = BoxWorld::new();
+    for _ in 0..500 {
+        world.insert(Aabb::new([0.0; 3], [1.0; 3])).unwrap();
+    }
+    let pairs = 500 * 499 / 2;
+    let whole = world.cull().unwrap().sorted();
+    let mut portions = Vec::new();
+    let count = world.cull_in_portions(|portion| portions.extend(portion));
+    assert_eq!((count, world.pairs().len()), (Ok(pairs as u64), 0));
+    portions.sort();
+    assert_eq!(portions, whole);
+    let refused = world.cull_up_to(pairs - 1).map(|pairs| pairs.len());
+    assert!(matches!(refused, Err(WorldError::Cull(_))), "{refused:?}");
+    assert_eq!(world.pairs().len(), 0);
+    let listed = world.cull_up_to(pairs).map(|pairs| pairs.sorted());
+    assert_eq!(listed, Ok(whole));
+    assert!(world.pair_bytes() >= 8 * pairs);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
-use sdop::volume::{DirectionSet, Shape, ShapeSpec};
+use sdop::volume::{DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_judge::ours::draw::rotation;
 
 use crate::support::{self, shapes};
@@ -21,6 +21,7 @@ pub struct Scene {
 fn shape_of_radius(radius: f32) -> Shape {
     let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
     let spec = ShapeSpec {
+        origin: Origin::Ball,
         radius: Some(radius),
         ..ShapeSpec::default()
     };

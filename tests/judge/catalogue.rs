@@ -57,7 +57,12 @@ fn cases_come_back_from_their_files_to_the_bit() {
         let back = ndjson::read(bytes.as_slice(), u64::MAX).unwrap().case;
         assert_eq!(back.name, case.name);
         assert_eq!(back.claims[0], claim);
-        assert_eq!(back.shapes, case.shapes, "{}", case.name);
+        // A case has the vertices as culled, and not how they were scaled and moved.
+        let mut shapes = case.shapes.clone();
+        for shape in &mut shapes {
+            (shape.offset, shape.scale) = ([0.0; 3], 1.0);
+        }
+        assert_eq!(back.shapes, shapes, "{}", case.name);
         assert_eq!(back.frames, case.frames, "{}", case.name);
     }
 }

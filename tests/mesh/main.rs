@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod decimate;
+mod far;
 mod obj;
 mod prop;
 mod shapes;

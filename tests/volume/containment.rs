@@ -16,7 +16,7 @@ fn check(vertices: &[Vec3], radius: Option<f32>) -> Result<(), TestCaseError> {
         for &axes in Axes::ALL {
             let spec = ShapeSpec {
                 origin,
-                radius: radius.filter(|_| origin == Origin::Ball),
+                radius,
                 directions: DirectionSet::K26,
                 axes,
             };

@@ -4,7 +4,7 @@ use dashu_int::IBig;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::mesh::ProceduralShape;
-use sdop::volume::{Axes, DirectionSet, OrDop, Shape, ShapeSpec};
+use sdop::volume::{Axes, DirectionSet, OrDop, Origin, Shape, ShapeSpec};
 use sdop_judge::ours::ways::variants;
 
 use super::exact::{dot, integer, point};
@@ -39,6 +39,7 @@ fn slabs_grow_by_the_margin_to_the_ulp() {
             let spec = ShapeSpec {
                 directions,
                 axes,
+                origin: Origin::Ball,
                 radius: Some(rng.random_range(0.5..2.0)),
                 ..ShapeSpec::default()
             };

@@ -10,6 +10,7 @@ pub fn mesh(vertices: Vec<Vec3>) -> TriangleMesh {
         name: "test".into(),
         vertices,
         triangles: Vec::new(),
+        ..TriangleMesh::default()
     }
 }
 

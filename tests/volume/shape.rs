@@ -59,6 +59,35 @@ fn origin_file_leaves_coordinates_alone() {
 }
 
 #[test]
+fn a_radius_scales_about_the_origin() {
+    let mesh = shifted_box();
+    let shape = Shape::build(&mesh, &spec(Origin::File, Some(1.5))).unwrap();
+    assert_eq!((shape.offset, shape.scale), ([0.0; 3], 0.5));
+    let halves: Vec<Vec3> = mesh.vertices.iter().map(|v| *v / 2.0).collect();
+    assert_eq!(shape.vertices, halves);
+    assert_eq!(shape.ball.centre, Vec3::new(5.0, 10.0, 15.0));
+    assert_eq!(shape.ball.radius, 1.5_f32.next_up());
+}
+
+/// scale · (point − offset) is the vertex, whatever the origin.
+#[test]
+fn a_shape_keeps_what_it_applied() {
+    let mesh = shifted_box();
+    for &origin in Origin::ALL {
+        for radius in [None, Some(0.3), Some(7.0)] {
+            let shape = Shape::build(&mesh, &spec(origin, radius)).unwrap();
+            assert_eq!((shape.pose_offset, shape.rounding), ([0.0; 3], 0.0));
+            for (point, vertex) in mesh.vertices.iter().zip(&shape.vertices) {
+                for i in 0..3 {
+                    let placed = shape.scale * (f64::from(point[i]) - shape.offset[i]);
+                    assert_eq!(placed as f32, vertex[i], "{origin}, {radius:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn directions_are_exchanged_as_if_built_anew() {
     for &directions in DirectionSet::ALL {
         let built = ShapeSpec {
@@ -124,12 +153,8 @@ fn impossible_shapes_are_refused_by_name() {
             "radius NaN of shape `test`",
         ),
         (
-            message(segment.clone(), Origin::Ball, Some(2e18)),
+            message(segment, Origin::Ball, Some(2e18)),
             "is not in 0 < radius ≤ 2⁶⁰",
-        ),
-        (
-            message(segment, Origin::File, Some(1.0)),
-            "keeps its file's coordinates",
         ),
         (
             message(point, Origin::Ball, Some(1.0)),

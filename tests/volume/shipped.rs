@@ -2,7 +2,7 @@
 
 use sdop::{
     mesh::{ReadOptions, read},
-    volume::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, Shape, ShapeSpec},
+    volume::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, Origin, Shape, ShapeSpec},
 };
 use sdop_bench::hash::volumes_sha256;
 use sdop_bench::tightness::{PolytopeVolume as _, mean_world_aligned_volume};
@@ -16,6 +16,7 @@ fn shape(name: &str, axes: Axes) -> Shape {
     let path = format!("{}/data/meshes/{name}.tri", env!("CARGO_MANIFEST_DIR"));
     let mesh = read(path, &ReadOptions::default()).unwrap();
     let spec = ShapeSpec {
+        origin: Origin::Ball,
         radius: Some(1.0),
         directions: DirectionSet::K26,
         axes,

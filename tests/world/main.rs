@@ -3,9 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod exchange;
+mod far;
 mod lives;
+mod many;
 mod margins;
 mod pair_test;
+mod saves;
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -15,7 +18,7 @@ use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Strategy, Updates};
-use sdop::volume::{Shape, ShapeSpec};
+use sdop::volume::{Origin, Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, Groups, PairLookup, World, WorldError};
 
 struct Random(ChaCha8Rng);
@@ -157,9 +160,9 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
                 assert_eq!(now, expected, "{way:?}, frame {frame}");
             }
             let events = world.events();
-            assert!(events.begun.iter().eq(now.difference(&before)));
-            assert!(events.persisting.iter().eq(now.intersection(&before)));
-            assert!(events.ended.iter().eq(before.difference(&now)));
+            assert!(events.begun().eq(now.difference(&before).copied()));
+            assert!(events.persisting().eq(now.intersection(&before).copied()));
+            assert!(events.ended().eq(before.difference(&now).copied()));
             seen += now.len();
             before = now;
         }
@@ -290,6 +293,7 @@ fn touching_spheres_meet_wherever_f64_puts_them() {
         }
         tried += 1;
         let spec = ShapeSpec {
+            origin: Origin::Ball,
             radius: Some(radius),
             ..ShapeSpec::default()
         };

@@ -174,6 +174,7 @@ fn shape(seed: u64, directions: DirectionSet) -> Shape {
         name: format!("cloud {seed}"),
         vertices: (0..12).map(|_| vertex()).collect(),
         triangles: (0..4).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+        ..TriangleMesh::default()
     };
     let origin = if seed.is_multiple_of(2) {
         Origin::Ball

@@ -6,7 +6,7 @@ use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{CullSettings, Finder, Strategy};
-use sdop::volume::{Shape, ShapeSpec};
+use sdop::volume::{Origin, Shape, ShapeSpec};
 
 /// Frames before anything is timed: the order of places has settled, and buffers have grown.
 const WARM_UP: usize = 64;
@@ -55,6 +55,7 @@ impl Swarm {
         let shape = |&radius: &f32| {
             let radius = Some(radius);
             let spec = ShapeSpec {
+                origin: Origin::Ball,
                 radius,
                 ..ShapeSpec::default()
             };

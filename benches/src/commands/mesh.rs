@@ -56,7 +56,9 @@ struct Report {
     boundary_edges: usize,
     non_manifold_edges: usize,
     /// Smallest enclosing ball (x, y, z, r) in the file's coordinates.
-    ball: [f32; 4],
+    ball: [f64; 4],
+    /// Where the vertices' origin lies in them: zero unless the mesh is far from its origin.
+    offset: [f64; 3],
     hull_vertices: usize,
     hull_volume: f64,
     volumes: Vec<Size>,
@@ -92,7 +94,8 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
     };
     let shape = Shape::build(mesh, &spec)?;
     let hull = Hull::of(&shape.vertices);
-    let [x, y, z] = shape.ball.centre.to_array();
+    let centre = shape.ball.centre.to_array();
+    let [x, y, z] = std::array::from_fn(|i| shape.offset[i] + f64::from(centre[i]));
     Ok(Report {
         name: mesh.name.clone(),
         file: args.file.display().to_string(),
@@ -105,7 +108,8 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
         closed_components: topology.closed_components(),
         boundary_edges: total.boundary_edges,
         non_manifold_edges: total.non_manifold_edges,
-        ball: [x, y, z, shape.ball.radius],
+        ball: [x, y, z, shape.ball.radius.into()],
+        offset: shape.offset,
         hull_vertices: hull.vertices.len(),
         hull_volume: hull.volume(&shape.vertices),
         volumes: Size::of_all(&shape, &hull),
@@ -139,15 +143,22 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
         report.boundary_edges, report.non_manifold_edges
     )?;
     // What is far below the ball's size is rounding.
-    let at = |x: f32| decimal(if x.abs() < 1e-6 * r { 0.0 } else { x.into() });
+    let at = |x: f64| decimal(if x.abs() < 1e-6 * r { 0.0 } else { x });
     writeln!(
         out,
         "smallest ball: centre ({}, {}, {}), radius {}; lengths are in the mesh's unit",
         at(x),
         at(y),
         at(z),
-        decimal(r.into())
+        decimal(r)
     )?;
+    if report.offset != [0.0; 3] {
+        let [x, y, z] = report.offset;
+        writeln!(
+            out,
+            "far from its origin: vertices are kept about ({x}, {y}, {z})"
+        )?;
+    }
     writeln!(
         out,
         "convex hull: {} vertices, volume {} unit³",
@@ -179,7 +190,7 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
 
 /// Whether a volume is nothing beside the ball's.
 fn is_flat(volume: f64, report: &Report) -> bool {
-    let radius = f64::from(report.ball[3]);
+    let radius = report.ball[3];
     volume <= 1e-9 * radius.powi(3)
 }
 

@@ -19,7 +19,7 @@ use sdop::pairs::PairList;
 use sdop::rounding::pose::{rotate, rotation};
 use sdop::settings::{Axes, DirectionSet, Overlap};
 use sdop::simd::Tier;
-use sdop::volume::{Hull, OrDop, Shape, ShapeSpec};
+use sdop::volume::{Hull, OrDop, Origin, Shape, ShapeSpec};
 
 /// Where the draws start; scenes count their seeds from 1.
 const SEED: u64 = 0x5a3e_7000_0000_0000;
@@ -141,7 +141,11 @@ pub fn builtin() -> Result<Vec<Shape>, TradeoffError> {
         .map(|(name, form)| {
             let mut mesh = form.and_then(|form| form.build())?;
             name.clone_into(&mut mesh.name);
-            Ok(Shape::build(&mesh, &ShapeSpec::default())?)
+            let spec = ShapeSpec {
+                origin: Origin::Ball,
+                ..ShapeSpec::default()
+            };
+            Ok(Shape::build(&mesh, &spec)?)
         })
         .collect()
 }

@@ -295,6 +295,7 @@ fn fewer_triangles(scene: &mut Scene, most: usize) -> Result<(), TradeoffError> 
                 name: shape.name.clone(),
                 vertices: shape.vertices.clone(),
                 triangles: shape.triangles.clone(),
+                ..TriangleMesh::default()
             };
             *shape = Shape::build(&decimate(&mesh, most), &spec(&scene.cull, shape))?;
         }

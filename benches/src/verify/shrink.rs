@@ -119,6 +119,7 @@ impl Smallest {
                 name: built.name.clone(),
                 vertices: built.vertices.clone(),
                 triangles: built.triangles.clone(),
+                ..TriangleMesh::default()
             };
             mesh::write(&mesh, directory.join(&file)).map_err(io::Error::other)?;
             let pose = [&self.bodies.rotation[i][..], &self.bodies.translation[i]].concat();

@@ -22,6 +22,7 @@ impl Drawn {
             name: shape.name.clone(),
             vertices: shape.vertices.clone(),
             triangles: shape.triangles.clone(),
+            ..TriangleMesh::default()
         };
         let mut levels = vec![decimate(&whole, LEVELS[0])];
         for most in &LEVELS[1..] {

@@ -5,7 +5,7 @@
 use std::slice::from_raw_parts;
 
 use sdop::mesh::TriangleMesh;
-use sdop::volume::{DirectionSet, Origin, Shape, ShapeSpec};
+use sdop::volume::{DirectionSet, Shape, ShapeSpec};
 use sdop::world::PairTest;
 
 /// No tests yet.
@@ -46,8 +46,8 @@ unsafe extern "C" fn sdop_test_add(
     add(test, vertices, triangles, margin).unwrap_or(u32::MAX)
 }
 
-/// The mesh as it is, and grown; the first's number.
-fn add(
+/// The mesh as it is, about its own origin, and grown; the first's number.
+pub fn add(
     test: &mut PairTest,
     vertices: &[[f32; 3]],
     triangles: &[[u32; 3]],
@@ -55,11 +55,8 @@ fn add(
 ) -> Option<u32> {
     let vertices = vertices.iter().map(|&v| v.into()).collect();
     let mesh = TriangleMesh::new("body", vertices, triangles.to_vec()).ok()?;
-    let spec = ShapeSpec {
-        origin: Origin::File,
-        ..ShapeSpec::default()
-    };
-    let number = test.add(&Shape::build(&mesh, &spec).ok()?).ok()?;
+    let shape = Shape::build(&mesh, &ShapeSpec::default()).ok()?;
+    let number = test.add(&shape).ok()?;
     test.grown(number, margin).ok().map(|_| number)
 }
 

@@ -32,6 +32,7 @@ pub fn write(directory: &Path, bodies: &[CaseBody], comment: &str) -> Result<Pat
             name: body.shape.name.clone(),
             vertices: body.shape.vertices.clone(),
             triangles: body.shape.triangles.clone(),
+            ..TriangleMesh::default()
         };
         mesh::write(&mesh, directory.join(&file))?;
         let pose = [&body.rotation[..], &body.translation].concat();

@@ -1,7 +1,7 @@
 //! Rapier's shapes as sdop's: what volumes are built from, and how far rapier looks beyond them.
 
 use sdop::mesh::TriangleMesh;
-use sdop::volume::{Origin, Shape as Volume, ShapeSpec};
+use sdop::volume::{Shape as Volume, ShapeSpec};
 
 use super::rapier::math::{Real, Vector};
 use super::rapier::parry::shape::{Shape, TriMeshFlags, TypedShape};
@@ -20,11 +20,7 @@ pub fn volume(shape: &dyn Shape) -> Option<Volume> {
         .map(|v| v.to_array().map(|x| x as f32).into())
         .collect();
     let mesh = TriangleMesh::new("collider", vertices, triangles).ok()?;
-    let spec = ShapeSpec {
-        origin: Origin::File,
-        ..ShapeSpec::default()
-    };
-    Volume::build(&mesh, &spec).ok()
+    Volume::build(&mesh, &ShapeSpec::default()).ok()
 }
 
 fn triangles_of(shape: &dyn Shape) -> Option<(Vec<Vector>, Vec<[u32; 3]>)> {

@@ -73,6 +73,7 @@ fn mesh_of(shape: &Shape) -> TriangleMesh {
         name: shape.name.clone(),
         vertices: shape.vertices.clone(),
         triangles: shape.triangles.clone(),
+        ..TriangleMesh::default()
     }
 }
 

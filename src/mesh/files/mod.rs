@@ -11,4 +11,5 @@ mod write;
 
 pub use read::{MeshFormat, ReadOptions, read, read_bytes};
 pub use tri::TriFormat;
+pub(super) use weld::weld;
 pub use write::{write, write_bytes};

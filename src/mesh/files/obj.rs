@@ -9,11 +9,10 @@
 use std::borrow::Cow;
 use std::io::{BufRead, Read};
 
-use glam::Vec3;
 use tobj::{LoadError, LoadOptions};
 
-use super::text::{self, Fault};
-use super::tri::Parts;
+use super::read::Parts;
+use super::text::{self, Fault, between_f32};
 use crate::mesh::{Problem, check_vertex};
 
 /// Reads an OBJ file.
@@ -38,13 +37,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
         .next()
         .map(|model| model.mesh)
         .unwrap_or_default();
-    let vertices: Vec<Vec3> = mesh
-        .positions
-        .as_chunks()
-        .0
-        .iter()
-        .copied()
-        .map(Vec3::from_array)
+    let points: Vec<[f64; 3]> = geometry(text)
+        .filter_map(|(_, line)| position(&line))
         .collect();
     let triangles = mesh
         .indices
@@ -53,12 +47,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
         .get(count..)
         .unwrap_or_default()
         .to_vec();
-    match vertices
-        .iter()
-        .enumerate()
-        .find_map(|(i, v)| check_vertex(i, *v).err())
-    {
-        None => Ok((vertices, triangles)),
+    let mut numbered = points.iter().enumerate();
+    match numbered.find_map(|(i, v)| check_vertex(i, *v).err()) {
+        None => Ok(Parts::indexed(points, triangles)),
         Some(problem) => Err(find_bad_vertex(text).unwrap_or((None, problem))),
     }
 }
@@ -72,6 +63,25 @@ fn geometry(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     numbered
         .filter(|(_, line)| matches!(keyword(line), Some("v" | "f")))
         .map(|(number, line)| (number, without_colour(line)))
+}
+
+/// The position of a line `v x y z`, or `v x y z w` for x/w, y/w and z/w: what `tobj` has found sound, in f64.
+fn position(line: &str) -> Option<[f64; 3]> {
+    let mut words = line.split_whitespace();
+    if words.next() != Some("v") {
+        return None;
+    }
+    let mut position = [0.0; 3];
+    for (coordinate, word) in position.iter_mut().zip(&mut words) {
+        *coordinate = between_f32(word.parse().ok()?, || word.parse::<f32>()).ok()?;
+    }
+    match words.next() {
+        None => Some(position),
+        Some(weight) => {
+            let weight: f64 = weight.parse().ok()?;
+            Some(position.map(|x| x / weight))
+        }
+    }
 }
 
 fn keyword(line: &str) -> Option<&str> {

@@ -6,15 +6,14 @@
 
 use std::io::ErrorKind;
 
-use glam::Vec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType,
     ScalarType,
 };
 
-use super::text::{Fault, excerpt};
-use super::tri::Parts;
+use super::read::Parts;
+use super::text::{Fault, between_f32, excerpt};
 use crate::mesh::{Problem, check_triangle, check_vertex};
 
 /// Reads a PLY file.
@@ -37,9 +36,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
         let first_line = file.line();
         match element.name.as_str() {
             "vertex" => {
-                let points = file.elements::<Point>(element, &header)?;
-                for (index, Point(position)) in points.into_iter().enumerate() {
-                    let position = Vec3::from_array(position);
+                let points = file.points(element, &header)?;
+                for (index, position) in points.into_iter().enumerate() {
                     let line = first_line.map(|line| line + index);
                     check_vertex(index, position).map_err(|problem| (line, problem))?;
                     vertices.push(position);
@@ -56,7 +54,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     }
     file.check_end()?;
     let triangles = triangulate(&polygons, vertices.len(), face_line)?;
-    Ok((vertices, triangles))
+    Ok(Parts::indexed(vertices, triangles))
 }
 
 /// A file that is being read, with what is needed to say where it is wrong.
@@ -70,6 +68,27 @@ impl File<'_> {
     /// The line that comes next, when lines mean anything.
     fn line(&self) -> Option<usize> {
         self.text.then(|| self.reader.line())
+    }
+
+    /// The vertices. Text may have more digits than the f32 that the header promises, so it is read as f64.
+    fn points(&mut self, element: &ElementDef, header: &Header) -> Result<Vec<[f64; 3]>, Fault> {
+        let start = *self.reader.get_ref();
+        let mut wide = element.clone();
+        for property in wide.properties.values_mut() {
+            if self.text && property.data_type == PropertyType::Scalar(ScalarType::Float) {
+                property.data_type = PropertyType::Scalar(ScalarType::Double);
+            }
+        }
+        let mut points: Vec<Point> = self.elements(&wide, header)?;
+        if points.iter().any(Point::is_between_f32) {
+            // What is an f64 is an f32 too, so there is no error to tell.
+            let again = Parser::<Point>::new();
+            let nearest = again.read_payload_for_element(&mut Reader::new(start), element, header);
+            for (point, nearest) in points.iter_mut().zip(nearest.unwrap_or_default()) {
+                point.round_to(nearest);
+            }
+        }
+        Ok(points.into_iter().map(|Point(position)| position).collect())
     }
 
     fn elements<E: PropertyAccess>(
@@ -221,7 +240,21 @@ fn triangulate(
 }
 
 /// A vertex's position; its other properties are passed over.
-struct Point([f32; 3]);
+struct Point([f64; 3]);
+
+impl Point {
+    /// Whether a coordinate lies in the middle of two f32, and the text perhaps on another side of it.
+    fn is_between_f32(&self) -> bool {
+        self.0.iter().any(|&x| between_f32(x, || Err(())).is_err())
+    }
+
+    /// Moves coordinates between two f32 to the side of the text, of which `nearest` was read as f32.
+    fn round_to(&mut self, nearest: Self) {
+        for (x, nearest) in self.0.iter_mut().zip(nearest.0) {
+            *x = between_f32(*x, || Ok::<_, ()>(nearest as f32)).unwrap_or(*x);
+        }
+    }
+}
 
 impl PropertyAccess for Point {
     fn new() -> Self {
@@ -232,12 +265,18 @@ impl PropertyAccess for Point {
         let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) else {
             return PropertyAccessResult::Ignored;
         };
-        property
-            .to_f32_lossy()
-            .map_or(PropertyAccessResult::UnsupportedType, |value| {
-                self.0[axis] = value;
-                PropertyAccessResult::Set
-            })
+        self.0[axis] = match property {
+            Property::Char(x) => x.into(),
+            Property::UChar(x) => x.into(),
+            Property::Short(x) => x.into(),
+            Property::UShort(x) => x.into(),
+            Property::Int(x) => x.into(),
+            Property::UInt(x) => x.into(),
+            Property::Float(x) => x.into(),
+            Property::Double(x) => x,
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
     }
 }
 

@@ -102,10 +102,39 @@ pub fn read_bytes(
         MeshFormat::Stl => stl::read(bytes),
         MeshFormat::Ply => ply::read(bytes),
     };
-    let (vertices, triangles) = parts.map_err(|(line, problem)| problem.at(file, line))?;
+    let Parts { points, triangles } = parts.map_err(|(line, problem)| problem.at(file, line))?;
     let stem = Path::new(file)
         .file_stem()
         .unwrap_or_default()
         .to_string_lossy();
-    TriangleMesh::new(stem, vertices, triangles).map_err(|error| error.problem.at(file, error.line))
+    let mesh = match triangles {
+        Some(triangles) => {
+            TriangleMesh::from_f64(&points, &triangles).map_err(|error| error.problem)
+        }
+        None => TriangleMesh::from_soup(&points),
+    };
+    mesh.map(|mesh| mesh.named(stem))
+        .map_err(|problem| problem.at(file, None))
+}
+
+/// What a format's reader finds.
+pub(super) struct Parts {
+    /// Positions in f64, each of which rounds to the f32 nearest to what the file says.
+    pub points: Vec<[f64; 3]>,
+    /// The three vertices of each triangle; `None` where each three points are one.
+    pub triangles: Option<Vec<[u32; 3]>>,
+}
+
+impl Parts {
+    /// Vertices and what triangles name of them.
+    pub fn indexed(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
+        let triangles = Some(triangles);
+        Self { points, triangles }
+    }
+
+    /// Three points a triangle.
+    pub fn soup(points: Vec<[f64; 3]>) -> Self {
+        let triangles = None;
+        Self { points, triangles }
+    }
 }

@@ -9,9 +9,9 @@ use std::io::Cursor;
 use glam::Vec3;
 use stl_io::Triangle;
 
-use super::text::{self, Fault};
-use super::tri::Parts;
-use super::weld::Welder;
+use super::read::Parts;
+use super::text::{self, Fault, between_f32};
+use super::write::{put, wide};
 use crate::mesh::{Problem, TriangleMesh, check_vertex};
 
 const HEADER_BYTES: usize = 84;
@@ -25,14 +25,16 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
         let mut file = bytes.to_vec();
         file[..80].fill(b' ');
         for triangle in triangles(&file).map_err(|error| (None, unreadable(&error)))? {
-            soup.add(triangle.map_err(|error| (None, unreadable(&error)))?, None)?;
+            let triangle = triangle.map_err(|error| (None, unreadable(&error)))?;
+            let corners = triangle.vertices.map(|corner| corner.0.map(f64::from));
+            soup.add(corners, None)?;
         }
     } else {
         for (first_line, solid) in solids(text::decode(bytes)?) {
             soup.add_solid(first_line, &solid)?;
         }
     }
-    Ok((soup.welder.into_vertices(), soup.triangles))
+    Ok(Parts::soup(soup.points))
 }
 
 fn is_binary(bytes: &[u8]) -> Result<bool, Fault> {
@@ -107,20 +109,16 @@ fn unreadable(error: &std::io::Error) -> Problem {
 
 #[derive(Default)]
 struct Soup {
-    welder: Welder,
-    triangles: Vec<[u32; 3]>,
+    /// Three a triangle.
+    points: Vec<[f64; 3]>,
 }
 
 impl Soup {
-    fn add(&mut self, triangle: Triangle, line: Option<usize>) -> Result<(), Fault> {
-        let mut corners = [0; 3];
-        for (i, corner) in corners.iter_mut().enumerate() {
-            let position = Vec3::from_array(triangle.vertices[i].0);
-            check_vertex(3 * self.triangles.len() + i, position)
-                .map_err(|problem| (line, problem))?;
-            *corner = self.welder.index(position);
+    fn add(&mut self, corners: [[f64; 3]; 3], line: Option<usize>) -> Result<(), Fault> {
+        for position in corners {
+            check_vertex(self.points.len(), position).map_err(|problem| (line, problem))?;
+            self.points.push(position);
         }
-        self.triangles.push(corners);
         Ok(())
     }
 
@@ -143,28 +141,45 @@ impl Soup {
         let facet_line = |facet: usize| filled.get(1 + 7 * facet).or(filled.last()).copied();
         let triangles =
             triangles(solid.as_bytes()).map_err(|error| (Some(first_line), unreadable(&error)))?;
+        let mut corners = solid.lines().filter_map(corner);
         for (facet, triangle) in triangles.into_iter().enumerate() {
             let line = facet_line(facet);
-            self.add(triangle.map_err(|error| (line, unreadable(&error)))?, line)?;
+            let triangle = triangle.map_err(|error| (line, unreadable(&error)))?;
+            let rounded = triangle.vertices.map(|corner| corner.0.map(f64::from));
+            let corners = rounded.map(|rounded| corners.next().unwrap_or(rounded));
+            self.add(corners, line)?;
         }
         Ok(())
     }
 }
 
-/// The mesh as a binary STL file. Sharing of vertices is lost, and so are unused ones; positions are kept to the bit.
+/// The position of a line `vertex x y z`: what `stl_io` has found sound, in f64.
+fn corner(line: &str) -> Option<[f64; 3]> {
+    let mut words = line.split_whitespace();
+    if words.next() != Some("vertex") {
+        return None;
+    }
+    let mut position = [0.0; 3];
+    for coordinate in &mut position {
+        let word = words.next()?;
+        *coordinate = between_f32(word.parse().ok()?, || word.parse::<f32>()).ok()?;
+    }
+    Some(position)
+}
+
+/// The mesh as an STL file: binary, or text where it is far from its origin, since binary STL has f32. Sharing of vertices is
+/// lost, and so are unused ones; positions are kept to the bit.
 pub(super) fn bytes(mesh: &TriangleMesh) -> Vec<u8> {
+    if mesh.is_far() {
+        return text(mesh).into_bytes();
+    }
     let facets: Vec<Triangle> = mesh
         .triangles
         .iter()
         .map(|triangle| {
             let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize]);
-            let [wide_a, wide_b, wide_c] = [a, b, c].map(Vec3::as_dvec3);
-            let normal = (wide_b - wide_a)
-                .cross(wide_c - wide_a)
-                .normalize_or_zero()
-                .as_vec3();
             Triangle {
-                normal: stl_io::Normal::new(normal.to_array()),
+                normal: stl_io::Normal::new(normal([a, b, c])),
                 vertices: [a, b, c].map(|corner| stl_io::Vertex::new(corner.to_array())),
             }
         })
@@ -173,4 +188,30 @@ pub(super) fn bytes(mesh: &TriangleMesh) -> Vec<u8> {
     // Writing to memory cannot fail.
     let _ = stl_io::write_stl(&mut bytes, facets.iter());
     bytes
+}
+
+/// The mesh as a text STL file.
+fn text(mesh: &TriangleMesh) -> String {
+    let points: Vec<[f64; 3]> = mesh.points().collect();
+    let mut text = "solid mesh\n".to_owned();
+    for triangle in &mesh.triangles {
+        let [x, y, z] = normal(triangle.map(|i| mesh.vertices[i as usize]));
+        put(
+            &mut text,
+            format_args!("facet normal {x} {y} {z}\nouter loop\n"),
+        );
+        for corner in triangle {
+            let [x, y, z] = points[*corner as usize].map(wide);
+            put(&mut text, format_args!("vertex {x} {y} {z}\n"));
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid mesh\n"
+}
+
+/// A triangle's unit normal; zero where it has none.
+fn normal(corners: [Vec3; 3]) -> [f32; 3] {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    normal.as_vec3().to_array()
 }

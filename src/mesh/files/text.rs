@@ -1,7 +1,5 @@
 //! Numbers in text files, each with the line it stands on, and records of them.
 
-use glam::Vec3;
-
 use crate::mesh::{Problem, check_vertex};
 
 /// A problem with the 1-based line where it shows, if it has one.
@@ -81,15 +79,38 @@ pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
 }
 
 /// The vertex written in the first three tokens.
-pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<Vec3, Fault> {
-    let mut coordinates = [0.0; 3];
-    for (coordinate, token) in coordinates.iter_mut().zip(tokens) {
-        *coordinate = token.number("a coordinate")?;
+pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<[f64; 3], Fault> {
+    let mut position = [0.0; 3];
+    for (coordinate, token) in position.iter_mut().zip(tokens) {
+        *coordinate = between_f32(token.number("a coordinate")?, || {
+            token.number("a coordinate")
+        })?;
     }
-    let position = Vec3::from_array(coordinates);
     let line = tokens.first().map(|token| token.line);
     check_vertex(vertex, position).map_err(|problem| (line, problem))?;
     Ok(position)
+}
+
+/// The number as an f64 that rounds to the f32 that is nearest to the text. Where an f64 lies in the middle of two f32, the
+/// text may lie on either side of it, and is read once more, by `nearest`.
+pub(super) fn between_f32<E>(
+    number: f64,
+    nearest: impl FnOnce() -> Result<f32, E>,
+) -> Result<f64, E> {
+    let rounded = number as f32;
+    let [below, above] = [rounded.next_down(), rounded.next_up()];
+    let middle = |other: f32| f64::from(rounded) + f64::from(other) == 2.0 * number;
+    if !(middle(below) || middle(above)) {
+        return Ok(number);
+    }
+    let nearest = f64::from(nearest()?);
+    Ok(if nearest == f64::from(rounded) {
+        number
+    } else if nearest > number {
+        number.next_up()
+    } else {
+        number.next_down()
+    })
 }
 
 /// A place in the tokens. Taking a record by line asks that it fill exactly one line.

@@ -15,10 +15,8 @@
 //! pass for one of another dialect. One fit is the answer, two are refused with both names.
 //! When nothing fits, the message comes from the dialect that got furthest into the file.
 
-use glam::Vec3;
-
+use super::read::Parts;
 use super::text::{self, Cursor, Fault, Token};
-use super::weld::Welder;
 use crate::choice::choices;
 use crate::mesh::{Problem, check_triangle};
 
@@ -50,9 +48,6 @@ struct Layout {
     first_index: u32,
     components: bool,
 }
-
-/// Vertices and triangles as read.
-pub(super) type Parts = (Vec<Vec3>, Vec<[u32; 3]>);
 
 impl TriFormat {
     /// The dialect in words.
@@ -205,7 +200,7 @@ fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<Parts, Fault> {
         component_numbers(cursor, triangle_count)?;
     }
     match cursor.rest().first() {
-        None => Ok((vertices, triangles)),
+        None => Ok(Parts::indexed(vertices, triangles)),
         Some(token) => {
             let message = format!("{} after the last triangle", excess(cursor.rest().len()));
             let help = "remove what follows, or correct the counts in the header";
@@ -222,7 +217,7 @@ fn excess(count: usize) -> String {
     }
 }
 
-fn vertices(cursor: &mut Cursor, count: usize, numbers: usize) -> Result<Vec<Vec3>, Fault> {
+fn vertices(cursor: &mut Cursor, count: usize, numbers: usize) -> Result<Vec<[f64; 3]>, Fault> {
     if count == 0 {
         return Err((None, Problem::NoVertices));
     }
@@ -292,23 +287,19 @@ fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), Fault>
 fn soup(cursor: &mut Cursor) -> Result<Parts, Fault> {
     let coordinates = without_colours(cursor.tokens);
     let mut inner = Cursor::new(&coordinates, cursor.by_line);
-    let mut welder = Welder::default();
-    let mut triangles = Vec::new();
+    let mut points = Vec::new();
     let result = (|| {
         while !inner.rest().is_empty() {
             let record = inner.record(9, "a triangle of three points")?;
-            let mut corners = [0; 3];
-            for (i, corner) in corners.iter_mut().enumerate() {
-                let point = text::position(3 * triangles.len() + i, &record[3 * i..3 * i + 3])?;
-                *corner = welder.index(point);
+            for corner in record.as_chunks::<3>().0 {
+                points.push(text::position(points.len(), corner)?);
             }
-            triangles.push(corners);
             cursor.seen_triangle = true;
         }
         Ok(())
     })();
     cursor.at = inner.at;
-    result.map(|()| (welder.into_vertices(), triangles))
+    result.map(|()| Parts::soup(points))
 }
 
 /// The tokens without the colours (0xRRGGBB) that close a triangle of nine numbers.

@@ -2,29 +2,23 @@
 
 use std::collections::HashMap;
 
-use glam::Vec3;
-
-/// Gives each distinct position one index, in the order of first use. Positions are equal when their coordinates
-/// are (0 and −0 too); nothing is rounded, so no two points that differ are ever joined.
-#[derive(Default)]
-pub(super) struct Welder {
-    vertices: Vec<Vec3>,
-    index_of: HashMap<[u32; 3], u32>,
-}
-
-impl Welder {
-    /// The index of the position.
-    pub(super) fn index(&mut self, position: Vec3) -> u32 {
+/// Gives each distinct position one index, in the order of first use, and keeps each once; three in a row are a triangle, whose
+/// indices are returned. Positions are equal when their coordinates are (0 and −0 too).
+pub(crate) fn weld(corners: &mut Vec<[f32; 3]>) -> Vec<[u32; 3]> {
+    let mut vertices = Vec::new();
+    let mut index_of: HashMap<[u32; 3], u32> = HashMap::new();
+    let mut index = |&position: &[f32; 3]| {
         // x + 0.0 turns −0 into 0 and changes nothing else.
-        let key = position.to_array().map(|x| (x + 0.0).to_bits());
-        *self.index_of.entry(key).or_insert_with(|| {
-            self.vertices.push(position);
-            // Past 2³² the index wraps, but `TriangleMesh::new` then refuses the vertex count.
-            (self.vertices.len() - 1) as u32
+        let key = position.map(|x| (x + 0.0).to_bits());
+        *index_of.entry(key).or_insert_with(|| {
+            vertices.push(position);
+            (vertices.len() - 1) as u32 // fewer than the corners, which a u32 counts
         })
-    }
-
-    pub(super) fn into_vertices(self) -> Vec<Vec3> {
-        self.vertices
-    }
+    };
+    let triangles = corners.as_chunks::<3>().0.iter();
+    let triangles = triangles
+        .map(|[a, b, c]| [index(a), index(b), index(c)])
+        .collect();
+    *corners = vertices;
+    triangles
 }

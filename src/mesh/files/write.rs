@@ -1,17 +1,19 @@
 //! Writing a mesh; the extension names the format.
 //!
-//! Coordinates are the shortest decimals that read back to the same f32, so a mesh survives the way to a file and back
-//! to the bit. `.tri` files are Bourke's dialect, whose vertices also have a unit normal and a colour: the
+//! Coordinates are the shortest decimals that read back to the same f32, or f64 for a mesh far from its origin or nearly so:
+//! a mesh survives the way to a file and back to the bit. `.tri` files are Bourke's dialect, whose vertices also have a unit normal and a colour: the
 //! normal is the sum of the adjacent triangles' cross products (area-weighted), in three decimals
 //! since it is for display only; a vertex without one gets 0 0 1.
 
-use std::fmt::Write;
+use std::fmt::{Display, LowerExp, Write};
 use std::path::Path;
 
 use glam::DVec3;
 
+use super::text::between_f32;
 use super::{MeshFormat, stl};
 use crate::files;
+use crate::mesh::far::place;
 use crate::mesh::{MeshError, Problem, TriangleMesh};
 
 /// Writes a mesh in the format that the extension names; the file appears when it is whole.
@@ -44,8 +46,7 @@ pub fn write_bytes(mesh: &TriangleMesh, format: MeshFormat) -> Vec<u8> {
 /// The mesh as a `.tri` file in Bourke's dialect.
 fn tri_text(mesh: &TriangleMesh) -> String {
     let mut text = format!("{} {}\n", mesh.vertices.len(), mesh.triangles.len());
-    for (position, normal) in mesh.vertices.iter().zip(vertex_normals(mesh)) {
-        let [x, y, z] = position.to_array().map(shortest);
+    for ([x, y, z], normal) in coordinates(mesh).zip(vertex_normals(mesh)) {
         let [nx, ny, nz] = normal.to_array().map(three_decimals);
         put(
             &mut text,
@@ -61,8 +62,7 @@ fn tri_text(mesh: &TriangleMesh) -> String {
 /// The mesh as a Wavefront OBJ file.
 fn obj_text(mesh: &TriangleMesh) -> String {
     let mut text = String::new();
-    for position in &mesh.vertices {
-        let [x, y, z] = position.to_array().map(shortest);
+    for [x, y, z] in coordinates(mesh) {
         put(&mut text, format_args!("v {x} {y} {z}\n"));
     }
     for triangle in &mesh.triangles {
@@ -74,14 +74,14 @@ fn obj_text(mesh: &TriangleMesh) -> String {
 
 /// The mesh as a text PLY file.
 fn ply_text(mesh: &TriangleMesh) -> String {
+    let real = if mesh.is_far() { "double" } else { "float" };
     let mut text = format!(
-        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty {real} x\nproperty {real} y\nproperty {real} z\n\
          element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
         mesh.vertices.len(),
         mesh.triangles.len()
     );
-    for position in &mesh.vertices {
-        let [x, y, z] = position.to_array().map(shortest);
+    for [x, y, z] in coordinates(mesh) {
         put(&mut text, format_args!("{x} {y} {z}\n"));
     }
     for [a, b, c] in &mesh.triangles {
@@ -90,13 +90,42 @@ fn ply_text(mesh: &TriangleMesh) -> String {
     text
 }
 
-fn put(text: &mut String, line: std::fmt::Arguments) {
+/// Each vertex' coordinates in the file, as text that is read back as they are: the shortest f32 where that keeps the mesh where
+/// it is, f64 otherwise.
+fn coordinates(mesh: &TriangleMesh) -> impl Iterator<Item = [String; 3]> + '_ {
+    let short = !mesh.is_far() && stays_when_shortened(mesh);
+    let word = move |x: f64| if short { shortest(x as f32) } else { wide(x) };
+    mesh.points().map(move |point| point.map(word))
+}
+
+/// Whether a mesh that isn't far would not be so as the shortest decimals of its f32: read as f64, they are others.
+fn stays_when_shortened(mesh: &TriangleMesh) -> bool {
+    let shortened = |x: f64| shortest(x as f32).parse().unwrap_or(x);
+    let points: Vec<[f64; 3]> = mesh.points().map(|point| point.map(shortened)).collect();
+    let placed = place(&points);
+    placed.offset == [0.0; 3] && placed.rounding == 0.0
+}
+
+/// The shortest text that reads back to the same f64, and is not taken for one beside the middle of two f32.
+pub(super) fn wide(x: f64) -> String {
+    let text = shortest(x);
+    if between_f32(x, || text.parse()) == Ok(x) {
+        return text;
+    }
+    let all_digits = format!("{x:.1074}");
+    all_digits
+        .trim_end_matches('0')
+        .trim_end_matches('.')
+        .to_owned()
+}
+
+pub(super) fn put(text: &mut String, line: std::fmt::Arguments) {
     // Writing to a String cannot fail.
     let _ = text.write_fmt(line);
 }
 
-/// The shorter of the plain and the exponent form that reads back to the same f32.
-fn shortest(value: f32) -> String {
+/// The shorter of the plain and the exponent form that reads back to the same number.
+fn shortest(value: impl Display + LowerExp) -> String {
     let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
     if exponent.len() < plain.len() {
         exponent

@@ -242,6 +242,7 @@ impl ProceduralShape {
             name: self.name().to_owned(),
             vertices,
             triangles,
+            ..TriangleMesh::default()
         })
     }
 }

@@ -102,6 +102,30 @@ impl SlabTables {
         }
     }
 
+    /// Puts another table in the place of one, as [`Self::push`] appends it.
+    pub(crate) fn set(&mut self, shape: usize, ordop: &OrDop, centre: [f32; 3], reach: f32) {
+        let table = table(ordop, centre, reach);
+        self.rows[2 * shape..2 * shape + 2].copy_from_slice(table.as_chunks::<ROW>().0);
+        for (column, end) in self.columns.iter_mut().zip(table) {
+            column[shape] = end;
+        }
+    }
+
+    /// Keeps the first `shapes` tables, and no room for more.
+    pub(crate) fn shrink_to(&mut self, shapes: usize) {
+        self.rows.truncate(2 * shapes);
+        self.rows.shrink_to_fit();
+        if shapes <= ROW && self.columns.is_empty() {
+            let mut columns = vec![[0.0; ROW]; self.directions.k()];
+            for (shape, table) in self.rows.chunks_exact(2).enumerate() {
+                for (column, &end) in columns.iter_mut().zip(table.as_flattened()) {
+                    column[shape] = end;
+                }
+            }
+            self.columns = columns;
+        }
+    }
+
     /// The directions that all tables have.
     #[must_use]
     pub fn directions(&self) -> DirectionSet {

@@ -72,6 +72,7 @@ pub fn bar_within(radius: f32, directions: DirectionSet, axes: Axes) -> Result<S
         name: "bar".to_owned(),
         vertices: vertices.map(Into::into).to_vec(),
         triangles: vec![[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]],
+        ..TriangleMesh::default()
     };
     let spec = ShapeSpec {
         origin: Origin::File,

@@ -61,6 +61,7 @@ impl Form {
             name: self.form.clone(),
             vertices: vertices.iter().copied().map(Vec3::from).collect(),
             triangles: triangles.to_vec(),
+            ..TriangleMesh::default()
         };
         Ok(match self.form.as_str() {
             "point" => flat(&[[0.0; 3]], &[[0, 0, 0]]),

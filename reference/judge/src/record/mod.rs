@@ -186,6 +186,10 @@ impl ShapeLine {
         let mut sets = DirectionSet::ALL.iter();
         Some(Shape {
             name: self.name.clone(),
+            offset: [0.0; 3], // a record has the vertices as culled
+            scale: 1.0,
+            pose_offset: [0.0; 3],
+            rounding: 0.0,
             reach: Ball::about(glam::Vec3::ZERO, &vertices).radius,
             ball: Ball {
                 centre: [x, y, z].into(),

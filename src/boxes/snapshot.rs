@@ -1,0 +1,71 @@
+//! A world of boxes saved, and restored or rolled back to.
+
+use serde::{Deserialize, Serialize};
+
+use super::BoxWorld;
+use crate::bodies::{Aabb, Groups};
+use crate::world::{IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length};
+
+/// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
+///
+/// It has a version, and one of another version isn't read. Equal calls leave equal snapshots. Numbers are saved as their
+/// bits, which no text format rounds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BoxWorldSnapshot {
+    version: Version,
+    ids: IdsSnapshot,
+    /// The lower corner of each box, then the upper one.
+    bounds: Vec<[[u32; 3]; 2]>,
+    dynamic: Vec<bool>,
+    groups: Vec<[u32; 2]>,
+    pairs: PairsSnapshot,
+}
+
+impl BoxWorld {
+    /// The world as it is now, for [`Self::restore`]: boxes with ids and groups, the slots that ids are given from, the pairs
+    /// of the last cull and those that events were last read of. Counters are not in it.
+    #[must_use]
+    pub fn snapshot(&self) -> BoxWorldSnapshot {
+        let bits = |aabb: &Aabb| [aabb.min, aabb.max].map(|corner| corner.map(f32::to_bits));
+        BoxWorldSnapshot {
+            version: Version,
+            ids: IdsSnapshot::of(&self.ids),
+            bounds: self.bounds.iter().map(bits).collect(),
+            dynamic: self.dynamic.clone(),
+            groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
+            pairs: PairsSnapshot::of(&self.log),
+        }
+    }
+
+    /// Makes this world the one of a snapshot. From then on the same calls give the same ids, pairs and events, in the same
+    /// order, as they give in the world that it was taken of; finder, threads and tier may differ.
+    ///
+    /// # Errors
+    /// A snapshot that isn't as it was taken. The world stays as it was.
+    pub fn restore(&mut self, snapshot: &BoxWorldSnapshot) -> Result<(), SnapshotError> {
+        let ids = snapshot.ids.restored()?;
+        for (column, entries) in [
+            ("bounds", snapshot.bounds.len()),
+            ("dynamic", snapshot.dynamic.len()),
+            ("groups", snapshot.groups.len()),
+        ] {
+            check_length(column, entries, ids.slots())?;
+        }
+        let corners = |corners: &[[u32; 3]; 2]| corners.map(|corner| corner.map(f32::from_bits));
+        let boxes = snapshot.bounds.iter().map(corners);
+        let bounds: Vec<Aabb> = boxes.map(|[min, max]| Aabb { min, max }).collect();
+        for (slot, aabb) in bounds.iter().enumerate() {
+            aabb.check(slot)?;
+        }
+        let log = snapshot.pairs.restored(&ids)?;
+
+        (self.ids, self.log, self.bounds) = (ids, log, bounds);
+        self.dynamic.clone_from(&snapshot.dynamic);
+        let groups = snapshot.groups.iter();
+        self.groups = groups
+            .map(|&[member, mask]| Groups { member, mask })
+            .collect();
+        self.replaced = true;
+        Ok(())
+    }
+}

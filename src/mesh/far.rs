@@ -1,0 +1,149 @@
+//! Meshes far from their origin: coordinates in f64 are kept as f32 about a point near the mesh.
+//!
+//! Rounded to f32 as they are, the coordinates of a wall on a map would move by a good part of its size. Where some would move
+//! by more than 2⁻²⁰ of it, the mesh is re-centred in f64 first. The offset has few bits, so that offset + vertex is an f64
+//! exactly: a mesh that is written and read again is the same. To that end an offset is settled on the coordinates that come
+//! out with it, and the choice between both ways is made on them, a sixteenth early.
+
+use crate::rounding::{exp2, up};
+
+/// 15/16 of 2⁻²⁰: how far rounding may move a point of a mesh that stays where it is, as a multiple of the mesh's largest
+/// extent. The sixteenth is what re-centring moves at most.
+const NEAR: f64 = 15.0 * exp2(-24);
+
+/// The least step of an offset: what f32 loses below is not won by another origin.
+const LEAST_STEP: f64 = exp2(-126);
+
+/// Coordinates in f64 as f32 about an offset.
+pub(super) struct Placed {
+    pub vertices: Vec<[f32; 3]>,
+    pub offset: [f64; 3],
+    /// No point is farther than this from its offset + vertex.
+    pub rounding: f32,
+}
+
+/// Rounds points to f32 where they are, or about an offset where that moves them too far.
+pub(super) fn place(points: &[[f64; 3]]) -> Placed {
+    let round = |offset: [f64; 3]| points.iter().map(|&p| vertex(p, offset)).collect();
+    let bounds = Bounds::of(points.iter().copied());
+    let moved = moved(points.iter().copied());
+    if moved <= 0.5 * NEAR * bounds.size() {
+        return Placed {
+            vertices: round([0.0; 3]),
+            offset: [0.0; 3],
+            rounding: 0.0,
+        };
+    }
+    let offset = bounds.settled_offset();
+    let kept = || points.iter().map(|&p| kept(p, offset));
+    let far = self::moved(kept()) > NEAR * Bounds::of(kept()).size();
+    let offset = if far { offset } else { [0.0; 3] };
+    let tiny = bounds.size() < LEAST_STEP; // no offset mends what f32 can't hold of it
+    Placed {
+        vertices: round(offset),
+        offset,
+        rounding: if far || tiny {
+            rounding(points, offset)
+        } else {
+            0.0
+        },
+    }
+}
+
+/// A point about an offset, in f32.
+fn vertex(point: [f64; 3], offset: [f64; 3]) -> [f32; 3] {
+    std::array::from_fn(|i| (point[i] - offset[i]) as f32)
+}
+
+/// Where a point lies once it is a vertex about an offset.
+fn kept(point: [f64; 3], offset: [f64; 3]) -> [f64; 3] {
+    let vertex = vertex(point, offset);
+    std::array::from_fn(|i| offset[i] + f64::from(vertex[i]))
+}
+
+/// How far rounding to f32 moves a point at most.
+fn moved(points: impl Iterator<Item = [f64; 3]>) -> f64 {
+    let squared = |point: [f64; 3]| {
+        let moved = point.map(|x| (f64::from(x as f32) - x).powi(2));
+        moved[0] + moved[1] + moved[2]
+    };
+    points.map(squared).fold(0.0, f64::max).sqrt()
+}
+
+/// The largest distance of a point from its offset + vertex, rounded up; 0 where all are exact.
+fn rounding(points: &[[f64; 3]], offset: [f64; 3]) -> f32 {
+    let squared = |&point: &[f64; 3]| {
+        let vertex = vertex(point, offset);
+        let moved = |i: usize| {
+            let (difference, lost) = difference(point[i], offset[i]);
+            (difference - f64::from(vertex[i])) + lost
+        };
+        (0..3).map(|i| moved(i).powi(2)).sum::<f64>()
+    };
+    // Squares below 2⁻¹⁰²² are lost, and `up` exceeds their roots.
+    let squared = points.iter().map(squared).fold(0.0, f64::max);
+    if squared == 0.0 && points.iter().all(|&p| kept(p, offset) == p) {
+        return 0.0;
+    }
+    up(squared.sqrt() * (1.0 + exp2(-40)))
+}
+
+/// a − b = difference + lost exactly, by Knuth's two-sum.
+fn difference(a: f64, b: f64) -> (f64, f64) {
+    let difference = a - b;
+    let of_b = difference - a;
+    (difference, (a - (difference - of_b)) - (b + of_b))
+}
+
+/// A box about points.
+#[derive(Clone, Copy)]
+struct Bounds {
+    lo: [f64; 3],
+    hi: [f64; 3],
+}
+
+impl Bounds {
+    fn of(points: impl Iterator<Item = [f64; 3]>) -> Self {
+        let none = Self {
+            lo: [f64::INFINITY; 3],
+            hi: [f64::NEG_INFINITY; 3],
+        };
+        points.fold(none, |Self { lo, hi }, p| Self {
+            lo: std::array::from_fn(|i| lo[i].min(p[i])),
+            hi: std::array::from_fn(|i| hi[i].max(p[i])),
+        })
+    }
+
+    /// The largest extent.
+    fn size(&self) -> f64 {
+        (0..3).fold(0.0, |most, i| most.max(self.hi[i] - self.lo[i]))
+    }
+
+    /// The middle as a multiple of some eighth of the size: a power of two, so that nothing rounds.
+    fn offset(&self) -> [f64; 3] {
+        let size = self.size();
+        let power = f64::from_bits(size.to_bits() & f64::INFINITY.to_bits());
+        let step = (0.25 * power).max(LEAST_STEP);
+        std::array::from_fn(|i| {
+            let middle = 0.5 * self.lo[i] + 0.5 * self.hi[i];
+            (middle / step).round() * step
+        })
+    }
+
+    /// The offset that what is kept about it would have again.
+    fn settled_offset(mut self) -> [f64; 3] {
+        let mut offset = self.offset();
+        for _ in 0..8 {
+            self = Self {
+                lo: kept(self.lo, offset),
+                hi: kept(self.hi, offset),
+            };
+            let next = self.offset();
+            if next == offset {
+                break;
+            }
+            offset = next;
+        }
+        offset
+    }
+}

@@ -1,0 +1,274 @@
+//! The pairs that culls have reported: those of the last cull, and those that events were last read of.
+
+use std::iter::Zip;
+use std::slice::Iter;
+use std::sync::Arc;
+
+use super::{BodyId, Events, Ids};
+use crate::pairs::{PairList, PairSorter};
+
+/// Pairs of bodies, the lower slot first.
+#[derive(Clone, Copy, Debug)]
+pub struct WorldPairs<'a> {
+    slots: &'a PairList,
+    generation: &'a [u32],
+}
+
+impl<'a> WorldPairs<'a> {
+    pub(crate) fn new(slots: &'a PairList, generation: &'a [u32]) -> Self {
+        Self { slots, generation }
+    }
+
+    /// Number of pairs.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Whether there is no pair.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.slots.is_empty()
+    }
+
+    /// The pairs in the order of the list.
+    #[must_use]
+    pub fn iter(&self) -> PairIds<'a> {
+        PairIds {
+            slots: self.slots.first().iter().zip(self.slots.second()),
+            generation: self.generation,
+        }
+    }
+
+    /// The pairs sorted by slots: the order that the pairs of a world's cull have anyway, and portions don't.
+    #[must_use]
+    pub fn sorted(&self) -> Vec<[BodyId; 2]> {
+        let mut pairs: Vec<_> = self.iter().collect();
+        pairs.sort_unstable();
+        pairs
+    }
+}
+
+impl<'a> IntoIterator for WorldPairs<'a> {
+    type Item = [BodyId; 2];
+    type IntoIter = PairIds<'a>;
+    fn into_iter(self) -> PairIds<'a> {
+        self.iter()
+    }
+}
+
+/// The pairs of [`WorldPairs`], one after the other.
+#[derive(Clone, Debug)]
+pub struct PairIds<'a> {
+    slots: Zip<Iter<'a, u32>, Iter<'a, u32>>,
+    generation: &'a [u32],
+}
+
+impl Iterator for PairIds<'_> {
+    type Item = [BodyId; 2];
+    fn next(&mut self) -> Option<[BodyId; 2]> {
+        let (&first, &second) = self.slots.next()?;
+        let id = |slot: u32| BodyId {
+            slot,
+            generation: self.generation[slot as usize],
+        };
+        Some([id(first), id(second)])
+    }
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.slots.size_hint()
+    }
+}
+
+impl ExactSizeIterator for PairIds<'_> {}
+
+/// The pairs of one cull by slot, sorted, with the generations that slots had then.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reported {
+    pub(super) slots: PairList,
+    pub(super) generation: Arc<Vec<u32>>,
+}
+
+impl Reported {
+    pub fn pairs(&self) -> WorldPairs<'_> {
+        WorldPairs::new(&self.slots, &self.generation)
+    }
+
+    /// The same without room for more.
+    pub(super) fn compacted(&self) -> Self {
+        let mut slots = PairList::default();
+        slots.append(&self.slots);
+        let named = slots
+            .second()
+            .iter()
+            .max()
+            .map_or(0, |&last| last as usize + 1);
+        let generation = if named < self.generation.len() {
+            Arc::new(self.generation[..named].to_vec())
+        } else {
+            self.generation.clone()
+        };
+        Self { slots, generation }
+    }
+}
+
+/// The pairs of the last cull, those at the last look for events, and memory for the next.
+///
+/// Lists are shared with the [`Events`] that are read of them, and none is copied: two lists take turns.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PairLog {
+    pub(super) last: Arc<Reported>,
+    pub(super) watched: Arc<Reported>,
+    /// What was watched before: its memory serves again once nobody reads it.
+    spare: Option<Arc<Reported>>,
+    sorter: PairSorter,
+}
+
+impl PairLog {
+    /// The pairs of a cull, and those that events were read of.
+    #[cfg(feature = "serde")]
+    pub(super) fn of(last: Arc<Reported>, watched: Arc<Reported>) -> Self {
+        Self {
+            last,
+            watched,
+            ..Self::default()
+        }
+    }
+
+    /// An empty list to cull into. There are no pairs until [`Self::put`].
+    pub fn take(&mut self) -> PairList {
+        let last = Arc::into_inner(std::mem::take(&mut self.last));
+        let unread = last.or_else(|| Arc::into_inner(self.spare.take()?));
+        let mut list = unread.unwrap_or_default().slots;
+        list.clear();
+        list
+    }
+
+    /// The pairs of a cull in any order: sorts them.
+    pub fn put(&mut self, mut slots: PairList, ids: &Ids) {
+        slots.sort(ids.slots(), &mut self.sorter);
+        let generation = ids.generation().clone();
+        self.last = Arc::new(Reported { slots, generation });
+    }
+
+    /// The pairs of the last cull.
+    pub fn pairs(&self) -> WorldPairs<'_> {
+        self.last.pairs()
+    }
+
+    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    pub fn events(&mut self) -> Events {
+        let now = self.last.clone();
+        let before = std::mem::replace(&mut self.watched, now.clone());
+        self.spare = Some(before.clone());
+        Events { before, now }
+    }
+
+    /// Bytes that lists of pairs hold.
+    pub fn bytes(&self) -> usize {
+        let Self {
+            last,
+            watched,
+            spare,
+            sorter,
+        } = self;
+        let mut lists: Vec<_> = [last, watched].into_iter().chain(spare).collect();
+        lists.sort_by_key(|list| Arc::as_ptr(list));
+        lists.dedup_by_key(|list| Arc::as_ptr(list));
+        let lists = lists.iter().map(|list| list.slots.bytes());
+        lists.sum::<usize>() + sorter.bytes()
+    }
+
+    /// Gives back the memory that the pairs don't need.
+    pub fn shrink_to_fit(&mut self) {
+        (self.spare, self.sorter) = Default::default();
+        let is_watched = Arc::ptr_eq(&self.last, &self.watched);
+        self.last = Arc::new(self.last.compacted());
+        self.watched = if is_watched {
+            self.last.clone()
+        } else {
+            Arc::new(self.watched.compacted())
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    /// So many bodies.
+    fn ids(bodies: u32) -> Ids {
+        let mut ids = Ids::default();
+        (0..bodies).for_each(|_| assert!(ids.take()));
+        ids
+    }
+
+    fn cull(log: &mut PairLog, ids: &Ids, pairs: impl IntoIterator<Item = [u32; 2]>) {
+        let mut list = log.take();
+        assert!(list.is_empty() && log.pairs().is_empty());
+        pairs.into_iter().for_each(|[i, j]| list.push(i, j));
+        log.put(list, ids);
+    }
+
+    #[test]
+    fn two_lists_take_turns_while_events_are_read() {
+        let (mut log, ids) = (PairLog::default(), ids(3000));
+        let mut bytes = Vec::new();
+        for frame in 0..6 {
+            let pairs = (0..2000).rev().filter(|i| i % 3 != frame % 3);
+            cull(&mut log, &ids, pairs.map(|i| [i, i + 7]));
+            let events = log.events();
+            assert_eq!(
+                events.now.slots.len(),
+                events.iter().count() - events.ended().count()
+            );
+            bytes.push(log.bytes());
+        }
+        assert!(
+            bytes[2..].iter().all(|&later| later == bytes[2]),
+            "{bytes:?}"
+        );
+        let one = 8 * 2000;
+        assert!(bytes[2] < 4 * one, "two lists and a sort: {bytes:?}");
+    }
+
+    #[test]
+    fn memory_of_a_crowd_is_given_back_and_its_pairs_stay() {
+        let (mut log, ids) = (PairLog::default(), ids(500));
+        cull(
+            &mut log,
+            &ids,
+            (0..499).flat_map(|i| (i + 1..500).map(move |j| [i, j])),
+        );
+        let crowd = log.events();
+        cull(&mut log, &ids, [[3, 4], [1, 2]]);
+        let few = log.events();
+        log.shrink_to_fit();
+        assert!(log.bytes() < 1000, "{}", log.bytes());
+        assert!(log.pairs().iter().eq(few.now.pairs()) && log.pairs().len() == 2);
+        assert_eq!(log.events().persisting().count(), 2);
+        drop((crowd, few));
+    }
+
+    #[test]
+    fn events_tell_bodies_of_one_slot_apart() {
+        let (mut log, mut ids) = (PairLog::default(), ids(3));
+        cull(&mut log, &ids, [[0, 1], [1, 2]]);
+        log.events();
+        let former = ids.id(1);
+        ids.remove(former).unwrap();
+        ids.settle();
+        ids.take();
+        cull(&mut log, &ids, [[1, 2], [0, 2]]);
+        let (a, b, c) = (ids.id(0), ids.id(1), ids.id(2));
+        let events: Vec<_> = log.events().iter().collect();
+        let wanted = [
+            super::super::Event::Ended([a, former]),
+            super::super::Event::Begun([a, c]),
+            super::super::Event::Ended([former, c]),
+            super::super::Event::Begun([b, c]),
+        ];
+        assert_eq!(events, wanted);
+    }
+}

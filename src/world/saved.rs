@@ -1,0 +1,215 @@
+//! What the snapshots of both worlds have in common: version, ids, pairs, and what is wrong with damaged ones.
+
+use std::sync::Arc;
+
+use miette::Diagnostic;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::Ids;
+use super::pair_log::{PairLog, Reported};
+use crate::bodies::contract::{ContractError, check_number};
+use crate::pairs::PairList;
+
+/// The version of snapshots that this library writes and reads.
+const VERSION: u32 = 1;
+
+/// A snapshot that a world can't be restored from. The world is as it was before.
+#[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
+pub enum SnapshotError {
+    /// Numbers that no world has written.
+    #[error("the snapshot is damaged: {problem}")]
+    #[diagnostic(help("take another from `snapshot`, and store and send it unchanged"))]
+    Damaged {
+        /// What is wrong.
+        problem: String,
+    },
+    /// A body outside of the contract, which no world has held.
+    #[error("the snapshot is damaged")]
+    #[diagnostic(help("take another from `snapshot`, and store and send it unchanged"))]
+    Contract(#[from] ContractError),
+    /// A shape of the snapshot that the world lacks.
+    #[error("shape {shape} of the snapshot is `{name}`, but {found}")]
+    #[diagnostic(help(
+        "snapshots hold no meshes: give the world the same shapes under the same numbers, built with the same `ShapeSpec`"
+    ))]
+    Shape {
+        /// Its number.
+        shape: u32,
+        /// Its name.
+        name: String,
+        /// What the world has in its place.
+        found: String,
+    },
+}
+
+pub(crate) fn damaged<T>(problem: impl Into<String>) -> Result<T, SnapshotError> {
+    let problem = problem.into();
+    Err(SnapshotError::Damaged { problem })
+}
+
+/// Checks that a column has one entry for each slot.
+pub(crate) fn check_length(
+    column: &str,
+    entries: usize,
+    slots: usize,
+) -> Result<(), SnapshotError> {
+    if entries == slots {
+        return Ok(());
+    }
+    damaged(format!(
+        "`{column}` has {entries} entries for {slots} slots"
+    ))
+}
+
+/// The version of a snapshot, which comes first in it. Another one isn't read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "u32", into = "u32")]
+pub(crate) struct Version;
+
+impl TryFrom<u32> for Version {
+    type Error = String;
+    fn try_from(version: u32) -> Result<Self, String> {
+        if version == VERSION {
+            return Ok(Self);
+        }
+        Err(format!(
+            "a snapshot of version {version}, and this library reads version {VERSION}: restore it with the library that took it"
+        ))
+    }
+}
+
+impl From<Version> for u32 {
+    fn from(_: Version) -> Self {
+        VERSION
+    }
+}
+
+/// The slots of a world, and who lives in them.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct IdsSnapshot {
+    present: Vec<bool>,
+    generation: Vec<u32>,
+    free: Vec<u32>,
+    emptied: Vec<u32>,
+    first_generation: u32,
+}
+
+impl IdsSnapshot {
+    pub fn of(ids: &Ids) -> Self {
+        Self {
+            present: ids.present.clone(),
+            generation: ids.generation.to_vec(),
+            free: ids.free.clone(),
+            emptied: ids.emptied.clone(),
+            first_generation: ids.first_generation,
+        }
+    }
+
+    pub fn restored(&self) -> Result<Ids, SnapshotError> {
+        let slots = self.present.len();
+        check_number(slots)?;
+        check_length("generation", self.generation.len(), slots)?;
+        let mut is_known = self.present.clone();
+        for &slot in self.free.iter().chain(&self.emptied) {
+            match is_known.get_mut(slot as usize) {
+                Some(is_known) if !*is_known => *is_known = true,
+                Some(_) => return damaged(format!("slot {slot} is in two states at once")),
+                None => return damaged(format!("slot {slot} of {slots} is free")),
+            }
+        }
+        let last = |slot: usize| self.generation[slot] == u32::MAX;
+        if let Some(slot) = (0..slots).find(|&slot| !is_known[slot] && !last(slot)) {
+            return damaged(format!("slot {slot} is neither taken nor free"));
+        }
+        if let Some(slot) = self.free.iter().find(|&&slot| last(slot as usize)) {
+            return damaged(format!("slot {slot} is free and has no generation left"));
+        }
+        Ok(Ids {
+            present: self.present.clone(),
+            generation: Arc::new(self.generation.clone()),
+            free: self.free.clone(),
+            emptied: self.emptied.clone(),
+            first_generation: self.first_generation,
+            bodies: self.present.iter().filter(|is| **is).count(),
+        })
+    }
+}
+
+/// The pairs of the last cull, and those that events were last read of.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct PairsSnapshot {
+    last: [Vec<u32>; 2],
+    /// None: the same.
+    watched: Option<WatchedSnapshot>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct WatchedSnapshot {
+    pairs: [Vec<u32>; 2],
+    generation: Vec<u32>,
+}
+
+impl PairsSnapshot {
+    pub fn of(log: &PairLog) -> Self {
+        let columns = |list: &PairList| [list.first().to_vec(), list.second().to_vec()];
+        let watched = (!Arc::ptr_eq(&log.last, &log.watched)).then(|| {
+            let watched = log.watched.compacted();
+            WatchedSnapshot {
+                pairs: columns(&watched.slots),
+                generation: watched.generation.to_vec(),
+            }
+        });
+        Self {
+            last: columns(&log.last.slots),
+            watched,
+        }
+    }
+
+    pub fn restored(&self, ids: &Ids) -> Result<PairLog, SnapshotError> {
+        let slots = sorted(&self.last, ids.slots())?;
+        let mut is_named = ids.present.clone();
+        for &slot in &ids.emptied {
+            is_named[slot as usize] = true;
+        }
+        if let Some([i, j]) = slots
+            .iter()
+            .find(|pair| pair.iter().any(|&slot| !is_named[slot as usize]))
+        {
+            return damaged(format!("the pair {i}, {j} has a slot that was empty"));
+        }
+        let generation = ids.generation().clone();
+        let last = Arc::new(Reported { slots, generation });
+        let watched = match &self.watched {
+            None => last.clone(),
+            Some(WatchedSnapshot { pairs, generation }) => {
+                let named = pairs[1].iter().max().map_or(0, |&last| last as usize + 1);
+                check_length("watched generation", generation.len(), named)?;
+                Arc::new(Reported {
+                    slots: sorted(pairs, generation.len())?,
+                    generation: Arc::new(generation.clone()),
+                })
+            }
+        };
+        Ok(PairLog::of(last, watched))
+    }
+}
+
+/// Pairs of numbers below `slots`, the lower one first, sorted, each once.
+fn sorted([first, second]: &[Vec<u32>; 2], slots: usize) -> Result<PairList, SnapshotError> {
+    if first.len() != second.len() {
+        return damaged(format!(
+            "{} and {} halves of pairs",
+            first.len(),
+            second.len()
+        ));
+    }
+    let pairs = || first.iter().zip(second).map(|(&i, &j)| [i, j]);
+    if let Some([i, j]) = pairs().find(|&[i, j]| i >= j || j as usize >= slots) {
+        return damaged(format!("the pair {i}, {j} of {slots} slots"));
+    }
+    if !pairs().is_sorted_by(|a, b| a < b) {
+        return damaged("pairs aren't sorted");
+    }
+    Ok(pairs().collect())
+}

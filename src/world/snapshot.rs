@@ -1,0 +1,206 @@
+//! A world saved, and restored or rolled back to: all that decides its pairs, events and ids from then on.
+//!
+//! Pairs and their order are a function of the bodies ([`World::cull`]), so no state of a pair finder is saved. Numbers are
+//! saved as their bits, which no text format rounds. Meshes aren't saved: a digest of each shape is.
+
+use serde::{Deserialize, Serialize};
+
+use super::local::Local;
+use super::saved::{IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged};
+use super::shapes::{ShapeSlot, check_shape};
+use super::{BodyId, Groups, World, check_margin, check_pose};
+use crate::bodies::Bodies;
+use crate::rounding::LIMIT;
+use crate::strategy::Answers;
+
+/// A [`World`] at one moment, to be stored or sent in any format of serde.
+///
+/// It has a version, and one of another version isn't read. Equal calls leave equal snapshots, so that two peers can compare
+/// theirs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WorldSnapshot {
+    version: Version,
+    shapes: Vec<Option<ShapeSnapshot>>,
+    ids: IdsSnapshot,
+    shape: Vec<u32>,
+    dynamic: Vec<bool>,
+    rotation: Vec<[u32; 4]>,
+    translation: Vec<[u64; 3]>,
+    margin: Vec<u32>,
+    groups: Vec<[u32; 2]>,
+    interest: Vec<BodyId>,
+    /// About which translations are f32: it follows the bodies, and so depends on where they have been.
+    origin: [u64; 3],
+    pairs: PairsSnapshot,
+    answers: Vec<([u32; 2], u32)>,
+}
+
+/// A shape that a snapshot's bodies may have.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct ShapeSnapshot {
+    name: String,
+    digest: u64,
+}
+
+impl World {
+    /// The world as it is now, for [`Self::restore`]: bodies with ids, poses, margins and groups, the slots that ids are given
+    /// from, the bodies of interest, the pairs of the last cull and those that events were last read of, and, where a budget
+    /// is spent on the oldest answers first, when pairs were refined. Counters and seconds are not in it.
+    ///
+    /// ```
+    /// # use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};
+    /// # let cube = ProceduralShape::Box { x: 1.0, y: 1.0, z: 1.0 }.build()?;
+    /// let shapes = vec![Shape::build(&cube, &ShapeSpec::default())?];
+    /// let mut world = World::new(shapes.clone())?;
+    /// world.insert(Body::default())?;
+    /// let saved = serde_json::to_string(&world.snapshot())?;
+    /// world.insert(Body::default())?;
+    ///
+    /// let mut other = World::new(shapes)?;
+    /// other.restore(&serde_json::from_str(&saved)?)?;
+    /// assert_eq!(other.len(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn snapshot(&self) -> WorldSnapshot {
+        let bits = |number: f32| number.to_bits();
+        let saved = |slot: &ShapeSlot| {
+            slot.is_present.then(|| ShapeSnapshot {
+                name: slot.name.clone(),
+                digest: slot.digest,
+            })
+        };
+        WorldSnapshot {
+            version: Version,
+            shapes: self.shapes[..self.shape_numbers()]
+                .iter()
+                .map(saved)
+                .collect(),
+            ids: IdsSnapshot::of(&self.ids),
+            shape: self.shape.clone(),
+            dynamic: self.bodies.dynamic.clone(),
+            rotation: self.bodies.rotation.iter().map(|q| q.map(bits)).collect(),
+            translation: self
+                .translation
+                .iter()
+                .map(|t| t.map(f64::to_bits))
+                .collect(),
+            margin: self.margin.iter().copied().map(bits).collect(),
+            groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
+            interest: self.interest.clone(),
+            origin: self.local.origin.map(f64::to_bits),
+            pairs: PairsSnapshot::of(&self.log),
+            answers: self.culler.answers().0,
+        }
+    }
+
+    /// Makes this world the one of a snapshot. From then on the same calls give the same ids, pairs and events, in the same
+    /// order, as they give in the world that it was taken of, as long as both are culled by the same strategy with the same
+    /// settings; finder, threads and tier may differ, and so may a budget of time.
+    ///
+    /// The world must have the snapshot's shapes under the same numbers. Others that it has in addition stay.
+    ///
+    /// # Errors
+    /// A shape that the world lacks, or that is another one; a snapshot that isn't as it was taken. The world stays as it was.
+    pub fn restore(&mut self, snapshot: &WorldSnapshot) -> Result<(), SnapshotError> {
+        check_shapes(&snapshot.shapes, &self.shapes)?;
+        let ids = snapshot.ids.restored()?;
+        let slots = ids.slots();
+        for (column, entries) in [
+            ("shape", snapshot.shape.len()),
+            ("dynamic", snapshot.dynamic.len()),
+            ("rotation", snapshot.rotation.len()),
+            ("translation", snapshot.translation.len()),
+            ("margin", snapshot.margin.len()),
+            ("groups", snapshot.groups.len()),
+        ] {
+            check_length(column, entries, slots)?;
+        }
+        let rotations = snapshot.rotation.iter().map(|q| q.map(f32::from_bits));
+        let rotation: Vec<[f32; 4]> = rotations.collect();
+        let translations = snapshot.translation.iter().map(|t| t.map(f64::from_bits));
+        let translation: Vec<[f64; 3]> = translations.collect();
+        let margin: Vec<f32> = snapshot
+            .margin
+            .iter()
+            .copied()
+            .map(f32::from_bits)
+            .collect();
+        let mut counts = vec![0; self.shapes.len()];
+        for slot in 0..slots {
+            check_pose(slot, &rotation[slot], &translation[slot])?;
+            let shape = snapshot.shape[slot];
+            if ids.present()[slot] {
+                if !matches!(snapshot.shapes.get(shape as usize), Some(Some(_))) {
+                    return damaged(format!("slot {slot} has shape {shape}, which isn't in it"));
+                }
+                let reach = check_shape(slot, shape, &self.shapes)?;
+                check_margin(slot, reach, margin[slot])?;
+                counts[shape as usize] += 1;
+            }
+        }
+        let origin = snapshot.origin.map(f64::from_bits);
+        if origin
+            .iter()
+            .any(|x| x.abs() > f64::from(LIMIT) || x.is_nan())
+        {
+            return damaged(format!("its origin is {origin:?}"));
+        }
+        let log = snapshot.pairs.restored(&ids)?;
+        let answers = checked(&snapshot.answers, slots)?;
+
+        self.bodies = Bodies {
+            shape: vec![0; slots],
+            dynamic: snapshot.dynamic.clone(),
+            rotation,
+            translation: vec![[0.0; 3]; slots],
+        };
+        (self.ids, self.log) = (ids, log);
+        self.local = Local { origin };
+        (self.shape, self.translation, self.margin) = (snapshot.shape.clone(), translation, margin);
+        let groups = snapshot.groups.iter();
+        self.groups = groups
+            .map(|&[member, mask]| Groups { member, mask })
+            .collect();
+        for (shape, bodies) in self.shapes.iter_mut().zip(counts) {
+            shape.bodies = bodies;
+        }
+        self.interest.clone_from(&snapshot.interest);
+        self.culler.set_answers(&answers);
+        self.look();
+        (self.replaced, self.regrouped) = (true, true);
+        Ok(())
+    }
+}
+
+fn check_shapes(
+    wanted: &[Option<ShapeSnapshot>],
+    present: &[ShapeSlot],
+) -> Result<(), SnapshotError> {
+    for (number, wanted) in wanted.iter().enumerate() {
+        let Some(wanted) = wanted else { continue };
+        let found = match present.get(number).filter(|slot| slot.is_present) {
+            Some(slot) if slot.digest == wanted.digest => continue,
+            Some(slot) => format!("this world has another shape in its place, `{}`", slot.name),
+            None => "this world has none of that number".to_owned(),
+        };
+        return Err(SnapshotError::Shape {
+            shape: number as u32,
+            name: wanted.name.clone(),
+            found,
+        });
+    }
+    Ok(())
+}
+
+/// Answers of sorted pairs of slots, each once, with ranks no larger than there are pairs.
+fn checked(answers: &[([u32; 2], u32)], slots: usize) -> Result<Answers, SnapshotError> {
+    let is_sound = |&([i, j], rank): &([u32; 2], u32)| {
+        i < j && (j as usize) < slots && rank as usize <= answers.len()
+    };
+    let is_sorted = answers.is_sorted_by(|(a, _), (b, _)| a < b);
+    if is_sorted && answers.iter().all(is_sound) {
+        return Ok(Answers(answers.to_vec()));
+    }
+    damaged("answers of pairs that there can't be")
+}

@@ -1,0 +1,304 @@
+//! What worlds hold is what is in them now: after streams of shapes, crowds and crowds' events, in bytes of the heap.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(unsafe_code, reason = "an allocator that counts is an allocator")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::collections::VecDeque;
+
+use sdop::boxes::BoxBody;
+use sdop::mesh::ProceduralShape;
+use sdop::settings::{CullSettings, Strategy};
+use sdop::volume::{Shape, ShapeSpec};
+use sdop::world::{Body, BodyId, World};
+use sdop::{Aabb, BoxWorld, Culler};
+
+/// The system's allocator, counting the bytes that each thread holds and the most that it held: tests run side by side.
+struct Counting;
+
+thread_local! {
+    static HELD: Cell<[i64; 2]> = const { Cell::new([0; 2]) };
+}
+
+fn count(bytes: i64) {
+    HELD.with(|held| {
+        let [now, most] = held.get();
+        held.set([now + bytes, most.max(now + bytes)]);
+    });
+}
+
+// SAFETY: the system's allocator does the work.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count(layout.size() as i64);
+        // SAFETY: the caller vouches for the layout.
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        count(-(layout.size() as i64));
+        // SAFETY: the caller vouches for the memory and its layout.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// The bytes that a value holds, made on this thread alone.
+fn held<T>(make: impl FnOnce() -> T) -> (T, i64) {
+    let before = HELD.with(Cell::get)[0];
+    let made = make();
+    (made, HELD.with(Cell::get)[0] - before)
+}
+
+/// The most bytes that a call takes in addition.
+fn most_taken(call: impl FnOnce()) -> i64 {
+    let before = HELD.with(|held| {
+        let [now, _] = held.get();
+        held.set([now; 2]);
+        now
+    });
+    call();
+    HELD.with(Cell::get)[1] - before
+}
+
+fn form(number: u16) -> Shape {
+    let side = |n: u16| 1.0 + f32::from(n % 4) / 4.0;
+    let mesh = ProceduralShape::Box {
+        x: side(number),
+        y: side(number / 4),
+        z: side(number / 2),
+    };
+    Shape::build(&mesh.build().unwrap(), &ShapeSpec::default()).unwrap()
+}
+
+fn world(strategy: Strategy) -> World {
+    let settings = CullSettings {
+        strategy,
+        ..CullSettings::default()
+    };
+    World::with(Vec::new(), &Culler::builder().settings(&settings)).unwrap()
+}
+
+/// Shapes at once, each with three bodies in a row.
+const TERRAIN: usize = 40;
+
+/// Adds a shape and three bodies of it, one of them with one of many margins.
+fn lay(world: &mut World, forms: &[Shape], step: usize) -> (u32, [BodyId; 3]) {
+    let shape = world.add_shape(forms[step % forms.len()].clone()).unwrap();
+    let ids = [0, 1, 2].map(|i| {
+        let margin = (i / 2) as f32 * 1.0e-3 * (step % 4096) as f32;
+        let x = (3 * (step % 1024) + i) as f64;
+        let body = Body {
+            margin,
+            ..Body::at(shape, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0])
+        };
+        let body = if i == 1 { body.fixed() } else { body };
+        world.insert(body).unwrap()
+    });
+    (shape, ids)
+}
+
+/// A world that holds the last of a stream's shapes, after all of them or as if nothing else had been.
+fn streamed(strategy: Strategy, forms: &[Shape], steps: usize, is_fresh: bool) -> World {
+    let mut world = world(strategy);
+    let mut terrain = VecDeque::new();
+    let first = if is_fresh { steps - TERRAIN } else { 0 };
+    for step in first..steps {
+        if terrain.len() == TERRAIN {
+            let (shape, ids) = terrain.pop_front().unwrap();
+            for id in ids {
+                world.remove(id).unwrap();
+            }
+            world.remove_shape(shape).unwrap();
+        }
+        terrain.push_back(lay(&mut world, forms, step));
+        world.cull().unwrap();
+    }
+    // Slots are given again after the cull, so that a stream has as many as bodies of one step more.
+    assert!(world.slots() <= 3 * (TERRAIN + 1) && world.shapes().count() == TERRAIN);
+    world
+}
+
+#[test]
+fn a_stream_of_shapes_leaves_nothing_behind() {
+    let forms: Vec<Shape> = (0..48).map(form).collect();
+    // World-aligned slabs take a hull of each shape, which takes time: fewer of them.
+    for (strategy, steps) in [
+        (Strategy::SDopSequential, 100_000),
+        (Strategy::KDop, 3_000),
+        (Strategy::Obb, 1_000),
+    ] {
+        let make = |is_fresh| held(|| streamed(strategy, &forms, steps, is_fresh));
+        let ((mut long, bytes), (mut fresh, wanted)) = (make(false), make(true));
+        assert!(10 * bytes <= 11 * wanted, "{strategy}: {bytes} of {wanted}");
+        let shrunk = [&mut long, &mut fresh].map(|world| held(|| world.shrink_to_fit()).1);
+        let [bytes, wanted] = [bytes + shrunk[0], wanted + shrunk[1]];
+        assert!(
+            10 * bytes <= 11 * wanted,
+            "{strategy}: {bytes} of {wanted}, shrunk"
+        );
+        assert!(strategy == Strategy::None || long.cull().unwrap().len() > TERRAIN);
+    }
+}
+
+/// Where each of so many bodies stands once the crowd has gone.
+fn dispersed(body: usize) -> [f32; 3] {
+    [body % 50, body / 50 % 50, body / 2500].map(|x| 1.5 * x as f32)
+}
+
+/// 1,500 bodies and 1.1 million pairs; 15,000 and 112 million behave alike, and take a gigabyte.
+const CROWD: usize = 1500;
+
+#[test]
+fn a_crowd_of_bodies_that_disperses_gives_its_memory_back() {
+    for strategy in [
+        Strategy::Sphere,
+        Strategy::SDopSequential,
+        Strategy::SDopBatch,
+        Strategy::Aabb,
+    ] {
+        let make = |has_met: bool| {
+            let mut world = world(strategy);
+            let shape = world.add_shape(form(0)).unwrap();
+            let at = |body: usize| dispersed(body).map(|x| f64::from(x) * 2.0);
+            let ids: Vec<BodyId> = (0..CROWD)
+                .map(|body| if has_met { [0.0; 3] } else { at(body) })
+                .map(|place| {
+                    world
+                        .insert(Body::at(shape, [0.0, 0.0, 0.0, 1.0], place))
+                        .unwrap()
+                })
+                .collect();
+            for _ in 0..3 {
+                let pairs = world.cull().unwrap().len();
+                assert_eq!(pairs > CROWD * (CROWD - 1) / 2 - 1, has_met);
+                world.events();
+            }
+            for (body, &id) in ids.iter().enumerate() {
+                world.set_pose(id, [0.0, 0.0, 0.0, 1.0], at(body)).unwrap();
+            }
+            for _ in 0..2 {
+                world.cull().unwrap();
+                world.events();
+            }
+            world.shrink_to_fit();
+            assert_eq!(world.pair_bytes() > 100 * CROWD, false);
+            world.cull().unwrap();
+            world
+        };
+        let [(_met, bytes), (_fresh, wanted)] = [true, false].map(|has_met| held(|| make(has_met)));
+        assert!(10 * bytes <= 11 * wanted, "{strategy}: {bytes} of {wanted}");
+    }
+}
+
+fn box_at(place: [f32; 3]) -> Aabb {
+    Aabb::new(place, place.map(|x| x + 1.0))
+}
+
+#[test]
+fn a_crowd_of_boxes_that_disperses_gives_its_memory_back() {
+    let make = |has_met: bool| {
+        let mut world = BoxWorld::new();
+        let there = |body| if has_met { [0.0; 3] } else { dispersed(body) };
+        let insert = |body| world.insert(box_at(there(body))).unwrap();
+        let ids: Vec<BodyId> = (0..CROWD).map(insert).collect();
+        for _ in 0..3 {
+            world.cull().unwrap();
+            world.events();
+        }
+        for (body, &id) in ids.iter().enumerate() {
+            world.set_bounds(id, box_at(dispersed(body))).unwrap();
+        }
+        for _ in 0..2 {
+            world.cull().unwrap();
+            world.events();
+        }
+        world.shrink_to_fit();
+        world.cull().unwrap();
+        world
+    };
+    let [(_met, bytes), (_fresh, wanted)] = [true, false].map(|has_met| held(|| make(has_met)));
+    assert!(10 * bytes <= 11 * wanted, "{bytes} of {wanted}");
+}
+
+#[test]
+fn a_world_that_most_bodies_have_left_is_small() {
+    let few = |many: usize| {
+        let mut world = BoxWorld::new();
+        let ids: Vec<BodyId> = (0..many)
+            .map(|body| world.insert(box_at(dispersed(body))).unwrap())
+            .collect();
+        world.cull().unwrap();
+        for &id in &ids[100..] {
+            world.remove(id).unwrap();
+        }
+        world.cull().unwrap();
+        world.shrink_to_fit();
+        world.cull().unwrap();
+        assert_eq!((world.len(), world.slots()), (100, 100));
+        let again = world.insert(box_at([0.0; 3])).unwrap();
+        assert!(
+            ids.iter().all(|&id| id != again),
+            "ids are never given again"
+        );
+        world.remove(again).unwrap();
+        world.cull().unwrap();
+        world.shrink_to_fit();
+        world
+    };
+    let [(_left, bytes), (_fresh, wanted)] = [20_000, 101].map(|many| held(|| few(many)));
+    assert!(10 * bytes <= 11 * wanted, "{bytes} of {wanted}");
+    let few = |many: usize| {
+        let mut world = world(Strategy::SDopSequential);
+        let shape = world.add_shape(form(0)).unwrap();
+        let ids: Vec<BodyId> = (0..many)
+            .map(|body| Body::at(shape, [0.0, 0.0, 0.0, 1.0], dispersed(body).map(f64::from)))
+            .map(|body| world.insert(body).unwrap())
+            .collect();
+        world.cull().unwrap();
+        for &id in &ids[100..] {
+            world.remove(id).unwrap();
+        }
+        world.cull().unwrap();
+        world.shrink_to_fit();
+        world.cull().unwrap();
+        world.shrink_to_fit();
+        world
+    };
+    let [(_left, bytes), (_fresh, wanted)] = [20_000, 101].map(|many| held(|| few(many)));
+    assert!(10 * bytes <= 11 * wanted, "{bytes} of {wanted}");
+}
+
+/// Events are read off two lists: no third is kept, and bodies may be removed meanwhile.
+#[test]
+fn events_of_a_crowd_take_no_list() {
+    let mut world = BoxWorld::new();
+    for body in 0..CROWD {
+        let bounds = box_at([0.0; 3]);
+        let dynamic = body != 7;
+        let groups = sdop::Groups::ALL;
+        world
+            .insert(BoxBody {
+                bounds,
+                dynamic,
+                groups,
+            })
+            .unwrap();
+    }
+    let pairs = CROWD * (CROWD - 1) / 2;
+    assert_eq!(world.cull().unwrap().len(), pairs);
+    let taken = most_taken(|| {
+        assert_eq!(world.events().begun().count(), pairs);
+        let events = world.events();
+        assert_eq!(events.persisting().count(), pairs);
+        for [_, second] in events.persisting().take(CROWD - 1) {
+            world.remove(second).unwrap();
+        }
+        assert_eq!((world.len(), events.iter().count()), (1, pairs));
+    });
+    assert!(taken < 100 * CROWD as i64, "{taken}");
+    assert!(world.cull().unwrap().is_empty());
+    assert_eq!(world.events().ended().count(), pairs);
+}
