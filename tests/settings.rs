@@ -44,7 +44,8 @@ fn scene_files_default_to_the_librarys_settings() {
     let settings: CullSettings = serde_json::from_str("{}").unwrap();
     assert_eq!(settings, CullSettings::default());
     assert_eq!(settings.pairs, Finder::Auto);
-    let scene = "name = \"s\"\nframes = 1\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n";
+    let scene =
+        "name = \"s\"\nframes = 1\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n";
     let file = SceneFile::parse(scene, "s.toml", std::path::Path::new(".")).unwrap();
     assert_eq!(file.spec.cull, CullSettings::default());
     assert_eq!(settings.strategy, Strategy::SDopSequential);

@@ -345,7 +345,10 @@ fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
         assert_eq!(one, two, "{file}");
     }
     let figure = fs::read_to_string(here.join("one/figures/tradeoff.svg")).unwrap();
-    assert!(figure.contains("aabb") && figure.contains("1000") && !figure.contains("1e"), "{figure}");
+    assert!(
+        figure.contains("aabb") && figure.contains("1000") && !figure.contains("1e"),
+        "{figure}"
+    );
     let page = fs::read_to_string(here.join("again/tradeoff.md")).unwrap();
     let first = page.lines().find(|line| line.starts_with("## "));
     assert_eq!(first, Some("## What should I use?"));
@@ -413,17 +416,25 @@ fn advice_is_three_lines_and_the_cheapest_of_the_numbers_behind_them() {
     }
     let mut finders = names("finders");
     finders.sort();
-    assert_eq!(finders, ["all-pairs", "auto", "grid", "neighbours", "sweep"]);
+    assert_eq!(
+        finders,
+        ["all-pairs", "auto", "grid", "neighbours", "sweep"]
+    );
     // What is printed to be pasted is a table that a scene takes, and flags that the program takes.
     let table = &text[text.find("[cull]").unwrap()..];
     let table = &table[..table.find("\n\n").unwrap()];
     fs::write(here.join("pasted.toml"), format!("{SCENE}{table}\n")).unwrap();
     assert_eq!(sdop(&["run", "pasted.toml"], here).status.code(), Some(0));
-    let flags = text.lines().find_map(|line| line.strip_prefix("As flags: "));
+    let flags = text
+        .lines()
+        .find_map(|line| line.strip_prefix("As flags: "));
     let flags: Vec<&str> = flags.unwrap().split(' ').collect();
     let run = sdop(&[&["run", "few.toml"], &flags[..]].concat(), here);
     assert_eq!(run.status.code(), Some(0));
-    assert!(text.contains("sdop::Culler::builder().strategy(sdop::Strategy::"), "{text}");
+    assert!(
+        text.contains("sdop::Culler::builder().strategy(sdop::Strategy::"),
+        "{text}"
+    );
 
     // A millisecond a check: whoever leaves the fewest pairs wins, and those are the hulls.
     let pairs = |candidate: &serde_json::Value| candidate["pairs"].as_f64().unwrap();

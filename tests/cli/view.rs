@@ -410,7 +410,13 @@ fn silent_from(missed: u64, name: &str) -> serde_json::Value {
     };
     let said: String = (0..).zip(lines.lines().skip(1)).map(answer).collect();
     std::fs::write(&answers, said).unwrap();
-    let flags = [text(&case), "--answers", text(&answers), "--out", text(&page)];
+    let flags = [
+        text(&case),
+        "--answers",
+        text(&answers),
+        "--out",
+        text(&page),
+    ];
     view(&flags);
     header(&page)
 }
@@ -431,11 +437,23 @@ fn a_counter_example_shows_what_was_judged() {
     let boxes = blocks.iter().find(|block| block["name"] == "boxes");
     let numbers = 6 * header["bodies"].as_u64().unwrap() * header["frames"].as_u64().unwrap();
     assert_eq!(boxes.unwrap()["length"], numbers);
-    assert!(header["messages"].to_string().contains("The case aims at: "));
+    assert!(
+        header["messages"]
+            .to_string()
+            .contains("The case aims at: ")
+    );
     // Where the set of bodies changes, the frames with the set of the miss are shown.
     let header = silent_from(2, "churn/insert-remove/0004");
-    assert_eq!((&header["frames"], &header["focus"]["frame"]), (&1.into(), &0.into()));
-    assert!(header["messages"].to_string().contains("frames 3 to 3 of 6"), "{header}");
+    assert_eq!(
+        (&header["frames"], &header["focus"]["frame"]),
+        (&1.into(), &0.into())
+    );
+    assert!(
+        header["messages"]
+            .to_string()
+            .contains("frames 3 to 3 of 6"),
+        "{header}"
+    );
 }
 
 #[test]

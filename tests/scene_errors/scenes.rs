@@ -105,7 +105,10 @@ fn effects_and_culling_that_the_scene_cannot_have_are_refused() {
     );
     assert!(with("[effects]\ngravity = [0, -9.81]\n").starts_with("a.toml:8:11: invalid length 2"));
     let unknown = with("[effects]\ngravity = { acceleratoin = [0, 0, -9.81] }\n");
-    assert!(unknown.ends_with("did you mean `acceleration`?"), "{unknown}");
+    assert!(
+        unknown.ends_with("did you mean `acceleration`?"),
+        "{unknown}"
+    );
     assert_eq!(
         with("[cull]\ninterest = [2]\n"),
         "interest: body 2 of a scene of 2 | bodies are counted from 0"

@@ -71,7 +71,8 @@ fn text(advice: &Advice) -> String {
         )
     });
     let tied = match advice.tied.as_slice() {
-        [] => "No other is tied with it: every other total is higher by more than its interval.".to_owned(),
+        [] => "No other is tied with it: every other total is higher by more than its interval."
+            .to_owned(),
         tied => format!(
             "Tied with it, since the interval of the difference covers zero: {}.",
             tied.join("; ")
@@ -144,7 +145,9 @@ fn to_paste(advice: &Advice) -> String {
     } = &advice.cull;
     let mut toml = format!("[cull]\nstrategy = \"{strategy}\"\npairs = \"{pairs}\"\n");
     let mut flags = format!("--strategy {strategy} --pairs {pairs}");
-    let mut rust = format!("sdop::Culler::builder().strategy(sdop::Strategy::{strategy:?}).finder(sdop::Finder::{pairs:?})");
+    let mut rust = format!(
+        "sdop::Culler::builder().strategy(sdop::Strategy::{strategy:?}).finder(sdop::Finder::{pairs:?})"
+    );
     let mut shape = String::new();
     if *strategy == Strategy::SDopSequential {
         toml += &format!("k = {k}\naxes = \"{axes}\"\noverlap = \"{overlap}\"\n");

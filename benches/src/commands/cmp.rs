@@ -62,7 +62,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let percent = args.fail_slower.unwrap_or(f64::INFINITY);
     let why = if let Some(first) = comparison.differences.first() {
         let count = comparison.differences.len();
-        Some(format!("{count} counts differ, first {}: {}", first.file, first.row))
+        Some(format!(
+            "{count} counts differ, first {}: {}",
+            first.file, first.row
+        ))
     } else {
         let grown = 100.0 * comparison.slowest();
         (grown > percent).then(|| format!("a time grew by {grown:.1} %, more than {percent} %"))

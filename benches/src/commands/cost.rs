@@ -263,10 +263,13 @@ fn volume_rows(report: &Report) -> Table {
     let warm = |price: &&PriceRow| price.regime == Regime::Warm;
     for cost in of(report, Regime::Warm) {
         for (terms, widths) in cost.terms.iter().zip(&cost.widths) {
-            let of = |price: &&PriceRow| (&price.variant, price.volume) == (&cost.variant, terms.volume);
+            let of =
+                |price: &&PriceRow| (&price.variant, price.volume) == (&cost.variant, terms.volume);
             let price = report.prices.iter().filter(warm).find(of);
             let ns = |price: Option<&Estimate>| {
-                price.map_or_else(String::new, |p| plus_minus(1e9 * p.mean, 1e9 * p.half_width))
+                price.map_or_else(String::new, |p| {
+                    plus_minus(1e9 * p.mean, 1e9 * p.half_width)
+                })
             };
             let us = |mean: f64, width: f64| plus_minus(1e6 * mean, 1e6 * width);
             rows.add_row([

@@ -157,7 +157,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let table = rows(&["problem"], &problems, |problem| vec![problem.clone()]);
     print(&table.to_string())?;
     let first = problems.first().map_or("", String::as_str);
-    Ok(Outcome::failed(format!("{} problems, first: {first}", problems.len())))
+    Ok(Outcome::failed(format!(
+        "{} problems, first: {first}",
+        problems.len()
+    )))
 }
 
 /// The templates of blocks, by name. A repository may have none.

@@ -170,7 +170,9 @@ fn print(
         Format::Csv => emit(Format::Csv, &tidy::lines(result), |_| String::new())?,
         format => {
             let (result, why) = (recorded, why.as_deref());
-            emit(format, &Reasoned { result, why }, |_| text(&recorded.result))?;
+            emit(format, &Reasoned { result, why }, |_| {
+                text(&recorded.result)
+            })?;
         }
     }
     Ok(Outcome::of(why.as_deref()))

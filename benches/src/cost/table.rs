@@ -120,8 +120,12 @@ pub fn cost(
         variant: variant.name.clone(),
         regime,
         frames: passes.first()?.culled.get(at)?.frames,
-        terms: volumes().filter_map(|passes| Terms::mean(&passes)).collect(),
-        widths: volumes().filter_map(|passes| TermWidths::of(&passes)).collect(),
+        terms: volumes()
+            .filter_map(|passes| Terms::mean(&passes))
+            .collect(),
+        widths: volumes()
+            .filter_map(|passes| TermWidths::of(&passes))
+            .collect(),
         frame: Compared::of(&frame),
         quartiles: Quartiles::mean(&quartiles),
         construct: Compared::of(&construct),

@@ -232,7 +232,13 @@ impl Comparison {
         let (common, extra) = (ours.len() - lacking, others.len());
         if strict && common == 0 && lacking + extra > 0 {
             let rows = |count: usize| format!("{count} rows");
-            self.differ(file, "no row is in both", None, &rows(lacking), &rows(extra));
+            self.differ(
+                file,
+                "no row is in both",
+                None,
+                &rows(lacking),
+                &rows(extra),
+            );
         } else if lacking + extra > 0 {
             self.notes.push(format!(
                 "{file}: {common} rows compared; {lacking} rows only in the first, {extra} only in the second"
@@ -437,7 +443,11 @@ mod tests {
         };
         let (a, b) = (record(&rows(0, 3000), TIMES), record(&rows(0, 30), TIMES));
         let comparison = compare(a.path(), b.path()).unwrap();
-        assert!(comparison.differences.is_empty(), "{:?}", comparison.differences);
+        assert!(
+            comparison.differences.is_empty(),
+            "{:?}",
+            comparison.differences
+        );
         assert_eq!(
             comparison.notes,
             ["counts.csv: 30 rows compared; 2970 rows only in the first, 0 only in the second"]
@@ -447,7 +457,10 @@ mod tests {
         assert_eq!(comparison.differences.len(), 1);
         // Nothing compared is nothing shown.
         let others = record(&rows(4000, 4003), TIMES);
-        assert_eq!(compare(a.path(), others.path()).unwrap().differences.len(), 1);
+        assert_eq!(
+            compare(a.path(), others.path()).unwrap().differences.len(),
+            1
+        );
     }
 
     #[test]
@@ -469,7 +482,8 @@ mod tests {
             five_minutes: 0.0,
         };
         let directory = record(COUNTS, TIMES);
-        let mut manifest = Manifest::describe(directory.path(), "test", String::new(), &[]).unwrap();
+        let mut manifest =
+            Manifest::describe(directory.path(), "test", String::new(), &[]).unwrap();
         manifest.load = Some([load(0.1), load(1.2)]);
         assert_eq!(disturbed(&manifest), None);
         manifest.load = Some([load(0.1), load(3.5)]);

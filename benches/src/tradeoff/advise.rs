@@ -211,7 +211,11 @@ mod tests {
     #[test]
     fn auto_is_kept_unless_another_is_surely_faster() {
         let grid = line("grid", [1.0, 1.1, 0.9]);
-        let near = [line("all-pairs", [9.0, 9.1, 9.2]), grid.clone(), line("auto", [1.1, 1.0, 1.0])];
+        let near = [
+            line("all-pairs", [9.0, 9.1, 9.2]),
+            grid.clone(),
+            line("auto", [1.1, 1.0, 1.0]),
+        ];
         assert_eq!(
             chosen_finder(&near),
             Some((Finder::Auto, vec!["grid".to_owned()]))
@@ -230,8 +234,14 @@ mod tests {
             let list = list.iter().filter(s_dop);
             list.filter(|v| v.settings.axes == axes).count()
         };
-        assert_eq!([Axes::Principal, Axes::Model].map(|a| along(a, None)), [8, 8]);
+        assert_eq!(
+            [Axes::Principal, Axes::Model].map(|a| along(a, None)),
+            [8, 8]
+        );
         let model = Some(Axes::Model);
-        assert_eq!([Axes::Principal, Axes::Model].map(|a| along(a, model)), [0, 8]);
+        assert_eq!(
+            [Axes::Principal, Axes::Model].map(|a| along(a, model)),
+            [0, 8]
+        );
     }
 }

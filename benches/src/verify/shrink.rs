@@ -124,7 +124,10 @@ impl Smallest {
             mesh::write(&mesh, directory.join(&file)).map_err(io::Error::other)?;
             let pose = [&self.bodies.rotation[i][..], &self.bodies.translation[i]].concat();
             // Exact: the shortest text of an f32 is another number to a reader of doubles.
-            let numbers: Vec<String> = pose.iter().map(|x| format!("{:?}", f64::from(*x))).collect();
+            let numbers: Vec<String> = pose
+                .iter()
+                .map(|x| format!("{:?}", f64::from(*x)))
+                .collect();
             let _ = write!(
                 text,
                 "\n[[bodies]] # {i}\nmesh = \"{file}\"\norigin = \"{origin}\"\nposes = [[{}]]\nstatic = {}\n",

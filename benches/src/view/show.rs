@@ -241,7 +241,11 @@ impl Show {
                 case.frames.len()
             ));
         }
-        let boxes = || case.frames[shown.clone()].iter().map(|frame| frame.boxes.clone());
+        let boxes = || {
+            case.frames[shown.clone()]
+                .iter()
+                .map(|frame| frame.boxes.clone())
+        };
         Ok(Self {
             source: file_name(source),
             header,

@@ -207,8 +207,7 @@ fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
         Claim::Aabb => Vec::new(),
         Claim::Hull | Claim::Mesh => {
             let corners = |shape: &Shape| {
-                let triangle =
-                    |t: &[u32; 3]| Data::List(t.map(|v| Data::Integer(v.into())).into());
+                let triangle = |t: &[u32; 3]| Data::List(t.map(|v| Data::Integer(v.into())).into());
                 Data::List(shape.triangles.iter().map(triangle).collect())
             };
             vec![

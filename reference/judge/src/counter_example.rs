@@ -61,10 +61,10 @@ impl fmt::Display for Smallest {
         } = self.miss;
         writeln!(
             f,
-            "smallest scene, from {}: {}, {}; bodies {i} and {j} share a point in frame {frame}",
-            self.from,
+            "smallest: {}, {}, from {}; bodies {i} and {j} share a point in frame {frame}",
             counted(self.case.frames[frame].bodies.len(), "body", "bodies"),
-            counted(self.case.frames.len(), "frame", "frames")
+            counted(self.case.frames.len(), "frame", "frames"),
+            self.from
         )?;
         self.reasons()
             .iter()

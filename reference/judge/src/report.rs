@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::claim::Claim;
 use super::score::Outcome;
-use super::shrink::Smallest;
 pub use super::shrink::STEM;
+use super::shrink::Smallest;
 use super::verdict::Verdict;
 use super::wire::ndjson;
 use sdop::bodies::Bodies;
@@ -84,7 +84,10 @@ fn scene(bodies: &Bodies, shapes: &[Shape], axes: Axes) -> String {
         let shape = bodies.shape[i] as usize;
         let pose = [&bodies.rotation[i][..], &bodies.translation[i]].concat();
         // Exact, as in JSON: the shortest text of an f32 is another number to a reader of doubles.
-        let numbers: Vec<String> = pose.iter().map(|x| format!("{:?}", f64::from(*x))).collect();
+        let numbers: Vec<String> = pose
+            .iter()
+            .map(|x| format!("{:?}", f64::from(*x)))
+            .collect();
         let _ = write!(
             text,
             "\n[[bodies]] # {i}: {}\nmesh = \"{STEM}-{shape}.obj\"\norigin = \"file\"\nposes = [[{}]]\nstatic = {}\n",

@@ -211,7 +211,8 @@ pub fn examine(
         first.par_iter().map(run).collect::<Result<_, _>>()?;
     // A program that can't start here can't start anywhere.
     let starts = |one: &Option<(Case, CaseVerdict)>| {
-        one.as_ref().is_none_or(|(_, verdict)| !verdict.is_without_start())
+        one.as_ref()
+            .is_none_or(|(_, verdict)| !verdict.is_without_start())
     };
     stop.fetch_or(!ran.iter().any(starts), Ordering::Relaxed);
     ran.extend(rest.par_iter().map(run).collect::<Result<Vec<_>, _>>()?);

@@ -180,7 +180,9 @@ impl Verdict {
         let skipped = count(|outcome| matches!(outcome, Outcome::Skipped { .. }));
         let (without, of) = (skipped + self.not_run, self.cases.len() + self.not_run);
         Some(match count(|outcome| *outcome == Outcome::Pass) {
-            0 => format!("no case passes: {without} of {of} were not judged, all others are known to fail"),
+            0 => format!(
+                "no case passes: {without} of {of} were not judged, all others are known to fail"
+            ),
             _ => format!("{without} of {of} cases were not judged"),
         })
     }

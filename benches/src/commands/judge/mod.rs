@@ -226,7 +226,10 @@ fn save(
         }
         let stem = out.join(STEM);
         let scene = if written.iter().any(|(name, _)| name.ends_with(".toml")) {
-            format!(" and the scene {0}.toml (sdop run {0}.toml)", stem.display())
+            format!(
+                " and the scene {0}.toml (sdop run {0}.toml)",
+                stem.display()
+            )
         } else {
             String::new()
         };

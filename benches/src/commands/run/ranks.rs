@@ -82,7 +82,13 @@ fn tell(
         ranks,
     } = summary;
     match network.rank() {
-        0 => print(args, about, whole, Conditions::default(), Some((*border, ranks))),
+        0 => print(
+            args,
+            about,
+            whole,
+            Conditions::default(),
+            Some((*border, ranks)),
+        ),
         _ => Ok(()),
     }
 }

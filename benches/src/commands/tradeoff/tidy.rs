@@ -56,7 +56,11 @@ pub struct SeedLine<'a> {
 /// What every variant reported, seed by seed: equal on every machine.
 pub fn seeds(result: &Tradeoff) -> Vec<SeedLine<'_>> {
     let of = |row: &'_ VariantResult| {
-        let found = result.seeds.iter().zip(&row.precisions).zip(&row.pairs_sha256);
+        let found = result
+            .seeds
+            .iter()
+            .zip(&row.precisions)
+            .zip(&row.pairs_sha256);
         let line = |((&seed, &precision), pairs_sha256)| SeedLine {
             variant: &row.name,
             seed,

@@ -25,18 +25,10 @@ const AWAY: f32 = 6.0;
 const REACH: f32 = 4.0;
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 /// Quarter turns that lay a needle along each axis.
-const ALONG: [[f32; 4]; 3] = [
-    [0.0, 1.0, 0.0, 1.0],
-    [-1.0, 0.0, 0.0, 1.0],
-    UNTURNED,
-];
+const ALONG: [[f32; 4]; 3] = [[0.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0], UNTURNED];
 
 /// A case whose changes are along the axis of this number, modulo 3.
-pub fn along_an_axis(
-    kind: Kind,
-    number: u32,
-    rng: &mut impl Rng,
-) -> Result<Drawn, CatalogueError> {
+pub fn along_an_axis(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
     let shapes = vec![cube(rng)?, needle()?];
     let axis = number as usize % 3;
     let place = |row: usize| {

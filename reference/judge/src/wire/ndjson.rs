@@ -296,13 +296,20 @@ mod tests {
     /// Old text has 7.038531e-26, which is the f32 0x15ae43fd. By way of an f64 it would be the next one.
     #[test]
     fn old_cases_are_read_without_rounding_twice() {
-        let group = groups().unwrap().into_iter().find(|g| g.name == "exact/tip-to-tip");
+        let group = groups()
+            .unwrap()
+            .into_iter()
+            .find(|g| g.name == "exact/tip-to-tip");
         let case = group.unwrap().case(0, None).unwrap();
         let new = String::from_utf8(encode(&case, Claim::Mesh, &[]).unwrap()).unwrap();
         let x = f64::from(case.shapes[0].ball.radius);
         let old = new.replacen(&format!("{x:?}]"), "7.038531e-26]", 1);
         assert_ne!(old, new);
-        let read = |text: &str| read(text.as_bytes(), 1 << 30).map(|read| read.case).unwrap();
+        let read = |text: &str| {
+            read(text.as_bytes(), 1 << 30)
+                .map(|read| read.case)
+                .unwrap()
+        };
         assert_eq!(read(&old).shapes[0].ball.radius.to_bits(), 0x15ae_43fd);
         assert_eq!(read(&new).frames, case.frames);
         assert_eq!(read(&new).shapes, case.shapes);

@@ -60,7 +60,10 @@ fn apart<'a>(costs: &[&'a Cost]) -> (Vec<&'a Cost>, Vec<&'a Cost>) {
         Some(gap) if gap[1] >= 3.0 * gap[0] => gap[0],
         _ => f64::INFINITY,
     };
-    costs.iter().copied().partition(|&cost| time(cost) <= border)
+    costs
+        .iter()
+        .copied()
+        .partition(|&cost| time(cost) <= border)
 }
 
 /// The legend of the terms that there are; returns what is left of the area.
@@ -84,12 +87,7 @@ fn scene_name(cost: &Cost) -> String {
     name.replace("crowded-500", "crowded")
 }
 
-fn panel(
-    area: &Area<'_>,
-    title: &str,
-    costs: &[&Cost],
-    name: impl Fn(&Cost) -> String,
-) -> Drawn {
+fn panel(area: &Area<'_>, title: &str, costs: &[&Cost], name: impl Fn(&Cost) -> String) -> Drawn {
     let highest = |cost: &&Cost| 1e6 * cost.frame.measured.mean.max(cost.frame.predicted.mean);
     let top = costs.iter().map(highest).fold(0.0, f64::max);
     let mut chart = ChartBuilder::on(area)

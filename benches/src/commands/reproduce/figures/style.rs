@@ -87,11 +87,7 @@ fn is_other(volume: Volume) -> bool {
 
 /// A term summed over some volumes.
 fn of(terms: &[Terms], term: fn(&Terms) -> f64, which: fn(Volume) -> bool) -> f64 {
-    terms
-        .iter()
-        .filter(|t| which(t.volume))
-        .map(term)
-        .sum()
+    terms.iter().filter(|t| which(t.volume)).map(term).sum()
 }
 
 /// Text at a size, dark grey.

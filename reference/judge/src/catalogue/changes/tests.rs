@@ -1,9 +1,9 @@
 //! A culler that keeps a body's old box along one axis is caught by every group of changes, whatever the axis.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use sdop::bodies::Bodies;
 use crate::truth::boxes_meet;
 use crate::{Claim, Contestant, Scene, WorldBox, judge};
+use sdop::bodies::Bodies;
 
 /// What is kept when a frame changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,8 +99,17 @@ fn passes(group: &str, keeps: Keeps, ends: &[usize]) -> bool {
 
 #[test]
 fn stale_ends_are_caught() {
-    for group in ["churn/swap", "churn/teleport", "churn/move", "churn/turn", "churn/insert-remove"] {
-        assert!(passes(group, Keeps::Nothing, &[0, 1, 2, 3, 4, 5]), "{group}");
+    for group in [
+        "churn/swap",
+        "churn/teleport",
+        "churn/move",
+        "churn/turn",
+        "churn/insert-remove",
+    ] {
+        assert!(
+            passes(group, Keeps::Nothing, &[0, 1, 2, 3, 4, 5]),
+            "{group}"
+        );
         for axis in 0..3 {
             for ends in [vec![axis], vec![axis + 3], vec![axis, axis + 3]] {
                 for keeps in [Keeps::Body, Keeps::Number, Keeps::First] {
