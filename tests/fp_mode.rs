@@ -102,9 +102,9 @@ fn shapes_are_the_same_in_every_mode() {
     for size in SIZES {
         assert_same("a shape", || {
             let shape = shape(size);
-            let numbers = format!("{:?} {:?} {:?}", shape.vertices, shape.ball, shape.ordop);
-            let others = shape.with_directions(DirectionSet::K26);
-            (numbers, format!("{:?}", others.ordop))
+            let others = shape.clone().with_directions(DirectionSet::K26);
+            // Texts are written in the default mode: they depend on comparisons, too.
+            given(|| format!("{shape:?} {:?}", others.ordop))
         });
     }
 }

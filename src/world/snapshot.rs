@@ -3,6 +3,8 @@
 //! Pairs and their order are a function of the bodies ([`World::cull`]), so no state of a pair finder is saved. Numbers are
 //! saved as their bits, which no text format rounds. Meshes aren't saved: a digest of each shape is.
 
+use std::collections::BTreeSet;
+
 use serde::{Deserialize, Serialize};
 
 use super::local::Local;
@@ -199,7 +201,10 @@ fn checked(answers: &[([u32; 2], u32)], slots: usize) -> Result<Answers, Snapsho
         i < j && (j as usize) < slots && rank as usize <= answers.len()
     };
     let is_sorted = answers.is_sorted_by(|(a, _), (b, _)| a < b);
-    if is_sorted && answers.iter().all(is_sound) {
+    // Ranks are 1, 2, 3 … without a gap, as they are written, and 0 of pairs that were never refined.
+    let ranks: BTreeSet<u32> = answers.iter().map(|&(_, rank)| rank).chain([0]).collect();
+    let is_dense = ranks.iter().copied().eq(0..ranks.len() as u32);
+    if is_sorted && is_dense && answers.iter().all(is_sound) {
         return Ok(Answers(answers.to_vec()));
     }
     damaged("answers of pairs that there can't be")
