@@ -16,7 +16,8 @@ fn main() {
     println!("cargo:rustc-env=SDOP_SOURCES={:016x}", sources());
 }
 
-/// What decides a result besides its input: our code, the reference's, the hard cases and the versions of other crates.
+/// What decides a result besides its input: our code, the reference's, the hard cases and the
+/// versions of other crates.
 fn sources() -> u64 {
     let mut files = Vec::new();
     for (folder, extension) in [

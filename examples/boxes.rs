@@ -1,17 +1,18 @@
-//! Boxes that an engine has anyway: a crate falls past shelves onto a floor, and a frame of a thousand boxes is culled at once.
+//! Boxes that an engine has anyway: a crate falls past shelves onto a floor, and a frame of a
+//! thousand boxes is culled at once.
 use sdop::boxes::BoxBody;
-use sdop::{Aabb, BoxCuller, BoxWorld};
+use sdop::{Aabb, BoxCuller, BoxWorld, Motion};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // A world: boxes come and go, some are at rest, and events tell what has changed.
+    // A world: boxes come and go, some are fixed, and events tell what has changed.
     let mut world = BoxWorld::new();
-    let at_rest = |bounds: Aabb| BoxBody {
-        dynamic: false,
+    let fixed = |bounds: Aabb| BoxBody {
+        motion: Motion::Fixed,
         ..bounds.into()
     };
-    world.insert(at_rest(Aabb::new([-9.0, -9.0, -1.0], [9.0, 9.0, 0.0])))?;
+    world.insert(fixed(Aabb::new([-9.0, -9.0, -1.0], [9.0, 9.0, 0.0])))?;
     for z in [2.0, 4.0] {
-        world.insert(at_rest(Aabb::new([0.5, -3.0, z], [4.0, 3.0, z + 0.125])))?;
+        world.insert(fixed(Aabb::new([0.5, -3.0, z], [4.0, 3.0, z + 0.125])))?;
     }
     let falling = |z: f32| Aabb::new([0.0, 0.0, z], [1.0, 1.0, z + 1.0]);
     let box_id = world.insert(falling(6.0))?;

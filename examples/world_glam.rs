@@ -1,4 +1,5 @@
-//! A world that bodies enter and leave, posed with glam's types: a ball rolls along a row of boxes, which crumble behind it.
+//! A world that bodies enter and leave, posed with glam's types: a ball rolls along a row of boxes,
+//! which crumble behind it.
 use glam::{DVec3, Quat};
 use sdop::{Body, ProceduralShape, Shape, ShapeSpec, TriangleMesh, VolumeError, World};
 

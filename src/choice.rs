@@ -1,10 +1,9 @@
 //! Named choices: one list of names serves scene files, command-line flags, tables and JSON.
 
-use miette::Diagnostic;
 use thiserror::Error;
 
 /// A name that no choice carries.
-#[derive(Clone, Debug, PartialEq, Eq, Error, Diagnostic)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("unknown {what} `{given}`")]
 pub struct UnknownChoice {
     /// What was to be chosen, for example "strategy".
@@ -12,11 +11,16 @@ pub struct UnknownChoice {
     /// The name as given.
     pub given: String,
     /// How to mend it.
-    #[help]
     pub hint: String,
 }
 
 impl UnknownChoice {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        &self.hint
+    }
+
     /// The error for `given`, with the nearest of `known` or all of them as the hint.
     #[must_use]
     pub fn new(what: &'static str, given: &str, known: &[&str]) -> Self {
@@ -28,29 +32,34 @@ impl UnknownChoice {
     }
 }
 
-/// "did you mean …" when one of the known names is close to the given one, the list of all otherwise.
+/// "did you mean …" when one of the known names is close to the given one, the list of all
+/// otherwise.
 #[must_use]
 pub fn suggest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
-    let lower = given.to_lowercase().replace('_', "-");
-    // Two typing errors in a short word already make another word: allow one edit per three letters.
-    let allowed = given.chars().count() / 3;
-    let nearest = known
-        .iter()
-        .map(|name| {
-            (
-                strsim::damerau_levenshtein(&lower, &name.replace('_', "-")),
-                *name,
-            )
-        })
-        .min_by_key(|(distance, _)| *distance);
-    match nearest {
-        Some((distance, name)) if distance <= allowed => format!("did you mean `{name}`?"),
-        _ => format!("one of: {}", known.join(", ")),
+    match nearest(given, known.iter().copied()) {
+        Some(name) => format!("did you mean `{name}`?"),
+        None => format!("one of: {}", known.join(", ")),
     }
 }
 
-/// Declares an enum of named choices with `ALL`, `NAMES`, `name`, `Display`, `FromStr` and serde as its name.
+/// The known name that is close to the given one, if one is.
+#[must_use]
+pub fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = given.to_lowercase().replace('_', "-");
+    // Two typing errors in a short word already make another word: allow one edit per three
+    // letters.
+    let allowed = given.chars().count() / 3;
+    let distance = |name: &str| strsim::damerau_levenshtein(&lower, &name.replace('_', "-"));
+    known
+        .map(|name| (distance(name), name))
+        .min_by_key(|(distance, _)| *distance)
+        .filter(|(distance, _)| *distance <= allowed)
+        .map(|(_, name)| name)
+}
+
+/// Declares an enum of named choices with `ALL`, `NAMES`, `name`, `Display`, `FromStr` and serde as
+/// its name.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! choices {

@@ -1,9 +1,12 @@
-//! What is counted and timed of culling: the Nu and Nv of the paper's formula, and seconds by stage.
+//! What is counted and timed of culling: the Nu and Nv of the paper's formula, and seconds by
+//! stage.
 //!
-//! A test counts when a candidate pair is handed to it, so counts are equal on every CPU, tier and thread count.
+//! A test counts when a candidate pair is handed to it, so counts are equal on every CPU, tier and
+//! thread count.
 
 use std::ops::AddAssign;
 
+#[cfg(feature = "shapes")]
 use crate::settings::TestedVolume;
 
 /// Work done on one volume. Sums over frames.
@@ -72,7 +75,10 @@ impl Counters {
             reported: self.reported - before.reported,
         }
     }
+}
 
+#[cfg(feature = "shapes")]
+impl Counters {
     /// Those of one volume.
     #[must_use]
     pub fn of(&self, volume: TestedVolume) -> &VolumeCounters {

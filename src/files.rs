@@ -1,14 +1,17 @@
 //! Files, read within a limit and written whole.
 //!
-//! What is written appears under its name only when all of it is there: it is written beside, and renamed. A crash, a full
-//! disk or a kill leaves the former file or none, and at worst a `.part` file beside it.
+//! What is written appears under its name only when all of it is there: it is written beside, and
+//! renamed. A crash, a full disk or a kill leaves the former file or none, and at worst a `.part`
+//! file next to it, which the next writer of that name removes. A `.part` file is locked as long as
+//! somebody writes it.
 
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Bytes of a file that are read unless the caller says otherwise: 1 GiB, several times the largest scanned meshes. A link
-/// to an endless device ends here.
+/// Bytes of a file that are read unless the caller says otherwise: 1 GiB, several times the largest
+/// scanned meshes. A link to an endless device ends here.
 pub const MAX_BYTES: u64 = 1 << 30;
 
 /// Reads a file of at most `most` bytes.
@@ -44,7 +47,8 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     text.map_err(|_| io::Error::new(ErrorKind::InvalidData, "the file is not UTF-8 text"))
 }
 
-/// Reads a line of at most `most` bytes and its end into `line`, which is emptied before; the number of bytes, 0 at the end.
+/// Reads a line of at most `most` bytes and its end into `line`, which is emptied before; the
+/// number of bytes, 0 at the end.
 ///
 /// # Errors
 /// What the system says, and [`ErrorKind::FileTooLarge`] for a longer line.
@@ -69,16 +73,19 @@ pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
     file.finish()
 }
 
-/// A file that is being written, and takes its name when it is finished. Dropped before, it leaves nothing.
+/// A file that is being written, and takes its name when it is finished. Dropped before, it leaves
+/// nothing.
 #[derive(Debug)]
 pub struct Whole {
     file: BufWriter<File>,
-    /// Where it is written, and the name that it takes; `None` for devices and pipes, which can't be replaced.
+    /// Where it is written, and the name that it takes; `None` for devices and pipes, which can't
+    /// be replaced.
     part: Option<[PathBuf; 2]>,
 }
 
 impl Whole {
-    /// Starts a file. Symbolic links are followed, so that the file they lead to is replaced and not the link.
+    /// Starts a file. Symbolic links are followed, so that the file they lead to is replaced and
+    /// not the link.
     ///
     /// # Errors
     /// What the system says.
@@ -94,10 +101,11 @@ impl Whole {
             return Ok(Self { file, part: None });
         }
         let name = target.file_name().ok_or(ErrorKind::InvalidInput)?;
+        remove_abandoned(&target, name);
         let mut part = name.to_owned();
         part.push(format!(".{}.part", std::process::id()));
         let part = target.with_file_name(part);
-        let file = BufWriter::new(File::create(&part)?);
+        let file = BufWriter::new(create_locked(&part)?);
         let whole = Self {
             file,
             part: Some([part, target]),
@@ -121,6 +129,47 @@ impl Whole {
             self.part = None;
         }
         Ok(())
+    }
+}
+
+/// Creates a file that is locked until it is closed, where the file system has locks.
+fn create_locked(part: &Path) -> io::Result<File> {
+    loop {
+        let file = File::create(part)?;
+        let is_locked = file.lock().is_ok();
+        // Between the two, another writer may have taken it for an abandoned one.
+        if !is_locked || part.exists() {
+            return Ok(file);
+        }
+    }
+}
+
+/// Removes the `.part` files of a name whose writers have ended: nobody holds their lock. What
+/// can't be read or removed stays.
+fn remove_abandoned(target: &Path, name: &OsStr) {
+    let directory = target.parent().filter(|path| !path.as_os_str().is_empty());
+    let Ok(entries) = fs::read_dir(directory.unwrap_or(Path::new("."))) else {
+        return;
+    };
+    let own = std::process::id().to_string();
+    let writer = |entry: &fs::DirEntry| {
+        let (entry, name) = (entry.file_name(), name.to_str()?);
+        let number = entry.to_str()?.strip_prefix(name)?.strip_prefix('.')?;
+        let number = number.strip_suffix(".part")?;
+        let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
+        is_number.then(|| number.to_owned())
+    };
+    for entry in entries.flatten() {
+        let is_others = writer(&entry).is_some_and(|number| number != own);
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if !is_others || !is_file {
+            continue;
+        }
+        if let Ok(file) = File::options().write(true).open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(entry.path());
+        }
     }
 }
 
@@ -177,6 +226,27 @@ mod tests {
         write(&path, "second").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "second");
         assert_eq!(names(directory.path()), ["a.txt"]);
+    }
+
+    #[test]
+    fn parts_of_killed_writers_are_removed() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        let others = ["a.txt.part", "a.txt.x1.part", "b.txt.4000000001.part"];
+        for name in others {
+            fs::write(at(name), "not of a writer of a.txt").unwrap();
+        }
+        fs::write(at("a.txt.4000000001.part"), "half").unwrap();
+        let living = File::create(at("a.txt.4000000002.part")).unwrap();
+        living.lock().unwrap();
+        write(&at("a.txt"), "whole").unwrap();
+        let mut wanted = vec!["a.txt", "a.txt.4000000002.part"];
+        wanted.extend(others);
+        wanted.sort_unstable();
+        assert_eq!(names(directory.path()), wanted);
+        drop(living);
+        write(&at("a.txt"), "again").unwrap();
+        assert!(!at("a.txt.4000000002.part").exists());
     }
 
     #[cfg(target_os = "linux")]

@@ -1,12 +1,13 @@
-//! Which pairs of rigid bodies might touch? Collision culling by bounding spheres and oriented k-DOPs (S-DOP), on SIMD in
-//! every tier of the CPU, that never misses a pair.
+//! Which pairs of rigid bodies might touch? Collision culling by bounding spheres and oriented
+//! k-DOPs (S-DOP), on SIMD in every tier of the CPU, that never misses a pair.
 //!
 //! # The promise
 //!
-//! If two posed meshes intersect in exact real arithmetic, touching included, and at least one of them may move, the pair is
-//! reported: by every [`Strategy`] but the control [`Strategy::None`], with every [`Finder`], on every CPU, for any finite
-//! poses up to 2⁶⁰ in size. Pairs that don't intersect may be reported too; strategies differ in how many, and in time.
-//! The question is who touches *now*: there is no continuous detection, and a narrow phase still has to judge what is
+//! If two posed meshes intersect in exact real arithmetic, touching included, and at least one of
+//! them may move, the pair is reported: by every [`Strategy`] but the control [`Strategy::None`],
+//! with every [`Finder`], on every CPU, for any finite poses up to 2⁶⁰ in size. Pairs that don't
+//! intersect may be reported too; strategies differ in how many, and in time. The question is who
+//! touches *now*: there is no continuous detection, and a narrow phase still has to judge what is
 //! reported.
 //!
 //! # A first use
@@ -14,7 +15,7 @@
 //! ```
 //! use sdop::{Bodies, Culler, ProceduralShape, Shape, ShapeSpec};
 //!
-//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?; // or `TriangleMesh::from_arrays`, or a file
+//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?; // or `TriangleMesh::from_f32`, or a file
 //! let shapes = [Shape::build(&mesh, &ShapeSpec::default())?]; // ball, hull and or-DOP, once
 //!
 //! let mut bodies = Bodies::default();
@@ -34,23 +35,29 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of bodies; in a [`World`] they
-//! come and go, with stable ids, groups, contact margins, f64 translations and events. Whoever has boxes already takes
-//! [`BoxCuller`] or [`BoxWorld`]: exactly the pairs of boxes that meet.
+//! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of
+//! bodies; in a [`World`] they come and go, with stable ids, groups, contact margins, f64
+//! translations and events. Whoever has boxes already takes [`BoxCuller`] or [`BoxWorld`]: exactly
+//! the pairs of boxes that meet.
 //!
 //! # Conventions
 //!
 //! - **Axes**: right-handed. Which one points up doesn't matter: nothing here prefers an axis.
-//! - **Rotations**: quaternions in the order (x, y, z, w), of any non-zero norm. They turn the body frame into the world
-//!   frame: a vertex p of a body stands at R(q)·p + t.
-//! - **Translations**: of the body's origin, world frame. That is the mesh's own origin, as the file has it, unless
-//!   [`Origin::Ball`] moves the centre of the smallest enclosing ball there; [`Shape::offset`] keeps what was moved.
-//! - **Far meshes**: where rounding a mesh to f32 would move a vertex by more than 2⁻²⁰ of the mesh's size, its vertices are kept
-//!   about a point near it. A [`World`] adds that offset to the pose in f64; a [`Culler`], whose poses are f32, refuses it.
-//! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and at most 2⁶⁰.
-//! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair once, and its order depends on the
-//!   finder and the frames so far, never on the CPU or the number of threads; [`PairList::sorted`] gives an order of its own.
-//! - **Poses** are taken as anything that turns into arrays: `[f32; 4]` and `[f32; 3]`, or glam's `Quat` and `Vec3`.
+//! - **Rotations**: quaternions in the order (x, y, z, w), of any non-zero norm. They turn the body
+//!   frame into the world frame: a vertex p of a body stands at R(q)·p + t.
+//! - **Translations**: of the body's origin, world frame. That is the mesh's own origin, as the
+//!   file has it, unless [`Origin::Ball`] moves the centre of the smallest enclosing ball there;
+//!   [`Shape::offset`] keeps what was moved.
+//! - **Far meshes**: where rounding a mesh to f32 would move a vertex by more than 2⁻²⁰ of the
+//!   mesh's size, its vertices are kept about a point near it. A [`World`] adds that offset to the
+//!   pose in f64; a [`Culler`], whose poses are f32, refuses it.
+//! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and
+//!   at most 2⁶⁰.
+//! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair
+//!   once, and its order depends on the finder and the frames so far, never on the CPU or the
+//!   number of threads; [`PairList::sorted`] gives an order of its own.
+//! - **Poses** are taken as anything that turns into arrays: `[f32; 4]` and `[f32; 3]`, or glam's
+//!   `Quat` and `Vec3`.
 //!
 //! # Stages
 //!
@@ -62,33 +69,49 @@
 //!  ╰─────── once ──────╯          ╰───────── each frame: Culler::cull ───────╯
 //! ```
 //!
-//! [`strategy`](Strategy) names which tests run in which order; [`counters`] say how often each did.
+//! [`strategy`](Strategy) names which tests run in which order; [`counters`] say how often each
+//! did.
 //!
 //! # Features
 //!
 //! | feature | brings |
 //! |---|---|
-//! | none | all of the above |
-//! | `serde` | snapshots of worlds that can be stored and sent |
-//! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, `.tri` |
-//! | `serde` | settings, choices and counters as serde's data |
+//! | none | boxes alone: [`BoxCuller`], [`BoxWorld`] |
+//! | `shapes` (default) | meshes, hulls and or-DOPs, and what culls them: all of the above |
+//! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, OFF, `.tri` |
+//! | `serde` | settings, choices and counters as serde's data; snapshots of worlds that can be stored and sent |
 //!
-//! The crate `sdop-judge` judges any culler against the exact reference. `sdop-bench` has scenes, measurements, studies and
-//! the program `sdop`.
+//! Every error has a `help` method: how to mend what it reports.
+//!
+//! The crate `sdop-judge` judges any culler against the exact reference. `sdop-bench` has scenes,
+//! measurements, studies and the program `sdop`.
+
+#![cfg_attr(
+    not(feature = "shapes"),
+    allow(
+        rustdoc::broken_intra_doc_links,
+        reason = "this page names what boxes alone lack"
+    )
+)]
 
 pub mod bodies;
 pub mod boxes;
+#[cfg(feature = "c")]
+pub mod c;
 pub mod counters;
 pub mod culler;
+#[cfg(feature = "shapes")]
 pub mod mesh;
 pub mod pairs;
 pub mod settings;
+#[cfg(feature = "shapes")]
 pub mod volume;
 pub mod world;
 
 mod strategy;
 
-// Inner rooms, which the judge, tests and benches enter from outside: no promise is made about them.
+// Inner rooms, which the judge, tests and benches enter from outside: no promise is made about
+// them.
 #[doc(hidden)]
 pub mod broad_phase;
 #[doc(hidden)]
@@ -103,25 +126,39 @@ pub mod rounding;
 pub mod simd;
 #[doc(hidden)]
 pub mod threads;
+#[cfg(feature = "shapes")]
 #[doc(hidden)]
 pub mod update;
 
 pub use bodies::contract::ContractError;
-pub use bodies::{Aabb, Bodies, Groups};
+pub use bodies::{Aabb, Bodies, Groups, Motion};
 pub use boxes::{BoxCuller, BoxWorld};
-pub use culler::{CullError, Culler, CullerBuilder};
+pub use culler::CullError;
+#[cfg(feature = "shapes")]
+pub use culler::{Culler, CullerBuilder};
+#[cfg(feature = "shapes")]
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
 pub use pairs::PairList;
+pub use settings::Finder;
+#[cfg(feature = "shapes")]
 pub use settings::{
-    Axes, Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, SettingsError,
-    Strategy, Updates, ViewCone,
+    Axes, Budget, CullSettings, DirectionSet, Interest, Order, Overlap, SettingsError, Strategy,
+    Updates, ViewCone,
 };
 pub use simd::{Tier, TierError};
 pub use threads::ThreadsError;
+#[cfg(feature = "shapes")]
 pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
-pub use world::{Body, BodyId, Event, Events, World, WorldError};
+#[cfg(feature = "shapes")]
+pub use world::{Body, World};
+pub use world::{BodyId, Event, Events, WorldError};
 
 /// The README's example compiles and runs.
 #[cfg(all(doctest, feature = "readers"))]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The recipes compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../paper/how-to.md")]
+struct HowTo;

@@ -1,7 +1,11 @@
 //! Lists of candidate or reported pairs.
 
+mod partners;
+mod runs;
 mod sort;
 
+pub(crate) use partners::{PartnerPairs, Partners};
+pub(crate) use runs::{Run, Runs};
 pub(crate) use sort::PairSorter;
 
 use crate::simd::MAX_WIDTH;
@@ -9,7 +13,13 @@ use crate::simd::MAX_WIDTH;
 /// Room of the smallest list that has any.
 const SMALLEST: usize = 1024;
 
-/// A list of body pairs as two columns. It grows by what is needed: no pair is ever dropped for lack of memory.
+/// Bytes that a column has taken, used or not.
+fn bytes<T>(column: &Vec<T>) -> usize {
+    column.capacity() * size_of::<T>()
+}
+
+/// A list of body pairs as two columns. It grows by what is needed: no pair is ever dropped for
+/// lack of memory.
 ///
 /// Kernels write a whole vector and then advance by the lanes they kept, so the columns always have
 /// [`MAX_WIDTH`] elements of room behind the last pair.
@@ -123,6 +133,7 @@ impl PairList {
         (self.first.capacity() + self.second.capacity()) * size_of::<u32>()
     }
 
+    #[cfg(feature = "shapes")]
     /// Replaces every index from pair `start` on by its entry in `names`.
     pub(crate) fn rename(&mut self, start: usize, names: &[u32]) {
         for column in [&mut self.first, &mut self.second] {

@@ -1,10 +1,11 @@
 //! The thread pool: the same results in the same order, on any number of threads.
 //!
-//! Work is cut into parts by the data alone; a part's results go to buffers of its own, which are joined in the order of
-//! the parts. So lists, counters and hashes are those of one thread, to the bit.
+//! Work is cut into parts by the data alone; a part's results go to buffers of its own, which are
+//! joined in the order of the parts. So lists, counters and hashes are those of one thread, to the
+//! bit.
 //!
-//! The calling thread works too: waking another takes as long as finding the pairs of some thousand bodies. Each thread
-//! that is free takes the next part, so one that wakes late delays nothing.
+//! The calling thread works too: waking another takes as long as finding the pairs of some thousand
+//! bodies. Each thread that is free takes the next part, so one that wakes late delays nothing.
 
 use std::ops::Range;
 use std::sync::Mutex;
@@ -17,8 +18,8 @@ use crate::simd::{Tier, in_default_mode};
 /// The fewest pieces of a column for which waking a thread pays.
 const FEWEST_PIECES: usize = 8;
 
-/// The most threads that can be asked for, the caller's included: more than machines have cores, and few
-/// enough that none of them takes seconds to start.
+/// The most threads that can be asked for, the caller's included: more than machines have cores,
+/// and few enough that none of them takes seconds to start.
 pub const MOST_THREADS: usize = 1024;
 
 /// The caller's thread, or it and a pool of others.
@@ -26,15 +27,15 @@ pub const MOST_THREADS: usize = 1024;
 pub struct Threads(Option<ThreadPool>);
 
 impl Clone for Threads {
-    /// As many threads, not the same ones: a clone may be used while the original's threads wait for their caller. The
-    /// caller's alone where the system refuses more; no result depends on it.
+    /// As many threads, not the same ones: a clone may be used while the original's threads wait
+    /// for their caller. The caller's alone where the system refuses more; no result depends on it.
     fn clone(&self) -> Self {
         Self::new(self.threads()).unwrap_or_default()
     }
 }
 
-/// A frame's work on one thread, in nanoseconds or so (measured with AVX-512 on an Intel and rounded): by counts, so that nothing
-/// depends on the machine.
+/// A frame's work on one thread, in nanoseconds or so (measured with AVX-512 on an Intel and
+/// rounded): by counts, so that nothing depends on the machine.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Work {
     /// Volumes placed.
@@ -51,11 +52,13 @@ impl Work {
     }
 }
 
-/// The least work of a frame, in nanoseconds, for which other threads are woken. Two threads take as long as one at half of that (30,000
-/// boxes or spheres, 10,000 bodies of S-DOP, on an AMD that does nothing else: a quarter of a millisecond), and less above.
+/// The least work of a frame, in nanoseconds, for which other threads are woken. Two threads take
+/// as long as one at half of that (30,000 boxes or spheres, 10,000 bodies of S-DOP, on an AMD that
+/// does nothing else: a quarter of a millisecond), and less above.
 pub const WORTH_WAKING: u64 = 1 << 20;
 
-/// The threads of one frame after the other: all, or the caller's alone where a frame is little work.
+/// The threads of one frame after the other: all, or the caller's alone where a frame is little
+/// work.
 #[derive(Clone, Debug)]
 pub struct FrameThreads {
     all: Threads,
@@ -65,7 +68,8 @@ pub struct FrameThreads {
 }
 
 impl FrameThreads {
-    /// These threads, woken for frames of so many nanoseconds ([`WORTH_WAKING`]); for all if that is 0.
+    /// These threads, woken for frames of so many nanoseconds ([`WORTH_WAKING`]); for all if that
+    /// is 0.
     #[must_use]
     pub fn new(all: Threads, worth_waking: u64) -> Self {
         Self {
@@ -98,12 +102,20 @@ pub struct Executor<'a> {
 }
 
 /// Threads that can't be started: more than [`MOST_THREADS`], or refused by the system.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, miette::Diagnostic)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot start {threads} threads: {reason}")]
-#[diagnostic(help("ask for fewer threads"))]
 pub struct ThreadsError {
     threads: usize,
     reason: String,
+}
+
+impl ThreadsError {
+    /// How to mend it.
+    #[must_use]
+    #[allow(clippy::unused_self, reason = "as of the other errors")]
+    pub fn help(&self) -> &str {
+        "ask for fewer threads"
+    }
 }
 
 impl Threads {
@@ -152,8 +164,8 @@ impl Threads {
         self.share_out(is_worth_waking, items, |(index, item)| work(index, item));
     }
 
-    /// Calls `work` for consecutive pieces of a column, `size` long, with the index of each one's first element. Less than
-    /// eight pieces are the caller's own.
+    /// Calls `work` for consecutive pieces of a column, `size` long, with the index of each one's
+    /// first element. Less than eight pieces are the caller's own.
     pub fn pieces<T: Send>(
         &self,
         column: &mut [T],
@@ -181,7 +193,8 @@ impl Threads {
         });
     }
 
-    /// Calls `work` for consecutive ranges of 0..`len`, `size` long. Less than eight are the caller's own.
+    /// Calls `work` for consecutive ranges of 0..`len`, `size` long. Less than eight are the
+    /// caller's own.
     pub fn ranges(&self, len: usize, size: usize, work: impl Fn(Range<usize>) + Sync) {
         let is_worth_waking = len >= FEWEST_PIECES * size;
         let starts = (0..len).step_by(size);
@@ -189,7 +202,8 @@ impl Threads {
         self.share_out(is_worth_waking, ranges, work);
     }
 
-    /// Whether `holds` of all such ranges; those that come after one of which it doesn't aren't asked.
+    /// Whether `holds` of all such ranges; those that come after one of which it doesn't aren't
+    /// asked.
     pub fn all(
         &self,
         len: usize,
@@ -221,8 +235,8 @@ impl Threads {
 
 /// Calls `work` for each item, on the calling thread and on those of the pool.
 ///
-/// A worker of another pool that waits takes up that pool's next job on top of this one, and the next on top of that, until its
-/// stack ends. So a thread made for it waits in its place.
+/// A worker of another pool that waits takes up that pool's next job on top of this one, and the
+/// next on top of that, until its stack ends. So a thread made for it waits in its place.
 fn distribute<T>(
     pool: &ThreadPool,
     items: impl Iterator<Item = T> + Send,

@@ -1,5 +1,6 @@
-//! What a culler keeps account of: seconds of stages that add up to those of frames, none of which is counted twice or is the
-//! caller's own; and the tests of a budget, which are spent in the order asked for.
+//! What a culler keeps account of: seconds of stages that add up to those of frames, none of which
+//! is counted twice or is the caller's own; and the tests of a budget, which are spent in the order
+//! asked for.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -111,7 +112,8 @@ fn what_the_caller_does_with_portions_is_not_counted() {
 /// The body that the order `interest-first` puts in front.
 const OF_INTEREST: u32 = 5;
 
-/// Whether candidates stand in the order asked for; `refined` has the frame in which each pair was refined last.
+/// Whether candidates stand in the order asked for; `refined` has the frame in which each pair was
+/// refined last.
 fn is_in_order(
     order: Order,
     list: &[[u32; 2]],

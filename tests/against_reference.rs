@@ -1,5 +1,5 @@
-//! The optimised culler against the plain reference: it reports every pair that the reference predicate reports, in every
-//! tier the same list.
+//! The optimised culler against the plain reference: it reports every pair that the reference
+//! predicate reports, in every tier the same list.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

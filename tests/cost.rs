@@ -1,5 +1,5 @@
-//! The cost formula's counts: equal on every tier, as many as the finder's arithmetic says, and calibrated on other scenes
-//! than it predicts.
+//! The cost formula's counts: equal on every tier, as many as the finder's arithmetic says, and
+//! calibrated on other scenes than it predicts.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -160,7 +160,8 @@ fn every_volume_gets_prices_and_terms_that_add_up() {
             for price in &prices.volumes {
                 let costs = price.costs;
                 let what = format!("{} {regime} {price:?}", variant.name);
-                // So few frames may give the tests' time to the call; the stage has a price all the same.
+                // So few frames may give the tests' time to the call; the stage has a price all the
+                // same.
                 let stage = costs.frame + costs.body + costs.handle + costs.hit + costs.miss;
                 let tests = passed.culled[at].counts.of(price.volume).tests;
                 let many = tests > 32 * u64::from(passed.culled[at].frames);

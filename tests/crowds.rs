@@ -1,5 +1,5 @@
-//! Crowds: pairs taken in portions are those of the list, in its order, in bounded memory; a limit is an error that says
-//! how many pairs there are.
+//! Crowds: pairs taken in portions are those of the list, in its order, in bounded memory; a limit
+//! is an error that says how many pairs there are.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -12,8 +12,8 @@ use sdop::settings::{
 };
 use sdop::volume::{Shape, ShapeSpec};
 
-/// The bytes that all lists may take when pairs are taken in portions on two threads: eight tasks with a portion each, and
-/// an eighth more.
+/// The bytes that all lists may take when pairs are taken in portions on two threads: eight tasks
+/// with a portion each, and an eighth more.
 const BOUND: usize = 8 * 9 * (1 << 16) + (1 << 20);
 
 fn shapes() -> Vec<Shape> {
@@ -25,7 +25,8 @@ fn shapes() -> Vec<Shape> {
     vec![Shape::build(&mesh.build().unwrap(), &ShapeSpec::default()).unwrap()]
 }
 
-/// `n` bodies within a millionth of each other, turned in eight ways, and every seventh of them static.
+/// `n` bodies within a millionth of each other, turned in eight ways, and every seventh of them
+/// static.
 fn crowd(n: usize) -> Bodies {
     let mut bodies = Bodies::default();
     for body in 0..n {

@@ -1,4 +1,5 @@
-//! What pair finders cost apart from time: candidates beyond the output, memory, allocations in steady state.
+//! What pair finders cost apart from time: candidates beyond the output, memory, allocations in
+//! steady state.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![allow(unsafe_code, reason = "an allocator that counts is an allocator")]
@@ -158,8 +159,8 @@ fn scenes() -> Vec<Scene> {
     ]
 }
 
-/// The same, and one in which lists change the kind of their skin: the small move by their own radii, and most pairs are the wide
-/// ones'.
+/// The same, and one in which lists change the kind of their skin: the small move by their own
+/// radii, and most pairs are the wide ones'.
 fn scenes_with_wide_bodies() -> impl Iterator<Item = Scene> {
     let radii = [0.25, 0.5, 1.0, 2.0, 4.0];
     let wide = Scene::new("radii 1:16", &radii, N, |i, rng| (i % 5, cube(rng, 91.6)));
@@ -179,7 +180,8 @@ fn the_grid_tests_few_candidates_beyond_its_output() {
         culler.cull(&bodies).unwrap();
         let after = culler.counters().sphere;
         let tests = after.tests - before.tests;
-        // A cube needs 6 a body, half of them for the 27 cells around it; 1:1000 looks through levels.
+        // A cube needs 6 a body, half of them for the 27 cells around it; 1:1000 looks through
+        // levels.
         let needed = (bodies.len() + culler.pairs().len()) as u64;
         assert!(
             tests <= 12 * needed,
@@ -212,7 +214,8 @@ fn no_finder_takes_a_hundred_bytes_a_body() {
     }
 }
 
-/// Asserts that, once places have taken a new order twice (each 32 frames), frames allocate nothing.
+/// Asserts that, once places have taken a new order twice (each 32 frames), frames allocate
+/// nothing.
 fn assert_steady(scene: &Scene, mut culler: Culler, what: &str) {
     let mut bodies = scene.bodies.clone();
     for frame in 0..140 {
@@ -228,7 +231,8 @@ fn assert_steady(scene: &Scene, mut culler: Culler, what: &str) {
 #[test]
 fn in_steady_state_nothing_is_allocated() {
     for scene in scenes_with_wide_bodies() {
-        // All-pairs allocates as little as any and takes longer by far; strategies have a test of their own.
+        // All-pairs allocates as little as any and takes longer by far; strategies have a test of
+        // their own.
         for &finder in Finder::ALL.iter().filter(|f| **f != Finder::AllPairs) {
             for strategy in [Strategy::SDopSequential, Strategy::Aabb] {
                 let what = format!("{strategy}, {finder}");

@@ -1,5 +1,6 @@
-//! Hosts change the floating-point mode: subnormal numbers are flushed, results rounded otherwise. Shapes
-//! and pairs must not vary with it, and the host must find its mode as it was, also after a panic.
+//! Hosts change the floating-point mode: subnormal numbers are flushed, results rounded otherwise.
+//! Shapes and pairs must not vary with it, and the host must find its mode as it was, also after a
+//! panic.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -33,7 +34,8 @@ impl Random {
 /// Radii of bodies: ordinary, such that squares of distances are subnormal, and subnormal ones.
 const SIZES: [f64; 3] = [1.0, 2e-22, 1e-40];
 
-/// Calls `work` in every other mode and compares what it returns with what it does in the default one.
+/// Calls `work` in every other mode and compares what it returns with what it does in the default
+/// one.
 fn assert_same<R: PartialEq>(what: &str, work: impl Fn() -> R) {
     assert_eq!(FpMode::current(), FpMode::DEFAULT);
     let wanted = work();

@@ -1,7 +1,9 @@
-//! Golden pair lists: what a run reports and counts is equal to the bit on every CPU, in every SIMD level and build.
+//! Golden pair lists: what a run reports and counts is equal to the bit on every CPU, in every SIMD
+//! level and build.
 //!
-//! The hashes were recorded once and change only with the volumes, the trajectories or the deciding arithmetic. Run this
-//! test's binary under an emulated CPU to see it: `qemu-x86_64 -cpu Nehalem target/debug/deps/golden_pairs-…`.
+//! The hashes were recorded once and change only with the volumes, the trajectories or the deciding
+//! arithmetic. Run this test's binary under an emulated CPU to see it: `qemu-x86_64 -cpu Nehalem
+//! target/debug/deps/golden_pairs-…`.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,4 +1,5 @@
-//! The corpus of hard cases: recorded answers, every way to cull on every tier, and its own completeness.
+//! The corpus of hard cases: recorded answers, every way to cull on every tier, and its own
+//! completeness.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -190,7 +191,8 @@ fn every_file_is_a_group_and_every_group_has_its_answers() {
     }
 }
 
-/// What `sdop verify` does first, on as many tiers as any CPU has: whatever else it is asked for, no cell stays empty.
+/// What `sdop verify` does first, on as many tiers as any CPU has: whatever else it is asked for,
+/// no cell stays empty.
 #[test]
 fn hard_cases_alone_fill_every_cell_of_the_matrix() {
     // Small cases, so that this counts turns; the others are culled by the test above.
@@ -218,7 +220,8 @@ fn hard_cases_alone_fill_every_cell_of_the_matrix() {
     }
 }
 
-/// A new strategy, finder, overlap test or volume shows up here by itself: the ways are counted, not assumed.
+/// A new strategy, finder, overlap test or volume shows up here by itself: the ways are counted,
+/// not assumed.
 #[test]
 fn the_ways_have_every_strategy_finder_overlap_and_volume() {
     let mut seen = BTreeSet::new();

@@ -1,4 +1,5 @@
-//! The estimators behind `sdop tradeoff` against answers that are known: from integral geometry, from the literature.
+//! The estimators behind `sdop tradeoff` against answers that are known: from integral geometry,
+//! from the literature.
 
 #![allow(
     clippy::unwrap_used,
@@ -64,9 +65,9 @@ fn boxes_meet_as_often_as_their_mean_minkowski_volume_says() {
     }
 }
 
-/// Van den Bergen, in Ericson, Real-Time Collision Detection, section 4.4: without the last nine of its fifteen axes the
-/// box test finds 6 to 7 % of disjoint pairs colliding. His boxes are random; ours have uniform sizes, and overlapping
-/// spheres.
+/// Van den Bergen, in Ericson, Real-Time Collision Detection, section 4.4: without the last nine of
+/// its fifteen axes the box test finds 6 to 7 % of disjoint pairs colliding. His boxes are random;
+/// ours have uniform sizes, and overlapping spheres.
 #[test]
 fn dropping_the_last_nine_axes_of_an_obb_pair_keeps_six_or_seven_percent_of_disjoint_pairs() {
     let mut draws = Stream::new(7, 0);
@@ -89,8 +90,9 @@ fn dropping_the_last_nine_axes_of_an_obb_pair_keeps_six_or_seven_percent_of_disj
     assert!(kept.half_width < 0.005, "{kept:?}");
 }
 
-/// Corners of an 18-DOP stick out of the bounding ball where the mesh nearly fills it. Of bodies that don't, or-DOPs
-/// practically never meet while the spheres don't; round ones are the exception that shows the count can be large.
+/// Corners of an 18-DOP stick out of the bounding ball where the mesh nearly fills it. Of bodies
+/// that don't, or-DOPs practically never meet while the spheres don't; round ones are the exception
+/// that shows the count can be large.
 #[test]
 fn ordops_hardly_ever_meet_outside_of_their_spheres() {
     for (shape, limit) in [

@@ -1,5 +1,6 @@
-//! Proofs speak of code: when a function or constant that a lemma is about changes, the lemma has to be looked at. Beside each
-//! lemma, `paper/proofs/code.toml` keeps a digest of the code that it was last read with.
+//! Proofs speak of code: when a function or constant that a lemma is about changes, the lemma has
+//! to be looked at. Beside each lemma, `paper/proofs/code.toml` keeps a digest of the code that it
+//! was last read with.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -64,7 +65,8 @@ fn whole(text: &str, ends_with_brace: bool) -> Option<&str> {
     None
 }
 
-/// The blocks that begin with `word`, and behind it have `name` as a word of its own before `{`, `(`, `<`, `:` or a space.
+/// The blocks that begin with `word`, and behind it have `name` as a word of its own before `{`,
+/// `(`, `<`, `:` or a space.
 fn starts<'a>(source: &'a str, word: &str, name: &str) -> impl Iterator<Item = &'a str> {
     let (word, name) = (word.to_owned(), name.to_owned());
     let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';

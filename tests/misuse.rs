@@ -1,4 +1,5 @@
-//! What happens when a culler is used otherwise than meant. No entry may panic, hang or silently drop a pair.
+//! What happens when a culler is used otherwise than meant. No entry may panic, hang or silently
+//! drop a pair.
 //!
 //! | misuse | what happens |
 //! |---|---|
@@ -28,8 +29,8 @@ fn shapes() -> Vec<Shape> {
         z: 1.0,
     };
     let cube = cube.build().unwrap();
-    let beside = cube.vertices.iter().map(|v| [v.x + 3.0, v.y, v.z]);
-    let beside = TriangleMesh::from_arrays("beside", beside, cube.triangles.clone()).unwrap();
+    let beside = cube.vertices.iter().map(|&[x, y, z]| [x + 3.0, y, z]);
+    let beside = TriangleMesh::new("beside", beside, cube.triangles.clone()).unwrap();
     let file = ShapeSpec {
         origin: Origin::File,
         ..ShapeSpec::default()
@@ -105,7 +106,7 @@ fn a_shape_of_no_sound_size_is_refused_by_name() {
     let sizes: [fn(&mut Shape, f32); 3] = [
         |shape, size| shape.reach = size,
         |shape, size| shape.ball.radius = size,
-        |shape, size| shape.ball.centre.y = size,
+        |shape, size| shape.ball.centre[1] = size,
     ];
     for (number, change) in sizes.into_iter().enumerate() {
         for size in [2f32.powi(60).next_up(), f32::INFINITY, f32::NAN] {

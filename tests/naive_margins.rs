@@ -1,8 +1,9 @@
-//! What the margins are for: the same f32 arithmetic without them, or with less, misses pairs that touch exactly.
+//! What the margins are for: the same f32 arithmetic without them, or with less, misses pairs that
+//! touch exactly.
 //!
-//! A Pythagorean quadruple x² + y² + z² = n² of 24-bit integers is a centre distance that f32 holds exactly, so spheres
-//! of radii r and n − r touch in exact arithmetic, and integers judge it. Small quadruples are toothless: every
-//! operation on them is exact.
+//! A Pythagorean quadruple x² + y² + z² = n² of 24-bit integers is a centre distance that f32 holds
+//! exactly, so spheres of radii r and n − r touch in exact arithmetic, and integers judge it. Small
+//! quadruples are toothless: every operation on them is exact.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -16,8 +17,9 @@ struct Touch {
     radii: [i64; 2],
 }
 
-/// Touches from random quadruples (m²+n²−p²−q², 2(mq+np), 2(nq−mp), m²+n²+p²+q²) whose last number has `bits` bits.
-/// Distance and radius are shared between the two, so that 25 bits fit and differences and sums must round.
+/// Touches from random quadruples (m²+n²−p²−q², 2(mq+np), 2(nq−mp), m²+n²+p²+q²) whose last number
+/// has `bits` bits. Distance and radius are shared between the two, so that 25 bits fit and
+/// differences and sums must round.
 fn touches(bits: u32, count: usize) -> Vec<Touch> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut below = |n: i64| ((u128::from(random.next_u64()) * n as u128) >> 64) as i64;
@@ -48,7 +50,8 @@ fn touches(bits: u32, count: usize) -> Vec<Touch> {
     touches
 }
 
-/// How many of these exact touches the f32 sphere test culls when it adds the radii `stored`, all scaled by 2^`exponent`.
+/// How many of these exact touches the f32 sphere test culls when it adds the radii `stored`, all
+/// scaled by 2^`exponent`.
 fn misses(touches: &[Touch], exponent: i32, stored: impl Fn(f32) -> f32) -> usize {
     let number = |x: i64| {
         assert!(x.abs() <= 1 << 24, "{x} is not an f32");

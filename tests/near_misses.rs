@@ -1,5 +1,5 @@
-//! Near-touching configurations drawn by proptest, on every SIMD tier: what the exact reference reports, every strategy
-//! over every finder reports.
+//! Near-touching configurations drawn by proptest, on every SIMD tier: what the exact reference
+//! reports, every strategy over every finder reports.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -79,7 +79,8 @@ fn runner() -> TestRunner {
     })
 }
 
-/// Every strategy, overlap test and finder on one tier, updates and threads in turn. Returns what was judged.
+/// Every strategy, overlap test and finder on one tier, updates and threads in turn. Returns what
+/// was judged.
 fn never_misses(tier: Tier) -> Ledger {
     let mut all = Ledger::default();
     let rotation = Rotation::new(&[tier]);
@@ -129,7 +130,8 @@ macro_rules! on_tiers {
                 let ledger = never_misses(tier);
                 let empty = ledger.matrix.empty(&Rotation::new(&[tier]));
                 assert_eq!(empty, [], "cases for every way in every mode");
-                // Beyond the margins only the slabs' bound of a support reports more; spheres and boxes have none.
+                // Beyond the margins only the slabs' bound of a support reports more; spheres and
+                // boxes have none.
                 for (row, count) in &ledger.rows {
                     let volume = row.strategy;
                     if matches!(volume, Strategy::Sphere | Strategy::Aabb | Strategy::KDop) {
@@ -137,7 +139,8 @@ macro_rules! on_tiers {
                         assert!(count.margin > 0, "{volume}: the draws ask for no margin");
                     }
                 }
-                // The draws must bite: of every predicate a good part is true and a good part is false.
+                // The draws must bite: of every predicate a good part is true and a good part is
+                // false.
                 for ((overlaps, tally), predicate) in
                     ledger.predicates.iter().zip(Predicate::ALL)
                 {

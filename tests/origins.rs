@@ -1,5 +1,6 @@
-//! Poses refer to the mesh's own origin: what a user writes first, every example and Bullet's seam are judged in the
-//! coordinates of the file, by an L-shaped bracket that lies beside its origin. Rapier's seam is judged in its own package.
+//! Poses refer to the mesh's own origin: what a user writes first, every example and Bullet's seam
+//! are judged in the coordinates of the file, by an L-shaped bracket that lies beside its origin.
+//! Rapier's seam is judged in its own package.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -42,9 +43,9 @@ fn bracket() -> TriangleMesh {
     let least = mesh
         .vertices
         .iter()
-        .fold(glam::Vec3::INFINITY, |m, v| m.min(*v));
+        .fold(glam::Vec3::INFINITY, |m, v| m.min(glam::Vec3::from(*v)));
     for vertex in &mut mesh.vertices {
-        *vertex -= least;
+        *vertex = (glam::Vec3::from(*vertex) - least).to_array();
     }
     mesh
 }
@@ -70,7 +71,7 @@ fn meeting(mesh: &TriangleMesh, poses: &[Pose]) -> Vec<bool> {
         lo: vec![-4.0; 3],
         hi: vec![4.0; 3],
     };
-    let vertices = mesh.vertices.iter().map(|v| v.to_array()).collect();
+    let vertices = mesh.vertices.clone();
     let shape = reference::Shape::new(ball, slabs, vertices, mesh.triangles.clone()).unwrap();
     let body = |(q, t): Pose| reference::Body {
         shape: &shape,
@@ -79,7 +80,7 @@ fn meeting(mesh: &TriangleMesh, poses: &[Pose]) -> Vec<bool> {
     };
     let first = body((UNTURNED, [0.0; 3]));
     let meets = |pose: &Pose| {
-        let bodies = [first.clone(), body(*pose)];
+        let bodies = [first, body(*pose)];
         !reference::exact::judge::meeting_pairs(&bodies).0.is_empty()
     };
     poses.iter().map(meets).collect()
@@ -186,7 +187,7 @@ fn the_judged_grid_keeps_the_origin() {
 #[test]
 fn the_seam_of_bullet_keeps_the_origin() {
     let mesh = bracket();
-    let vertices: Vec<[f32; 3]> = mesh.vertices.iter().map(|v| v.to_array()).collect();
+    let vertices = mesh.vertices.clone();
     let mut test = PairTest::new(DirectionSet::K18);
     let number = bullet::add(&mut test, &vertices, &mesh.triangles, 0.0).unwrap();
     assert_nothing_missed("bullet", |&(rotation, translation)| {

@@ -1,8 +1,8 @@
-//! Records: what is written reads back, and whatever is wrong with one is said with its line and a remedy.
+//! Records: what is written reads back, and whatever is wrong with one is said with its line and a
+//! remedy.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use miette::Diagnostic as _;
 use sdop::simd::Tier;
 use sdop_bench::scene::SceneFile;
 use sdop_bench::simulate::Simulation;

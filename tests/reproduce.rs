@@ -1,4 +1,5 @@
-//! The paper's experiments, small: counts and hashes that no CPU may change, the closed form, verdicts.
+//! The paper's experiments, small: counts and hashes that no CPU may change, the closed form,
+//! verdicts.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -79,7 +80,8 @@ fn every_tier_counts_the_same() {
     }
 }
 
-/// Units travel as text: what is read is what was written, to the bit, and joined it has the counts of one process.
+/// Units travel as text: what is read is what was written, to the bit, and joined it has the counts
+/// of one process.
 #[test]
 fn units_joined_have_the_golden_counts() {
     let mut plan = plan(2, Tier::detect());
@@ -114,7 +116,8 @@ fn units_joined_have_the_golden_counts() {
     assert_eq!(joined.interpretations, sensitivity::sweep(&plan).unwrap());
 }
 
-/// The loops that test the claim of the paper's sequential algorithm report what the culler does, whatever they wait for.
+/// The loops that test the claim of the paper's sequential algorithm report what the culler does,
+/// whatever they wait for.
 #[test]
 fn pair_loops_report_the_culler_s_pairs() {
     let scene = SceneFile::read(&scenes().join("crowded-500.toml"))
@@ -139,7 +142,8 @@ fn pair_loops_report_the_culler_s_pairs() {
     }
 }
 
-/// As the scenes stand, an interpretation's percentages are those of the runs; others differ, and the likeliest stands first.
+/// As the scenes stand, an interpretation's percentages are those of the runs; others differ, and
+/// the likeliest stands first.
 #[test]
 fn interpretations_are_swept_from_the_scenes() {
     let mut plan = plan(1, Tier::detect());
@@ -170,8 +174,9 @@ fn interpretations_are_swept_from_the_scenes() {
     assert!(balls[0] > 1.5 * as_run[0], "{balls:?} {as_run:?}");
 }
 
-/// Centres are uniform in side − 2r, in the first frame and after minutes of motion with elastic walls; static bodies are
-/// placed the same way, and their mutual pairs are not tests. The seeds are fixed, so this can't fail by chance.
+/// Centres are uniform in side − 2r, in the first frame and after minutes of motion with elastic
+/// walls; static bodies are placed the same way, and their mutual pairs are not tests. The seeds
+/// are fixed, so this can't fail by chance.
 #[test]
 fn sphere_percentage_is_the_closed_form_s() {
     for name in ["paper-150", "crowded-500"] {

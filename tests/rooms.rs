@@ -1,12 +1,13 @@
-//! Rooms import downward only: read from the `crate::` paths of the sources. Which crate may name which is in their
-//! manifests; within a crate no two rooms import each other, since all stand in one order.
+//! Rooms import downward only: read from the `crate::` paths of the sources. Which crate may name
+//! which is in their manifests; within a crate no two rooms import each other, since all stand in
+//! one order.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Every room of a crate, the lowest first: each imports rooms before it, never one after it. ARCHITECTURE.md draws the same
-/// order.
+/// Every room of a crate, the lowest first: each imports rooms before it, never one after it.
+/// ARCHITECTURE.md draws the same order.
 const LIBRARY: &[&str] = &[
     "simd",
     "rounding",
@@ -26,14 +27,17 @@ const LIBRARY: &[&str] = &[
     "culler",
     "world",
     "boxes",
+    "c",
 ];
 const JUDGE: &[&str] = &["contestant", "json", "record", "ours", REST];
 const BENCH: &[&str] = &[
     "number",
     "percentiles",
+    "remedy",
     "random",
     "hash",
     "mpi",
+    "network",
     "sweep",
     "tightness",
     "effects",
@@ -93,7 +97,8 @@ fn heads(path: &str) -> Vec<String> {
     named.map(name).collect()
 }
 
-/// The rooms that a source names by `crate::`. What a macro names by `$crate::` is another room's when it is used.
+/// The rooms that a source names by `crate::`. What a macro names by `$crate::` is another room's
+/// when it is used.
 fn imports(source: &str) -> Vec<String> {
     let is_code = |line: &&str| !line.trim_start().starts_with("//");
     let code: Vec<&str> = source.lines().filter(is_code).collect();

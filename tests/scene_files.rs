@@ -34,3 +34,24 @@ fn every_shipped_scene_builds_and_steps() {
         }
     }
 }
+
+/// Millimetres, mirrored: the ball is a thousandth, and a group without a scale keeps the size.
+#[test]
+fn groups_scale_their_meshes() {
+    let text = "name = \"a\"\nframes = 1\n\
+                [[bodies]]\nshape = \"l-shape\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n\
+                [[bodies]]\nshape = \"l-shape\"\nscale = 0.5\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n\
+                [[bodies]]\nshape = \"l-shape\"\nscale = [-0.5, 0.5, 0.5]\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n";
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("a.toml");
+    std::fs::write(&path, text).unwrap();
+    let scene = SceneFile::read(&path).unwrap().build().unwrap();
+    let [whole, half, mirrored] = &scene.shapes[..] else {
+        panic!("{} shapes", scene.shapes.len())
+    };
+    assert_eq!(half.vertices[1], whole.vertices[1].map(|x| x * 0.5));
+    assert_eq!(mirrored.vertices[1][0], -half.vertices[1][0]);
+    assert_eq!(mirrored.vertices[1][1], half.vertices[1][1]);
+    let [a, b, c] = half.triangles[0];
+    assert_eq!(mirrored.triangles[0], [a, c, b]);
+}

@@ -1,4 +1,5 @@
-//! Seeded generation: the same file and seed give the same bodies, and the bodies are what the file asks for.
+//! Seeded generation: the same file and seed give the same bodies, and the bodies are what the file
+//! asks for.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::Path;
@@ -121,14 +122,16 @@ fn spheres_start_inside_of_the_box_and_speeds_in_their_range() {
 #[test]
 fn radii_take_eight_steps_an_octave_log_uniformly() {
     let scene = cubes("side = 100", 5, "count = 8000\nradius = [0.3, 4.8]");
-    // Mantissas 1.25 to 1.875 · 2^-2 (0.3 itself moves to 0.3125), three octaves, 1 and 1.125 · 2^2, and 4.8.
+    // Mantissas 1.25 to 1.875 · 2^-2 (0.3 itself moves to 0.3125), three octaves, 1 and 1.125 ·
+    // 2^2, and 4.8.
     assert_eq!(scene.shapes.len(), 6 + 3 * 8 + 2 + 1);
     let mut octaves = [0; 4];
     for body in 0..8000 {
         let r = radius(&scene, body);
         octaves[(r / 0.3).log2().floor().clamp(0.0, 3.0) as usize] += 1;
     }
-    // Binomial with p about ¼: five standard deviations are 194, and the steps move the octaves' ends a little.
+    // Binomial with p about ¼: five standard deviations are 194, and the steps move the octaves'
+    // ends a little.
     assert!(
         octaves
             .iter()
@@ -189,7 +192,8 @@ fn partners_set_the_density() {
     ] {
         let scene = cubes("partners = 1.5", 4, group);
         let found = 2.0 * overlaps(&scene) as f64 / n;
-        // Walls keep centres off by r, which gains a few percent; five Poisson deviations are 0.036.
+        // Walls keep centres off by r, which gains a few percent; five Poisson deviations are
+        // 0.036.
         assert!(
             (1.5 - 0.036..1.5 * edges + 0.036).contains(&found),
             "{group}: {found}"
@@ -211,7 +215,8 @@ fn placements_keep_to_their_form() {
     let t = &clusters.bodies.translation;
     let near =
         |a: &[f32; 3], b: &[f32; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f32>() <= 144.0;
-    // Bodies of one cluster are at most two radii apart: four bodies at most are needed to reach all others.
+    // Bodies of one cluster are at most two radii apart: four bodies at most are needed to reach
+    // all others.
     let mut apart: Vec<[f32; 3]> = Vec::new();
     for body in t {
         if !apart.iter().any(|seen| near(seen, body)) {
@@ -236,8 +241,8 @@ fn poses_keep_the_files_frame_and_seeded_bodies_are_centred() {
     assert_eq!(scene.bodies.translation[0], [1.0, 2.0, 3.0]);
     assert_eq!(scene.velocities.linear[0], [4.0, 5.0, 6.0]);
     assert_eq!(scene.bodies.dynamic, [true, false]);
-    assert!(scene.shapes[0].ball.centre != glam::Vec3::ZERO);
-    assert_eq!(scene.shapes[1].ball.centre, glam::Vec3::ZERO);
+    assert!(scene.shapes[0].ball.centre != [0.0; 3]);
+    assert_eq!(scene.shapes[1].ball.centre, [0.0; 3]);
 }
 
 #[test]

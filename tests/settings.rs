@@ -1,4 +1,5 @@
-//! The culling settings by name: flags, scene files and JSON spell them alike, and what can't be carried out is refused.
+//! The culling settings by name: flags, scene files and JSON spell them alike, and what can't be
+//! carried out is refused.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use sdop::settings::*;
@@ -55,26 +56,6 @@ fn scene_files_default_to_the_librarys_settings() {
 }
 
 #[test]
-fn interest_reads_as_a_list_or_a_cone() {
-    assert_eq!(
-        "0, 5,7".parse::<Interest>().unwrap(),
-        Interest::Bodies(vec![0, 5, 7])
-    );
-    let cone = "{ body = 3, direction = [0, 0, 1], half_angle = 30 }"
-        .parse::<Interest>()
-        .unwrap();
-    let Interest::Cone(cone) = cone else {
-        panic!("a cone")
-    };
-    assert_eq!(
-        (cone.body, cone.direction, cone.half_angle, cone.range),
-        (Some(3), [0.0, 0.0, 1.0], 30.0, None)
-    );
-    let error = "0,x".parse::<Interest>().unwrap_err();
-    assert!(error.to_string().starts_with("interest: "), "{error}");
-}
-
-#[test]
 fn settings_that_cannot_be_carried_out_are_refused() {
     let problem = |change: fn(&mut CullSettings)| {
         let mut settings = CullSettings::all_pairs();
@@ -94,10 +75,8 @@ fn settings_that_cannot_be_carried_out_are_refused() {
         "interest: body 10 of a scene of 10"
     );
     let cone = |text: &str| {
-        let settings = CullSettings {
-            interest: Some(text.parse().unwrap()),
-            ..CullSettings::all_pairs()
-        };
+        let text = format!("interest = {text}");
+        let settings: CullSettings = toml::from_str(&text).unwrap();
         settings.check(10).unwrap_err().to_string()
     };
     assert_eq!(

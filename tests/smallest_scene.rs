@@ -1,4 +1,5 @@
-//! A missed pair ends as the smallest scene that shows it. The culler misses none, so here a shape lies about its ball.
+//! A missed pair ends as the smallest scene that shows it. The culler misses none, so here a shape
+//! lies about its ball.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

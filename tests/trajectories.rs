@@ -1,6 +1,8 @@
-//! Golden trajectories: rotations and translations of every frame, hashed, are equal on every CPU and build.
+//! Golden trajectories: rotations and translations of every frame, hashed, are equal on every CPU
+//! and build.
 //!
-//! Run this test's binary under emulated CPUs to see it: `qemu-x86_64 -cpu Nehalem target/debug/deps/trajectories-…`.
+//! Run this test's binary under emulated CPUs to see it: `qemu-x86_64 -cpu Nehalem
+//! target/debug/deps/trajectories-…`.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::Path;
@@ -8,7 +10,8 @@ use std::path::Path;
 use sdop_bench::scene::{Scene, SceneFile};
 use sha2::{Digest, Sha256};
 
-/// SHA-256 over q and t of all bodies, little endian, for the initial state and each of `steps` steps.
+/// SHA-256 over q and t of all bodies, little endian, for the initial state and each of `steps`
+/// steps.
 fn trajectory(scene: &Scene, steps: usize) -> String {
     let mut bodies = scene.bodies.clone();
     let mut effects = scene.start_effects().unwrap();

@@ -1,4 +1,5 @@
-//! The whole: culling a frame of the paper's 500 objects, every strategy, in the usual and in the crowded box.
+//! The whole: culling a frame of the paper's 500 objects, every strategy, in the usual and in the
+//! crowded box.
 
 mod common;
 

@@ -1,7 +1,8 @@
-//! The long search for a pair that a finder loses on a border between cells: `cargo bench --bench finder_borders -- SCENES`.
+//! The long search for a pair that a finder loses on a border between cells: `cargo bench --bench
+//! finder_borders -- SCENES`.
 //!
-//! One search a thread from seeds of its own, over the scenes of `lab::verify::borders`; prints a Markdown table, and fails when a
-//! finder's list isn't that of all pairs, or when one panics.
+//! One search a thread from seeds of its own, over the scenes of `lab::verify::borders`; prints a
+//! Markdown table, and fails when a finder's list isn't that of all pairs, or when one panics.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;

@@ -1,8 +1,9 @@
-//! What motion costs the finders that `auto` chooses between: update and finding, nanoseconds a body and frame, and the
-//! frames' spread, since a list's worst frame is the one that makes it. `cargo bench --bench motion` prints a Markdown table.
+//! What motion costs the finders that `auto` chooses between: update and finding, nanoseconds a
+//! body and frame, and the frames' spread, since a list's worst frame is the one that makes it.
+//! `cargo bench --bench motion` prints a Markdown table.
 //!
-//! Cullers take turns of eight frames on one swarm, so that each sees the same motion and the same machine; the first frame of
-//! a turn, before which others ran, isn't counted.
+//! Cullers take turns of eight frames on one swarm, so that each sees the same motion and the same
+//! machine; the first frame of a turn, before which others ran, isn't counted.
 
 mod common;
 

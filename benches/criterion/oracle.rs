@@ -1,5 +1,5 @@
-//! What the exact answer costs: triangle pairs by the stage that was certain, and frames of 500 real meshes. `cargo bench
-//! --bench oracle` prints a Markdown table.
+//! What the exact answer costs: triangle pairs by the stage that was certain, and frames of 500
+//! real meshes. `cargo bench --bench oracle` prints a Markdown table.
 
 mod common;
 

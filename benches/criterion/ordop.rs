@@ -1,6 +1,8 @@
-//! Cv of or-DOPs after spheres, in every tier: hits alone, misses alone, and as S-DOP lists them; an element a pair.
+//! Cv of or-DOPs after spheres, in every tier: hits alone, misses alone, and as S-DOP lists them;
+//! an element a pair.
 //!
-//! A miss alone leaves with A's normals, or in the scalar tier at its first separating axis; a hit tries them all.
+//! A miss alone leaves with A's normals, or in the scalar tier at its first separating axis; a hit
+//! tries them all.
 
 mod common;
 

@@ -1,9 +1,9 @@
-//! F and Cv of the first test: finding pairs in the calibration scenes, an element a test. And the pair finders side by
-//! side: update and finding, an element a body.
+//! F and Cv of the first test: finding pairs in the calibration scenes, an element a test. And the
+//! pair finders side by side: update and finding, an element a body.
 //!
-//! Calibration scenes of one number of bodies differ in their box, and so in their hits: the difference prices a hit. The
-//! finders' scenes are [`common::swarm`]'s. What a second thread is worth on the machine at the time is measured with the
-//! peers: `sdop-peers control`.
+//! Calibration scenes of one number of bodies differ in their box, and so in their hits: the
+//! difference prices a hit. The finders' scenes are [`common::swarm`]'s. What a second thread is
+//! worth on the machine at the time is measured with the peers: `sdop-peers control`.
 
 #![allow(clippy::unwrap_used, reason = "a bench without its scene can't go on")]
 
@@ -65,7 +65,8 @@ fn finders(criterion: &mut Criterion) {
     group.measurement_time(Duration::from_secs(2));
     group.warm_up_time(Duration::from_millis(200));
     for &finder in Finder::ALL {
-        // The most bodies at which a frame still takes less than seconds. `auto` is one of the others.
+        // The most bodies at which a frame still takes less than seconds. `auto` is one of the
+        // others.
         let most = match finder {
             Finder::AllPairs => 1000,
             Finder::Sweep => 10_000,

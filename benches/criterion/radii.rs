@@ -1,7 +1,8 @@
-//! What radii of many sizes cost: update and pair finding, nanoseconds a reported pair, for radii of one size, 1 : 16 and
-//! 1 : 1000. `cargo bench --bench radii` prints a Markdown table.
+//! What radii of many sizes cost: update and pair finding, nanoseconds a reported pair, for radii
+//! of one size, 1 : 16 and 1 : 1000. `cargo bench --bench radii` prints a Markdown table.
 //!
-//! The three take turns, and a ratio is the median over rounds of a time over that of one size in the same round.
+//! The three take turns, and a ratio is the median over rounds of a time over that of one size in
+//! the same round.
 
 mod common;
 

@@ -1,9 +1,11 @@
-//! How far each kernel is from what the CPU can do: `cargo bench --bench roofline` prints a Markdown table.
+//! How far each kernel is from what the CPU can do: `cargo bench --bench roofline` prints a
+//! Markdown table.
 //!
-//! The ceilings are measured in the same run: vector operations a nanosecond with everything in registers, and bytes a
-//! nanosecond from a column that doesn't fit any cache. A kernel's work is counted from its source: f32 operations of the
-//! longest way through (no early exit, padding lanes apart), and bytes of the columns that it must touch once.
-//! Its floor is the larger of work over ceiling; the share is floor over measured time.
+//! The ceilings are measured in the same run: vector operations a nanosecond with everything in
+//! registers, and bytes a nanosecond from a column that doesn't fit any cache. A kernel's work is
+//! counted from its source: f32 operations of the longest way through (no early exit, padding lanes
+//! apart), and bytes of the columns that it must touch once. Its floor is the larger of work over
+//! ceiling; the share is floor over measured time.
 
 mod common;
 
@@ -90,7 +92,8 @@ const KERNELS: [Work; 4] = [
     Work {
         name: "spheres of a million bodies found",
         operations: 0.0,
-        // Ball in and out of the update, in and out of the sort, in again by the pairs; name and cell each way.
+        // Ball in and out of the update, in and out of the sort, in again by the pairs; name and
+        // cell each way.
         bytes: 5.0 * 16.0 + 4.0 * 4.0,
         scene: "uniform-1m",
         culling: (Strategy::Sphere, Finder::Grid),
@@ -156,7 +159,8 @@ fn nanoseconds(work: &Work, scene: &Scene, tier: Tier) -> f64 {
     median((0..SAMPLES).map(|_| sample()).collect())
 }
 
-/// Multiplications and additions in equal parts, on sixteen vectors that don't wait for one another.
+/// Multiplications and additions in equal parts, on sixteen vectors that don't wait for one
+/// another.
 fn operations_a_nanosecond(tier: Tier) -> f64 {
     struct Spin;
     impl Kernel for Spin {

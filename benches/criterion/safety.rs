@@ -1,7 +1,8 @@
-//! The price of safety: frames of the paper's scene culled with margins and without, in every tier. `cargo bench --bench
-//! safety` prints a Markdown table.
+//! The price of safety: frames of the paper's scene culled with margins and without, in every tier.
+//! `cargo bench --bench safety` prints a Markdown table.
 //!
-//! The two take turns, and a ratio is of a round's warm frames. `sdop tradeoff` counts the extra pairs.
+//! The two take turns, and a ratio is of a round's warm frames. `sdop tradeoff` counts the extra
+//! pairs.
 
 mod common;
 

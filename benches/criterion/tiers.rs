@@ -1,6 +1,8 @@
-//! Full S-DOP on the paper's 500 objects: a frame in every SIMD tier of this CPU, and in the plain reference.
+//! Full S-DOP on the paper's 500 objects: a frame in every SIMD tier of this CPU, and in the plain
+//! reference.
 //!
-//! `cargo bench --bench tiers` ends with a Markdown table of the medians and their ratios to the reference.
+//! `cargo bench --bench tiers` ends with a Markdown table of the medians and their ratios to the
+//! reference.
 
 mod common;
 

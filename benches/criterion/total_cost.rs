@@ -1,8 +1,10 @@
-//! The paper's formula reproduced by seeded benches: Co, Cu, F and Cv of hits and of misses from calibration scenes, whole
-//! frames of another seed beside them, and at the end predicted, measured and residual of every strategy.
+//! The paper's formula reproduced by seeded benches: Co, Cu, F and Cv of hits and of misses from
+//! calibration scenes, whole frames of another seed beside them, and at the end predicted, measured
+//! and residual of every strategy.
 //!
-//! An iteration is a pass, exactly as `sdop cost` makes it, with another seed each time; what criterion shows is the mean
-//! seconds of a frame. `cargo bench --bench total_cost` takes some minutes.
+//! An iteration is a pass, exactly as `sdop cost` makes it, with another seed each time; what
+//! criterion shows is the mean seconds of a frame. `cargo bench --bench total_cost` takes some
+//! minutes.
 
 mod common;
 
@@ -39,7 +41,8 @@ fn total_cost(criterion: &mut Criterion) {
                 .unwrap_or_else(|error| panic!("{error}"));
             let mut passes: Vec<Pass> = Vec::new();
             let mut group = criterion.benchmark_group("total cost");
-            // Durations are of single frames, and a pass has a hundred with as many again of calibration.
+            // Durations are of single frames, and a pass has a hundred with as many again of
+            // calibration.
             group
                 .sampling_mode(SamplingMode::Flat)
                 .sample_size(10)

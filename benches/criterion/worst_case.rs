@@ -1,7 +1,9 @@
-//! The long search for the worst rounding error of every bound: `cargo bench --bench worst_case -- EVALUATIONS`.
+//! The long search for the worst rounding error of every bound: `cargo bench --bench worst_case --
+//! EVALUATIONS`.
 //!
-//! One search per thread from seeds of its own; the table is what `paper/proofs/README.md` and `src/rounding` quote.
-//! Fails when a bound is exceeded, or when a search finds less than the short one of the tests must.
+//! One search per thread from seeds of its own; the table is what `paper/proofs/README.md` and
+//! `src/rounding` quote. Fails when a bound is exceeded, or when a search finds less than the short
+//! one of the tests must.
 
 #[path = "../../tests/worst_case/bounds.rs"]
 mod bounds;

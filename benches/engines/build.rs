@@ -14,7 +14,7 @@ fn compile_shims() {
         .opt_level(3)
         .define("NDEBUG", None)
         .include("/usr/include/bullet")
-        .files(["embree", "bullet", "cgal"].map(|name| format!("native/{name}.cpp")))
+        .files(["embree", "bullet"].map(|name| format!("native/{name}.cpp")))
         .compile("sdop_peers");
     for library in ["embree3", "BulletCollision", "LinearMath"] {
         println!("cargo:rustc-link-lib={library}");

@@ -1,5 +1,5 @@
-//! Hashes that make results comparable across machines: of the reported pairs, and of every volume of a scene.
-//! Two machines' pairs are comparable only where their volumes agree.
+//! Hashes that make results comparable across machines: of the reported pairs, and of every volume
+//! of a scene. Two machines' pairs are comparable only where their volumes agree.
 
 use std::fmt::Write as _;
 
@@ -7,16 +7,17 @@ use sha2::{Digest, Sha256};
 
 use sdop::volume::Shape;
 
-/// SHA-256, in hexadecimal, of each shape's ball (c, r), basis (three columns), lo and hi, as little-endian f32 in order.
+/// SHA-256, in hexadecimal, of each shape's ball (c, r), basis (three columns), lo and hi, as
+/// little-endian f32 in order.
 #[must_use]
 pub fn volumes_sha256(shapes: &[Shape]) -> String {
     let mut hash = Sha256::new();
     let mut write = |values: &[f32]| values.iter().for_each(|v| hash.update(v.to_le_bytes()));
     for shape in shapes {
-        write(&shape.ball.centre.to_array());
+        write(&shape.ball.centre);
         write(&[shape.ball.radius]);
         for column in shape.ordop.basis.columns {
-            write(&column.to_array());
+            write(&column);
         }
         write(&shape.ordop.lo);
         write(&shape.ordop.hi);
@@ -24,7 +25,8 @@ pub fn volumes_sha256(shapes: &[Shape]) -> String {
     hex(&hash.finalize())
 }
 
-/// `pairs_sha256` of a run: for each frame u32 frame, u64 count, then u32 i, u32 j sorted, all little endian.
+/// `pairs_sha256` of a run: for each frame u32 frame, u64 count, then u32 i, u32 j sorted, all
+/// little endian.
 #[derive(Clone, Default)]
 pub struct PairsHash(Sha256);
 
@@ -48,9 +50,9 @@ impl PairsHash {
 
 /// `pairs_digest` of a run: 128 bits that don't depend on the order of pairs, so that parts add up.
 ///
-/// Each pair of each frame becomes two numbers of 64 bits, scrambled from frame, i and j; each is summed modulo 2⁶⁴ over
-/// all. Two runs whose digests differ report different pairs. Equal digests of different pairs are a chance in 2¹²⁸, but no
-/// secret: whoever wants to, finds some.
+/// Each pair of each frame becomes two numbers of 64 bits, scrambled from frame, i and j; each is
+/// summed modulo 2⁶⁴ over all. Two runs whose digests differ report different pairs. Equal digests
+/// of different pairs are a chance in 2¹²⁸, but no secret: whoever wants to, finds some.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PairsDigest(pub [u64; 2]);
 
@@ -74,7 +76,8 @@ impl PairsDigest {
     }
 }
 
-/// A one-to-one map of 64 bits in which each bit depends on all (the output function of SplitMix64, Steele et al. 2014).
+/// A one-to-one map of 64 bits in which each bit depends on all (the output function of SplitMix64,
+/// Steele et al. 2014).
 fn scrambled(x: u64) -> u64 {
     let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -1,5 +1,11 @@
-//! The laboratory: scenes, their simulation, and the studies that judge and measure the culler. An engine needs none of it.
+//! The laboratory: scenes, their simulation, and the studies that judge and measure the culler. An
+//! engine needs none of it.
 
+extern crate self as sdop_bench; // commands name the rooms as from outside
+
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod commands;
 pub mod cost;
 pub mod domain;
 pub mod effects;
@@ -7,11 +13,13 @@ pub mod hash;
 pub mod hull_test;
 pub mod measure;
 pub mod mpi;
+pub mod network;
 pub mod number;
 pub mod outsiders;
 pub mod percentiles;
 pub mod random;
 pub mod record;
+pub mod remedy;
 pub mod report;
 pub mod reproduce;
 pub mod scene;

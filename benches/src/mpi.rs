@@ -1,28 +1,30 @@
 //! Ranks: one program, started many times by `mpirun` or a scheduler, whose copies talk by MPI.
 //!
-//! Without the feature `mpi` nothing is linked, and [`launched`] is there to refuse a start as many ranks. With it, a program
-//! that is run alone stays an ordinary one: MPI starts with `Ranks::start` and not before. [`Ending`] sees to it that no
-//! rank waits for one that failed.
+//! Without the feature `mpi` nothing is linked, and [`launched`] is there to refuse a start as many
+//! ranks. With it, a program that is run alone stays an ordinary one: MPI starts with
+//! `Ranks::start` and not before. [`Ending`] sees to it that no rank waits for one that failed.
 
 use std::env;
 
 /// What launchers call the number of ranks: OpenMPI, and the PMI of MPICH and of Slurm.
 const SIZES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
 
-/// Set by any launcher that speaks `PMIx`, which leaves the number to be asked for; Slurm says it besides.
+/// Set by any launcher that speaks `PMIx`, which leaves the number to be asked for; Slurm says it
+/// besides.
 const PMIX: [&str; 2] = ["PMIX_RANK", "SLURM_STEP_NUM_TASKS"];
 
 /// What launchers call a rank's number.
 const NUMBERS: [&str; 3] = ["OMPI_COMM_WORLD_RANK", "PMI_RANK", PMIX[0]];
 
-/// How many ranks of this program were started, as its launcher's environment says; 1 for a program that is run alone.
+/// How many ranks of this program were started, as its launcher's environment says; 1 for a program
+/// that is run alone.
 #[must_use]
 pub fn launched() -> usize {
     ranks(|name| env::var(name).ok())
 }
 
-/// This rank's number, as its launcher's environment says; 0 for a program that is run alone. Known before MPI has started, for
-/// programs that start others as ranks.
+/// This rank's number, as its launcher's environment says; 0 for a program that is run alone. Known
+/// before MPI has started, for programs that start others as ranks.
 #[must_use]
 pub fn rank() -> usize {
     let number = |name: &&str| env::var(name).ok()?.trim().parse().ok();
@@ -49,11 +51,13 @@ impl Ending {
         started::finish();
     }
 
-    /// Ends when all ranks have come to the same end by themselves, as they do over arguments: the first says which.
+    /// Ends when all ranks have come to the same end by themselves, as they do over arguments: the
+    /// first says which.
     pub fn alike(self, say: impl FnOnce()) {
         #[cfg(feature = "mpi")]
         if launched() > 1 {
-            // MPI is started for its end alone: no rank ends, and has its launcher end all, before the first has spoken.
+            // MPI is started for its end alone: no rank ends, and has its launcher end all, before
+            // the first has spoken.
             if Ranks::start().rank == 0 {
                 say();
             }
@@ -62,8 +66,8 @@ impl Ending {
         say();
     }
 
-    /// Ends all ranks at once with this exit code: others may wait for what this one will not send. Returns when MPI was not
-    /// started.
+    /// Ends all ranks at once with this exit code: others may wait for what this one will not send.
+    /// Returns when MPI was not started.
     pub fn badly(self, code: i32) {
         abort(code);
     }
@@ -93,10 +97,16 @@ pub use started::Ranks;
 #[cfg(feature = "mpi")]
 mod started {
     use std::sync::{Mutex, PoisonError};
+    use std::thread;
+    use std::time::Duration;
 
     use mpi::Threading;
     use mpi::environment::Universe;
     use mpi::topology::{Communicator as _, SimpleCommunicator};
+    use mpi::traits::CommunicatorCollectives as _;
+
+    /// How long a rank that waits sleeps between two looks.
+    const NAP: Duration = Duration::from_micros(500);
 
     /// MPI while it runs. It can't be started twice.
     static UNIVERSE: Mutex<Option<Universe>> = Mutex::new(None);
@@ -111,7 +121,8 @@ mod started {
     }
 
     impl Ranks {
-        /// Starts MPI, once: a second call tells the same numbers. Its functions are for the thread that starts it.
+        /// Starts MPI, once: a second call tells the same numbers. Its functions are for the thread
+        /// that starts it.
         #[must_use]
         pub fn start() -> Self {
             let mut universe = UNIVERSE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -119,6 +130,10 @@ mod started {
                 let started = mpi::initialize_with_threading(Threading::Funneled);
                 *universe = started.map(|(universe, _)| universe);
             }
+            Self::of_world()
+        }
+
+        fn of_world() -> Self {
             let world = SimpleCommunicator::world();
             Self {
                 rank: world.rank().unsigned_abs() as usize,
@@ -131,11 +146,25 @@ mod started {
         pub fn world(self) -> SimpleCommunicator {
             SimpleCommunicator::world()
         }
+
+        /// Returns when all ranks have called it. MPI's own barrier would keep a core busy until
+        /// then.
+        pub fn wait(self) {
+            let mut barrier = self.world().immediate_barrier();
+            while let Err(pending) = barrier.test() {
+                barrier = pending;
+                thread::sleep(NAP);
+            }
+        }
     }
 
     pub(super) fn finish() {
         let mut universe = UNIVERSE.lock().unwrap_or_else(PoisonError::into_inner);
-        drop(universe.take());
+        if let Some(universe) = universe.take() {
+            // Rank 0 may still be at work: the others sleep until it ends, too.
+            Ranks::of_world().wait();
+            drop(universe);
+        }
     }
 
     pub(super) fn abort(code: i32) {

@@ -74,7 +74,8 @@ impl<'de, T: Kind + FromEnds> Visitor<'de> for NumberVisitor<T> {
         f.write_str(T::EXPECTED)
     }
 
-    // Both casts round to the nearest f32; beyond its range they give an infinity, which no kind accepts.
+    // Both casts round to the nearest f32; beyond its range they give an infinity, which no kind
+    // accepts.
     fn visit_f64<E: Error>(self, value: f64) -> Result<T, E> {
         T::accept(value as f32).ok_or_else(|| E::invalid_value(Unexpected::Float(value), &self))
     }
@@ -123,6 +124,61 @@ macro_rules! deserialize_number {
     )+};
 }
 deserialize_number!(Real, Positive, Share, Interval);
+
+/// Factors of x, y and z, written as one number for all or as `[x, y, z]`: not zero, of size at
+/// most 2⁶⁰. In f64, since 0.001 is no f32.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Factors(pub [f64; 3]);
+
+impl Factors {
+    fn of(factors: &[f64]) -> Option<Self> {
+        let all = match *factors {
+            [factor] => [factor; 3],
+            [x, y, z] => [x, y, z],
+            _ => return None,
+        };
+        let fits = |factor: &f64| *factor != 0.0 && factor.abs() <= f64::from(LIMIT);
+        all.iter().all(fits).then_some(Self(all))
+    }
+}
+
+struct FactorsVisitor;
+
+impl<'de> Visitor<'de> for FactorsVisitor {
+    type Value = Factors;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a factor or [x, y, z], none of them 0")
+    }
+
+    fn visit_f64<E: Error>(self, factor: f64) -> Result<Factors, E> {
+        let found = Unexpected::Float(factor);
+        Factors::of(&[factor]).ok_or_else(|| E::invalid_value(found, &self))
+    }
+
+    fn visit_i64<E: Error>(self, factor: i64) -> Result<Factors, E> {
+        let found = Unexpected::Signed(factor);
+        Factors::of(&[factor as f64]).ok_or_else(|| E::invalid_value(found, &self))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut factors: A) -> Result<Factors, A::Error> {
+        let mut list: Vec<f64> = Vec::new();
+        while let Some(factor) = factors.next_element()? {
+            list.push(factor);
+        }
+        let three = (list.len() == 3).then(|| Factors::of(&list)).flatten();
+        three.ok_or_else(|| {
+            let found = format!("{list:?}");
+            A::Error::invalid_value(Unexpected::Other(&found), &self)
+        })
+    }
+}
+
+impl<'de> Deserialize<'de> for Factors {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(FactorsVisitor)
+    }
+}
 
 /// The plain vector of three checked numbers.
 #[must_use]

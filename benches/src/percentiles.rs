@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// Of single frames' seconds: what half of them don't exceed, what 99 in 100 don't, and the most. All zero without frames.
+/// Of single frames' seconds: what half of them don't exceed, what 99 in 100 don't, and the most.
+/// All zero without frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Percentiles {
     /// The median frame, the earlier of the two middle ones.

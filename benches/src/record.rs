@@ -17,6 +17,7 @@ pub fn header(scene: &Scene) -> Header {
         on,
     });
     Header {
+        frames: Some(scene.frames),
         dt: Some(scene.dt),
         side: scene.side,
         effects: Some(effects.collect()),
@@ -31,6 +32,7 @@ pub fn frame_line(frame: &Frame<'_>, strategy: Strategy) -> FrameLine {
     FrameLine {
         frame: frame.number,
         poses: FrameLine::poses(frame.bodies),
+        translations: frame.fine.of(frame.bodies),
         pairs: frame.pairs.sorted(),
         counters: Some(volume_lines(strategy, &frame.counters)),
         meets: None,

@@ -1,7 +1,7 @@
 //! A culler in Rust, judged: a grid over bounding balls that claims to miss no pair of meshes.
 //!
-//! `cargo run --release --example judge` passes. With `-- --tight-cells` the cells are exactly as large as the largest ball, and
-//! counted in f32: a partner can be two cells away.
+//! `cargo run --release --example judge` passes. With `-- --tight-cells` the cells are exactly as
+//! large as the largest ball, and counted in f32: a partner can be two cells away.
 
 use std::collections::HashMap;
 use std::process::ExitCode;
@@ -21,8 +21,7 @@ pub struct Grid {
 impl Grid {
     /// The culler of a case's bodies; with `tight`, cells are as large as the largest ball.
     pub fn new(scene: &Scene<'_>, tight: bool) -> Self {
-        let ball =
-            |shape: &sdop::Shape| (shape.ball.centre.to_array(), f64::from(shape.ball.radius));
+        let ball = |shape: &sdop::Shape| (shape.ball.centre, f64::from(shape.ball.radius));
         Self {
             balls: scene.shapes.iter().map(ball).collect(),
             tight,

@@ -1,5 +1,6 @@
-//! Scenes on the borders between a finder's cells: the bytes choose which border, how many last places to either side, what
-//! moves and how many sizes there are. Every finder reports what all pairs reports.
+//! Scenes on the borders between a finder's cells: the bytes choose which border, how many last
+//! places to either side, what moves and how many sizes there are. Every finder reports what all
+//! pairs reports.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

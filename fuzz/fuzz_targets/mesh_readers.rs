@@ -4,11 +4,12 @@
 use libfuzzer_sys::fuzz_target;
 use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes, write_bytes};
 
-const FORMATS: [MeshFormat; 4] = [
+const FORMATS: [MeshFormat; 5] = [
     MeshFormat::Tri,
     MeshFormat::Obj,
     MeshFormat::Stl,
     MeshFormat::Ply,
+    MeshFormat::Off,
 ];
 
 fuzz_target!(|data: &[u8]| {

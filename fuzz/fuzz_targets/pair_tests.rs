@@ -1,5 +1,5 @@
-//! Two bodies with any poses within the contract, or put in touch: what the exact reference reports, every strategy
-//! reports.
+//! Two bodies with any poses within the contract, or put in touch: what the exact reference
+//! reports, every strategy reports.
 #![no_main]
 
 use std::sync::LazyLock;
@@ -49,8 +49,9 @@ fn pose(bytes: &[u8]) -> Placed {
 const HEAD: usize = 7;
 const BYTES: usize = HEAD + 2 * 28;
 
-/// The translation that brings the second body in touch with the first, along the direction that its bytes say; `None`, and
-/// bodies stay where they are, for seven in sixteen values of the head's second byte.
+/// The translation that brings the second body in touch with the first, along the direction that
+/// its bytes say; `None`, and bodies stay where they are, for seven in sixteen values of the head's
+/// second byte.
 fn in_touch(shapes: &Shapes, head: &[u8], first: &Placed, second: &Placed) -> Option<[f32; 3]> {
     let contact = Contact {
         kind: *Kind::ALL.get(usize::from(head[1] % 16))?,

@@ -1,5 +1,5 @@
-# A body whose f64 translation lies D from the local origin along an axis is placed at local = f32(f64(D)). Where it lies farthest,
-# `Local::place` says moved = f64(f64(f64(D) 2^-23) + 2^-149), no less than D 2^-23 (1 - 2^-50) and more than sqrt(3) times
+# A body at D from the local origin along an axis, D = f64(t - origin) - corner, is placed at local = f32(f64(D)). Where it lies
+# farthest, `Region::place` says moved = f64(f64(f64(D) 2^-23) + 2^-149), no less than D 2^-23 (1 - 2^-50) and more than sqrt(3) times
 # what an axis moves by. Normal f32 here; subnormal ones are in local_origin_underflow.g.
 
 @f64 = float<53, -1074, ne>;

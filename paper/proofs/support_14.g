@@ -22,4 +22,4 @@ z -> (lead - (a - b + f3)) + f3;
 b + c -> b * (1 + s);
 b - c -> b * (1 - s);
 a - b -> a * (1 - r);
-$ a in 8, r in 8, s in 8;
+$ a in 2, r in 2, s in 2;

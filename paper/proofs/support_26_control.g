@@ -16,4 +16,4 @@ x -> (pair - (b - c + f1)) + f1;
 y -> (lead - (a - b + f2)) + f2;
 b - c -> b * (1 - s);
 a - b -> a * (1 - r);
-$ a in 8, r in 8, s in 8;
+$ a in 3, r in 3, s in 3;

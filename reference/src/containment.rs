@@ -1,7 +1,9 @@
-//! Is the mesh in its volumes, exactly? Checked apart from every overlap, for body-frame volumes and for posed ones.
+//! Is the mesh in its volumes, exactly? Checked apart from every overlap, for body-frame volumes
+//! and for posed ones.
 //!
-//! All checks take a pose; a volume in the body frame is checked under [`Pose::IDENTITY`], a world-aligned one with the
-//! identity basis under the body's pose. The cascade is that of [`crate::exact`].
+//! All checks take a pose; a volume in the body frame is checked under [`Pose::IDENTITY`], a
+//! world-aligned one with the identity basis under the body's pose. The cascade is that of
+//! [`crate::exact`].
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,5 @@
-//! The paper's equation 1, T = Nu·Cu + Nv·Cv + Co, with Cv split into hits and misses (design, section 3).
+//! The paper's equation 1, T = Nu·Cu + Nv·Cv + Co, with Cv split into hits and misses (design,
+//! section 3).
 
 /// What one run counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

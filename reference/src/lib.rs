@@ -1,11 +1,13 @@
 //! The plain reference of S-DOP culling: one formula a function, no code shared with the culler.
 //!
-//! The stages carry the culler's names: [`pose`], [`volume`], [`shape`], [`overlap`], [`broad_phase`], [`strategy`], [`cost`].
-//! Loops are plain f64 and read like the paper; [`exact`] decides the same predicates in exact real arithmetic, and
-//! `optimised ⊇ reference predicate ⊇ exact mesh intersection` is what the culler's tests hold against it.
+//! The stages carry the culler's names: [`pose`], [`volume`], [`shape`], [`overlap`],
+//! [`broad_phase`], [`strategy`], [`cost`]. Loops are plain f64 and read like the paper; [`exact`]
+//! decides the same predicates in exact real arithmetic, and `optimised ⊇ reference predicate ⊇
+//! exact mesh intersection` is what the culler's tests hold against it.
 //!
-//! Conventions: right-handed axes, column vectors `[x, y, z]`, quaternions `(x, y, z, w)` of any non-zero norm, a pose
-//! is x ↦ R(q)x/|q|² + t. Volumes are the exactly posed, uninflated ones; touching counts as overlap.
+//! Conventions: right-handed axes, column vectors `[x, y, z]`, quaternions `(x, y, z, w)` of any
+//! non-zero norm, a pose is x ↦ R(q)x/|q|² + t. Volumes are the exactly posed, uninflated ones;
+//! touching counts as overlap.
 //!
 //! ```
 //! use sdop_reference::exact::judge::meeting_pairs;

@@ -1,12 +1,14 @@
 //! The numbers that a formula may be written over.
 //!
-//! A decision is the sign of a polynomial in the input. Written once over [`Number`], the same polynomial is guessed
-//! in f64, bounded in intervals ([`crate::exact::interval`]) and computed exactly in integers, so that the stages of
-//! the exact cascade cannot disagree about the formula, only about what they can tell.
+//! A decision is the sign of a polynomial in the input. Written once over [`Number`], the same
+//! polynomial is guessed in f64, bounded in intervals ([`crate::exact::interval`]) and computed
+//! exactly in integers, so that the stages of the exact cascade cannot disagree about the formula,
+//! only about what they can tell.
 //!
-//! Every f32 and f64 is a dyadic rational m·2^e. [`Number::lift`] divides it by a unit 2^u that all quantities of one
-//! kind (the lengths of a pair; the components of one quaternion) share. A polynomial homogeneous in each kind changes
-//! by a positive factor only, so floating-point numbers ignore the unit and integers stay integers.
+//! Every f32 and f64 is a dyadic rational m·2^e. [`Number::lift`] divides it by a unit 2^u that all
+//! quantities of one kind (the lengths of a pair; the components of one quaternion) share. A
+//! polynomial homogeneous in each kind changes by a positive factor only, so floating-point numbers
+//! ignore the unit and integers stay integers.
 
 use std::cmp::Ordering;
 
@@ -34,7 +36,8 @@ pub trait Number: Clone {
     fn sign(&self) -> Option<Ordering>;
 }
 
-/// Unguarded: the sign is a guess, which whoever asks checks by a bound or by another kind of number.
+/// Unguarded: the sign is a guess, which whoever asks checks by a bound or by another kind of
+/// number.
 impl Number for f64 {
     fn lift(x: f64, _unit: i32) -> Self {
         x

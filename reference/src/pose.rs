@@ -57,7 +57,8 @@ impl Pose {
     }
 }
 
-/// Δ = tB − tA. Every test compares B with A as seen from A's origin: world coordinates far out would cancel.
+/// Δ = tB − tA. Every test compares B with A as seen from A's origin: world coordinates far out
+/// would cancel.
 pub fn separation(a: &Pose, b: &Pose) -> Vector<f64> {
     sub(&b.translation(), &a.translation())
 }

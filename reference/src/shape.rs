@@ -18,7 +18,8 @@ pub struct Shape {
     pub slabs: Slabs,
     /// Its corners, exact and rounded.
     pub polytope: Polytope,
-    /// The oriented box's polytope: of the slabs' first three axes unless [`Shape::with_obb`] gave another.
+    /// The oriented box's polytope: of the slabs' first three axes unless [`Shape::with_obb`] gave
+    /// another.
     pub obb: Polytope,
     /// Vertices as culled.
     pub vertices: Vec<[f32; 3]>,
@@ -31,7 +32,8 @@ impl Shape {
     /// A shape of a ball, slabs and a mesh. Whether the volumes contain the mesh is not asked here.
     ///
     /// # Errors
-    /// When a number is not finite, the slabs are not k/2, the basis is not exact or an index is out of range.
+    /// When a number is not finite, the slabs are not k/2, the basis is not exact or an index is
+    /// out of range.
     pub fn new(
         ball: Ball,
         slabs: Slabs,

@@ -1,7 +1,8 @@
-//! The paper's strategies as predicates over a pair (sections 4 and 5; design, section 2), and all pairs of a scene.
+//! The paper's strategies as predicates over a pair (sections 4 and 5; design, section 2), and all
+//! pairs of a scene.
 //!
-//! Strategies share one loop and differ in which volumes must overlap. What decides a volume overlap is a [`Judge`]:
-//! the plain f64 formulas here, or the exact ones.
+//! Strategies share one loop and differ in which volumes must overlap. What decides a volume
+//! overlap is a [`Judge`]: the plain f64 formulas here, or the exact ones.
 
 use std::cell::OnceCell;
 
@@ -29,7 +30,8 @@ pub enum Strategy<'a> {
     Batch,
     /// Spheres overlap and (neither body is of interest, or or-DOPs overlap). One flag per body.
     ObjectOfInterest(&'a [bool]),
-    /// Spheres overlap and (untested, or or-DOPs overlap). The sphere hits tested before the budget ended, sorted.
+    /// Spheres overlap and (untested, or or-DOPs overlap). The sphere hits tested before the budget
+    /// ended, sorted.
     TimeCritical(&'a [(u32, u32)]),
     /// World-aligned boxes overlap.
     Aabb,
@@ -124,7 +126,8 @@ fn volumes(hit: bool, counters: &mut Counters) -> bool {
     hit
 }
 
-/// The plain f64 formulas over one frame of bodies. What a pose fixes is computed once per body, when first asked for.
+/// The plain f64 formulas over one frame of bodies. What a pose fixes is computed once per body,
+/// when first asked for.
 pub struct Plain<'a> {
     bodies: &'a [Body<'a>],
     overlap: Overlap,

@@ -1,4 +1,5 @@
-//! Bounding volumes as plain numbers in the body frame (design, section 2): built elsewhere, judged here.
+//! Bounding volumes as plain numbers in the body frame (design, section 2): built elsewhere, judged
+//! here.
 
 use crate::InvalidInput;
 

@@ -1,18 +1,9 @@
 //! Boxes on the world's axes, as engines hand them over.
 
 use super::contract::{ContractError, refuse};
-use crate::simd::in_default_mode;
+use crate::simd::{boxes_of, in_default_mode};
 
-/// A closed box on the world's axes: boxes that touch meet. Its ends are finite, and no lower one is above the upper one;
-/// sides of no length are fine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub struct Aabb {
-    /// The lower corner.
-    pub min: [f32; 3],
-    /// The upper corner.
-    pub max: [f32; 3],
-}
+pub use crate::simd::Aabb;
 
 impl Aabb {
     /// The box between two corners.
@@ -20,6 +11,12 @@ impl Aabb {
     pub fn new(min: impl Into<[f32; 3]>, max: impl Into<[f32; 3]>) -> Self {
         let (min, max) = (min.into(), max.into());
         Self { min, max }
+    }
+
+    /// Rows of six numbers as boxes, where they are: the lower corner x, y, z, then the upper one.
+    #[must_use]
+    pub fn from_rows(rows: &[[f32; 6]]) -> &[Self] {
+        boxes_of(rows)
     }
 
     /// Whether two boxes have a point in common.
@@ -37,13 +34,34 @@ impl Aabb {
         std::array::from_fn(|axis| 0.5 * self.max[axis] - 0.5 * self.min[axis])
     }
 
+    /// The bits of its ends: equal ones are equal in any floating-point mode.
+    #[inline]
+    pub(crate) fn bits(&self) -> [[u32; 3]; 2] {
+        [self.min, self.max].map(|corner| corner.map(f32::to_bits))
+    }
+
+    /// Whether its ends are finite and in order, by their bits: in any floating-point mode, but not
+    /// of zeros of two signs.
+    #[inline]
+    fn is_surely_sound(&self) -> bool {
+        // Numbers of one sign are in the order of their bits, negative ones in the opposite one.
+        let rank = |bits: u32| (bits ^ (((bits as i32) >> 31) as u32 >> 1)) as i32;
+        let size = |bits: u32| bits & !(1 << 31);
+        let [min, max] = self.bits();
+        (0..3).all(|axis| {
+            let ends = [min[axis], max[axis]];
+            let are_finite = ends.map(|end| size(end) < size(f32::INFINITY.to_bits()));
+            are_finite[0] & are_finite[1] & (rank(ends[0]) <= rank(ends[1]))
+        })
+    }
+
     /// Checks that a box is one; `body` is its number.
     pub(crate) fn check(&self, body: usize) -> Result<(), ContractError> {
         let is_sound = |axis: usize| {
             let [lo, hi] = [self.min[axis], self.max[axis]];
             lo <= hi && f32::MIN <= lo && hi <= f32::MAX
         };
-        if in_default_mode(|| (0..3).all(is_sound)) {
+        if self.is_surely_sound() || in_default_mode(|| (0..3).all(is_sound)) {
             return Ok(());
         }
         let value = format!("from {:?} to {:?}", self.min, self.max);

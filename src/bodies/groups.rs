@@ -2,6 +2,7 @@
 
 /// Bits of the groups that a body is in, and of those that it collides with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)] // as `sdop.h` has it
 pub struct Groups {
     /// The groups that the body is in.
     pub member: u32,

@@ -3,11 +3,13 @@
 mod aabb;
 pub mod contract;
 mod groups;
+mod motion;
 mod places;
 mod read_ahead;
 
 pub use aabb::Aabb;
 pub use groups::Groups;
+pub use motion::Motion;
 #[doc(hidden)]
 pub use places::Places;
 pub(crate) use read_ahead::read_ahead;
@@ -26,8 +28,8 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Appends a body: the number of its shape, whether it may move, its orientation quaternion (x, y, z, w) of any non-zero
-    /// norm, and the translation of its origin, world frame.
+    /// Appends a body: the number of its shape, whether it may move, its orientation quaternion (x,
+    /// y, z, w) of any non-zero norm, and the translation of its origin, world frame.
     pub fn push(
         &mut self,
         shape: u32,

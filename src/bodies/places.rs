@@ -1,8 +1,9 @@
 //! The order in which bodies are stored inside a culler.
 //!
-//! A body has a place: all volumes stand in columns by place. Moving bodies come first, then static ones, so that
-//! updates and static pairs need no look at a flag; a pair finder sorts places by location now and then, so that
-//! neighbours in space are neighbours in memory, whatever the order of the user's columns.
+//! A body has a place: all volumes stand in columns by place. Moving bodies come first, then static
+//! ones, so that updates and static pairs need no look at a flag; a pair finder sorts places by
+//! location now and then, so that neighbours in space are neighbours in memory, whatever the order
+//! of the user's columns.
 
 use crate::bodies::Bodies;
 
@@ -34,7 +35,8 @@ impl Places {
         }
     }
 
-    /// The order of the user's columns, every body taken as moving: what times a stage apart from a culler.
+    /// The order of the user's columns, every body taken as moving: what times a stage apart from a
+    /// culler.
     #[must_use]
     pub fn as_given(bodies: &Bodies) -> Self {
         let n = bodies.shape.len();
@@ -57,9 +59,10 @@ impl Places {
         self.body.is_empty()
     }
 
-    /// Replaces the set of bodies by those that are `present`. Of those that move, as of those that don't, the ones that did so
-    /// before keep their order; the others follow. Shapes are left to [`Self::reread_shapes`]. Returns of each former place
-    /// whether its body is among those that keep their order.
+    /// Replaces the set of bodies by those that are `present`. Of those that move, as of those that
+    /// don't, the ones that did so before keep their order; the others follow. Shapes are left to
+    /// [`Self::reread_shapes`]. Returns of each former place whether its body is among those that
+    /// keep their order.
     pub(crate) fn replace(&mut self, dynamic: &[bool], present: &[bool]) -> Vec<bool> {
         let mut is_new = present.to_vec();
         let former = self.body.iter().enumerate();
@@ -88,6 +91,7 @@ impl Places {
         stays
     }
 
+    #[cfg(feature = "shapes")]
     /// Copies each body's shape from the user's columns.
     pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
         self.shape.resize(self.body.len(), 0);
@@ -96,8 +100,9 @@ impl Places {
         }
     }
 
-    /// Puts the bodies in another order: `order` names the body that takes each place, by its present place or by itself,
-    /// and is left with the former order.
+    #[cfg(feature = "shapes")]
+    /// Puts the bodies in another order: `order` names the body that takes each place, by its
+    /// present place or by itself, and is left with the former order.
     pub(crate) fn reorder(&mut self, bodies: &Bodies, order: &mut Vec<u32>, by_place: bool) {
         if by_place {
             for place in order.iter_mut() {

@@ -1,8 +1,9 @@
 //! Reading a column ahead of its use.
 //!
-//! Users' columns are by body, and what gathers them goes by place: bodies that are neighbours in space lie anywhere in the
-//! column. A column that has just been written by another thread, or so much else since that it is in memory again, comes into
-//! the caches several times as fast from end to end as in that order.
+//! Users' columns are by body, and what gathers them goes by place: bodies that are neighbours in
+//! space lie anywhere in the column. A column that has just been written by another thread, or so
+//! much else since that it is in memory again, comes into the caches several times as fast from end
+//! to end as in that order.
 
 use std::hint::black_box;
 
@@ -12,9 +13,9 @@ use crate::threads::Threads;
 /// Elements that one thread reads at a time.
 const PIECE: usize = 8192;
 
-/// Reads a number of each cache line of a column whose elements will be wanted soon, `wanted` of them in any order. Does nothing
-/// and returns false where most won't be, or where the column is longer than so many bytes: then, what is wanted is better
-/// prefetched element by element.
+/// Reads a number of each cache line of a column whose elements will be wanted soon, `wanted` of
+/// them in any order. Does nothing and returns false where most won't be, or where the column is
+/// longer than so many bytes: then, what is wanted is better prefetched element by element.
 pub fn read_ahead<T: Sync>(
     pool: &Threads,
     column: &[T],
@@ -42,7 +43,8 @@ mod tests {
     /// The longest column that is read, in bytes.
     const LONGEST: usize = 1 << 20;
 
-    /// The numbers that are read of a column of `N` numbers an element, each of which is its own index.
+    /// The numbers that are read of a column of `N` numbers an element, each of which is its own
+    /// index.
     fn read<const N: usize>(elements: usize, wanted: usize) -> Vec<usize> {
         let column: Vec<[f32; N]> = (0..elements).map(|i| [(N * i) as f32; N]).collect();
         let seen = Mutex::new(Vec::new());

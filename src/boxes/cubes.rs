@@ -2,17 +2,19 @@
 
 use crate::bodies::Aabb;
 use crate::rounding::cube::Cube;
-use crate::simd::{Kernel, Lanes, MAX_WIDTH, prefetch_ends};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, numbers_of, prefetch_ends};
 
-/// How many names ahead boxes are prefetched: neighbours in space lie anywhere in the user's list, and a core can wait for dozens
-/// of cache misses at once.
+/// How many names ahead boxes are prefetched: neighbours in space lie anywhere in the user's list,
+/// and a core can wait for dozens of cache misses at once.
 pub(super) const AHEAD: usize = 128;
 
-/// Makes the cubes of the boxes of these names. Returns the greatest H − h, and whether all boxes are sound.
+/// Makes the cubes of the boxes of these names. Returns the greatest H − h, and whether all boxes
+/// are sound.
 pub(super) struct Make<'a> {
     pub boxes: &'a [Aabb],
     pub names: &'a [u32],
-    /// The names from the one at [`AHEAD`] on, whose boxes are prefetched, or none where boxes are in the caches.
+    /// The names from the one at [`AHEAD`] on, whose boxes are prefetched, or none where boxes are
+    /// in the caches.
     pub ahead: &'a [u32],
     pub cubes: &'a mut [[f32; 4]],
 }
@@ -25,7 +27,7 @@ impl Kernel for Make<'_> {
             gap: l.splat(0.0),
             sound: u32::MAX,
         };
-        let numbers: &[[f32; 6]] = bytemuck::cast_slice(self.boxes);
+        let numbers = numbers_of(self.boxes);
         let mut ahead = self.ahead.chunks(MAX_WIDTH);
         let cubes = self.cubes.chunks_mut(MAX_WIDTH);
         for (cubes, names) in cubes.zip(self.names.chunks(MAX_WIDTH)) {
@@ -83,7 +85,8 @@ mod tests {
     use super::*;
     use crate::simd::{Tier, dispatch};
 
-    /// What a tier makes of boxes in an order of its own: their cubes, the greatest H − h, and whether all are sound.
+    /// What a tier makes of boxes in an order of its own: their cubes, the greatest H − h, and
+    /// whether all are sound.
     fn made(tier: Tier, boxes: &[Aabb], names: &[u32]) -> (Vec<[f32; 4]>, f32, bool) {
         let mut cubes = vec![[f32::NAN; 4]; names.len()];
         let make = Make {

@@ -32,7 +32,8 @@ pub struct BoxCuller {
     counters: VolumeCounters,
 }
 
-/// What of a [`BoxCuller`] or a [`BoxWorld`](super::BoxWorld) can be chosen; what isn't, has its default.
+/// What of a [`BoxCuller`] or a [`BoxWorld`](super::BoxWorld) can be chosen; what isn't, has its
+/// default.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "a builder does nothing before `build`"]
 pub struct BoxCullerBuilder {
@@ -59,15 +60,16 @@ impl BoxCullerBuilder {
         Self { finder, ..self }
     }
 
-    /// Number of threads, the caller's included, at most 1,024 or
-    /// the culler isn't built; 0 is taken as 1. Frames of little work stay on the caller's. Lists and
-    /// counters don't depend on it.
+    /// Number of threads, the caller's included, at most 1,024 or the culler isn't built; 0 is
+    /// taken as 1. Frames of little work stay on the caller's. Lists and counters don't depend on
+    /// it.
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
     }
 
-    /// The least work of a frame, in nanoseconds of one thread as counters tell them, for which threads besides the caller's are woken:
-    /// a millisecond (2²⁰ ns) by default, 0 for always. Lists and counters don't depend on it.
+    /// The least work of a frame, in nanoseconds of one thread as counters tell them, for which
+    /// threads besides the caller's are woken: a millisecond (2²⁰ ns) by default, 0 for always.
+    /// Lists and counters don't depend on it.
     pub fn worth_waking(self, nanoseconds: u64) -> Self {
         let worth_waking = nanoseconds;
         Self {
@@ -108,7 +110,8 @@ impl Default for BoxCuller {
 }
 
 impl BoxCuller {
-    /// A culler with every default: the finder that `auto` picks, the fastest tier of this CPU, the caller's thread.
+    /// A culler with every default: the finder that `auto` picks, the fastest tier of this CPU, the
+    /// caller's thread.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -128,17 +131,20 @@ impl BoxCuller {
         }
     }
 
-    /// From now on, only pairs of boxes that may collide are listed; `None`: all may. One entry a box.
+    /// From now on, only pairs of boxes that may collide are listed; `None`: all may. One entry a
+    /// box.
     pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) {
         self.groups = groups;
     }
 
-    /// The pairs i < j of boxes that meet and whose groups collide, each once, in an order that depends on the finder and on
-    /// the frames so far alone. The number of boxes may change from frame to frame; such a frame takes longer.
+    /// The pairs i < j of boxes that meet and whose groups collide, each once, in an order that
+    /// depends on the finder and on the frames so far alone. The number of boxes may change from
+    /// frame to frame; such a frame takes longer.
     ///
     /// # Errors
-    /// An end that is infinite or no number, a lower one above the upper one, more boxes than can be numbered, a column of
-    /// groups of another length. [`Self::pairs`] is empty then, and the next frame is culled as ever.
+    /// An end that is infinite or no number, a lower one above the upper one, more boxes than can
+    /// be numbered, a column of groups of another length. [`Self::pairs`] is empty then, and the
+    /// next frame is culled as ever.
     pub fn cull(&mut self, boxes: &[Aabb]) -> Result<&PairList, CullError> {
         let mut pairs = std::mem::take(&mut self.pairs);
         pairs.clear();
@@ -147,9 +153,10 @@ impl BoxCuller {
         outcome.map(|()| &self.pairs)
     }
 
-    /// Culls one frame as [`Self::cull`] does and hands its pairs to `take`, some 65,000 at a time, in the order of that
-    /// list. Returns their number; [`Self::pairs`] is empty. Memory doesn't grow with their number. With several threads,
-    /// `take` is called from any of them, one call at a time.
+    /// Culls one frame as [`Self::cull`] does and hands its pairs to `take`, some 65,000 at a time,
+    /// in the order of that list. Returns their number; [`Self::pairs`] is empty. Memory doesn't
+    /// grow with their number. With several threads, `take` is called from any of them, one call at
+    /// a time.
     ///
     /// # Errors
     /// As [`Self::cull`].
@@ -168,11 +175,12 @@ impl BoxCuller {
         Ok(reported)
     }
 
-    /// Culls one frame as [`Self::cull`] does, if it has at most `limit` pairs. Memory for more is never taken.
+    /// Culls one frame as [`Self::cull`] does, if it has at most `limit` pairs. Memory for more is
+    /// never taken.
     ///
     /// # Errors
-    /// More pairs than that, with their number: [`Self::pairs`] is empty then, and the frame counts as culled. Otherwise as
-    /// [`Self::cull`].
+    /// More pairs than that, with their number: [`Self::pairs`] is empty then, and the frame counts
+    /// as culled. Otherwise as [`Self::cull`].
     pub fn cull_up_to(&mut self, boxes: &[Aabb], limit: usize) -> Result<&PairList, CullError> {
         let mut kept = std::mem::take(&mut self.pairs);
         kept.clear();
@@ -213,14 +221,21 @@ impl BoxCuller {
         &self.counters
     }
 
+    /// Candidates that the last frame tested to make a list of neighbours, in addition to the tests
+    /// that [`Self::counters`] count. See [`Culler::list_tests`](crate::Culler::list_tests).
+    #[must_use]
+    pub fn list_tests(&self) -> u64 {
+        self.frames.list_tests()
+    }
+
     /// Bytes that lists of pairs hold: the reported ones, and those on the way to them.
     #[must_use]
     pub fn pair_bytes(&self) -> usize {
         self.pairs.bytes() + self.frames.pair_bytes()
     }
 
-    /// Gives back the memory of lists of pairs beyond what the last frame's reported ones take: after a crowd, which would
-    /// hold it for ever.
+    /// Gives back the memory of lists of pairs beyond what the last frame's reported ones take:
+    /// after a crowd, which would hold it for ever.
     pub fn shrink_to_fit(&mut self) {
         self.pairs.shrink_to_fit();
         self.frames.shrink_to_fit();

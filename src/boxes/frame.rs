@@ -12,20 +12,22 @@ use crate::overlap::boxes::Cubes;
 use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
 use crate::simd::{Tier, dispatch, in_default_mode};
-use crate::strategy::{BoxInputs, BoxTest, Output, Scratch, list_boxes};
+use crate::strategy::{BoxInputs, BoxTest, Output, Tasks, list_boxes};
 use crate::threads::{FrameThreads, Work};
 
 /// Boxes whose cubes one thread makes at once.
 const CUBES: usize = 4096;
 
-/// Boxes that are read ahead, up to so many bytes: what the first caches hold. Beyond, prefetching each by its name is faster: by 3 %
-/// at 96 KB and 20 % at 240 KB, where it is 3 % slower at 48 KB (frames of an AMD, Zen 5, with cold caches).
+/// Boxes that are read ahead, up to so many bytes: what the first caches hold. Beyond, prefetching
+/// each by its name is faster: by 3 % at 96 KB and 20 % at 240 KB, where it is 3 % slower at 48 KB
+/// (frames of an AMD, Zen 5, with cold caches).
 const LONGEST: usize = 64 << 10;
 
 /// Boxes of a frame that are asked which test suits it.
 const ASKED: usize = 64;
 
-/// By how much H must exceed the frame's greatest H − h where cubes decide; of those asked, one in [`FEW`] may fall short.
+/// By how much H must exceed the frame's greatest H − h where cubes decide; of those asked, one in
+/// [`FEW`] may fall short.
 const CUBIC: f32 = 32.0;
 const FEW: usize = 16;
 
@@ -45,7 +47,7 @@ pub(super) struct Frames {
     fixed_gap: f32,
     news: News,
     ends: EndSlots,
-    scratch: Scratch,
+    tasks: Tasks,
     /// Of the frame before.
     candidates: u64,
 }
@@ -73,7 +75,7 @@ impl Frames {
             fixed_gap: 0.0,
             news: News::All,
             ends: EndSlots::default(),
-            scratch: Scratch::default(),
+            tasks: Tasks::default(),
             candidates: 0,
         }
     }
@@ -83,8 +85,8 @@ impl Frames {
         self.places.len()
     }
 
-    /// From now on those boxes are there that are `present`, and those may move that are `dynamic`. What is known of the
-    /// neighbours of boxes that were there is kept.
+    /// From now on those boxes are there that are `present`, and those may move that are `dynamic`.
+    /// What is known of the neighbours of boxes that were there is kept.
     pub fn replace(&mut self, dynamic: &[bool], present: &[bool]) {
         let stays = self.places.replace(dynamic, present);
         let (population, moving) = (population(self.len()), self.places.moving);
@@ -100,7 +102,7 @@ impl Frames {
     /// Forgets all boxes, and gives back their memory. The next [`Self::replace`] begins anew.
     pub fn forget(&mut self) {
         (self.places, self.order) = Default::default();
-        (self.ends, self.scratch) = Default::default();
+        (self.ends, self.tasks) = Default::default();
         self.cubes = Balls::new(0);
         self.start_anew();
     }
@@ -112,7 +114,8 @@ impl Frames {
         (self.news, self.candidates) = (News::All, 0);
     }
 
-    /// Hands the boxes that meet, not both at rest, whose groups collide, to `output`. `boxes` and `groups` are by name.
+    /// Hands the boxes that meet, not both at rest, whose groups collide, to `output`. `boxes` and
+    /// `groups` are by name.
     pub fn cull(
         &mut self,
         boxes: &[Aabb],
@@ -165,15 +168,15 @@ impl Frames {
             test,
             groups,
         };
-        let mut counted = list_boxes(inputs, &mut self.scratch, output);
+        let mut counted = list_boxes(inputs, &mut self.tasks, output);
         counted.updates = self.places.moving as u64;
         self.candidates = counted.tests;
         self.finder.observe(counted.tests);
         Ok(counted)
     }
 
-    /// Puts boxes in better places and makes the cubes of those that may have moved; the greatest H − h of all, or `None` if
-    /// some box is none.
+    /// Puts boxes in better places and makes the cubes of those that may have moved; the greatest H
+    /// − h of all, or `None` if some box is none.
     fn update(&mut self, boxes: &[Aabb]) -> Option<f32> {
         let (moving, all) = (self.places.moving, self.places.len());
         let news = std::mem::replace(&mut self.news, News::None);
@@ -219,8 +222,8 @@ impl Frames {
         are_sound.into_inner().then_some(gap)
     }
 
-    /// Whether cubes tell most pairs apart: whether most boxes are much larger than the greatest H − h. Some are asked, the
-    /// same ones on every machine.
+    /// Whether cubes tell most pairs apart: whether most boxes are much larger than the greatest H
+    /// − h. Some are asked, the same ones on every machine.
     fn cubes_decide(&self, gap: f32) -> bool {
         let step = self.cubes.len().div_ceil(ASKED).max(1);
         let asked = self.cubes.iter().step_by(step);
@@ -231,14 +234,19 @@ impl Frames {
         FEW * small <= all
     }
 
+    /// Candidates that the last frame tested to make a list of neighbours.
+    pub fn list_tests(&self) -> u64 {
+        self.finder.list_tests()
+    }
+
     /// Gives back the memory of lists of pairs.
     pub fn shrink_to_fit(&mut self) {
-        self.scratch.shrink_to_fit();
+        self.tasks.shrink_to_fit();
     }
 
     /// Bytes that lists of pairs hold.
     pub fn pair_bytes(&self) -> usize {
-        self.scratch.pair_bytes()
+        self.tasks.pair_bytes()
     }
 }
 
@@ -321,7 +329,8 @@ mod tests {
         );
     }
 
-    /// Planned by boxes without an extent, giants and small ones would share cells: two million candidates.
+    /// Planned by boxes without an extent, giants and small ones would share cells: two million
+    /// candidates.
     #[test]
     fn the_first_frame_is_planned_by_its_own_boxes() {
         let mut boxes = all_in_a_row(2000);

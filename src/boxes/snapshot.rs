@@ -4,12 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::BoxWorld;
 use crate::bodies::{Aabb, Groups};
-use crate::world::{IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length};
+use crate::world::{
+    IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, check_length, damaged,
+};
 
 /// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
 ///
-/// It has a version, and one of another version isn't read. Equal calls leave equal snapshots. Numbers are saved as their
-/// bits, which no text format rounds.
+/// It has a version, and one of another version isn't read. Equal calls leave equal snapshots.
+/// Numbers are saved as their bits, which no text format rounds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BoxWorldSnapshot {
     version: Version,
@@ -17,13 +19,17 @@ pub struct BoxWorldSnapshot {
     /// The lower corner of each box, then the upper one.
     bounds: Vec<[[u32; 3]; 2]>,
     dynamic: Vec<bool>,
+    /// Slots of boxes at rest, sorted.
+    #[serde(default)]
+    resting: Vec<u32>,
     groups: Vec<[u32; 2]>,
     pairs: PairsSnapshot,
 }
 
 impl BoxWorld {
-    /// The world as it is now, for [`Self::restore`]: boxes with ids and groups, the slots that ids are given from, the pairs
-    /// of the last cull and those that events were last read of. Counters are not in it.
+    /// The world as it is now, for [`Self::restore`]: boxes with ids and groups, the slots that ids
+    /// are given from, the pairs of the last cull and those that events were last read of. Counters
+    /// are not in it.
     #[must_use]
     pub fn snapshot(&self) -> BoxWorldSnapshot {
         let bits = |aabb: &Aabb| [aabb.min, aabb.max].map(|corner| corner.map(f32::to_bits));
@@ -32,13 +38,19 @@ impl BoxWorld {
             ids: IdsSnapshot::of(&self.ids),
             bounds: self.bounds.iter().map(bits).collect(),
             dynamic: self.dynamic.clone(),
+            resting: (0..)
+                .zip(&self.resting)
+                .filter(|(_, is_resting)| **is_resting)
+                .map(|(slot, _)| slot)
+                .collect(),
             groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
-            pairs: PairsSnapshot::of(&self.log),
+            pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
         }
     }
 
-    /// Makes this world the one of a snapshot. From then on the same calls give the same ids, pairs and events, in the same
-    /// order, as they give in the world that it was taken of; finder, threads and tier may differ.
+    /// Makes this world the one of a snapshot. From then on the same calls give the same ids, pairs
+    /// and events, in the same order, as they give in the world that it was taken of; finder,
+    /// threads and tier may differ.
     ///
     /// # Errors
     /// A snapshot that isn't as it was taken. The world stays as it was.
@@ -57,14 +69,24 @@ impl BoxWorld {
         for (slot, aabb) in bounds.iter().enumerate() {
             aabb.check(slot)?;
         }
-        let log = snapshot.pairs.restored(&ids)?;
+        let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
+        let mut resting = vec![false; ids.slots()];
+        for &slot in &snapshot.resting {
+            match resting.get_mut(slot as usize) {
+                Some(is_resting) => *is_resting = true,
+                None => return damaged(format!("slot {slot} of {} is at rest", ids.slots())),
+            }
+        }
 
         (self.ids, self.log, self.bounds) = (ids, log, bounds);
         self.dynamic.clone_from(&snapshot.dynamic);
+        self.resting = resting;
         let groups = snapshot.groups.iter();
         self.groups = groups
             .map(|&[member, mask]| Groups { member, mask })
             .collect();
+        self.count_groups();
+        self.movers.forget();
         self.replaced = true;
         Ok(())
     }

@@ -2,48 +2,57 @@
 
 use super::BoxCullerBuilder;
 use super::frame::Frames;
+use super::movers::Movers;
 use crate::bodies::contract::check_number;
-use crate::bodies::{Aabb, Groups};
+use crate::bodies::{Aabb, Groups, Motion};
 use crate::counters::VolumeCounters;
 use crate::strategy::Output;
 use crate::threads::Threads;
-use crate::world::{BodyId, Events, Ids, PairLog, WorldError, WorldPairs};
+use crate::world::{BodyId, Events, Ids, LivePairs, WorldError, WorldPairs};
 
 /// A box to be inserted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxBody {
     /// Where it is.
     pub bounds: Aabb,
-    /// Whether it may move; pairs of two boxes that may not are never tested.
-    pub dynamic: bool,
+    /// Whether it moves; pairs of two fixed boxes are never reported.
+    pub motion: Motion,
     /// Which boxes it may collide with.
     pub groups: Groups,
 }
 
 impl From<Aabb> for BoxBody {
-    /// A box that may move and collides with all.
+    /// A box that moves and collides with all.
     fn from(bounds: Aabb) -> Self {
         Self {
             bounds,
-            dynamic: true,
+            motion: Motion::Dynamic,
             groups: Groups::ALL,
         }
     }
 }
 
-/// A long-lived set of boxes: ids that stay, boxes at rest, groups, and pairs as a list or as events, as
-/// [`World`](crate::world::World) has them for meshes.
+/// A long-lived set of boxes: ids that stay, boxes at rest, groups, and pairs as a list or as
+/// events, as [`World`](crate::world::World) has them for meshes.
 ///
-/// Boxes that come or go leave what is known of the others: until a sixteenth of all are new, the next cull takes a sort more, as it
-/// does when a box at rest is moved. Boxes that may move and groups change at the price of a copy.
+/// A frame costs time for the boxes that were inserted, removed or set to another value since the
+/// last cull, for their neighbours, and for the pairs that change: nothing for all others, however
+/// many there are. Where more than an eighth has changed, all pairs are found anew, as a
+/// [`BoxCuller`](super::BoxCuller) does. The first cull does so too, and the first one after a
+/// world was restored, after [`Self::shrink_to_fit`] and after [`Self::cull_in_portions`]. Whatever
+/// a frame costs, its pairs are exactly those of the boxes as they are.
+///
+/// A box is dynamic, resting or fixed ([`Motion`]). Pairs of two fixed boxes are never reported. A
+/// box at rest keeps its pairs, with others at rest too: putting a box to rest or waking it ends no
+/// pair and begins none.
 ///
 /// ```
-/// use sdop::{Aabb, BoxWorld};
+/// use sdop::{Aabb, BoxWorld, Motion};
 /// use sdop::boxes::BoxBody;
 ///
 /// let mut world = BoxWorld::new();
 /// let floor = Aabb::new([-9.0, -9.0, -1.0], [9.0, 9.0, 0.0]);
-/// let floor = world.insert(BoxBody { dynamic: false, ..floor.into() })?;
+/// let floor = world.insert(BoxBody { motion: Motion::Fixed, ..floor.into() })?;
 /// let crate_ = world.insert(Aabb::new([0.0, 0.0, 0.0], [1.0, 1.0, 1.0]))?;
 /// world.cull()?;
 /// assert!(world.events().begun().eq([[floor, crate_]]));
@@ -58,13 +67,18 @@ impl From<Aabb> for BoxBody {
 pub struct BoxWorld {
     /// One entry a slot; empty slots keep their last box's.
     pub(super) bounds: Vec<Aabb>,
+    /// Which ones aren't fixed.
     pub(super) dynamic: Vec<bool>,
+    pub(super) resting: Vec<bool>,
     pub(super) groups: Vec<Groups>,
     pub(super) ids: Ids,
     pub(super) frames: Frames,
     pub(super) counters: VolumeCounters,
-    pub(super) log: PairLog,
-    /// Whether the next cull finds another set of boxes, or another box at rest.
+    pub(super) log: LivePairs,
+    pub(super) movers: Movers,
+    /// Slots whose groups don't collide with all.
+    pub(super) grouped: usize,
+    /// Whether `frames` have another set of boxes, or another fixed box.
     pub(super) replaced: bool,
 }
 
@@ -75,7 +89,8 @@ impl Default for BoxWorld {
 }
 
 impl BoxWorld {
-    /// A world without boxes, culled with every default ([`BoxCuller::new`](super::BoxCuller::new)).
+    /// A world without boxes, culled with every default
+    /// ([`BoxCuller::new`](super::BoxCuller::new)).
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -93,11 +108,14 @@ impl BoxWorld {
         Self {
             bounds: Vec::new(),
             dynamic: Vec::new(),
+            resting: Vec::new(),
             groups: Vec::new(),
             ids: Ids::default(),
             frames,
             counters: VolumeCounters::default(),
-            log: PairLog::default(),
+            log: LivePairs::default(),
+            movers: Movers::default(),
+            grouped: 0,
             replaced: false,
         }
     }
@@ -105,7 +123,8 @@ impl BoxWorld {
     /// Adds a box.
     ///
     /// # Errors
-    /// A box whose ends are infinite, no numbers or the wrong way round; more boxes than can be numbered.
+    /// A box whose ends are infinite, no numbers or the wrong way round; more boxes than can be
+    /// numbered.
     pub fn insert(&mut self, body: impl Into<BoxBody>) -> Result<BodyId, WorldError> {
         let body = body.into();
         let slot = self.ids.next();
@@ -113,11 +132,12 @@ impl BoxWorld {
         body.bounds.check(slot)?;
         if self.ids.take() {
             self.bounds.push(body.bounds);
-            self.dynamic.push(body.dynamic);
-            self.groups.push(body.groups);
-        } else {
-            self.put(slot, body);
+            self.dynamic.push(true);
+            self.resting.push(false);
+            self.groups.push(Groups::ALL);
         }
+        self.put(slot, body);
+        self.movers.note(slot, &self.ids);
         self.replaced = true;
         Ok(self.ids.id(slot as u32))
     }
@@ -128,6 +148,7 @@ impl BoxWorld {
     /// A box that has been removed before.
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
         self.ids.remove(id)?;
+        self.movers.note(id.slot(), &self.ids);
         self.replaced = true;
         Ok(())
     }
@@ -156,63 +177,101 @@ impl BoxWorld {
         self.ids().map(|id| (id, self.body_at(id.slot())))
     }
 
-    /// Changes a box in any of its properties.
+    /// Changes a box in any of its properties. One that has all of them already costs nothing.
     ///
     /// # Errors
     /// A box that has been removed, or as [`Self::insert`].
     pub fn set(&mut self, id: BodyId, body: impl Into<BoxBody>) -> Result<(), WorldError> {
         let (slot, body) = (self.ids.slot(id)?, body.into());
         body.bounds.check(slot)?;
-        self.replaced |= !body.dynamic || !self.dynamic[slot];
+        let (is_dynamic, was_dynamic) = (body.motion.is_dynamic(), self.dynamic[slot]);
+        let is_same = body.bounds.bits() == self.bounds[slot].bits()
+            && is_dynamic == was_dynamic
+            && body.groups == self.groups[slot];
+        if !is_same {
+            self.replaced |= !is_dynamic || !was_dynamic;
+            self.movers.note(slot, &self.ids);
+        }
         self.put(slot, body);
         Ok(())
     }
 
-    /// Moves a box, or gives it another size.
+    /// Moves a box, or gives it another size. One that is there already costs nothing, and a box at
+    /// rest stays at rest.
     ///
     /// # Errors
     /// As [`Self::set`].
     pub fn set_bounds(&mut self, id: BodyId, bounds: Aabb) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
         bounds.check(slot)?;
-        self.replaced |= !self.dynamic[slot];
-        self.bounds[slot] = bounds;
+        if bounds.bits() != self.bounds[slot].bits() {
+            self.replaced |= !self.dynamic[slot];
+            self.movers.note(slot, &self.ids);
+            self.bounds[slot] = bounds;
+        }
         Ok(())
+    }
+
+    /// Puts a box to rest, wakes it, or fixes it. The first two change no pair and cost nothing.
+    ///
+    /// # Errors
+    /// A box that has been removed.
+    pub fn set_motion(&mut self, id: BodyId, motion: Motion) -> Result<(), WorldError> {
+        let body = self.body(id)?;
+        self.set(id, BoxBody { motion, ..body })
     }
 
     fn body_at(&self, slot: usize) -> BoxBody {
         BoxBody {
             bounds: self.bounds[slot],
-            dynamic: self.dynamic[slot],
+            motion: match (self.dynamic[slot], self.resting[slot]) {
+                (false, _) => Motion::Fixed,
+                (true, true) => Motion::Resting,
+                (true, false) => Motion::Dynamic,
+            },
             groups: self.groups[slot],
         }
     }
 
     fn put(&mut self, slot: usize, body: BoxBody) {
         self.bounds[slot] = body.bounds;
-        self.dynamic[slot] = body.dynamic;
-        self.groups[slot] = body.groups;
+        self.dynamic[slot] = body.motion.is_dynamic();
+        self.resting[slot] = body.motion == Motion::Resting;
+        let former = std::mem::replace(&mut self.groups[slot], body.groups);
+        self.grouped += usize::from(body.groups != Groups::ALL);
+        self.grouped -= usize::from(former != Groups::ALL);
     }
 
-    /// Finds the boxes that meet, not both at rest, whose groups collide, and returns their pairs: the lower slot first, sorted
-    /// by slots, whatever the finder, the threads and the calls before.
+    /// Counts the boxes of which not all may collide, after the column has been replaced.
+    pub(super) fn count_groups(&mut self) {
+        let groups = self.groups.iter();
+        self.grouped = groups.filter(|groups| **groups != Groups::ALL).count();
+    }
+
+    /// Finds the boxes that meet, not both fixed, whose groups collide, and returns their pairs:
+    /// the lower slot first, sorted by slots, whatever the finder, the threads and the calls
+    /// before.
     ///
     /// # Errors
     /// None: what could be wrong was refused when it came.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
-        let mut list = self.log.take();
-        self.cull_into(Output::List(&mut list))?;
-        self.log.put(list, &self.ids);
-        Ok(self.log.pairs())
+        if !self.cull_changed(usize::MAX) {
+            let mut list = self.log.take(&self.ids);
+            self.cull_into(Output::List(&mut list))?;
+            self.log.put(list, &self.ids);
+            self.movers.all_found();
+        }
+        Ok(self.log.pairs(&self.ids))
     }
 
+    /// Finds all pairs anew. Until [`Movers::all_found`], the next cull does so too.
     pub(super) fn cull_into(&mut self, output: Output<'_>) -> Result<(), WorldError> {
+        self.movers.lose_pairs();
         if std::mem::take(&mut self.replaced) {
             self.frames.replace(&self.dynamic, self.ids.present());
         }
         self.ids.settle();
-        let all = self.groups.iter().all(|&groups| groups == Groups::ALL);
-        let groups = (!all).then_some(&*self.groups);
+        let groups = (self.grouped > 0).then_some(&*self.groups);
         let counted = self.frames.cull(&self.bounds, groups, output);
         self.counters += counted?;
         Ok(())
@@ -220,13 +279,14 @@ impl BoxWorld {
 
     /// The pairs of the last cull, the lower slot first, sorted by slots.
     pub fn pairs(&self) -> impl ExactSizeIterator<Item = [BodyId; 2]> + '_ {
-        self.log.pairs().iter()
+        self.log.pairs(&self.ids).iter()
     }
 
-    /// What the last cull reports that it didn't at the last call of this, and the other way round. The events are apart
-    /// from the world: boxes may be removed while they are read.
+    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    /// The events are apart from the world: boxes may be removed while they are read. Drop them
+    /// before the next cull, which otherwise copies the pairs.
     pub fn events(&mut self) -> Events {
-        self.log.events()
+        self.log.events(&self.ids)
     }
 
     /// Number of boxes.
@@ -266,7 +326,7 @@ mod tests {
 
     fn at_rest(x: f32) -> BoxBody {
         BoxBody {
-            dynamic: false,
+            motion: Motion::Fixed,
             ..at(x).into()
         }
     }

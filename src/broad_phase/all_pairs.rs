@@ -9,7 +9,8 @@ use crate::simd::{Lanes, MAX_WIDTH};
 /// Slots whose pairs make one part of the work.
 const PART: usize = 16;
 
-/// Slots are places: the moving bodies first, so that every moving slot's run is all slots behind it.
+/// Slots are places: the moving bodies first, so that every moving slot's run is all slots behind
+/// it.
 #[derive(Clone, Debug, Default)]
 pub struct AllPairs {
     slots: Slots,

@@ -1,12 +1,14 @@
 //! `auto`: which finder suits a scene.
 //!
-//! Picked once, before the first frame, by numbers of the scene alone, so that counters depend on no machine. Measured
-//! on one thread at 1.5 sphere partners per body: the grid passes all pairs at 64 bodies of one size (both 1.2 µs) and,
-//! with a level for each size, at about 100 of radii 1 : 1000. The sweep stayed behind the grid at every number of
-//! bodies from 16 to 10,000, in cubes, planes, lines and clusters, with one giant and with radii 1 : 1000 (1.4 to 9
-//! times), so it is there to be compared with and never picked. Neighbour lists leave the frames in which they don't pay to the
-//! grid, by counts as well: frames of spheres took 0.42 to 0.66 of the grid's time on 10,000 bodies in a cube, a plane, clusters
-//! and with mixed radii, and up to 6 % more where bodies move too fast (an Intel with AVX-512, runs in turns).
+//! Picked once, before the first frame, by numbers of the scene alone, so that counters depend on
+//! no machine. Measured on one thread at 1.5 sphere partners per body: the grid passes all pairs at
+//! 64 bodies of one size (both 1.2 µs) and, with a level for each size, at about 100 of radii 1
+//! : 1000. The sweep stayed behind the grid at every number of bodies from 16 to 10,000, in cubes,
+//! planes, lines and clusters, with one giant and with radii 1 : 1000 (1.4 to 9 times), so it is
+//! there to be compared with and never picked. Neighbour lists leave the frames in which they don't
+//! pay to the grid, by counts as well: frames of spheres took 0.42 to 0.66 of the grid's time on
+//! 10,000 bodies in a cube, a plane, clusters and with mixed radii, and up to 6 % more where bodies
+//! move too fast (an Intel with AVX-512, runs in turns).
 
 use super::Volume;
 use crate::settings::Finder;
@@ -27,8 +29,8 @@ pub struct Population {
     pub bodies: usize,
     /// Smallest and widest ball.
     pub radii: [f32; 2],
-    /// Whether the first volume test is cheaper than looking for candidates: balls and slabs are, or-DOPs aren't, and all
-    /// pairs would hand every pair to them.
+    /// Whether the first volume test is cheaper than looking for candidates: balls and slabs are,
+    /// or-DOPs aren't, and all pairs would hand every pair to them.
     pub cheap_test: bool,
     /// What balls stand for.
     pub volume: Volume,

@@ -1,8 +1,9 @@
-//! Scattered candidates: the short runs of sixteen neighbouring slots, gathered so that they fill vectors.
+//! Scattered candidates: the short runs of sixteen neighbouring slots, gathered so that they fill
+//! vectors.
 //!
-//! At 1.5 sphere partners per body a run holds one candidate in the mean. A vector for each run then leaves 15 of 16
-//! lanes idle (90 cycles per body, measured); written one behind the other, the runs of sixteen bodies fill five
-//! vectors (19 cycles).
+//! At 1.5 sphere partners per body a run holds one candidate in the mean. A vector for each run
+//! then leaves 15 of 16 lanes idle (90 cycles per body, measured); written one behind the other,
+//! the runs of sixteen bodies fill five vectors (19 cycles).
 
 use std::ops::Range;
 
@@ -35,7 +36,8 @@ pub struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// The candidates `padded[..len]` of the slots from `first` on; a vector of whatever codes stands behind them.
+    /// The candidates `padded[..len]` of the slots from `first` on; a vector of whatever codes
+    /// stands behind them.
     #[inline(always)]
     pub(crate) fn new(first: usize, padded: &'a [u32], len: usize) -> Self {
         Self {
@@ -51,7 +53,8 @@ impl<'a> Block<'a> {
         self.first
     }
 
-    /// Candidates: `slot·16 + lane` stands for the pair (first slot + lane, slot). At most [`MOST_CANDIDATES`].
+    /// Candidates: `slot·16 + lane` stands for the pair (first slot + lane, slot). At most
+    /// [`MOST_CANDIDATES`].
     #[inline(always)]
     pub fn codes(&self) -> &'a [u32] {
         self.codes
@@ -63,8 +66,8 @@ impl<'a> Block<'a> {
         self.padded
     }
 
-    /// The codes from number `start` on, and the balls of their pairs: those of the block's own slots, which `ours` has in
-    /// columns, and the others'.
+    /// The codes from number `start` on, and the balls of their pairs: those of the block's own
+    /// slots, which `ours` has in columns, and the others'.
     #[inline(always)]
     pub fn balls<L: Lanes>(
         &self,
@@ -136,8 +139,8 @@ impl Page {
     }
 }
 
-/// Writes runs on a page. Its place is a pair of local numbers, which registers can hold: kept in the block, each run
-/// waits for the last one's store (25 cycles per body, measured).
+/// Writes runs on a page. Its place is a pair of local numbers, which registers can hold: kept in
+/// the block, each run waits for the last one's store (25 cycles per body, measured).
 pub struct Pen<'a> {
     page: &'a mut Page,
     len: usize,

@@ -38,8 +38,8 @@ impl Bounds {
     }
 }
 
-/// Four balls' numbers, which any tier's vectors divide: each of the sixteen positions has its own extremes, so every tier
-/// compares the same numbers in the same order.
+/// Four balls' numbers, which any tier's vectors divide: each of the sixteen positions has its own
+/// extremes, so every tier compares the same numbers in the same order.
 const CHUNK: usize = 16;
 
 struct Extremes<'a>(&'a [[f32; 4]]);

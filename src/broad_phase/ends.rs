@@ -1,7 +1,9 @@
-//! Long boxes, of which the cubes about them tell little: their ends in slot order, compared as they are, so that the answer is exact.
+//! Long boxes, of which the cubes about them tell little: their ends in slot order, compared as
+//! they are, so that the answer is exact.
 //!
-//! A first volume test takes them, and so do lists of neighbours: there boxes are [`grown`] by a skin, and a list serves while each
-//! box is within its grown one. Boxes that meet then have grown ones that meet, whatever rounding has made of these.
+//! A first volume test takes them, and so do lists of neighbours: there boxes are [`grown`] by a
+//! skin, and a list serves while each box is within its grown one. Boxes that meet then have grown
+//! ones that meet, whatever rounding has made of these.
 
 use std::ops::Range;
 
@@ -9,7 +11,7 @@ use super::{Block, SlotTest, bytes, list_slots};
 use crate::bodies::Aabb;
 use crate::rounding::cube::SCALE;
 use crate::rounding::skin::Skin;
-use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch, quads_in_columns};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch, numbers_of, quads_in_columns};
 use crate::threads::{Executor, Threads};
 
 /// Boxes that one thread brings into slot order, or looks at, at a time.
@@ -24,8 +26,8 @@ pub struct Boxes<'a> {
     pub are_long: bool,
 }
 
-/// Ends of boxes in the finder's slot order, each padded by [`MAX_WIDTH`] finite entries: as quads for scattered candidates,
-/// whose fourth number is zero, and as columns for runs.
+/// Ends of boxes in the finder's slot order, each padded by [`MAX_WIDTH`] finite entries: as quads
+/// for scattered candidates, whose fourth number is zero, and as columns for runs.
 #[derive(Clone, Debug, Default)]
 pub struct EndSlots {
     lower: Vec<[f32; 4]>,
@@ -35,13 +37,15 @@ pub struct EndSlots {
 }
 
 impl EndSlots {
-    /// Takes the boxes in the order of slots; `runs` says whether slots will be tested against runs of others.
+    /// Takes the boxes in the order of slots; `runs` says whether slots will be tested against runs
+    /// of others.
     pub fn fill(&mut self, executor: Executor<'_>, order: &[u32], boxes: &[Aabb], runs: bool) {
         self.fill_quads(executor, order, boxes);
         self.fill_columns(executor.pool, runs);
     }
 
-    /// The same, those in the first slots each grown by a skin of the cube about it; the cubes of these are given.
+    /// The same, those in the first slots each grown by a skin of the cube about it; the cubes of
+    /// these are given.
     pub fn fill_grown(
         &mut self,
         executor: Executor<'_>,
@@ -80,7 +84,7 @@ impl EndSlots {
             quads.resize(order.len() + MAX_WIDTH, [0.0; 4]);
             &mut quads[..order.len()]
         });
-        let boxes = bytemuck::cast_slice(boxes);
+        let boxes = numbers_of(boxes);
         let Executor { tier, pool } = executor;
         pool.pieces_of_two([lower, upper], PIECE, |start, [lower, upper]| {
             let fill = Fill {
@@ -195,7 +199,8 @@ impl SlotTest for EndSlots {
     }
 }
 
-/// The box grown by a length to all sides, rounded inward so that it is no larger than that, but no smaller than it was.
+/// The box grown by a length to all sides, rounded inward so that it is no larger than that, but no
+/// smaller than it was.
 pub(super) fn grown(Aabb { min, max }: Aabb, by: f32) -> Aabb {
     // What is below the number nearest to a sum is no greater than the sum.
     Aabb {
@@ -204,7 +209,8 @@ pub(super) fn grown(Aabb { min, max }: Aabb, by: f32) -> Aabb {
     }
 }
 
-/// Brings boxes, each of which is six numbers, into the order of their names: lower and upper ends as quads.
+/// Brings boxes, each of which is six numbers, into the order of their names: lower and upper ends
+/// as quads.
 struct Fill<'a> {
     names: &'a [u32],
     boxes: &'a [[f32; 6]],
@@ -243,7 +249,7 @@ impl Kernel for Within<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> bool {
-        let numbers: &[[f32; 6]] = bytemuck::cast_slice(self.boxes);
+        let numbers = numbers_of(self.boxes);
         for start in (0..self.names.len()).step_by(L::WIDTH) {
             let left = &self.names[start..];
             let mut padded = [left[0]; MAX_WIDTH];

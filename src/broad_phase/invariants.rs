@@ -1,8 +1,9 @@
-//! What debug builds, and so tests, check of every finder in every small frame: each pair is a candidate at most once, and
-//! each pair whose cubes meet once, unless both bodies are static.
+//! What debug builds, and so tests, check of every finder in every small frame: each pair is a
+//! candidate at most once, and each pair whose cubes meet once, unless both bodies are static.
 //!
-//! Cubes, since some first tests compare world-aligned volumes: there balls stand for the cubes about them. A list of
-//! neighbours knows whether they do, and whether it was made by the boxes themselves.
+//! Cubes, since some first tests compare world-aligned volumes: there balls stand for the cubes
+//! about them. A list of neighbours knows whether they do, and whether it was made by the boxes
+//! themselves.
 
 use std::ops::Range;
 

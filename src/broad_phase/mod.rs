@@ -1,9 +1,10 @@
 //! Pair finders: which pairs are candidates for the strategy's first volume test.
 //!
-//! A finder arranges bodies in slots and hands out candidates in two forms: a slot against a contiguous run of slots, and
-//! a [`Block`] of scattered pairs where runs are too short to fill a vector. Each pair of bodies that are not both static
-//! and that the first test would report is a candidate exactly once; two static bodies never are. Slots, candidates and
-//! their order depend on the bodies alone, never on the tier or on threads.
+//! A finder arranges bodies in slots and hands out candidates in two forms: a slot against a
+//! contiguous run of slots, and a [`Block`] of scattered pairs where runs are too short to fill a
+//! vector. Each pair of bodies that are not both static and that the first test would report is a
+//! candidate exactly once; two static bodies never are. Slots, candidates and their order depend on
+//! the bodies alone, never on the tier or on threads.
 
 use std::ops::Range;
 
@@ -98,8 +99,8 @@ impl PairFinder {
         }
     }
 
-    /// Takes up another set of bodies, in the order that [`Places::replace`] leaves: `stays` is of each former place. False if it
-    /// knows nothing of the bodies that stay, and begins anew.
+    /// Takes up another set of bodies, in the order that [`Places::replace`] leaves: `stays` is of
+    /// each former place. False if it knows nothing of the bodies that stay, and begins anew.
     pub fn replace(
         &mut self,
         finder: Finder,
@@ -146,8 +147,19 @@ impl PairFinder {
         }
     }
 
-    /// Looks for a better order of places and writes it to `order`, as the names that take the places one after the other.
-    /// Moving bodies stay in front. `balls` and `names` are those of the last frame.
+    /// Candidates that the last frame tested in search of a list of neighbours, which it doesn't
+    /// hand out. A search that was abandoned counts as its limit.
+    #[must_use]
+    pub fn list_tests(&self) -> u64 {
+        match self {
+            Self::AllPairs(_) | Self::Grid(_) | Self::Sweep(_) => 0,
+            Self::Neighbours(finder) => finder.list_tests(),
+        }
+    }
+
+    /// Looks for a better order of places and writes it to `order`, as the names that take the
+    /// places one after the other. Moving bodies stay in front. `balls` and `names` are those of
+    /// the last frame.
     pub fn reorder(
         &mut self,
         places: &Places,
@@ -172,8 +184,9 @@ impl PairFinder {
         }
     }
 
-    /// Arranges the bodies for a frame. `balls` and `names` are in the order of places, and nothing that the first test
-    /// reports lies outside two cubes, about these balls, which meet. `boxes` are those in such cubes, if they are what is reported.
+    /// Arranges the bodies for a frame. `balls` and `names` are in the order of places, and nothing
+    /// that the first test reports lies outside two cubes, about these balls, which meet. `boxes`
+    /// are those in such cubes, if they are what is reported.
     pub fn arrange(
         &mut self,
         executor: Executor<'_>,
@@ -194,7 +207,8 @@ impl PairFinder {
         self.check(executor.tier, places, balls, boxes);
     }
 
-    /// The arranged bodies. `balls` are those that were arranged: where places have the order of slots, they are read as they stand.
+    /// The arranged bodies. `balls` are those that were arranged: where places have the order of
+    /// slots, they are read as they stand.
     #[must_use]
     pub fn slots<'a>(&'a self, balls: &'a Balls) -> Arranged<'a> {
         let slots = self.own_slots();
@@ -226,8 +240,8 @@ impl PairFinder {
         }
     }
 
-    /// Where this frame's candidates come from. Neighbour lists leave frames in which they don't pay to the grid: one copy of
-    /// its search, compiled once, serves both finders.
+    /// Where this frame's candidates come from. Neighbour lists leave frames in which they don't
+    /// pay to the grid: one copy of its search, compiled once, serves both finders.
     #[inline(always)]
     fn search(&self) -> Search<'_> {
         match self {

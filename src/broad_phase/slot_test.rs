@@ -7,12 +7,12 @@ use crate::simd::{LANES, Lanes, MAX_WIDTH, quads_in_columns};
 
 /// A volume test of slots.
 pub trait SlotTest {
-    /// Lists the slots of `run` that may touch slot `i` at the front of `hits`, which has room for the run and a vector
-    /// more. Returns their number.
+    /// Lists the slots of `run` that may touch slot `i` at the front of `hits`, which has room for
+    /// the run and a vector more. Returns their number.
     fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize;
 
-    /// Lists the codes of the block's pairs that may touch at the front of `hits`, which has room for the block and a
-    /// vector more. Returns their number.
+    /// Lists the codes of the block's pairs that may touch at the front of `hits`, which has room
+    /// for the block and a vector more. Returns their number.
     fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize;
 }
 
@@ -31,12 +31,13 @@ pub trait BallTest {
     /// The balls.
     fn slots(&self) -> Arranged<'_>;
 
-    /// Whether two balls, or what they stand for, surely lie apart, lane by lane: `between` is the way from one centre to the
-    /// other, `radii` are the two radii.
+    /// Whether two balls, or what they stand for, surely lie apart, lane by lane: `between` is the
+    /// way from one centre to the other, `radii` are the two radii.
     fn apart<L: Lanes>(&self, l: L, between: [L::F; 3], radii: [L::F; 2]) -> L::M;
 
-    /// Of the lanes `near`, which [`apart`](Self::apart) hasn't parted, those that may touch; `pair` says in which slots a lane's
-    /// balls are. All of them, unless a test knows more than its balls tell.
+    /// Of the lanes `near`, which [`apart`](Self::apart) hasn't parted, those that may touch;
+    /// `pair` says in which slots a lane's balls are. All of them, unless a test knows more than
+    /// its balls tell.
     #[inline(always)]
     fn touching<L: Lanes>(
         &self,

@@ -5,7 +5,8 @@ use std::ops::{Deref, DerefMut};
 use super::bytes;
 use crate::simd::MAX_WIDTH;
 
-/// World balls (x, y, z, R) by place. Behind them stands a vector of finite entries, so that tests may read them where they are.
+/// World balls (x, y, z, R) by place. Behind them stands a vector of finite entries, so that tests
+/// may read them where they are.
 #[derive(Clone, Debug)]
 pub struct Balls {
     padded: Vec<[f32; 4]>,
@@ -39,7 +40,8 @@ impl DerefMut for Balls {
     }
 }
 
-/// World balls (x, y, z, R) in slot order, padded by [`MAX_WIDTH`] finite entries, with the names of their bodies.
+/// World balls (x, y, z, R) in slot order, padded by [`MAX_WIDTH`] finite entries, with the names
+/// of their bodies.
 #[derive(Clone, Debug, Default)]
 pub struct Slots {
     /// The balls as the first test takes them.
@@ -71,7 +73,8 @@ impl Slots {
         }
     }
 
-    /// A frame in which places have the order of slots, so that `balls` by place are those in slot order.
+    /// A frame in which places have the order of slots, so that `balls` by place are those in slot
+    /// order.
     pub(super) fn followed<'a>(&'a self, balls: &'a Balls) -> Arranged<'a> {
         let balls = &balls.padded;
         Arranged {

@@ -1,10 +1,11 @@
-//! Sweep and prune along one axis ("box pruning"): balls sorted by their lower end, each tested against those that begin
-//! before it ends.
+//! Sweep and prune along one axis ("box pruning"): balls sorted by their lower end, each tested
+//! against those that begin before it ends.
 //!
-//! Candidates of a ball are one contiguous run in the sorted order, so vectors are full, but there are N^(5/3) of them in a
-//! cube: the grid is ahead at every number of bodies and in every shape of space that was tried, and `auto` never picks
-//! the sweep. Ends are widened and rounded outward: the sphere test rounds too, and with plain fl(x ± R) a sweep loses one
-//! in twenty of the unequal balls that touch to the last bit (`tests/finders/`).
+//! Candidates of a ball are one contiguous run in the sorted order, so vectors are full, but there
+//! are N^(5/3) of them in a cube: the grid is ahead at every number of bodies and in every shape of
+//! space that was tried, and `auto` never picks the sweep. Ends are widened and rounded outward:
+//! the sphere test rounds too, and with plain fl(x ± R) a sweep loses one in twenty of the unequal
+//! balls that touch to the last bit (`tests/finders/`).
 
 use std::ops::Range;
 
@@ -89,7 +90,8 @@ impl Sweep {
         }
     }
 
-    /// Sorts the bodies in a range of places by their lower ends; bodies with the same end stay in the order of places.
+    /// Sorts the bodies in a range of places by their lower ends; bodies with the same end stay in
+    /// the order of places.
     fn sort(&mut self, range: Range<usize>, balls: &[[f32; 4]], names: &[u32]) {
         let ends = |ball: &[f32; 4]| {
             let (x, reach) = (f64::from(ball[self.axis]), f64::from(widen(ball[3])));
@@ -277,7 +279,8 @@ mod tests {
         assert_eq!(found, [0, 1, 4, 3]);
     }
 
-    /// Spreads are 1.5 times as large at exactly √1.5 times the extent; the mean counts, and the place does not.
+    /// Spreads are 1.5 times as large at exactly √1.5 times the extent; the mean counts, and the
+    /// place does not.
     #[test]
     fn the_axis_turns_to_where_centres_spread_half_as_much_more() {
         let turned = |from: usize, columns: [[i8; 6]; 3]| {

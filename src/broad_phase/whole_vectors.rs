@@ -6,8 +6,9 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 /// Slots of the test: whole vectors in every tier.
 pub const SLOTS: usize = 2 * MAX_WIDTH;
 
-/// Tests slot 0 against all of [`SLOTS`] slots, and as many pairs as a block. All touch. The test's columns have no padding,
-/// and the hits of the block no room behind them: what begins a vector more in vain, panics.
+/// Tests slot 0 against all of [`SLOTS`] slots, and as many pairs as a block. All touch. The test's
+/// columns have no padding, and the hits of the block no room behind them: what begins a vector
+/// more in vain, panics.
 pub fn check(test: &impl SlotTest) {
     struct Touching<'a, T>(&'a T);
     impl<T: SlotTest> Kernel for Touching<'_, T> {

@@ -9,8 +9,8 @@ use crate::simd::{Tier, in_default_mode};
 use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 use crate::volume::Shape;
 
-/// Everything about a [`Culler`] that isn't its shapes and bodies. What isn't set has the default of [`CullSettings`], the
-/// caller's thread and the fastest tier of this CPU.
+/// Everything about a [`Culler`] that isn't its shapes and bodies. What isn't set has the default
+/// of [`CullSettings`], the caller's thread and the fastest tier of this CPU.
 ///
 /// ```
 /// # use sdop::{Bodies, Culler, Finder, ProceduralShape, Shape, ShapeSpec, Strategy};
@@ -87,14 +87,16 @@ impl CullerBuilder {
         self
     }
 
-    /// Number of threads, the caller's included, at most 1,024 or
-    /// the culler isn't built; 0 is taken as 1. Frames of little work stay on the caller's. Lists, counters and hashes don't depend on it.
+    /// Number of threads, the caller's included, at most 1,024 or the culler isn't built; 0 is
+    /// taken as 1. Frames of little work stay on the caller's. Lists, counters and hashes don't
+    /// depend on it.
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
     }
 
-    /// The least work of a frame, in nanoseconds of one thread as counters tell them, for which threads besides the caller's are woken:
-    /// a millisecond (2²⁰ ns) by default, 0 for always. Lists, counters and hashes don't depend on it.
+    /// The least work of a frame, in nanoseconds of one thread as counters tell them, for which
+    /// threads besides the caller's are woken: a millisecond (2²⁰ ns) by default, 0 for always.
+    /// Lists, counters and hashes don't depend on it.
     pub fn worth_waking(self, nanoseconds: u64) -> Self {
         let worth_waking = Some(nanoseconds);
         Self {
@@ -111,18 +113,21 @@ impl CullerBuilder {
 
     /// The culler of these bodies. Static bodies' volumes are placed here, once.
     ///
-    /// `bodies.shape` counts in `shapes`. For [`Strategy::Obb`] each shape's own box replaces its or-DOP.
+    /// `bodies.shape` counts in `shapes`. For [`Strategy::Obb`] each shape's own box replaces its
+    /// or-DOP.
     ///
     /// # Errors
-    /// Bodies or shapes outside of the contract ([`check_bodies`](crate::bodies::contract::check_bodies)); settings that
-    /// can't be carried out (a missing interest or budget, a body that doesn't exist); threads that the system refuses; a shape
-    /// far from its origin ([`Shape::pose_offset`]).
+    /// Bodies or shapes outside of the contract
+    /// ([`check_bodies`](crate::bodies::contract::check_bodies)); settings that can't be carried
+    /// out (a missing interest or budget, a body that doesn't exist); threads that the system
+    /// refuses; a shape far from its origin ([`Shape::pose_offset`]).
     pub fn build(&self, shapes: &[Shape], bodies: &Bodies) -> Result<Culler, CullError> {
         check::near(shapes)?;
         self.build_about_vertices(shapes, bodies)
     }
 
-    /// The same of poses that place the origin of each shape's vertices, however far that is from the mesh's own.
+    /// The same of poses that place the origin of each shape's vertices, however far that is from
+    /// the mesh's own.
     pub(crate) fn build_about_vertices(
         &self,
         shapes: &[Shape],

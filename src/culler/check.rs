@@ -1,8 +1,10 @@
-//! What a culler takes as fixed between two frames, and how it finds out that something has changed all the same.
+//! What a culler takes as fixed between two frames, and how it finds out that something has changed
+//! all the same.
 //!
-//! Numbers of bodies and `dynamic` flags are compared in every frame. Shapes, and poses of static bodies, are kept from
-//! construction on, so that a change of theirs has no effect before [`Culler::refresh`], whatever the pair finder does
-//! meanwhile. Translations are judged where they are read for the volumes.
+//! Numbers of bodies and `dynamic` flags are compared in every frame. Shapes, and poses of static
+//! bodies, are kept from construction on, so that a change of theirs has no effect before
+//! [`Culler::refresh`], whatever the pair finder does meanwhile. Translations are judged where they
+//! are read for the volumes.
 
 use super::{CullError, Culler};
 use crate::bodies::Bodies;
@@ -11,7 +13,8 @@ use crate::settings::{CullSettings, DirectionSet};
 use crate::simd::in_default_mode;
 use crate::volume::Shape;
 
-/// What a culler keeps of the bodies: their shapes, which of them may move, and all poses where some may not.
+/// What a culler keeps of the bodies: their shapes, which of them may move, and all poses where
+/// some may not.
 pub(super) fn fixed(bodies: &Bodies) -> Bodies {
     if bodies.dynamic.contains(&false) {
         return bodies.clone();
@@ -24,8 +27,8 @@ pub(super) fn fixed(bodies: &Bodies) -> Bodies {
 }
 
 /// How to mend a shape that is far from its origin.
-pub(crate) const FAR: &str = "keep its bodies in a `World`, whose translations are f64, or build it with `Origin::Ball` and \
-                              pose it by the centre of its ball, `Shape::offset`";
+pub(crate) const FAR: &str = "keep its bodies in a `World`, whose translations are f64; or move the mesh's vertices near its \
+                              origin; or build it with `Origin::Ball` and pose it by the centre of its ball, `Shape::offset`";
 
 /// Refuses shapes that f32 poses can't place: those far from the origin that the poses refer to.
 pub(super) fn near(shapes: &[Shape]) -> Result<(), CullError> {
@@ -34,7 +37,8 @@ pub(super) fn near(shapes: &[Shape]) -> Result<(), CullError> {
         Some(shape) => Err(CullError::Shape {
             shape: shape.name.clone(),
             problem: format!(
-                "lies far from the origin of its file, about {:?}: too far for poses in f32",
+                "lies far from the origin of its file, about {:?}: in f32 its vertices would move by more than 2^-20 of its size, \
+                 and a culler's poses are f32",
                 shape.offset
             ),
             hint: FAR,
@@ -75,11 +79,13 @@ fn same_directions(shape: &Shape, wanted: Option<DirectionSet>) -> Result<(), Cu
 }
 
 impl Culler {
-    /// Re-reads what [`Self::cull`] takes as fixed: the number of bodies, their shapes, which of them may move, and where those
-    /// stand that may not. Costs about one more frame. Groups are forgotten when the number of bodies changes.
+    /// Re-reads what [`Self::cull`] takes as fixed: the number of bodies, their shapes, which of
+    /// them may move, and where those stand that may not. Costs about one more frame. Groups are
+    /// forgotten when the number of bodies changes.
     ///
     /// # Errors
-    /// Bodies outside of the contract, an interest in a body that is no longer there; the culler stays as it was.
+    /// Bodies outside of the contract, an interest in a body that is no longer there; the culler
+    /// stays as it was.
     pub fn refresh(&mut self, bodies: &Bodies) -> Result<(), CullError> {
         in_default_mode(|| {
             check_columns(bodies)?;
@@ -115,7 +121,8 @@ impl Culler {
         Err(CullError::Changed { what })
     }
 
-    /// Looks for the body whose pose is outside of the contract, and leaves nothing of it for the next frame to sort by.
+    /// Looks for the body whose pose is outside of the contract, and leaves nothing of it for the
+    /// next frame to sort by.
     #[cold]
     pub(super) fn check_moved(&mut self, bodies: &Bodies) -> Result<(), CullError> {
         let outcome = check_poses(bodies, 0..bodies.len());

@@ -1,18 +1,17 @@
 //! What a culler refuses.
 
-use miette::Diagnostic;
 use thiserror::Error;
 
 use crate::bodies::contract::ContractError;
+#[cfg(feature = "shapes")]
 use crate::settings::SettingsError;
 use crate::threads::ThreadsError;
 
 /// A culler that can't be made, or a frame that can't be culled.
-#[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum CullError {
     /// A body or shape outside of the contract.
     #[error(transparent)]
-    #[diagnostic(transparent)]
     Contract(#[from] ContractError),
     /// A shape that can't be culled together with those before it, or at all.
     #[error("shape `{shape}` {problem}")]
@@ -22,20 +21,17 @@ pub enum CullError {
         /// What is wrong with it.
         problem: String,
         /// How to mend it.
-        #[help]
         hint: &'static str,
     },
     /// Settings that can't be carried out.
+    #[cfg(feature = "shapes")]
     #[error(transparent)]
-    #[diagnostic(transparent)]
     Settings(#[from] SettingsError),
     /// Threads that the system refuses to start.
     #[error(transparent)]
-    #[diagnostic(transparent)]
     Threads(#[from] ThreadsError),
     /// More pairs than the caller allows.
     #[error("{pairs} pairs, and at most {limit} are allowed")]
-    #[diagnostic(help("raise the limit, or take the pairs in portions with `cull_in_portions`"))]
     TooManyPairs {
         /// How many pairs the frame has.
         pairs: u64,
@@ -44,11 +40,28 @@ pub enum CullError {
     },
     /// Another set of bodies than the culler was made for.
     #[error("{what}: a culler keeps the set of bodies that it was made for")]
-    #[diagnostic(help(
-        "call `Culler::refresh` after a change of the set, or keep the bodies in a `World`"
-    ))]
     Changed {
         /// What has changed.
         what: String,
     },
+}
+
+impl CullError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        match self {
+            Self::Contract(error) => error.help(),
+            Self::Shape { hint, .. } => hint,
+            #[cfg(feature = "shapes")]
+            Self::Settings(error) => error.help(),
+            Self::Threads(error) => error.help(),
+            Self::TooManyPairs { .. } => {
+                "raise the limit, or take the pairs in portions with `cull_in_portions`"
+            }
+            Self::Changed { .. } => {
+                "call `Culler::refresh` after a change of the set, or keep the bodies in a `World`"
+            }
+        }
+    }
 }

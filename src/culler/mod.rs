@@ -2,49 +2,63 @@
 //!
 //! > update → broad phase → overlap → pairs
 //!
-//! A [`Culler`] is built once for a scene (the paper's Co) and then culls frame after frame. All buffers stay, so in steady
-//! state nothing is allocated.
+//! A [`Culler`] is built once for a scene (the paper's Co) and then culls frame after frame. All
+//! buffers stay, so in steady state nothing is allocated.
 
+#[cfg(feature = "shapes")]
 mod builder;
+#[cfg(feature = "shapes")]
 mod check;
 mod error;
+#[cfg(feature = "shapes")]
 pub(crate) mod models;
+#[cfg(feature = "shapes")]
 mod needs;
+#[cfg(feature = "shapes")]
 mod portions;
+#[cfg(feature = "shapes")]
 mod replace;
+#[cfg(feature = "shapes")]
 mod shapes;
 
+#[cfg(feature = "shapes")]
 pub use builder::CullerBuilder;
+#[cfg(feature = "shapes")]
 pub(crate) use check::FAR;
 pub use error::CullError;
 
-use std::ops::Range;
-use std::time::Instant;
+#[cfg(feature = "shapes")]
+use std::{ops::Range, time::Instant};
 
-use self::models::Models;
-use self::needs::Needs;
-use crate::bodies::contract::{check_bodies, check_column, check_poses};
-use crate::bodies::{Bodies, Groups, Places};
-use crate::broad_phase::{Balls, PairFinder};
-use crate::counters::{Counters, Seconds};
-use crate::overlap::intervals::IntervalSlots;
-use crate::pairs::PairList;
-use crate::settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates};
-use crate::simd::{Tier, in_default_mode};
-#[cfg(feature = "serde")]
+#[cfg(feature = "shapes")]
+use self::{models::Models, needs::Needs};
+#[cfg(all(feature = "shapes", feature = "serde"))]
 use crate::strategy::Answers;
-use crate::strategy::{self, Inputs, Output, Scratch, SlotNames, Totals};
-use crate::threads::FrameThreads;
-use crate::update::{Intervals, OrDopRows, Posed, update_spheres};
-use crate::volume::Shape;
+#[cfg(feature = "shapes")]
+use crate::{
+    bodies::contract::{check_bodies, check_column, check_poses},
+    bodies::{Bodies, Groups, Places},
+    broad_phase::{Balls, PairFinder},
+    counters::{Counters, Seconds},
+    overlap::intervals::IntervalSlots,
+    pairs::PairList,
+    settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates},
+    simd::{Tier, in_default_mode},
+    strategy::{self, Inputs, Output, Scratch, SlotNames, Totals},
+    threads::FrameThreads,
+    update::{Intervals, OrDopRows, Posed, update_spheres},
+    volume::Shape,
+};
 
 /// Culls the frames of one scene: a fixed set of bodies whose poses change.
 ///
 /// A clone culls on as the original would, on threads that it starts for itself.
+#[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 pub struct Culler {
     settings: CullSettings,
-    /// Whether budgets are spent on pairs in the order of their bodies, whatever the finder and the frames so far.
+    /// Whether budgets are spent on pairs in the order of their bodies, whatever the finder and the
+    /// frames so far.
     is_canonical: bool,
     scheme: Scheme,
     needs: Needs,
@@ -59,7 +73,8 @@ pub struct Culler {
     numbers: Vec<u32>,
     order: Vec<u32>,
     finder: PairFinder,
-    /// What the finder bins, by place: the spheres, or what contains the volumes of a homogeneous strategy.
+    /// What the finder bins, by place: the spheres, or what contains the volumes of a homogeneous
+    /// strategy.
     balls: Balls,
     rows: OrDopRows,
     intervals: Option<Intervals>,
@@ -72,9 +87,10 @@ pub struct Culler {
     seconds: Seconds,
 }
 
+#[cfg(feature = "shapes")]
 impl Culler {
-    /// The culler of these bodies with every default: sequential S-DOP with the two-sided test, the finder that `auto`
-    /// picks, the fastest tier of this CPU, the caller's thread.
+    /// The culler of these bodies with every default: sequential S-DOP with the two-sided test, the
+    /// finder that `auto` picks, the fastest tier of this CPU, the caller's thread.
     ///
     /// # Errors
     /// As [`CullerBuilder::build`].
@@ -136,9 +152,11 @@ impl Culler {
         Ok(culler)
     }
 
-    /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a body.
+    /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a
+    /// body.
     ///
-    /// Pairs are filtered behind the first test, whose hits are few, and before anything else is done with them.
+    /// Pairs are filtered behind the first test, whose hits are few, and before anything else is
+    /// done with them.
     ///
     /// # Errors
     /// A column that is shorter or longer than there are bodies; the groups stay as they were.
@@ -150,7 +168,8 @@ impl Culler {
         Ok(())
     }
 
-    /// From now on, a budget that is spent on pairs as they are found is spent on them in the order of their bodies.
+    /// From now on, a budget that is spent on pairs as they are found is spent on them in the order
+    /// of their bodies.
     pub(crate) fn set_canonical(&mut self) {
         self.is_canonical = true;
     }
@@ -160,7 +179,8 @@ impl Culler {
         std::mem::swap(&mut self.pairs, pairs);
     }
 
-    /// When the pairs of the last frame were refined, for strategies that take the oldest answers first.
+    /// When the pairs of the last frame were refined, for strategies that take the oldest answers
+    /// first.
     #[cfg(feature = "serde")]
     pub(crate) fn answers(&self) -> Answers {
         self.scratch.answers()
@@ -179,7 +199,8 @@ impl Culler {
         self.settings.interest = Some(interest);
     }
 
-    /// A body's ball centre, and how far from it the body can matter to any pair ([`border`](crate::rounding::border)).
+    /// A body's ball centre, and how far from it the body can matter to any pair
+    /// ([`border`](crate::rounding::border)).
     #[cfg(feature = "internals")]
     #[doc(hidden)]
     pub fn reach(&self, shape: u32, q: [f32; 4], t: [f32; 3]) -> ([f32; 3], f32) {
@@ -205,17 +226,26 @@ impl Culler {
         self.finder.bytes()
     }
 
-    /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order that depends on the
-    /// finder and on the frames so far alone.
+    /// Candidates that the last frame tested to make a list of neighbours, in addition to the tests
+    /// that [`Self::counters`] count. At most three times the candidates that the grid would test,
+    /// and 48 per body; a search that reaches this limit is abandoned and counts as the limit.
+    #[must_use]
+    pub fn list_tests(&self) -> u64 {
+        self.finder.list_tests()
+    }
+
+    /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order
+    /// that depends on the finder and on the frames so far alone.
     ///
-    /// Shapes and the poses of static bodies are not read here: they stay as they were at construction or at the last
-    /// [`Self::refresh`].
+    /// Shapes and the poses of static bodies are not read here: they stay as they were at
+    /// construction or at the last [`Self::refresh`].
     ///
     /// # Errors
-    /// Fewer or more bodies than the culler was made for, a `dynamic` flag that has changed, a pose outside of the contract.
-    /// [`Self::pairs`] is empty then, and the next frame is culled as if this one hadn't been. One thing is not looked for:
-    /// the rotation of a body whose ball is centred in its origin, where a ball comes first. If it is zero or not finite,
-    /// no or-DOP is separated from this body's, so that whatever its ball meets is reported.
+    /// Fewer or more bodies than the culler was made for, a `dynamic` flag that has changed, a pose
+    /// outside of the contract. [`Self::pairs`] is empty then, and the next frame is culled as if
+    /// this one hadn't been. One thing is not looked for: the rotation of a body whose ball is
+    /// centred in its origin, where a ball comes first. If it is zero or not finite, no or-DOP is
+    /// separated from this body's, so that whatever its ball meets is reported.
     pub fn cull(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
         let start = Instant::now();
         self.check_set(bodies)?;
@@ -275,7 +305,8 @@ impl Culler {
         &self.pairs
     }
 
-    /// For strategies that list it, the potentially colliding set of the last frame in the order of refinement.
+    /// For strategies that list it, the potentially colliding set of the last frame in the order of
+    /// refinement.
     pub fn potentially_colliding(&self) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
         self.scratch.candidates.iter().map(|pair| {
             let [a, b] = pair.map(|place| self.places.body[place as usize]);
@@ -295,13 +326,14 @@ impl Culler {
         &self.seconds
     }
 
-    /// Whether slots are named by place: or-DOPs and slabs are looked up by place, spheres alone need the body only.
+    /// Whether slots are named by place: or-DOPs and slabs are looked up by place, spheres alone
+    /// need the body only.
     fn names_are_places(&self) -> bool {
         self.needs.rows || self.needs.intervals.is_some()
     }
 
-    /// Updates all but the rows in a range of places: what the first test takes. Returns whether the poses were found within the
-    /// contract.
+    /// Updates all but the rows in a range of places: what the first test takes. Returns whether
+    /// the poses were found within the contract.
     fn update_first(&mut self, bodies: &Bodies, range: Range<usize>) -> bool {
         let (frames, places) = (&self.models.frames, &self.places);
         let executor = self.threads.get().executor(self.tier);

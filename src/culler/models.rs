@@ -1,7 +1,7 @@
 //! What updates and pair tests know of each shape: its frame and its slab table, by model number.
 //!
-//! The first models are the shapes themselves. A shape with a margin is a further model: the ball, and each slab, moved
-//! out by the margin, so that the pair tests need not know of margins.
+//! The first models are the shapes themselves. A shape with a margin is a further model: the ball,
+//! and each slab, moved out by the margin, so that the pair tests need not know of margins.
 
 use crate::overlap::ordop::SlabTables;
 use crate::overlap::ordop::reach::reach;
@@ -48,7 +48,8 @@ impl Models {
         models
     }
 
-    /// The slab directions that a further shape must have: those of the others, unless its own box is taken.
+    /// The slab directions that a further shape must have: those of the others, unless its own box
+    /// is taken.
     pub fn directions(&self) -> Option<DirectionSet> {
         (!self.boxes && self.shapes() > 0).then(|| self.tables.directions())
     }
@@ -58,8 +59,8 @@ impl Models {
         self.hulls as usize - self.free_hulls.len()
     }
 
-    /// Adds the model of a shape; returns its number. Its hull has a number of its own ([`ShapeFrame::hull`]): from 0 in the
-    /// order of these calls, as long as no shape is removed.
+    /// Adds the model of a shape; returns its number. Its hull has a number of its own
+    /// ([`ShapeFrame::hull`]): from 0 in the order of these calls, as long as no shape is removed.
     pub fn add(&mut self, shape: &Shape) -> u32 {
         let ordop = self.ordop_of(shape);
         if self.frames.is_empty() {
@@ -80,7 +81,8 @@ impl Models {
         self.put(frame, ordop)
     }
 
-    /// Makes the model of a shape that of another one. Those that were grown of it stay as they are.
+    /// Makes the model of a shape that of another one. Those that were grown of it stay as they
+    /// are.
     pub fn replace(&mut self, model: u32, shape: &Shape) {
         let ordop = self.ordop_of(shape);
         let hull = self.frames[model as usize].hull();
@@ -93,7 +95,8 @@ impl Models {
         self.free.push(model);
     }
 
-    /// Removes the model of a shape, after all that were grown of it; returns the number of its hull.
+    /// Removes the model of a shape, after all that were grown of it; returns the number of its
+    /// hull.
     pub fn remove_shape(&mut self, model: u32) -> u32 {
         let hull = self.frames[model as usize].hull();
         self.free_hulls.push(hull);
@@ -106,8 +109,8 @@ impl Models {
         hull
     }
 
-    /// Gives back the memory of models and hulls that are gone, as far as they are the last ones; returns how many
-    /// hulls are left.
+    /// Gives back the memory of models and hulls that are gone, as far as they are the last ones;
+    /// returns how many hulls are left.
     pub fn shrink_to_fit(&mut self) -> usize {
         let models = without_last(&mut self.free, self.ordops.len());
         self.ordops.truncate(models);
@@ -158,7 +161,8 @@ impl Models {
     }
 }
 
-/// How many of `all` numbers are left without those at the end that are free; they are no longer among the free ones.
+/// How many of `all` numbers are left without those at the end that are free; they are no longer
+/// among the free ones.
 fn without_last(free: &mut Vec<u32>, all: usize) -> usize {
     free.sort_unstable();
     let mut left = all;

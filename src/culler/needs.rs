@@ -1,4 +1,5 @@
-//! What a strategy needs of the other rooms: which volumes are updated, and by which finder pairs are found.
+//! What a strategy needs of the other rooms: which volumes are updated, and by which finder pairs
+//! are found.
 
 use super::models::Models;
 use crate::bodies::Places;

@@ -15,8 +15,8 @@ impl Culler {
         self.places.reread_shapes(bodies);
     }
 
-    /// Takes up another set of bodies, those that are `present`, as far as it is new: what is known of the others' neighbours
-    /// is kept. Volumes of static bodies are placed anew.
+    /// Takes up another set of bodies, those that are `present`, as far as it is new: what is known
+    /// of the others' neighbours is kept. Volumes of static bodies are placed anew.
     pub(crate) fn exchange(&mut self, bodies: &Bodies, present: &[bool]) {
         in_default_mode(|| {
             let stays = self.take_places(bodies, present);
@@ -39,8 +39,8 @@ impl Culler {
         self.begin(bodies);
     }
 
-    /// Forgets all bodies, and gives back the memory of them and of models that are gone. What was answered of pairs stays. The
-    /// next [`Self::exchange`] begins anew.
+    /// Forgets all bodies, and gives back the memory of them and of models that are gone. What was
+    /// answered of pairs stays. The next [`Self::exchange`] begins anew.
     pub(crate) fn forget(&mut self) {
         let hulls = self.models.shrink_to_fit();
         if let Some(intervals) = &mut self.intervals {
@@ -56,7 +56,8 @@ impl Culler {
         self.replace(&Bodies::default(), &[]);
     }
 
-    /// Gives places to the bodies that are `present`; whether each former place's body keeps its order.
+    /// Gives places to the bodies that are `present`; whether each former place's body keeps its
+    /// order.
     fn take_places(&mut self, bodies: &Bodies, present: &[bool]) -> Vec<bool> {
         let stays = self.places.replace(&bodies.dynamic, present);
         self.places.reread_shapes(bodies);
@@ -72,8 +73,8 @@ impl Culler {
         stays
     }
 
-    /// Places all volumes but the rows of bodies that move, which each frame makes anew, and lets a new finder order and arrange
-    /// them.
+    /// Places all volumes but the rows of bodies that move, which each frame makes anew, and lets a
+    /// new finder order and arrange them.
     pub(super) fn begin(&mut self, bodies: &Bodies) {
         let (moving, all) = (self.places.moving, self.places.len());
         self.update_first(bodies, 0..all);
@@ -89,7 +90,8 @@ impl Culler {
         self.update_rows(bodies, at_rest);
     }
 
-    /// Lets the finder put bodies in other places. What has moved is updated anyway, unless it is static.
+    /// Lets the finder put bodies in other places. What has moved is updated anyway, unless it is
+    /// static.
     pub(super) fn reorder(&mut self, bodies: &Bodies) {
         if self.scheme.flow == Flow::Nothing {
             // Nothing is arranged, so there is no order to follow.

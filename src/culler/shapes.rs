@@ -5,10 +5,12 @@ use crate::simd::in_default_mode;
 use crate::volume::Shape;
 
 impl Culler {
-    /// Adds a shape. Bodies take it by the returned number in `bodies.shape`, from the next [`Self::refresh`] on.
+    /// Adds a shape. Bodies take it by the returned number in `bodies.shape`, from the next
+    /// [`Self::refresh`] on.
     ///
     /// # Errors
-    /// A shape beyond the contract, far from its origin, or with other slab directions than those before; nothing is added.
+    /// A shape beyond the contract, far from its origin, or with other slab directions than those
+    /// before; nothing is added.
     pub fn add_shape(&mut self, shape: &Shape) -> Result<u32, CullError> {
         check::near(std::slice::from_ref(shape))?;
         self.add_shape_about_vertices(shape)
@@ -24,8 +26,9 @@ impl Culler {
         })
     }
 
-    /// Puts a shape in the place of another, whose number it takes. Models that were grown of the other one stay as they are,
-    /// and so do the volumes of bodies that don't move, until bodies are exchanged.
+    /// Puts a shape in the place of another, whose number it takes. Models that were grown of the
+    /// other one stay as they are, and so do the volumes of bodies that don't move, until bodies
+    /// are exchanged.
     ///
     /// # Errors
     /// As [`Self::add_shape`]; nothing is replaced.
@@ -38,7 +41,8 @@ impl Culler {
         })
     }
 
-    /// Removes a shape that no body takes, and of which no model is grown any more. Its number is given again.
+    /// Removes a shape that no body takes, and of which no model is grown any more. Its number is
+    /// given again.
     pub(crate) fn remove_shape(&mut self, model: u32) {
         let hull = self.models.remove_shape(model);
         if let Some(intervals) = &mut self.intervals {
@@ -46,7 +50,8 @@ impl Culler {
         }
     }
 
-    /// Adds a model: another grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the returned number.
+    /// Adds a model: another grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the
+    /// returned number.
     pub(crate) fn grow(&mut self, model: u32, margin: f32) -> u32 {
         self.models.grow(model, margin)
     }

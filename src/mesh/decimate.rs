@@ -1,23 +1,26 @@
 //! Fewer triangles: edge collapse in the order of the quadric error.
 //!
-//! M. Garland, P. Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997. A plane with unit
-//! normal n and offset d has the squared distance (n·x + d)²; a vertex's quadric is the area-weighted sum over its
-//! triangles' planes, and collapsing the edge ab to x costs (Q_a + Q_b)(x). The cheapest edge goes first.
-//! An open boundary keeps its place through planes that stand on its edges.
+//! M. Garland, P. Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997. A
+//! plane with unit normal n and offset d has the squared distance (n·x + d)²; a vertex's quadric is
+//! the area-weighted sum over its triangles' planes, and collapsing the edge ab to x costs (Q_a +
+//! Q_b)(x). The cheapest edge goes first. An open boundary keeps its place through planes that
+//! stand on its edges.
 //!
-//! Own code, since a kept pure-Rust crate that promises the same bits on every platform was not to be found,
-//! and the shipped meshes must be the same wherever their command runs: plain f64 operations, ties broken by index.
+//! Own code, since a kept pure-Rust crate that promises the same bits on every platform was not to
+//! be found, and the shipped meshes must be the same wherever their command runs: plain f64
+//! operations, ties broken by index.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
 
 use glam::{DMat3, DVec3};
 
-use super::TriangleMesh;
+use super::{TriangleMesh, in_f64};
 
-/// Collapses edges until at most `target` triangles are left, or until no edge can go without changing the surface's
-/// topology or turning a triangle over. Closed components stay closed. Unused vertices and triangles with a repeated index
-/// go too, but a mesh that has nothing else, or is small enough already, is returned as it is.
+/// Collapses edges until at most `target` triangles are left, or until no edge can go without
+/// changing the surface's topology or turning a triangle over. Closed components stay closed.
+/// Unused vertices and triangles with a repeated index go too, but a mesh that has nothing else, or
+/// is small enough already, is returned as it is.
 pub fn decimate(mesh: &TriangleMesh, target: usize) -> TriangleMesh {
     let mut surface = Surface::new(mesh);
     if surface.alive == 0 || mesh.triangles.len() <= target {
@@ -84,7 +87,8 @@ impl Quadric {
         x.dot(self.a * x) + 2.0 * self.b.dot(x) + self.c
     }
 
-    /// The point of least error, unless the planes leave it undetermined (flat or straight surroundings).
+    /// The point of least error, unless the planes leave it undetermined (flat or straight
+    /// surroundings).
     fn minimum(&self) -> Option<DVec3> {
         let trace = self.a.x_axis.x + self.a.y_axis.y + self.a.z_axis.z;
         let determined = self.a.determinant() > LEAST_DETERMINANT * trace * trace * trace;
@@ -92,7 +96,8 @@ impl Quadric {
     }
 }
 
-/// Below this share of trace³ (1/27 at best) the three planes are too close to parallel to fix a point.
+/// Below this share of trace³ (1/27 at best) the three planes are too close to parallel to fix a
+/// point.
 const LEAST_DETERMINANT: f64 = 1e-7;
 
 /// A boundary's standing planes weigh this much more than a triangle of the edge's size.
@@ -150,14 +155,10 @@ struct Surface {
 impl Surface {
     fn new(mesh: &TriangleMesh) -> Self {
         let count = mesh.vertices.len();
-        let origin = mesh.vertices.first().map_or(DVec3::ZERO, |v| v.as_dvec3());
+        let origin = mesh.vertices.first().map_or(DVec3::ZERO, in_f64);
         let mut surface = Self {
             origin,
-            positions: mesh
-                .vertices
-                .iter()
-                .map(|v| v.as_dvec3() - origin)
-                .collect(),
+            positions: mesh.vertices.iter().map(|v| in_f64(v) - origin).collect(),
             quadrics: vec![Quadric::zero(); count],
             versions: vec![0; count],
             around: vec![Vec::new(); count],
@@ -283,8 +284,9 @@ impl Surface {
                 .any(|&triangle| self.turns_over(triangle, candidate))
     }
 
-    /// The link condition: the ends share no neighbour but those across the edge's one or two faces. Besides, no
-    /// boundary is bridged, no component vanishes and no triangle falls onto another (a tetrahedron's would).
+    /// The link condition: the ends share no neighbour but those across the edge's one or two
+    /// faces. Besides, no boundary is bridged, no component vanishes and no triangle falls onto
+    /// another (a tetrahedron's would).
     fn keeps_topology(&self, a: u32, b: u32, at_a: &[[u32; 3]], at_b: &[[u32; 3]]) -> bool {
         let faces = self.shared(a, b).count();
         let common = self.neighbours(a).intersection(&self.neighbours(b)).count();
@@ -359,7 +361,7 @@ impl Surface {
         for (vertex, position) in self.positions.iter().enumerate() {
             if !self.around[vertex].is_empty() {
                 new_index[vertex] = Some(vertices.len() as u32);
-                vertices.push((self.origin + position).as_vec3());
+                vertices.push((self.origin + position).as_vec3().to_array());
             }
         }
         let renumber = |triangle: [u32; 3]| {

@@ -3,9 +3,8 @@
 use super::MAX_COORDINATE;
 
 /// Why a mesh was refused. Prints as `file:line: problem`; the help text says how to mend it.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 #[error("{}: {problem}", place(.file, *.line))]
-#[diagnostic(forward(problem))]
 pub struct MeshError {
     /// The file as the caller named it, or the mesh's name when it came from no file.
     pub file: String,
@@ -15,16 +14,23 @@ pub struct MeshError {
     pub problem: Problem,
 }
 
+impl MeshError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> String {
+        self.problem.help()
+    }
+}
+
 fn place(file: &str, line: Option<usize>) -> String {
     line.map_or_else(|| file.to_owned(), |line| format!("{file}:{line}"))
 }
 
 /// One way in which a mesh or a mesh file can be wrong.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 pub enum Problem {
     /// The operating system refused to read or write.
     #[error("cannot {action} the file: {source}")]
-    #[diagnostic(help("check the path and its permissions"))]
     Io {
         /// "read" or "write".
         action: &'static str,
@@ -33,16 +39,12 @@ pub enum Problem {
     },
     /// More bytes than the caller allows.
     #[error("the file has more than {most} bytes")]
-    #[diagnostic(help(
-        "is it the file you mean? If so, raise the limit: --max-file-size, or `ReadOptions::max_bytes`"
-    ))]
     TooLong {
         /// How many are allowed.
         most: u64,
     },
     /// The file name's extension names no known format.
     #[error("the extension {found:?} names no mesh format that can be {action}")]
-    #[diagnostic(help("use .tri, .obj, .stl or .ply"))]
     UnknownFormat {
         /// The extension as found, without the dot.
         found: String,
@@ -51,15 +53,12 @@ pub enum Problem {
     },
     /// There is nothing in the file, or no vertex in the mesh.
     #[error("the mesh has no vertices")]
-    #[diagnostic(help("give at least one vertex; the file may be empty or cut off"))]
     NoVertices,
     /// Vertices without a triangle.
     #[error("the mesh has no triangles")]
-    #[diagnostic(help("give at least one triangle; a single point is the triangle 0 0 0"))]
     NoTriangles,
     /// More vertices or triangles than a u32 can number.
     #[error("the mesh has {count} {what}: more than 2^32 - 1")]
-    #[diagnostic(help("split the mesh"))]
     TooMany {
         /// "vertices" or "triangles".
         what: &'static str,
@@ -68,9 +67,6 @@ pub enum Problem {
     },
     /// A NaN or infinite coordinate (also a number beyond f32's range).
     #[error("vertex {vertex} has the coordinate {value}: not a finite f32")]
-    #[diagnostic(help(
-        "every coordinate must be a finite number; look for a division by zero in the exporter"
-    ))]
     NotFinite {
         /// 0-based vertex index.
         vertex: usize,
@@ -79,18 +75,20 @@ pub enum Problem {
     },
     /// A coordinate beyond the culler's contract.
     #[error("vertex {vertex} has the coordinate {value:e}: beyond 2^60")]
-    #[diagnostic(help(
-        "scale the mesh down: coordinates up to {MAX_COORDINATE:e} (2^60) are allowed"
-    ))]
     TooLarge {
         /// 0-based vertex index.
         vertex: usize,
         /// The offending coordinate.
         value: f32,
     },
+    /// A scale that leaves nothing of the mesh, or no numbers.
+    #[error("the scale {scale:?} has a factor that is zero or not finite")]
+    Scale {
+        /// The factors of x, y and z.
+        scale: [f64; 3],
+    },
     /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle} names vertex {index}, but the vertices are {first} to {last}")]
-    #[diagnostic(help("check the vertex count and whether the file's indices start at 0 or at 1"))]
     IndexOutOfRange {
         /// 0-based triangle index.
         triangle: usize,
@@ -103,7 +101,6 @@ pub enum Problem {
     },
     /// The text or bytes do not follow the format.
     #[error("{message}")]
-    #[diagnostic(help("{help}"))]
     Malformed {
         /// What was expected and what was found.
         message: String,
@@ -112,7 +109,6 @@ pub enum Problem {
     },
     /// Two or more dialects of `.tri` fit the file.
     #[error("the file can be read as {}", .readings.join(" or as "))]
-    #[diagnostic(help("say which is meant with --tri-format {}", .names.join(" or --tri-format ")))]
     Ambiguous {
         /// Each fitting reading in words.
         readings: Vec<&'static str>,
@@ -122,6 +118,39 @@ pub enum Problem {
 }
 
 impl Problem {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> String {
+        let help = match self {
+            Self::Io { .. } => "check the path and its permissions",
+            Self::TooLong { .. } => {
+                "is it the file you mean? If so, raise the limit: --max-file-size, or `ReadOptions::max_bytes`"
+            }
+            Self::UnknownFormat { .. } => "use .tri, .obj, .stl, .ply or .off",
+            Self::NoVertices => "give at least one vertex; the file may be empty or cut off",
+            Self::NoTriangles => "give at least one triangle; a single point is the triangle 0 0 0",
+            Self::TooMany { .. } => "split the mesh",
+            Self::NotFinite { .. } => {
+                "every coordinate must be a finite number; look for a division by zero in the exporter"
+            }
+            Self::TooLarge { .. } => {
+                return format!(
+                    "scale the mesh down: coordinates up to {MAX_COORDINATE:e} (2^60) are allowed"
+                );
+            }
+            Self::Scale { .. } => "give one factor, or three as [x, y, z]; negative ones mirror",
+            Self::IndexOutOfRange { .. } => {
+                "check the vertex count and whether the file's indices start at 0 or at 1"
+            }
+            Self::Malformed { help, .. } => help,
+            Self::Ambiguous { names, .. } => {
+                let names = names.join(" or --tri-format ");
+                return format!("say which is meant with --tri-format {names}");
+            }
+        };
+        help.to_owned()
+    }
+
     /// A format violation with its remedy.
     #[cfg(feature = "readers")]
     pub(super) fn malformed(message: impl Into<String>, help: impl Into<String>) -> Self {

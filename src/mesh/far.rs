@@ -1,14 +1,15 @@
 //! Meshes far from their origin: coordinates in f64 are kept as f32 about a point near the mesh.
 //!
-//! Rounded to f32 as they are, the coordinates of a wall on a map would move by a good part of its size. Where some would move
-//! by more than 2⁻²⁰ of it, the mesh is re-centred in f64 first. The offset has few bits, so that offset + vertex is an f64
-//! exactly: a mesh that is written and read again is the same. To that end an offset is settled on the coordinates that come
-//! out with it, and the choice between both ways is made on them, a sixteenth early.
+//! Rounded to f32 as they are, the coordinates of a wall on a map would move by a good part of its
+//! size. Where some would move by more than 2⁻²⁰ of it, the mesh is re-centred in f64 first. The
+//! offset has few bits, so that offset + vertex is an f64 exactly: a mesh that is written and read
+//! again is the same. To that end an offset is settled on the coordinates that come out with it,
+//! and the choice between both ways is made on them, a sixteenth early.
 
 use crate::rounding::{exp2, up};
 
-/// 15/16 of 2⁻²⁰: how far rounding may move a point of a mesh that stays where it is, as a multiple of the mesh's largest
-/// extent. The sixteenth is what re-centring moves at most.
+/// 15/16 of 2⁻²⁰: how far rounding may move a point of a mesh that stays where it is, as a multiple
+/// of the mesh's largest extent. The sixteenth is what re-centring moves at most.
 const NEAR: f64 = 15.0 * exp2(-24);
 
 /// The least step of an offset: what f32 loses below is not won by another origin.

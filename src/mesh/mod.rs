@@ -1,64 +1,71 @@
 //! Triangle meshes: validation, readers, writers, topology and procedural shapes.
 //!
 //! A [`TriangleMesh`] made here keeps the contract that all later stages build on: every coordinate
-//! finite and at most 2⁶⁰ in size, every index in range, at least one vertex and one triangle. Degenerate
-//! triangles (zero area, repeated indices, a single point as 0 0 0) are legal: they bound, collide and
-//! are culled like any other. A mesh without triangles is refused, since no surface of it could intersect
-//! anything. Vertices that no triangle uses are kept: they only widen the volumes.
+//! finite and at most 2⁶⁰ in size, every index in range, at least one vertex and one triangle.
+//! Degenerate triangles (zero area, repeated indices, a single point as 0 0 0) are legal: they
+//! bound, collide and are culled like any other. A mesh without triangles is refused, since no
+//! surface of it could intersect anything. Vertices that no triangle uses are kept: they only widen
+//! the volumes.
 
 pub mod decimate;
 mod error;
 mod far;
 #[cfg(feature = "readers")]
 mod files;
+mod scale;
 pub mod shapes;
 pub mod topology;
 
 pub use error::{MeshError, Problem};
 #[cfg(feature = "readers")]
 pub use files::{MeshFormat, ReadOptions, TriFormat, read, read_bytes, write, write_bytes};
+pub use scale::Scale;
 pub use shapes::ProceduralShape;
 
-use glam::Vec3;
+use glam::DVec3;
 
 /// The largest coordinate size a mesh may have: 2⁶⁰ (the culler's contract).
 pub const MAX_COORDINATE: f32 = (1_u64 << 60) as f32;
 
-/// An indexed triangle mesh, in the file's own units and axes (right-handed): a point of the file is offset + vertex.
+/// An indexed triangle mesh, in the file's own units and axes (right-handed): a point of the file
+/// is offset + vertex.
 ///
-/// Vertices are f32 and, within their `rounding`, what the promise is about. The offset is zero, and coordinates are rounded
-/// to f32 where they are, unless that would move one by more than 2⁻²⁰ of the mesh's largest extent: such a mesh is far from
-/// its origin, and kept about a point near it.
+/// Vertices are f32 and, within their `rounding`, what the promise is about. The offset is zero,
+/// and coordinates are rounded to f32 where they are, unless that would move one by more than 2⁻²⁰
+/// of the mesh's largest extent: such a mesh is far from its origin, and kept about a point near
+/// it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
     /// What messages and tables call the mesh: the file's stem or the procedural shape's name.
     pub name: String,
     /// Vertex positions about `offset`, all finite.
-    pub vertices: Vec<Vec3>,
+    pub vertices: Vec<[f32; 3]>,
     /// Vertex indices of each triangle, all in range.
     pub triangles: Vec<[u32; 3]>,
-    /// Where the origin of `vertices` lies in the file's coordinates: zero unless the mesh is far from its origin.
+    /// Where the origin of `vertices` lies in the file's coordinates: zero unless the mesh is far
+    /// from its origin.
     pub offset: [f64; 3],
-    /// How far any vertex of a far mesh is at most from the f64 point that it stands for; volumes are grown by it.
+    /// How far any vertex of a far mesh is at most from the f64 point that it stands for; volumes
+    /// are grown by it.
     pub rounding: f32,
 }
 
 impl TriangleMesh {
-    /// A mesh of these vertices, and the three vertices of each triangle.
+    /// A mesh of these vertices, which are arrays or turn into arrays as those of any version of
+    /// glam do, and of the three vertices of each triangle.
     ///
     /// # Errors
-    /// No vertex, no triangle, too many of either, a coordinate that is not finite or larger than 2⁶⁰, or an
-    /// index out of range; the error names the mesh, the vertex or triangle, and the remedy.
+    /// No vertex, no triangle, too many of either, a coordinate that is not finite or larger than
+    /// 2⁶⁰, or an index out of range; the error names the mesh, the vertex or triangle, and the
+    /// remedy.
     pub fn new(
         name: impl Into<String>,
-        vertices: Vec<Vec3>,
+        vertices: impl IntoIterator<Item = impl Into<[f32; 3]>>,
         triangles: Vec<[u32; 3]>,
     ) -> Result<Self, MeshError> {
         let name = name.into();
-        let points: Vec<[f64; 3]> = vertices
-            .iter()
-            .map(|v| v.to_array().map(f64::from))
-            .collect();
+        let vertices: Vec<[f32; 3]> = vertices.into_iter().map(Into::into).collect();
+        let points: Vec<[f64; 3]> = vertices.iter().map(|v| v.map(f64::from)).collect();
         match check(&points, &triangles) {
             Ok(()) => Ok(Self {
                 name,
@@ -70,7 +77,17 @@ impl TriangleMesh {
         }
     }
 
-    /// A mesh of vertices in f64, without a name: rounded to f32, or kept about an offset where it is far from its origin.
+    /// A mesh of borrowed vertices and triangles, without a name.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn from_f32(vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        let mesh = Self::new("mesh", vertices.iter().copied(), triangles.to_vec())?;
+        Ok(mesh.named(""))
+    }
+
+    /// A mesh of borrowed vertices in f64, without a name: rounded to f32, or kept about an offset
+    /// where it is far from its origin.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -94,10 +111,9 @@ impl TriangleMesh {
     }
 
     fn placed(placed: far::Placed, triangles: Vec<[u32; 3]>) -> Self {
-        let vertices = placed.vertices.into_iter().map(Vec3::from_array);
         Self {
             name: String::new(),
-            vertices: vertices.collect(),
+            vertices: placed.vertices,
             triangles,
             offset: placed.offset,
             rounding: placed.rounding,
@@ -117,7 +133,7 @@ impl TriangleMesh {
             0.0 => f64::from(x), // 0 + −0 would be 0
             _ => offset + f64::from(x),
         };
-        let point = move |v: &Vec3| std::array::from_fn(|i| coordinate(self.offset[i], v[i]));
+        let point = move |v: &[f32; 3]| std::array::from_fn(|i| coordinate(self.offset[i], v[i]));
         self.vertices.iter().map(point)
     }
 
@@ -126,19 +142,11 @@ impl TriangleMesh {
     pub fn is_far(&self) -> bool {
         self.offset != [0.0; 3]
     }
+}
 
-    /// The same of vertices that are arrays, or turn into arrays as those of any version of glam do.
-    ///
-    /// # Errors
-    /// As [`Self::new`].
-    pub fn from_arrays(
-        name: impl Into<String>,
-        vertices: impl IntoIterator<Item = impl Into<[f32; 3]>>,
-        triangles: Vec<[u32; 3]>,
-    ) -> Result<Self, MeshError> {
-        let vertices = vertices.into_iter().map(|v| Vec3::from_array(v.into()));
-        Self::new(name, vertices.collect(), triangles)
-    }
+/// A vertex in f64.
+pub(crate) fn in_f64(vertex: &[f32; 3]) -> DVec3 {
+    DVec3::from_array(vertex.map(f64::from))
 }
 
 fn check(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(), Problem> {

@@ -1,12 +1,14 @@
 //! Connected components, and which of them are closed.
 //!
-//! A component is a set of triangles joined by shared vertex indices. It is closed when each of its edges is shared
-//! by exactly two faces: only then has it an inside, which exact intersection asks for (odd ray parity).
-//! Triangles with a repeated index have no area and no inside: they join components but are no faces here,
-//! and a component of nothing else is open. Indices decide, not positions: a mesh whose seams are
-//! written twice (the teapot) is open along them.
+//! A component is a set of triangles joined by shared vertex indices. It is closed when each of its
+//! edges is shared by exactly two faces: only then has it an inside, which exact intersection asks
+//! for (odd ray parity). Triangles with a repeated index have no area and no inside: they join
+//! components but are no faces here, and a component of nothing else is open. Indices decide, not
+//! positions: a mesh whose seams are written twice (the teapot) is open along them.
 
 use std::collections::HashMap;
+
+use robust::{Coord, orient2d};
 
 use super::TriangleMesh;
 
@@ -108,6 +110,26 @@ impl Topology {
     pub fn closed_components(&self) -> usize {
         self.components.iter().filter(|c| c.is_closed()).count()
     }
+}
+
+/// How many triangles have no area, exactly: a repeated index, two equal corners, or three on a
+/// line.
+///
+/// Those with three indices still count as faces above: a mesh is closed by them as by any other.
+#[must_use]
+pub fn without_area(mesh: &TriangleMesh) -> usize {
+    let flat = |triangle: &&[u32; 3]| {
+        let corners = triangle.map(|i| mesh.vertices[i as usize]);
+        // On a line exactly if the projections to all three coordinate planes are.
+        [(0, 1), (1, 2), (2, 0)].iter().all(|&(x, y)| {
+            let [a, b, c] = corners.map(|v| Coord {
+                x: f64::from(v[x]),
+                y: f64::from(v[y]),
+            });
+            orient2d(a, b, c) == 0.0
+        })
+    };
+    mesh.triangles.iter().filter(flat).count()
 }
 
 fn is_face([a, b, c]: &[u32; 3]) -> bool {

@@ -1,9 +1,10 @@
-//! Given boxes: apart iff on some axis one begins behind the other's end. Ends are compared as they are, so the answer is
-//! exact, in either of two ways.
+//! Given boxes: apart iff on some axis one begins behind the other's end. Ends are compared as they
+//! are, so the answer is exact, in either of two ways.
 //!
-//! Nearly cubic boxes leave little between the cube about them and the one within ([`cube`](crate::rounding::cube)): one quad
-//! a box answers nearly all pairs, and the few others are looked up. Of long boxes the cubes know nothing; their ends stand in
-//! slots as two quads, and are compared straight away ([`EndSlots`](crate::broad_phase::EndSlots)).
+//! Nearly cubic boxes leave little between the cube about them and the one within
+//! ([`cube`](crate::rounding::cube)): one quad a box answers nearly all pairs, and the few others
+//! are looked up. Of long boxes the cubes know nothing; their ends stand in slots as two quads, and
+//! are compared straight away ([`EndSlots`](crate::broad_phase::EndSlots)).
 
 use crate::bodies::Aabb;
 use crate::broad_phase::{Arranged, BallTest};
@@ -22,7 +23,8 @@ pub struct Cubes<'a> {
 }
 
 impl Cubes<'_> {
-    /// Whether two boxes meet, by their ends: exact. Few pairs need it, so that it stays out of the vector loop.
+    /// Whether two boxes meet, by their ends: exact. Few pairs need it, so that it stays out of the
+    /// vector loop.
     #[cold]
     fn boxes_meet(&self, pair: [usize; 2]) -> bool {
         let [a, b] = pair.map(|slot| &self.boxes[self.slots.names[slot] as usize]);

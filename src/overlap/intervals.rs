@@ -11,8 +11,8 @@ use crate::threads::Threads;
 /// Bodies for whose columns waking another thread pays.
 const WORTH_SHARING: usize = 1 << 14;
 
-/// World-aligned slabs in the pair finder's slot order: one column per direction, each padded by [`MAX_WIDTH`] finite
-/// entries.
+/// World-aligned slabs in the pair finder's slot order: one column per direction, each padded by
+/// [`MAX_WIDTH`] finite entries.
 #[derive(Clone, Debug, Default)]
 pub struct IntervalSlots {
     /// Lower ends, `lo[direction][slot]`.
@@ -22,7 +22,8 @@ pub struct IntervalSlots {
 }
 
 impl IntervalSlots {
-    /// Gathers the slabs of all bodies into slot order: `ends[place·slabs + slab]` = [lo, hi], and the place in each slot.
+    /// Gathers the slabs of all bodies into slot order: `ends[place·slabs + slab]` = [lo, hi], and
+    /// the place in each slot.
     pub fn fill(&mut self, pool: &Threads, order: &[u32], ends: &[[f32; 2]]) {
         let slabs = ends.len().checked_div(order.len()).unwrap_or(0);
         self.lo.resize(slabs, Vec::new());

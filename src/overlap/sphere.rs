@@ -1,6 +1,7 @@
 //! Sphere against spheres: cull iff d² > s², s = R_i + R_j, with R from [`inflate_radius`].
 //!
-//! d² sums the squares of coordinate differences: expanding the square instead would cancel far from the origin.
+//! d² sums the squares of coordinate differences: expanding the square instead would cancel far
+//! from the origin.
 //!
 //! [`inflate_radius`]: crate::rounding::sphere::inflate_radius
 

@@ -2,6 +2,9 @@
 
 use super::PairList;
 
+/// Up to so many numbers are sorted by insertion.
+const FEW: usize = 12;
+
 /// Buffers of [`PairList::sort`], kept from list to list.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairSorter {
@@ -19,10 +22,11 @@ impl PairSorter {
 }
 
 impl PairList {
-    /// Sorts the pairs by their first number, those of one first number by their second. All numbers are below `numbers`.
+    /// Sorts the pairs by their first number, those of one first number by their second. All
+    /// numbers are below `numbers`.
     ///
-    /// A counting sort by the first number, which takes one pass over the list; the pairs of one number are few, and are
-    /// sorted where they are. A list that is in order is left as it is.
+    /// A counting sort by the first number, which takes one pass over the list; the pairs of one
+    /// number are few, and are sorted where they are. A list that is in order is left as it is.
     pub(crate) fn sort(&mut self, numbers: usize, sorter: &mut PairSorter) {
         if self.iter().is_sorted() {
             return;
@@ -48,9 +52,28 @@ impl PairList {
         std::mem::swap(&mut self.second, second);
         let mut start = 0;
         for (first, &end) in (0..).zip(&*places) {
-            self.first[start..end].fill(first);
-            self.second[start..end].sort_unstable();
+            if end - start == 1 {
+                self.first[start] = first;
+            } else if end > start {
+                self.first[start..end].fill(first);
+                sort_few(&mut self.second[start..end]);
+            }
             start = end;
+        }
+    }
+}
+
+/// Sorts numbers that are mostly few, without a call for these.
+#[inline(always)]
+fn sort_few(numbers: &mut [u32]) {
+    if numbers.len() > FEW {
+        return numbers.sort_unstable();
+    }
+    for end in 1..numbers.len() {
+        let mut at = end;
+        while at > 0 && numbers[at - 1] > numbers[at] {
+            numbers.swap(at - 1, at);
+            at -= 1;
         }
     }
 }

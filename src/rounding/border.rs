@@ -1,26 +1,31 @@
-//! Borders between domains: how far from its ball's centre a body can matter, and which bodies a domain must know of.
+//! Borders between domains: how far from its ball's centre a body can matter, and which bodies a
+//! domain must know of.
 //!
-//! Many ranks share a world. Each owns the bodies whose ball's f32 centre lies in its cell, a box, and a pair is reported by
-//! the owner of the body with the smaller [`reach`], of two equal ones by that of the lower number. So the owner of i must know
-//! each j with w_j ≥ w_i that may be reported with i. Reported ⇒ |c_i − c_j|∞ ≤ w_i + w_j (below), and c_i lies in the
-//! cell, so j is no farther from it than w_i + w_j ≤ w_j + min(w_j, W), W the largest reach of a body that the cell's rank
-//! owns: what [`may_meet`] asks. A giant among small bodies goes to every cell that it reaches, and nothing comes to it.
+//! Many ranks share a world. Each owns the bodies whose ball's f32 centre lies in its cell, a box,
+//! and a pair is reported by the owner of the body with the smaller [`reach`], of two equal ones by
+//! that of the lower number. So the owner of i must know each j with w_j ≥ w_i that may be reported
+//! with i. Reported ⇒ |c_i − c_j|∞ ≤ w_i + w_j (below), and c_i lies in the cell, so j is no
+//! farther from it than w_i + w_j ≤ w_j + min(w_j, W), W the largest reach of a body that the
+//! cell's rank owns: what [`may_meet`] asks. A giant among small bodies goes to every cell that it
+//! reaches, and nothing comes to it.
 //!
-//! Reported ⇒ |c_i − c_j|∞ ≤ w_i + w_j: for balls and for oriented volumes, which are binned by balls of their own, w is
-//! [`widen`]'s radius, and `finder.g` proves |Δ| ≤ (R_i + R_j)(1 + 4u) for each pair that the sphere test reports. Of the 16u
-//! there, 12u·(R_i + R_j) are left for the f64 arithmetic here, which takes 2⁻⁵¹ of the same sum. World-aligned boxes lie
-//! in the ball, but for their own rounding, which [`reach_of_box`] adds twice over.
+//! Reported ⇒ |c_i − c_j|∞ ≤ w_i + w_j: for balls and for oriented volumes, which are binned by
+//! balls of their own, w is [`widen`]'s radius, and `finder.g` proves |Δ| ≤ (R_i + R_j)(1 + 4u) for
+//! each pair that the sphere test reports. Of the 16u there, 12u·(R_i + R_j) are left for the f64
+//! arithmetic here, which takes 2⁻⁵¹ of the same sum. World-aligned boxes lie in the ball, but for
+//! their own rounding, which [`reach_of_box`] adds twice over.
 
 use super::{down, exp2, up, widen};
 
-/// 2⁻²², as a multiple of |t|∞ + ρ: an end of a re-fitted box is at most |t|∞ + ρ, and rounding it outward moves it by
-/// 2⁻²³ of that at most; the f64 steps before need less than the rest.
+/// 2⁻²², as a multiple of |t|∞ + ρ: an end of a re-fitted box is at most |t|∞ + ρ, and rounding it
+/// outward moves it by 2⁻²³ of that at most; the f64 steps before need less than the rest.
 pub const BOX_ERROR: f64 = exp2(-22);
 
 /// 2⁻¹¹⁰: the same where f32 or its results underflow.
 pub const BOX_FLOOR: f64 = exp2(-110);
 
-/// 1 − 2⁻²⁰: drifts are measured in f64, from f32 numbers, and held against a little less than the skin.
+/// 1 − 2⁻²⁰: drifts are measured in f64, from f32 numbers, and held against a little less than the
+/// skin.
 pub const DRIFT_FACTOR: f64 = 1.0 - exp2(-20);
 
 /// How far from its centre a ball of inflated radius R can matter: w.
@@ -28,21 +33,24 @@ pub const fn reach(inflated: f32) -> f32 {
     widen(inflated)
 }
 
-/// The same where the body is tested by a world-aligned box around vertices no farther than ρ from its origin, at t.
+/// The same where the body is tested by a world-aligned box around vertices no farther than ρ from
+/// its origin, at t.
 pub fn reach_of_box(inflated: f32, t: [f32; 3], reach_of_shape: f32) -> f32 {
     let size =
         t.iter().fold(0.0, |m: f64, x| m.max(f64::from(x.abs()))) + f64::from(reach_of_shape);
     up(f64::from(widen(inflated)) + BOX_ERROR * size + BOX_FLOOR)
 }
 
-/// Whether a body of this reach may be reported with a smaller one of a cell at this distance (in the largest coordinate),
-/// whose bodies reach `widest` at most, before any centre moves, or any reach grows, by more than the skin in all.
+/// Whether a body of this reach may be reported with a smaller one of a cell at this distance (in
+/// the largest coordinate), whose bodies reach `widest` at most, before any centre moves, or any
+/// reach grows, by more than the skin in all.
 pub fn may_meet(distance: f64, reach: f32, widest: f32, skin: f32) -> bool {
     let [reach, widest, skin] = [reach, widest, skin].map(f64::from);
     !(distance > reach + reach.min(widest) + 2.0 * skin)
 }
 
-/// Whether a ball (centre, w) has drifted, in any coordinate and by growth together, by no more than the skin.
+/// Whether a ball (centre, w) has drifted, in any coordinate and by growth together, by no more
+/// than the skin.
 pub fn stays(now: ([f32; 3], f32), then: ([f32; 3], f32), skin: f32) -> bool {
     let further = |now: f32, then: f32| f64::from(now) - f64::from(then);
     // NaN is no growth of 0, and stays nowhere.

@@ -1,13 +1,16 @@
-//! Cubes about boxes and within them: what a pair finder takes in place of a box, and what spares a look at the box itself.
+//! Cubes about boxes and within them: what a pair finder takes in place of a box, and what spares a
+//! look at the box itself.
 //!
-//! A box has the centre c, the half side H of the cube about c that contains it, and the half side h of the one about c that
-//! it contains. With δ no less than any H − h, and the Chebyshev distance d of two centres: d > H₁ + H₂ is apart, and
-//! d ≤ H₁ + H₂ − 2δ ≤ h₁ + h₂ meets. What lies between is decided by the boxes' ends, which needs no arithmetic.
+//! A box has the centre c, the half side H of the cube about c that contains it, and the half side
+//! h of the one about c that it contains. With δ no less than any H − h, and the Chebyshev distance
+//! d of two centres: d > H₁ + H₂ is apart, and d ≤ H₁ + H₂ − 2δ ≤ h₁ + h₂ meets. What lies between
+//! is decided by the boxes' ends, which needs no arithmetic.
 //!
-//! All of it is an eighth in size, an exact factor, so that no difference or sum of ends overflows. Each outcome is at most
-//! five roundings from what it stands for, each of 2⁻²⁴ of H₁ + H₂, and of 2⁻¹²⁶ where results underflow, with denormals or
-//! without; the factors leave 2⁻²⁰ for them, the floor 10⁻³⁰. The differences are taken after the factors, so that nothing
-//! that cancels makes the roundings a larger share.
+//! All of it is an eighth in size, an exact factor, so that no difference or sum of ends overflows.
+//! Each outcome is at most five roundings from what it stands for, each of 2⁻²⁴ of H₁ + H₂, and of
+//! 2⁻¹²⁶ where results underflow, with denormals or without; the factors leave 2⁻²⁰ for them, the
+//! floor 10⁻³⁰. The differences are taken after the factors, so that nothing that cancels makes the
+//! roundings a larger share.
 
 use crate::simd::Lanes;
 
@@ -66,13 +69,15 @@ impl<L: Lanes> Cube<L> {
     }
 }
 
-/// Whether two centres are farther apart than `distance` along some axis: d > distance, rounded nowhere but in `between`.
+/// Whether two centres are farther apart than `distance` along some axis: d > distance, rounded
+/// nowhere but in `between`.
 #[inline(always)]
 pub fn apart<L: Lanes>(l: L, [x, y, z]: [L::F; 3], distance: L::F) -> L::M {
     l.gt(l.max(l.max(l.abs(x), l.abs(y)), l.abs(z)), distance)
 }
 
-/// By how much two boxes must be nearer than their cubes, to meet for sure, where no H − h is greater than `gap`: 2δ and more.
+/// By how much two boxes must be nearer than their cubes, to meet for sure, where no H − h is
+/// greater than `gap`: 2δ and more.
 #[must_use]
 pub fn less_than_sure(gap: f32) -> f32 {
     2.0 * gap * WIDER + 2.0 * FLOOR
@@ -92,7 +97,8 @@ mod tests {
 
     type Slabs = [[f32; 2]; 3];
 
-    /// Boxes within a few units, whose sides may differ and be nothing; lengths that don't round and lengths that do.
+    /// Boxes within a few units, whose sides may differ and be nothing; lengths that don't round
+    /// and lengths that do.
     fn slabs() -> impl Strategy<Value = Slabs> {
         let end = prop_oneof![
             (0_i8..9).prop_map(f32::from),
@@ -172,7 +178,8 @@ mod tests {
             }
         }
 
-        /// The nearest ends that an f32 can tell apart, and those that touch: inner cubes thin beside the outer ones.
+        /// The nearest ends that an f32 can tell apart, and those that touch: inner cubes thin
+        /// beside the outer ones.
         #[test]
         fn thin_boxes_side_by_side_are_told_apart(
             thin in -30_i32..2, offset in -8.0_f32..8.0, steps in -3_i32..4, axis in 0_usize..3,

@@ -1,17 +1,19 @@
 //! Outward rounding, and every error bound that the culler relies on, as a named constant.
 //!
-//! Deciding arithmetic is f32 without FMA in one written order, so a computed quantity differs from its exact value by
-//! a known multiple of the unit roundoff u = 2⁻²⁴. Each volume is inflated *once*, when it is built or updated, by more
-//! than that, and the tests then compare without any margin: `cull ⇔ d² > s·s` and `cull ⇔ τ > h_A + h_B` never
-//! separate two bodies that meet in exact real arithmetic. A margin in the volume costs nothing in the pair loop, and
-//! one written bound a volume can be proved; an epsilon in each comparison can't.
+//! Deciding arithmetic is f32 without FMA in one written order, so a computed quantity differs from
+//! its exact value by a known multiple of the unit roundoff u = 2⁻²⁴. Each volume is inflated
+//! *once*, when it is built or updated, by more than that, and the tests then compare without any
+//! margin: `cull ⇔ d² > s·s` and `cull ⇔ τ > h_A + h_B` never separate two bodies that meet in
+//! exact real arithmetic. A margin in the volume costs nothing in the pair loop, and one written
+//! bound a volume can be proved; an epsilon in each comparison can't.
 //!
-//! Model of a machine operation, of which every bound here is a consequence: the result is x(1+ε)+φ with |ε| ≤ u and
+//! Model of a machine operation, of which every bound here is a consequence: the result is x(1+ε)+φ
+//! with |ε| ≤ u and
 //! |φ| ≤ [`FLUSH`], with denormals on, with results flushed to zero, or with operands read as zero alike.
 //!
-//! Each constant tells its derivation, the Gappa script in `paper/proofs/` that checks it (the control beside it is one
-//! notch tighter and must fail), and the largest error that hill climbing has found in 10⁷ steps
-//! (`benches/criterion/worst_case.rs`; a shorter search is in the tests).
+//! Each constant tells its derivation, the Gappa script in `paper/proofs/` that checks it (the
+//! control beside it is one notch tighter and must fail), and the largest error that hill climbing
+//! has found in 10⁷ steps (`benches/criterion/worst_case.rs`; a shorter search is in the tests).
 
 pub mod border;
 pub mod cube;
@@ -29,15 +31,17 @@ pub const fn exp2(e: i32) -> f64 {
 /// u = 2⁻²⁴, the unit roundoff of f32: |fl(x) − x| ≤ u|x| in the normal range.
 pub const U: f64 = exp2(-24);
 
-/// 2⁻¹²⁶, the smallest normal f32: what flush-to-zero or denormals-are-zero may change at most in one operand or result.
-/// Gradual underflow changes at most 2⁻¹⁵⁰.
+/// 2⁻¹²⁶, the smallest normal f32: what flush-to-zero or denormals-are-zero may change at most in
+/// one operand or result. Gradual underflow changes at most 2⁻¹⁵⁰.
 pub const FLUSH: f64 = exp2(-126);
 
-/// 2⁶⁰, the contract's limit on |t|∞ and on sizes. Squares of sums stay below 2¹²⁷, so no deciding product overflows.
+/// 2⁶⁰, the contract's limit on |t|∞ and on sizes. Squares of sums stay below 2¹²⁷, so no deciding
+/// product overflows.
 pub const LIMIT: f32 = exp2(60) as f32;
 
-/// 1 + 2⁻²⁰ = 1 + 16u, by which pair finders widen radii so that they lose no pair which the sphere test reports
-/// (|Δ| ≤ (R_A + R_B)(1 + 4u)); the rest is for their own f32 arithmetic on radii. Proof: `finder.g`.
+/// 1 + 2⁻²⁰ = 1 + 16u, by which pair finders widen radii so that they lose no pair which the sphere
+/// test reports (|Δ| ≤ (R_A + R_B)(1 + 4u)); the rest is for their own f32 arithmetic on radii.
+/// Proof: `finder.g`.
 pub const FINDER_FACTOR: f64 = 1.0 + exp2(-20);
 
 /// 2⁻⁷⁸: the same where squares underflow, R being 2⁻⁷⁰ at least. Proof: `finder.g`.
@@ -45,8 +49,9 @@ pub const FINDER_FLOOR: f64 = exp2(-78);
 
 /// The smallest f32 that surely exceeds the exact value behind `x`, the outcome of f64 arithmetic.
 ///
-/// Always one step above the nearest f32, exact or not: the f64 operation may itself have rounded down. The step is at
-/// least 2⁻²⁵|x| and at least 2⁻¹⁵⁰, so it also covers an f64 error of up to 2⁻²⁶|x|. Infinity stays; NaN stays NaN.
+/// Always one step above the nearest f32, exact or not: the f64 operation may itself have rounded
+/// down. The step is at least 2⁻²⁵|x| and at least 2⁻¹⁵⁰, so it also covers an f64 error of up to
+/// 2⁻²⁶|x|. Infinity stays; NaN stays NaN.
 pub const fn up(x: f64) -> f32 {
     (x as f32).next_up()
 }
@@ -56,7 +61,8 @@ pub const fn down(x: f64) -> f32 {
     (x as f32).next_down()
 }
 
-/// The radius by which a pair finder sorts, bins or sizes its cells, for a radius that the volume test uses.
+/// The radius by which a pair finder sorts, bins or sizes its cells, for a radius that the volume
+/// test uses.
 pub const fn widen(radius: f32) -> f32 {
     up(radius as f64 * FINDER_FACTOR + FINDER_FLOOR)
 }
@@ -96,7 +102,8 @@ mod tests {
 
     #[test]
     fn contract_limit_leaves_room_for_every_square() {
-        // d² of centres at opposite corners, and (R + R)² of the largest radii after every inflation.
+        // d² of centres at opposite corners, and (R + R)² of the largest radii after every
+        // inflation.
         let (d, s) = (
             2.0 * LIMIT,
             2.0 * widen(sphere::inflate_radius(2.0 * LIMIT)),

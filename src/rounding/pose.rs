@@ -1,9 +1,11 @@
-//! The f64 pose: x ↦ R(q)x + t with R(q) the rotation matrix of q over |q|² (design: exact poses are rational maps).
+//! The f64 pose: x ↦ R(q)x + t with R(q) the rotation matrix of q over |q|² (design: exact poses
+//! are rational maps).
 //!
-//! Products of two f32 are exact in f64, so the numerator of an entry rounds thrice at most, |q|² thrice, its reciprocal and
-//! their product once each: |δr_ij| ≤ (2 + 6|r_ij|)·2⁻⁵³, and 24·2⁻⁵³·max(|x|∞, |t|∞) bounds a transformed coordinate. One
-//! division serves all nine entries: eighteen of them were a third of an or-DOP's update. f64 here costs one matrix a body
-//! and frame; in f32 the same bound would be larger than all margins together.
+//! Products of two f32 are exact in f64, so the numerator of an entry rounds thrice at most, |q|²
+//! thrice, its reciprocal and their product once each: |δr_ij| ≤ (2 + 6|r_ij|)·2⁻⁵³, and
+//! 24·2⁻⁵³·max(|x|∞, |t|∞) bounds a transformed coordinate. One division serves all nine entries:
+//! eighteen of them were a third of an or-DOP's update. f64 here costs one matrix a body and frame;
+//! in f32 the same bound would be larger than all margins together.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -12,16 +14,17 @@ use super::{down, exp2, up};
 /// Rows of a rotation matrix.
 pub type Rotation = [[f64; 3]; 3];
 
-/// 24·2⁻⁵³: error of one coordinate of [`transform`], as a multiple of max(|x|∞, |t|∞). Found: 9.01·2⁻⁵³.
-/// Proofs: `pose_entry.g`, `pose_point.g`.
+/// 24·2⁻⁵³: error of one coordinate of [`transform`], as a multiple of max(|x|∞, |t|∞). Found:
+/// 9.01·2⁻⁵³. Proofs: `pose_entry.g`, `pose_point.g`.
 pub const COORDINATE_ERROR: f64 = 24.0 * exp2(-53);
 
-/// 2⁻⁴⁷ ≥ √3·[`COORDINATE_ERROR`]: how far t + R·o in f64 may lie from the exact point, as a multiple of max(|o|∞, |t|∞) for any
-/// o and t in f64. Proof: `pose_offset.g`.
+/// 2⁻⁴⁷ ≥ √3·[`COORDINATE_ERROR`]: how far t + R·o in f64 may lie from the exact point, as a
+/// multiple of max(|o|∞, |t|∞) for any o and t in f64. Proof: `pose_offset.g`.
 pub const OFFSET_ERROR: f64 = exp2(-47);
 
-/// 2⁻⁴⁶ = 128·2⁻⁵³, the margin of a re-fitted world extent as a multiple of max(ρ, |t|∞): for a direction with
-/// coefficients in {−1, 0, 1} the three coordinates bring 3·24, the two sums at most 4 + 6, the addition of the margin 6.
+/// 2⁻⁴⁶ = 128·2⁻⁵³, the margin of a re-fitted world extent as a multiple of max(ρ, |t|∞): for a
+/// direction with coefficients in {−1, 0, 1} the three coordinates bring 3·24, the two sums at most
+/// 4 + 6, the addition of the margin 6.
 pub const REFIT_MARGIN: f64 = exp2(-46);
 
 /// 2⁻¹²⁰: covers subnormal vertices and translations that are read as zero.
@@ -106,9 +109,11 @@ pub fn transform(r: &Rotation, x: [f32; 3], t: [f32; 3]) -> [f64; 3] {
     ]
 }
 
-/// World directions of an orthogonal basis: the columns of R·basis/‖basis‖, each entry rounded once to f32.
+/// World directions of an orthogonal basis: the columns of R·basis/‖basis‖, each entry rounded once
+/// to f32.
 ///
-/// Against the exactly posed orthonormal basis an entry errs by u of itself and an f64 part below 2⁻⁴⁷.
+/// Against the exactly posed orthonormal basis an entry errs by u of itself and an f64 part below
+/// 2⁻⁴⁷.
 pub fn world_axes(r: &Rotation, basis: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
     let (unit, basis) = (
         over_norm(basis[0]),
@@ -143,8 +148,9 @@ pub fn over_norm(v: [f32; 3]) -> f64 {
     1.0 / norm(v)
 }
 
-/// A world-aligned extent [lo, hi] rounded outward, from the extremes of d·p over points computed by [`transform`],
-/// with d's coefficients in {−1, 0, 1}: `hi' = up(hi + 2⁻⁴⁶·max(ρ, |t|∞) + 2⁻¹²⁰)`, lo mirrored; ρ ≥ ‖x‖.
+/// A world-aligned extent [lo, hi] rounded outward, from the extremes of d·p over points computed
+/// by [`transform`], with d's coefficients in {−1, 0, 1}: `hi' = up(hi + 2⁻⁴⁶·max(ρ, |t|∞) +
+/// 2⁻¹²⁰)`, lo mirrored; ρ ≥ ‖x‖.
 pub fn refit(lo: f64, hi: f64, reach: f32, t: [f32; 3]) -> (f32, f32) {
     let size = t
         .iter()

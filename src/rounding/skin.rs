@@ -1,21 +1,25 @@
 //! Skins: how far a ball may drift before a list of neighbours must be made anew.
 //!
-//! A list holds the pairs that come within reach while each ball's drift, the distance that its centre has moved plus what
-//! its radius has grown since, is at most its budget B. The drift is measured in f32 and held against the skin
-//! s = max(fl(Rσ), a): a share σ of the radius, or the same length a ≥ 2⁻⁶⁰ for all; the budget is what the measurement can hide beyond that,
-//! B = s(1 + 32u) + 2⁻⁶⁰. Both in the order of operations of [`stays`]; a list is made of balls grown by [`Reach`].
+//! A list holds the pairs that come within reach while each ball's drift, the distance that its
+//! centre has moved plus what its radius has grown since, is at most its budget B. The drift is
+//! measured in f32 and held against the skin s = max(fl(Rσ), a): a share σ of the radius, or the
+//! same length a ≥ 2⁻⁶⁰ for all; the budget is what the measurement can hide beyond that, B = s(1 +
+//! 32u) + 2⁻⁶⁰. Both in the order of operations of [`stays`]; a list is made of balls grown by
+//! [`Reach`].
 
 use super::{U, exp2};
 use crate::simd::Lanes;
 
-/// 1 + 32u ≥ 1 + 17u + …: what a measured drift below the skin may be in truth, at most. Proof: `skin.g`.
+/// 1 + 32u ≥ 1 + 17u + …: what a measured drift below the skin may be in truth, at most. Proof:
+/// `skin.g`.
 pub const SKIN_FACTOR: f64 = 1.0 + 32.0 * U;
 
-/// 2⁻⁶⁰: the least skin, whose square underflow cannot take, and as much again for the squares that it can. Proof: `skin.g`.
+/// 2⁻⁶⁰: the least skin, whose square underflow cannot take, and as much again for the squares that
+/// it can. Proof: `skin.g`.
 pub const SKIN_FLOOR: f64 = exp2(-60);
 
-/// 1 + 64u, by which grown radii exceed (1 + σ)R: the finder's widening, the budget and the sphere test's own margin
-/// together need 47u. Proof: `skin_reach.g`.
+/// 1 + 64u, by which grown radii exceed (1 + σ)R: the finder's widening, the budget and the sphere
+/// test's own margin together need 47u. Proof: `skin_reach.g`.
 pub const REACH_FACTOR: f64 = 1.0 + 64.0 * U;
 
 /// 2⁻⁵⁶: the same for the floors. Proof: `skin_reach.g`.
@@ -57,8 +61,9 @@ impl Skin {
     }
 }
 
-/// Whether each ball (x, y, z, R) has drifted by less than its skin since it was `then`: the sum of squares of the
-/// coordinates' differences is below the square of what growth has left of the skin. NaN has drifted.
+/// Whether each ball (x, y, z, R) has drifted by less than its skin since it was `then`: the sum of
+/// squares of the coordinates' differences is below the square of what growth has left of the skin.
+/// NaN has drifted.
 #[inline(always)]
 pub fn stays<L: Lanes>(l: L, skin: Skin, now: [L::F; 4], then: [L::F; 4]) -> L::M {
     let skin = skin.of_lanes(l, then[3]);
@@ -82,7 +87,8 @@ impl Reach {
         floor: 0.0,
     };
 
-    /// By a skin: the sphere test of balls so grown loses no pair of balls that may be reported within their budgets.
+    /// By a skin: the sphere test of balls so grown loses no pair of balls that may be reported
+    /// within their budgets.
     #[must_use]
     pub fn with_skin(skin: Skin) -> Self {
         let [share, least] = [skin.share, skin.least].map(f64::from);
@@ -157,8 +163,8 @@ mod tests {
         assert_eq!(Reach::NONE.of(0.3), 0.3);
     }
 
-    /// Drifts about as long as the skin, in any direction, with or without growth: whatever passes is within the budget, and
-    /// some of it is beyond the skin.
+    /// Drifts about as long as the skin, in any direction, with or without growth: whatever passes
+    /// is within the budget, and some of it is beyond the skin.
     #[test]
     fn what_passes_is_within_the_budget() {
         let mut numbers = numbers();

@@ -1,20 +1,23 @@
-//! Slabs of an or-DOP, inflated once so that the separating-axis test needs no margin: `cull ⇔ τ > fl(h_A + h_B)`.
+//! Slabs of an or-DOP, inflated once so that the separating-axis test needs no margin: `cull ⇔ τ >
+//! fl(h_A + h_B)`.
 //!
-//! On any axis a, in units of u·(ρ_A + ρ_B)·‖a‖, rounding can favour separation by fewer than 112: the once-rounded axes
-//! Q, their f32 product M = Q_Bᵀ·Q_A, the gap Δ, τ = a·(Q_Aᵀ·Δ), and the support by weak duality, whose coefficients
-//! combine the slab directions to e + δ instead of e. Each slab gains 2⁻¹⁷ρ‖d‖ = 128u·ρ‖d‖, and any nonnegative
-//! combination of slab directions that gives e gains at least 128u·ρ‖e‖ by the triangle inequality. Errors grow with
+//! On any axis a, in units of u·(ρ_A + ρ_B)·‖a‖, rounding can favour separation by fewer than 112:
+//! the once-rounded axes Q, their f32 product M = Q_Bᵀ·Q_A, the gap Δ, τ = a·(Q_Aᵀ·Δ), and the
+//! support by weak duality, whose coefficients combine the slab directions to e + δ instead of e.
+//! Each slab gains 2⁻¹⁷ρ‖d‖ = 128u·ρ‖d‖, and any nonnegative combination of slab directions that
+//! gives e gains at least 128u·ρ‖e‖ by the triangle inequality. Errors grow with
 //! |Δ|, but beyond a few ρ_A + ρ_B the slabs' polytopes are apart on any account (`paper/proofs/LEMMAS.md`).
 
 use super::pose::norm;
 use super::{down, exp2, up};
 
-/// 2⁻¹⁷ = 128u, a slab's inflation as a multiple of ρ‖d‖. Found: 17.2u along normals, 14.1u along edge × edge. Proofs: `sat_budget_normals.g`, `sat_budget_edges.g`.
+/// 2⁻¹⁷ = 128u, a slab's inflation as a multiple of ρ‖d‖. Found: 17.2u along normals, 14.1u along
+/// edge × edge. Proofs: `sat_budget_normals.g`, `sat_budget_edges.g`.
 pub const SLAB_MARGIN: f64 = exp2(-17);
 
-/// 2⁻¹¹⁰, a slab's inflation as a multiple of ‖d‖: more than underflow and flushing take from some thirty operations.
-/// Found: 16.1·2⁻¹²⁶ of its 65536·2⁻¹²⁶.
-/// Proofs: the φ of `sat_dot.g` and `support_sum.g`, which are 2⁻³⁰ of 2⁻⁹³ = 2⁻¹¹⁰/2⁻¹⁷.
+/// 2⁻¹¹⁰, a slab's inflation as a multiple of ‖d‖: more than underflow and flushing take from some
+/// thirty operations. Found: 16.1·2⁻¹²⁶ of its 65536·2⁻¹²⁶. Proofs: the φ of `sat_dot.g` and
+/// `support_sum.g`, which are 2⁻³⁰ of 2⁻⁹³ = 2⁻¹¹⁰/2⁻¹⁷.
 pub const SLAB_FLOOR: f64 = exp2(-110);
 
 /// |(δ)| ≤ K·u·‖e‖: how far the computed support coefficients combine from e, for k = 6, 14, 18, 26. With k = 6 they are |e|.
@@ -22,14 +25,15 @@ pub const SLAB_FLOOR: f64 = exp2(-110);
 /// Proofs: `support_14.g`, `support_18_triangle.g` and `support_18_excess.g`, `support_26.g`.
 pub const SUPPORT_ERROR: [(usize, f64); 4] = [(6, 0.0), (14, 1.74), (18, 3.5), (26, 1.42)];
 
-/// One slab `lo ≤ d·x ≤ hi` of the body frame as the separating-axis test wants it: about the centre c, in units of the
-/// basis norm, containing 0, inflated, rounded outward.
+/// One slab `lo ≤ d·x ≤ hi` of the body frame as the separating-axis test wants it: about the
+/// centre c, in units of the basis norm, containing 0, inflated, rounded outward.
 ///
-/// `direction` is exact, `scale` is [`norm`] of a basis vector, `reach` bounds ‖x‖ for every vertex x; all finite. The
-/// slab is tight: its ends are at most reach·‖d‖ to an ulp, as those of a vertex are.
+/// `direction` is exact, `scale` is [`norm`] of a basis vector, `reach` bounds ‖x‖ for every vertex
+/// x; all finite. The slab is tight: its ends are at most reach·‖d‖ to an ulp, as those of a vertex
+/// are.
 ///
-/// The result `lo' ≤ d·(x − c)/scale ≤ hi'` has a margin of (2⁻¹⁷ρ + 2⁻¹¹⁰)·‖d‖/scale on either side, ρ = reach + ‖c‖,
-/// which bounds ‖x − c‖ whatever c is.
+/// The result `lo' ≤ d·(x − c)/scale ≤ hi'` has a margin of (2⁻¹⁷ρ + 2⁻¹¹⁰)·‖d‖/scale on either
+/// side, ρ = reach + ‖c‖, which bounds ‖x − c‖ whatever c is.
 pub fn inflate_slab(
     lo: f32,
     hi: f32,

@@ -1,23 +1,25 @@
-//! Spheres: world placement and inflation, so that `cull ⇔ d² > s·s`, s = fl(R_A + R_B), never loses a touching pair.
+//! Spheres: world placement and inflation, so that `cull ⇔ d² > s·s`, s = fl(R_A + R_B), never
+//! loses a touching pair.
 //!
-//! With d² = ((Δx²+Δy²)+Δz²) in f32, rounding can favour d² over s² by 8u in all (5 in d², 3 in s²); R ≥ r(1+6u) gives
-//! 12u. The floor 2⁻⁷⁰ makes s² exceed every amount that underflow or flushing takes. Overflow is sound by monotonicity.
+//! With d² = ((Δx²+Δy²)+Δz²) in f32, rounding can favour d² over s² by 8u in all (5 in d², 3 in
+//! s²); R ≥ r(1+6u) gives 12u. The floor 2⁻⁷⁰ makes s² exceed every amount that underflow or
+//! flushing takes. Overflow is sound by monotonicity.
 
 use super::exp2;
 use super::pose::{Rotation, transform};
 use super::up;
 use crate::simd::Lanes;
 
-/// 1 + 8u, at least 1 + 6u once rounded; 1 + 2u misses. Found: 7.986u of the 8u by which rounding can favour d² over s².
-/// Proofs: `sphere_decision.g`, `sphere_radius.g`.
+/// 1 + 8u, at least 1 + 6u once rounded; 1 + 2u misses. Found: 7.986u of the 8u by which rounding
+/// can favour d² over s². Proofs: `sphere_decision.g`, `sphere_radius.g`.
 pub const RADIUS_FACTOR: f32 = (1.0 + 8.0 * super::U) as f32;
 
 /// 2⁻⁷⁰; 2⁻⁷⁸ misses with subnormal products. Found: no
 /// touching pair culled. Proofs: `sphere_underflow.g`, `sphere_flush.g`.
 pub const RADIUS_FLOOR: f32 = exp2(-70) as f32;
 
-/// 2⁻⁴⁷ ≥ √3·[`COORDINATE_ERROR`](super::pose::COORDINATE_ERROR): how far the f64 centre may lie from the exact one, as a
-/// multiple of max(|c|∞, |t|∞). Found: 12.45·2⁻⁵³ of 64·2⁻⁵³.
+/// 2⁻⁴⁷ ≥ √3·[`COORDINATE_ERROR`](super::pose::COORDINATE_ERROR): how far the f64 centre may lie
+/// from the exact one, as a multiple of max(|c|∞, |t|∞). Found: 12.45·2⁻⁵³ of 64·2⁻⁵³.
 pub const CENTRE_ERROR: f64 = exp2(-47);
 
 /// 2⁻¹²⁵ > √3·2⁻¹²⁶: a subnormal translation read as zero.
@@ -30,10 +32,12 @@ pub const fn inflate_radius(r: f32) -> f32 {
     r * RADIUS_FACTOR + RADIUS_FLOOR
 }
 
-/// World ball (centre, radius) that contains the posed ball (c, r) exactly; not inflated for the test.
+/// World ball (centre, radius) that contains the posed ball (c, r) exactly; not inflated for the
+/// test.
 ///
-/// The centre is the f64 image rounded to f32; with c = 0 it is t to the bit and r is unchanged. Otherwise the radius takes
-/// up the rounding, `up(r + 1.0001‖w64 − w‖ + 2⁻⁴⁷·max(|c|∞, |t|∞) + 2⁻¹²⁵)`.
+/// The centre is the f64 image rounded to f32; with c = 0 it is t to the bit and r is unchanged.
+/// Otherwise the radius takes up the rounding, `up(r + 1.0001‖w64 − w‖ + 2⁻⁴⁷·max(|c|∞, |t|∞) +
+/// 2⁻¹²⁵)`.
 pub fn world_ball(rotation: &Rotation, t: [f32; 3], c: [f32; 3], r: f32) -> ([f32; 3], f32) {
     if c == [0.0; 3] {
         return (t, r);

@@ -1,5 +1,5 @@
-//! The strategies as one table: what each tests, and how pairs flow from test to test. Counters, updates, the choice of a
-//! finder and prices follow from a strategy's row.
+//! The strategies as one table: what each tests, and how pairs flow from test to test. Counters,
+//! updates, the choice of a finder and prices follow from a strategy's row.
 
 use super::{DirectionSet, Overlap, Strategy};
 use crate::choice::choices;
@@ -27,7 +27,8 @@ pub enum Flow {
     Nothing,
     /// What passes the first test is reported.
     FirstTest,
-    /// Blocks of candidates that passed the first test are refined at once; no list is kept (paper, section 4a).
+    /// Blocks of candidates that passed the first test are refined at once; no list is kept (paper,
+    /// section 4a).
     Sequential,
     /// All that passed the first test is listed, then refined (paper, section 4b).
     Batch,
@@ -42,7 +43,8 @@ pub enum Flow {
 pub struct Scheme {
     /// The first test, of every candidate: spheres or world-aligned volumes.
     pub first: Option<TestedVolume>,
-    /// The refining test, of what passed the first one, or of every candidate where there is none: oriented volumes.
+    /// The refining test, of what passed the first one, or of every candidate where there is none:
+    /// oriented volumes.
     pub refining: Option<TestedVolume>,
     /// How pairs get from one to the other.
     pub flow: Flow,
@@ -85,7 +87,8 @@ impl Scheme {
         self.flow != Flow::Nothing
     }
 
-    /// Whether a budget may leave pairs untested, so that the list depends on the order in which they were found.
+    /// Whether a budget may leave pairs untested, so that the list depends on the order in which
+    /// they were found.
     #[must_use]
     pub fn has_budget(self) -> bool {
         self.flow == Flow::TimeCritical
@@ -97,8 +100,8 @@ impl Scheme {
         self.refining == Some(TestedVolume::OrDop)
     }
 
-    /// Whether candidates go to the oriented volumes untested: these are then binned by balls of their own, and hardly
-    /// cheaper to test than candidates are to find.
+    /// Whether candidates go to the oriented volumes untested: these are then binned by balls of
+    /// their own, and hardly cheaper to test than candidates are to find.
     #[must_use]
     pub fn is_oriented_alone(self) -> bool {
         self.first.is_none() && self.refining.is_some()

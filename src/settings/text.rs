@@ -1,11 +1,9 @@
-//! Culling settings as text: what a scene file and the command line write.
-
-use std::str::FromStr;
+//! Culling settings as serde reads and writes them.
 
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serializer};
 
-use super::{Interest, SettingsError, ViewCone};
+use super::{Interest, ViewCone};
 use crate::volume::DirectionSet;
 
 impl<'de> Deserialize<'de> for Interest {
@@ -33,26 +31,6 @@ impl<'de> Deserialize<'de> for Interest {
             }
         }
         deserializer.deserialize_any(ListOrCone)
-    }
-}
-
-impl FromStr for Interest {
-    type Err = SettingsError;
-
-    /// Reads `0,5,7` or, as in a scene file, `{ body = 0, direction = [0, 0, 1], half_angle = 30 }`.
-    fn from_str(text: &str) -> Result<Self, SettingsError> {
-        let value = if text.trim_start().starts_with(['{', '[']) {
-            text.to_owned()
-        } else {
-            format!("[{text}]")
-        };
-        let hint = "body indices as in 0,5,7 or a cone as in { body = 0, direction = [0, 0, 1], half_angle = 30 }";
-        toml::de::ValueDeserializer::parse(&value)
-            .and_then(Self::deserialize)
-            .map_err(|error| SettingsError::Interest {
-                problem: error.message().to_owned(),
-                hint,
-            })
     }
 }
 

@@ -79,8 +79,8 @@ impl Avx2 {
         .then_some(Self(()))
     }
 
-    /// Indices of entries of a non-empty table of this length: those past its end become its last one's, which is below 2³¹ as the
-    /// gather's signed indices must be.
+    /// Indices of entries of a non-empty table of this length: those past its end become its last
+    /// one's, which is below 2³¹ as the gather's signed indices must be.
     #[inline(always)]
     fn clamped(self, index: I8, len: usize) -> I8 {
         assert!(len > 0, "the table has an entry");
@@ -234,7 +234,8 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn gt_u32(self, a: I8, b: I8) -> M8 {
-        // SAFETY: the token proves AVX2, whose comparison is signed: flipped signs put the upper half above the lower.
+        // SAFETY: the token proves AVX2, whose comparison is signed: flipped signs put the upper
+        // half above the lower.
         M8(unsafe {
             let sign = _mm256_set1_epi32(i32::MIN);
             let [a, b] = [_mm256_xor_si256(a.0, sign), _mm256_xor_si256(b.0, sign)];
@@ -272,7 +273,8 @@ impl Lanes for Avx2 {
     fn compress(self, keep: u32, values: I8, out: &mut [u32]) {
         let out = &mut out[..8];
         let order = &PACK[(keep & 0xff) as usize];
-        // SAFETY: the table row has 8 entries, room for 8 integers is there, and the token proves AVX2.
+        // SAFETY: the table row has 8 entries, room for 8 integers is there, and the token proves
+        // AVX2.
         unsafe {
             let order = _mm256_loadu_si256(order.as_ptr().cast());
             let packed = _mm256_permutevar8x32_epi32(values.0, order);
@@ -283,7 +285,8 @@ impl Lanes for Avx2 {
     fn pack(self, keep: u32, values: F8, out: &mut [f32]) {
         let out = &mut out[..8];
         let order = &PACK[(keep & 0xff) as usize];
-        // SAFETY: the table row has 8 entries, room for 8 floats is there, and the token proves AVX2.
+        // SAFETY: the table row has 8 entries, room for 8 floats is there, and the token proves
+        // AVX2.
         unsafe {
             let order = _mm256_loadu_si256(order.as_ptr().cast());
             let packed = _mm256_permutevar8x32_ps(values.0, order);
@@ -309,7 +312,8 @@ impl Lanes for Avx2 {
         // SAFETY: 8 codes are there, and the token proves AVX2.
         let past_the_end = unsafe {
             let limit = _mm256_set1_epi32(limit as i32);
-            // Codes are compared by how far they exceed the limit: the tier has no unsigned comparison.
+            // Codes are compared by how far they exceed the limit: the tier has no unsigned
+            // comparison.
             let codes = _mm256_loadu_si256(codes.as_ptr().cast());
             let over = _mm256_sub_epi32(_mm256_max_epu32(codes, limit), limit);
             _mm256_testz_si256(over, over) == 0
@@ -319,7 +323,8 @@ impl Lanes for Avx2 {
             false => codes,
             true => clamp_codes(codes, limit, &mut clamped),
         };
-        // SAFETY: no code exceeds that of the last quad, so every pointer leads to a quad; the token proves AVX2.
+        // SAFETY: no code exceeds that of the last quad, so every pointer leads to a quad; the
+        // token proves AVX2.
         unsafe {
             let mut at = [quads.as_ptr().cast(); 8];
             for (lane, at) in at.iter_mut().enumerate() {
@@ -347,7 +352,8 @@ impl Lanes for Avx2 {
         let pick = &pick[..8];
         assert!(!sixes.is_empty());
         let last = sixes.len() as u32 - 1;
-        // SAFETY: 8 integers are there, every index is clamped to the last six; the token proves AVX2.
+        // SAFETY: 8 integers are there, every index is clamped to the last six; the token proves
+        // AVX2.
         unsafe {
             let [fronts, backs] = ends_of_sixes(sixes.as_ptr(), clamped(pick.as_ptr(), last));
             let ([x, y, z, a], [_, _, b, c]) = (transpose_quads(fronts), transpose_quads(backs));
@@ -360,7 +366,8 @@ impl Lanes for Avx2 {
         assert!(!rows.is_empty());
         let last = rows.len() as u32 - 1;
         let mut out = [self.splat(0.0); ROW];
-        // SAFETY: 8 integers are there, every index is clamped to the last row; the token proves AVX2.
+        // SAFETY: 8 integers are there, every index is clamped to the last row; the token proves
+        // AVX2.
         unsafe {
             let lanes = clamped(pick.as_ptr(), last);
             for half in [0, 8] {
@@ -376,8 +383,8 @@ impl Lanes for Avx2 {
     }
 }
 
-/// Entries of a table of sixteen, whatever its bits mean: the permutations read the low three bits of an index, and bit 3, moved
-/// into the sign, picks the half.
+/// Entries of a table of sixteen, whatever its bits mean: the permutations read the low three bits
+/// of an index, and bit 3, moved into the sign, picks the half.
 ///
 /// # Safety
 /// The CPU has AVX2, and the pointer leads to sixteen floats.

@@ -60,8 +60,8 @@ impl Avx512 {
         .then_some(Self(()))
     }
 
-    /// Indices of entries of a non-empty table of this length: those past its end become its last one's, which is below 2³¹ as the
-    /// gather's signed indices must be.
+    /// Indices of entries of a non-empty table of this length: those past its end become its last
+    /// one's, which is below 2³¹ as the gather's signed indices must be.
     #[inline(always)]
     fn clamped(self, index: I16, len: usize) -> I16 {
         assert!(len > 0, "the table has an entry");
@@ -181,7 +181,8 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn lookup_16(self, table: &[f32; 16], index: I16) -> F16 {
-        // SAFETY: 16 floats are there, and the token proves AVX-512 F; the permutation reads the low four bits.
+        // SAFETY: 16 floats are there, and the token proves AVX-512 F; the permutation reads the
+        // low four bits.
         F16(unsafe { _mm512_permutexvar_ps(index.0, _mm512_loadu_ps(table.as_ptr())) })
     }
     #[inline(always)]
@@ -229,7 +230,8 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn lookup_16_u32(self, table: &[u32; 16], index: I16) -> I16 {
-        // SAFETY: 16 integers are there, and the token proves AVX-512 F; the permutation reads the low four bits.
+        // SAFETY: 16 integers are there, and the token proves AVX-512 F; the permutation reads the
+        // low four bits.
         I16(unsafe { _mm512_permutexvar_epi32(index.0, _mm512_loadu_epi32(table.as_ptr().cast())) })
     }
     #[inline(always)]
@@ -243,8 +245,9 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn compress(self, keep: u32, values: I16, out: &mut [u32]) {
         let out = &mut out[..16];
-        // SAFETY: room for 16 integers is there, and the token proves AVX-512 F. Compressing in a register and
-        // storing the whole is many times faster than the compressing store on some CPUs.
+        // SAFETY: room for 16 integers is there, and the token proves AVX-512 F. Compressing in a
+        // register and storing the whole is many times faster than the compressing store on some
+        // CPUs.
         unsafe {
             let packed = _mm512_maskz_compress_epi32(keep as u16, values.0);
             _mm512_storeu_epi32(out.as_mut_ptr().cast(), packed);
@@ -286,7 +289,8 @@ impl Lanes for Avx512 {
             false => codes,
             true => clamp_codes(codes, limit, &mut clamped),
         };
-        // SAFETY: no code exceeds that of the last quad, so every pointer leads to a quad; the token proves AVX-512 F.
+        // SAFETY: no code exceeds that of the last quad, so every pointer leads to a quad; the
+        // token proves AVX-512 F.
         unsafe {
             let mut at = [quads.as_ptr().cast(); 16];
             for (lane, at) in at.iter_mut().enumerate() {
@@ -311,7 +315,8 @@ impl Lanes for Avx512 {
         let pick = &pick[..16];
         assert!(!sixes.is_empty());
         let last = sixes.len() as u32 - 1;
-        // SAFETY: 16 integers are there, every index is clamped to the last six; the token proves AVX-512 F.
+        // SAFETY: 16 integers are there, every index is clamped to the last six; the token proves
+        // AVX-512 F.
         unsafe {
             let [fronts, backs] = ends_of_sixes(sixes.as_ptr(), clamped(pick.as_ptr(), last));
             let ([x, y, z, a], [_, _, b, c]) = (transpose_quads(fronts), transpose_quads(backs));
@@ -324,7 +329,8 @@ impl Lanes for Avx512 {
         assert!(!rows.is_empty());
         let last = rows.len() as u32 - 1;
         let mut picked = [self.splat(0.0).0; 16];
-        // SAFETY: 16 integers are there, every index is clamped to the last row; the token proves AVX-512 F.
+        // SAFETY: 16 integers are there, every index is clamped to the last row; the token proves
+        // AVX-512 F.
         unsafe {
             let lanes = clamped(pick.as_ptr(), last);
             for (row, lane) in picked.iter_mut().zip(lanes) {

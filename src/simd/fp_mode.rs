@@ -1,8 +1,9 @@
-//! The thread's floating-point mode: how results are rounded, and what becomes of subnormal numbers.
+//! The thread's floating-point mode: how results are rounded, and what becomes of subnormal
+//! numbers.
 //!
-//! Rust assumes the default mode: rounding to nearest, subnormal numbers as they are, no traps. Audio and
-//! game engines set others. All arithmetic that decides runs in the default mode, and the caller finds its
-//! own as it was, also after a panic.
+//! Rust assumes the default mode: rounding to nearest, subnormal numbers as they are, no traps.
+//! Audio and game engines set others. All arithmetic that decides runs in the default mode, and the
+//! caller finds its own as it was, also after a panic.
 
 use std::marker::PhantomData;
 
@@ -20,15 +21,16 @@ mod control {
 
     pub fn get() -> u64 {
         let mut word = 0_u32;
-        // SAFETY: every CPU with SSE, which this crate's floats need, has MXCSR; it is written to `word`.
+        // SAFETY: every CPU with SSE, which this crate's floats need, has MXCSR; it is written to
+        // `word`.
         unsafe { asm!("stmxcsr [{}]", in(reg) &raw mut word, options(nostack, preserves_flags)) };
         u64::from(word) & CONTROL
     }
 
     pub fn set(word: u64) {
         let word = word as u32;
-        // SAFETY: `word` has been read from MXCSR or is one of the above, whose reserved bits are zero.
-        // Callers return to the mode that was before they return (`Former`).
+        // SAFETY: `word` has been read from MXCSR or is one of the above, whose reserved bits are
+        // zero. Callers return to the mode that was before they return (`Former`).
         unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const word, options(nostack, preserves_flags)) };
     }
 }
@@ -51,8 +53,8 @@ mod control {
     }
 
     pub fn set(word: u64) {
-        // SAFETY: `word` has been read from FPCR or is one of the above. Callers return to the mode that was
-        // before they return (`Former`).
+        // SAFETY: `word` has been read from FPCR or is one of the above. Callers return to the mode
+        // that was before they return (`Former`).
         unsafe { asm!("msr fpcr, {}", in(reg) word, options(nostack, preserves_flags)) };
     }
 }
@@ -79,8 +81,8 @@ impl FpMode {
     /// What Rust assumes.
     pub const DEFAULT: Self = Self(control::DEFAULT);
 
-    /// Other modes that hosts may have set, for tests: subnormal numbers are zero; results are rounded down,
-    /// up, toward zero.
+    /// Other modes that hosts may have set, for tests: subnormal numbers are zero; results are
+    /// rounded down, up, toward zero.
     pub const OTHERS: [Self; 4] = [
         Self(control::FLUSH),
         Self(control::ROUNDINGS[0]),
@@ -94,7 +96,8 @@ impl FpMode {
         Self(control::get())
     }
 
-    /// Calls `work` in this mode; afterwards, and if `work` panics, the thread has its former mode again.
+    /// Calls `work` in this mode; afterwards, and if `work` panics, the thread has its former mode
+    /// again.
     #[inline]
     pub fn run<R>(self, work: impl FnOnce() -> R) -> R {
         let _former = Former::before(self);

@@ -7,11 +7,12 @@ use super::ROW;
 /// Only this crate's tiers implement [`Lanes`]; a kernel may rely on their bit-identical results.
 pub trait Sealed {}
 
-/// A tier of the CPU. Values of this type are tokens: whoever holds one has checked that the CPU has the tier, and
-/// vectors come from tokens alone, so their operators need no further check.
+/// A tier of the CPU. Values of this type are tokens: whoever holds one has checked that the CPU
+/// has the tier, and vectors come from tokens alone, so their operators need no further check.
 ///
-/// Semantics are those of IEEE 754 binary32, round to nearest even, with these choices where CPUs differ:
-/// `min(a, b)` is `if a < b { a } else { b }` and `max(a, b)` is `if a > b { a } else { b }` (so a NaN yields `b`).
+/// Semantics are those of IEEE 754 binary32, round to nearest even, with these choices where CPUs
+/// differ: `min(a, b)` is `if a < b { a } else { b }` and `max(a, b)` is `if a > b { a } else { b
+/// }` (so a NaN yields `b`).
 pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     /// Lanes in a vector: 1, 4, 8 or 16.
     const WIDTH: usize;
@@ -60,7 +61,8 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     /// Rounded to f32.
     fn narrow(self, a: Self::D) -> Self::F;
 
-    /// Entry `index` of a non-empty table, lane by lane; an index past the end reads the last entry.
+    /// Entry `index` of a non-empty table, lane by lane; an index past the end reads the last
+    /// entry.
     fn gather(self, table: &[f32], index: Self::I) -> Self::F;
     /// Entry `index` (0 to 15) of a table, lane by lane.
     fn lookup_16(self, table: &[f32; 16], index: Self::I) -> Self::F;
@@ -79,31 +81,36 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
     fn gt_u32(self, a: Self::I, b: Self::I) -> Self::M;
     /// `if m { a } else { b }`.
     fn select_u32(self, m: Self::M, a: Self::I, b: Self::I) -> Self::I;
-    /// Entry `index` of a non-empty table, lane by lane; an index past the end reads the last entry.
+    /// Entry `index` of a non-empty table, lane by lane; an index past the end reads the last
+    /// entry.
     fn gather_u32(self, table: &[u32], index: Self::I) -> Self::I;
     /// Entry `index` (0 to 15) of a table, lane by lane.
     fn lookup_16_u32(self, table: &[u32; 16], index: Self::I) -> Self::I;
     /// The upper 28 bits and the lower 4 bits.
     fn split_u32(self, a: Self::I) -> (Self::I, Self::I);
-    /// Writes the lanes whose bit in `keep` is set to the front of `out`, in lane order; `out` has at least `WIDTH` elements and
-    /// those behind the kept ones are left in an unspecified state: vectors may be stored whole.
+    /// Writes the lanes whose bit in `keep` is set to the front of `out`, in lane order; `out` has
+    /// at least `WIDTH` elements and those behind the kept ones are left in an unspecified state:
+    /// vectors may be stored whole.
     fn compress(self, keep: u32, values: Self::I, out: &mut [u32]);
     /// As [`Self::compress`].
     fn pack(self, keep: u32, values: Self::F, out: &mut [f32]);
 
-    /// The first `WIDTH` quads of `from`, which must have that many, as columns: element c of the result holds number c of
-    /// every quad.
+    /// The first `WIDTH` quads of `from`, which must have that many, as columns: element c of the
+    /// result holds number c of every quad.
     fn load_quads(self, from: &[[f32; 4]]) -> [Self::F; 4];
-    /// Quads of a non-empty table as columns: of each of the first `WIDTH` codes, of which there must be that many, the
-    /// upper 28 bits are the index (see [`Self::split_u32`]). An index past the end reads the last quad.
+    /// Quads of a non-empty table as columns: of each of the first `WIDTH` codes, of which there
+    /// must be that many, the upper 28 bits are the index (see [`Self::split_u32`]). An index past
+    /// the end reads the last quad.
     fn gather_quads(self, quads: &[[f32; 4]], codes: &[u32]) -> [Self::F; 4];
-    /// Writes columns as the first `WIDTH` quads of `to`, which has that many: the reverse of [`Self::load_quads`].
+    /// Writes columns as the first `WIDTH` quads of `to`, which has that many: the reverse of
+    /// [`Self::load_quads`].
     fn store_quads(self, columns: [Self::F; 4], to: &mut [[f32; 4]]);
-    /// Sixes `sixes[pick[lane]]` of a non-empty table as columns; an index past the end reads the last one. `pick` has at least
-    /// `WIDTH` elements.
+    /// Sixes `sixes[pick[lane]]` of a non-empty table as columns; an index past the end reads the
+    /// last one. `pick` has at least `WIDTH` elements.
     fn gather_sixes(self, sixes: &[[f32; 6]], pick: &[u32]) -> [Self::F; 6];
-    /// Rows `rows[pick[lane]]` of a non-empty table as columns: element c of the result holds number c of every picked row;
-    /// an index past the end reads the last row. `pick` has at least `WIDTH` elements.
+    /// Rows `rows[pick[lane]]` of a non-empty table as columns: element c of the result holds
+    /// number c of every picked row; an index past the end reads the last row. `pick` has at least
+    /// `WIDTH` elements.
     fn load_transposed(self, rows: &[[f32; ROW]], pick: &[u32]) -> [Self::F; ROW];
 }
 
@@ -112,7 +119,8 @@ pub trait Lanes: Copy + Send + Sync + Sealed + 'static {
 #[inline(always)]
 pub(super) fn pack_lanes<T: Copy, const N: usize>(keep: u32, lanes: [T; N], out: &mut [T]) {
     let out = &mut out[..N];
-    // Four lanes seldom have one to keep, and packing them one by one takes longer than a test that fills them.
+    // Four lanes seldom have one to keep, and packing them one by one takes longer than a test that
+    // fills them.
     if keep == 0 {
         return;
     }
@@ -124,7 +132,8 @@ pub(super) fn pack_lanes<T: Copy, const N: usize>(keep: u32, lanes: [T; N], out:
     }
 }
 
-/// [`Lanes::gather`] and [`Lanes::gather_u32`] lane by lane, where the CPU has no instruction for them.
+/// [`Lanes::gather`] and [`Lanes::gather_u32`] lane by lane, where the CPU has no instruction for
+/// them.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 #[inline(always)]
 pub(super) fn entries<T: Copy, const N: usize>(table: &[T], index: [u32; N]) -> [T; N] {
@@ -145,7 +154,8 @@ pub(super) fn halves<'a>(sixes: &'a [[f32; 6]], pick: &[u32]) -> [[&'a [f32; 4];
     [pairs.map(|[front, _]| front), pairs.map(|[_, back]| back)]
 }
 
-/// The same by indices that a vector has clamped: doing it one by one would cost a tenth of a frame of boxes.
+/// The same by indices that a vector has clamped: doing it one by one would cost a tenth of a frame
+/// of boxes.
 ///
 /// # Safety
 /// Each index is less than the number of sixes at the pointer.
@@ -157,7 +167,8 @@ pub(super) unsafe fn ends_of_sixes<const N: usize>(
 ) -> [[*const f32; N]; 2] {
     let mut ends = [[sixes.cast(); N]; 2];
     for (lane, index) in index.into_iter().enumerate() {
-        // SAFETY: the caller vouches for the index, and four of six numbers follow the first and the third of them.
+        // SAFETY: the caller vouches for the index, and four of six numbers follow the first and
+        // the third of them.
         unsafe {
             let six: *const f32 = sixes.add(index as usize).cast();
             (ends[0][lane], ends[1][lane]) = (six, six.add(2));
@@ -166,7 +177,8 @@ pub(super) unsafe fn ends_of_sixes<const N: usize>(
     ends
 }
 
-/// The greatest code that leads to a quad of a table with `len` quads, of which there is one at least.
+/// The greatest code that leads to a quad of a table with `len` quads, of which there is one at
+/// least.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub(super) fn last_code(len: usize) -> u32 {
@@ -208,7 +220,8 @@ macro_rules! float_operators {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                // SAFETY: a vector exists only if its token did, and the token proves the CPU feature.
+                // SAFETY: a vector exists only if its token did, and the token proves the CPU
+                // feature.
                 Self(unsafe { $intrinsic(self.0, other.0) })
             }
         }
@@ -217,7 +230,8 @@ macro_rules! float_operators {
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 pub(super) use float_operators;
 
-/// Implements the arithmetic operators of a tier's f64, of which two vectors have as many as one of f32 has, by its intrinsics.
+/// Implements the arithmetic operators of a tier's f64, of which two vectors have as many as one of
+/// f32 has, by its intrinsics.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 macro_rules! double_operators {
     ($vector:ident, $add:ident, $sub:ident, $mul:ident, $div:ident) => {
@@ -232,7 +246,8 @@ macro_rules! double_operators {
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 let (Self([low, high]), Self([other_low, other_high])) = (self, other);
-                // SAFETY: a vector exists only if its token did, and the token proves the CPU feature.
+                // SAFETY: a vector exists only if its token did, and the token proves the CPU
+                // feature.
                 Self(unsafe { [$intrinsic(low, other_low), $intrinsic(high, other_high)] })
             }
         }

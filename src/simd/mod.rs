@@ -1,19 +1,21 @@
-//! The one room with `unsafe`: vectors of f32 in every tier of the CPU behind one sealed trait, and the
-//! floating-point mode that they run in.
+//! The one room with `unsafe`: vectors of f32 in every tier of the CPU behind one sealed trait, and
+//! the floating-point mode that they run in.
 //!
-//! A kernel is written once, generic over [`Lanes`], with plain `+ − ×`, comparisons and table look-ups and never a
-//! fused multiply-add, so that every tier computes the same bits (design, section 4). [`Tier`] says which tiers this
-//! CPU has; holding one proves it. [`dispatch`] compiles the kernel once a tier, inside a function with that tier's
-//! target features, and calls the one that the level names.
+//! A kernel is written once, generic over [`Lanes`], with plain `+ − ×`, comparisons and table
+//! look-ups and never a fused multiply-add, so that every tier computes the same bits (design,
+//! section 4). [`Tier`] says which tiers this CPU has; holding one proves it. [`dispatch`] compiles
+//! the kernel once a tier, inside a function with that tier's target features, and calls the one
+//! that the level names.
 //!
-//! Why `std::arch` behind tokens and not a portable vector crate: a sphere test measured .060 ns this way,
-//! .106 autovectorised and .164 through a crate's dispatch.
+//! Why `std::arch` behind tokens and not a portable vector crate: a sphere test measured .060 ns
+//! this way, .106 autovectorised and .164 through a crate's dispatch.
 
 #![allow(
     unsafe_code,
     reason = "the intrinsics of std::arch and the floating-point mode are unsafe; this room alone holds them"
 )]
 
+mod aabb;
 mod columns;
 mod fp_mode;
 mod lanes;
@@ -29,12 +31,14 @@ mod neon;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 
+pub use aabb::{Aabb, boxes_of, numbers_of};
 pub use columns::{quads_in_columns, turn_rows};
 pub use fp_mode::{FpMode, in_default_mode};
 pub use lanes::Lanes;
 pub use tier::{Tier, TierError};
 
-/// The widest tier's lanes: columns are padded by this much so that any tier may load past their end.
+/// The widest tier's lanes: columns are padded by this much so that any tier may load past their
+/// end.
 pub const MAX_WIDTH: usize = 16;
 
 /// Quads that codes can tell apart: a code is an index of 28 bits over a lane of 4.
@@ -49,7 +53,8 @@ pub const LANES: [u32; MAX_WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 1
 /// Bytes that come into the caches with any one of them, on any processor that is known of.
 pub const CACHE_LINE: usize = 64;
 
-/// Asks for the cache line where `element` begins, so that it is near when it is read some hundred cycles later.
+/// Asks for the cache line where `element` begins, so that it is near when it is read some hundred
+/// cycles later.
 #[inline(always)]
 pub fn prefetch<T>(element: &T) {
     #[cfg(target_arch = "x86_64")]
@@ -74,7 +79,8 @@ pub trait Kernel {
     /// What it returns.
     type Output;
 
-    /// The computation, to be marked `#[inline(always)]` so that it takes on the tier's target features.
+    /// The computation, to be marked `#[inline(always)]` so that it takes on the tier's target
+    /// features.
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }
 

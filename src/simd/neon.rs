@@ -1,6 +1,7 @@
 //! The NEON tier of AArch64: 4 lanes. What NEON has no instruction for goes through memory.
 //!
-//! `vminq`/`vmaxq` propagate NaN and order −0 below +0, so `min` and `max` are a comparison and a selection instead.
+//! `vminq`/`vmaxq` propagate NaN and order −0 below +0, so `min` and `max` are a comparison and a
+//! selection instead.
 
 use std::arch::aarch64::*;
 
@@ -228,7 +229,8 @@ impl Lanes for Neon {
     #[inline(always)]
     fn load_quads(self, from: &[[f32; 4]]) -> [F4; 4] {
         let from = from[..4].as_flattened();
-        // SAFETY: 16 floats are there, and the token proves NEON. The load itself takes every fourth float to one vector.
+        // SAFETY: 16 floats are there, and the token proves NEON. The load itself takes every
+        // fourth float to one vector.
         let float32x4x4_t(a, b, c, d) = unsafe { vld4q_f32(from.as_ptr()) };
         [F4(a), F4(b), F4(c), F4(d)]
     }
@@ -241,7 +243,8 @@ impl Lanes for Neon {
     #[inline(always)]
     fn store_quads(self, [a, b, c, d]: [F4; 4], to: &mut [[f32; 4]]) {
         let to = to[..4].as_flattened_mut();
-        // SAFETY: room for 16 floats is there, and the token proves NEON. The store itself takes one of each vector in turn.
+        // SAFETY: room for 16 floats is there, and the token proves NEON. The store itself takes
+        // one of each vector in turn.
         unsafe { vst4q_f32(to.as_mut_ptr(), float32x4x4_t(a.0, b.0, c.0, d.0)) };
     }
     #[inline(always)]

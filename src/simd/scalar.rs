@@ -1,7 +1,8 @@
 //! The scalar tier, one lane wide, and its flush-to-zero twin.
 //!
-//! `Scalar<true>` replaces denormal operands and results by zero (of the same sign), as a CPU does with DAZ and FTZ
-//! set. Changing the CPU's own mode from Rust is undefined behaviour, so the mode is emulated here for the tests.
+//! `Scalar<true>` replaces denormal operands and results by zero (of the same sign), as a CPU does
+//! with DAZ and FTZ set. Changing the CPU's own mode from Rust is undefined behaviour, so the mode
+//! is emulated here for the tests.
 
 use std::ops::{Add, BitAnd, BitOr, Mul, Sub};
 

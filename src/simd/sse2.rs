@@ -1,4 +1,5 @@
-//! The SSE2 tier: 4 lanes, the floor of every x86-64 CPU. What SSE2 has no instruction for goes through memory.
+//! The SSE2 tier: 4 lanes, the floor of every x86-64 CPU. What SSE2 has no instruction for goes
+//! through memory.
 
 use std::arch::x86_64::*;
 
@@ -196,7 +197,8 @@ impl Lanes for Sse2 {
     }
     #[inline(always)]
     fn gt_u32(self, a: I4, b: I4) -> M4 {
-        // SAFETY: the token proves SSE2, whose comparison is signed: flipped signs put the upper half above the lower.
+        // SAFETY: the token proves SSE2, whose comparison is signed: flipped signs put the upper
+        // half above the lower.
         M4(unsafe {
             let sign = _mm_set1_epi32(i32::MIN);
             let [a, b] = [_mm_xor_si128(a.0, sign), _mm_xor_si128(b.0, sign)];

@@ -9,7 +9,8 @@ const Y: [f32; 16] = [
     -0.0, 0.0, 1.5, 2.25, 1e-40, 1e-40, -3e38, 3e38, 0.7, -0.1, -0.2, 1e20, -5.0, -6.0, 41.0, 1.0,
 ];
 
-/// Lanes as numbers: a vector's lane i is what `select` and `gt` can tell of it, so compare through tables.
+/// Lanes as numbers: a vector's lane i is what `select` and `gt` can tell of it, so compare through
+/// tables.
 struct Check;
 
 impl Kernel for Check {
@@ -29,7 +30,8 @@ impl Kernel for Check {
     }
 }
 
-/// Whether vector `v` holds exactly the numbers `expected` (compared as numbers: both orders of `gt` are false).
+/// Whether vector `v` holds exactly the numbers `expected` (compared as numbers: both orders of
+/// `gt` are false).
 fn same<L: Lanes>(l: L, v: L::F, expected: &[f32]) -> bool {
     let e = l.load(expected);
     l.bits(l.gt(v, e) | l.gt(e, v)) == 0

@@ -8,8 +8,8 @@ use super::neon;
 #[cfg(target_arch = "x86_64")]
 use super::{avx2, avx512, sse2};
 
-/// A tier that this CPU has: it can be built only by [`Tier::detect`], [`Tier::available`] or by parsing a name,
-/// and all three ask the CPU first.
+/// A tier that this CPU has: it can be built only by [`Tier::detect`], [`Tier::available`] or by
+/// parsing a name, and all three ask the CPU first.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Tier(Isa);
 
@@ -50,8 +50,9 @@ impl Tier {
     /// The plain scalar tier, which every CPU has.
     pub const SCALAR: Self = Self(Isa::Scalar);
 
-    /// The scalar tier with denormal operands and results replaced by zero, as a CPU does in flush-to-zero mode.
-    /// For tests alone: decisions stay sound there, but need not equal the other tiers'.
+    /// The scalar tier with denormal operands and results replaced by zero, as a CPU does in
+    /// flush-to-zero mode. For tests alone: decisions stay sound there, but need not equal the
+    /// other tiers'.
     pub const SCALAR_FLUSH: Self = Self(Isa::ScalarFlush);
 
     /// The fastest tier of this CPU.

@@ -1,18 +1,20 @@
-//! S-DOP in batches (paper, section 4b): the potentially colliding set is listed first, then its or-DOPs are tested.
+//! S-DOP in batches (paper, section 4b): the potentially colliding set is listed first, then its
+//! or-DOPs are tested.
 //!
-//! Lazy updates need the pairs before rows are made, and so flow this way under every strategy that refines. Where the
-//! output is in portions, so is the list.
+//! Lazy updates need the pairs before rows are made, and so flow this way under every strategy that
+//! refines. Where the output is in portions, so is the list.
 
 use super::interest::InterestFilter;
 use super::listing::{Listed, list};
 use super::output::Output;
 use super::refine::Refiner;
-use super::tasks::Task;
+use super::tasks::Tasks;
 use super::{Inputs, Scratch, Totals};
 use crate::pairs::PairList;
 use crate::update::OrDopRows;
 
-/// Candidates that pass the first test are listed, then refined; with `interest`, only those that have a body of interest.
+/// Candidates that pass the first test are listed, then refined; with `interest`, only those that
+/// have a body of interest.
 pub(super) fn flow(
     inputs: Inputs<'_>,
     rows: &mut OrDopRows,
@@ -67,8 +69,9 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    /// Appends what is reported of `candidates` to `out`, in their order; on all threads if their `tasks` are at hand.
-    fn refine(&mut self, candidates: &PairList, tasks: Option<&mut Vec<Task>>, out: &mut PairList) {
+    /// Appends what is reported of `candidates` to `out`, in their order; on all threads if their
+    /// `tasks` are at hand.
+    fn refine(&mut self, candidates: &PairList, tasks: Option<&mut Tasks>, out: &mut PairList) {
         let Some(interest) = self.interest else {
             return self.refiner.refine(candidates, tasks, out);
         };

@@ -1,4 +1,5 @@
-//! Which bodies are of interest in a frame (a list, or those whose sphere centres lie in a view cone), and which pairs.
+//! Which bodies are of interest in a frame (a list, or those whose sphere centres lie in a view
+//! cone), and which pairs.
 
 use crate::bodies::Bodies;
 use crate::pairs::PairList;
@@ -57,8 +58,8 @@ impl InterestFilter<'_> {
         }
     }
 
-    /// Appends, as bodies, the pairs that weren't to be refined and those that `passed`, in their common order: a list
-    /// must not show where blocks, and so threads, begin.
+    /// Appends, as bodies, the pairs that weren't to be refined and those that `passed`, in their
+    /// common order: a list must not show where blocks, and so threads, begin.
     pub fn merge(&self, passed: &PairList, out: &mut PairList) {
         let mut passed = passed.iter().peekable();
         for (_, [a, b], of_interest) in self.classified() {
@@ -69,8 +70,8 @@ impl InterestFilter<'_> {
     }
 }
 
-/// More than the cosine of the half angle, the axis' length and a product may be off by: what lies on the rim is in the
-/// cone, sideways at 90° and straight behind at 180°.
+/// More than the cosine of the half angle, the axis' length and a product may be off by: what lies
+/// on the rim is in the cone, sideways at 90° and straight behind at 180°.
 const RIM: f64 = exp2(-48);
 
 /// A view cone in the world frame.
@@ -103,8 +104,8 @@ impl PlacedCone {
         }
     }
 
-    /// The apex itself is in the cone, so a body that looks is of interest when its sphere's centre is its origin; elsewhere the
-    /// centre counts, as for others.
+    /// The apex itself is in the cone, so a body that looks is of interest when its sphere's centre
+    /// is its origin; elsewhere the centre counts, as for others.
     fn sees(&self, centre: [f32; 3]) -> bool {
         let way: [f64; 3] = std::array::from_fn(|i| f64::from(centre[i]) - self.apex[i]);
         let distance = dot(way, way).sqrt();
@@ -170,7 +171,8 @@ mod tests {
         }
     }
 
-    /// Sideways at 90° and straight behind at 180° are on the rim, whatever an axis' length has rounded.
+    /// Sideways at 90° and straight behind at 180° are on the rim, whatever an axis' length has
+    /// rounded.
     #[test]
     fn what_lies_on_the_rim_is_in_the_cone() {
         for apex in APEXES {
@@ -212,8 +214,8 @@ mod tests {
         assert!(!seen(&cone, &bodies, [5.0, 6.0, 6.0]), "behind it");
     }
 
-    /// Bodies 2·10⁻⁵ of their distance to either side of the rim, where f32 can place them: an apex or an angle a little off
-    /// tells.
+    /// Bodies 2·10⁻⁵ of their distance to either side of the rim, where f32 can place them: an apex
+    /// or an angle a little off tells.
     #[test]
     fn a_cone_s_rim_is_where_its_angle_says() {
         let distance = 64.0_f64;
@@ -248,7 +250,8 @@ mod tests {
         }
     }
 
-    /// Of two centres that are neighbours in f32, one in the cone and one not, integers say which: cosines of ½, 0 and −½.
+    /// Of two centres that are neighbours in f32, one in the cone and one not, integers say which:
+    /// cosines of ½, 0 and −½.
     #[test]
     fn neighbours_on_either_side_of_the_rim_are_told_apart() {
         let mut random = ChaCha8Rng::seed_from_u64(11);
@@ -260,7 +263,8 @@ mod tests {
             let direction = [below(999), below(999), below(999)];
             let apex = [(); 3].map(|()| below(bits));
             let (axis, degrees) = (trial % 3, [60_u8, 90, 120][trial / 3 % 3]);
-            // Inside from 0 on: 4·(way·direction)², with its sign, against 4·cos²·|way|²·|direction|².
+            // Inside from 0 on: 4·(way·direction)², with its sign, against
+            // 4·cos²·|way|²·|direction|².
             let inside = |centre: [i64; 3]| {
                 let way = std::array::from_fn(|i| centre[i] - apex[i]);
                 let along = dot(way, direction);

@@ -2,18 +2,19 @@
 
 use std::ops::Range;
 
+use super::Totals;
 use super::output::{Outlet, Output};
-use super::tasks::{Task, split_work};
-use super::{Inputs, Scratch, SlotNames, Totals};
+use super::tasks::{Task, Tasks, split_work};
+#[cfg(feature = "shapes")]
+use super::{Inputs, Scratch, SlotNames};
 use crate::bodies::Groups;
-use crate::broad_phase::{
-    Arranged, Block, EndSlots, FirstTest, MOST_CANDIDATES, PairFinder, SlotTest,
-};
+use crate::broad_phase::{Block, EndSlots, FirstTest, MOST_CANDIDATES, PairFinder, SlotTest};
 use crate::counters::VolumeCounters;
 use crate::overlap::boxes::Cubes;
-use crate::overlap::intervals::IntervalSlots;
-use crate::overlap::sphere::Spheres;
+#[cfg(feature = "shapes")]
+use crate::overlap::{intervals::IntervalSlots, sphere::Spheres};
 use crate::pairs::PairList;
+#[cfg(feature = "shapes")]
 use crate::settings::TestedVolume;
 use crate::simd::{CACHE_LINE, Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
 use crate::threads::{Executor, Threads};
@@ -21,7 +22,8 @@ use crate::threads::{Executor, Threads};
 /// Slots of a run that are tested before their hits are listed.
 const PIECE: usize = MOST_CANDIDATES;
 
-/// How far beyond the farthest slot of a block names are prefetched: some twenty blocks ahead of their use.
+/// How far beyond the farthest slot of a block names are prefetched: some twenty blocks ahead of
+/// their use.
 const AHEAD: usize = 256;
 
 /// Up to so many names the second-level cache keeps, and prefetching only costs.
@@ -33,10 +35,13 @@ const LINE: usize = CACHE_LINE / size_of::<u32>();
 /// The first volume test of a strategy.
 #[derive(Clone, Copy)]
 enum First<'a> {
+    #[cfg(feature = "shapes")]
     /// Spheres in slot order.
-    Spheres(Arranged<'a>),
+    Spheres(crate::broad_phase::Arranged<'a>),
+    #[cfg(feature = "shapes")]
     /// World-aligned slabs.
     Intervals(&'a IntervalSlots),
+    #[cfg(feature = "shapes")]
     /// None: every candidate passes.
     PassAll,
     /// Given boxes.
@@ -52,6 +57,7 @@ pub(crate) enum BoxTest<'a> {
     Ends(&'a EndSlots),
 }
 
+#[cfg(feature = "shapes")]
 /// What is listed of a pair of slots.
 #[derive(Clone, Copy)]
 pub(super) enum Listed {
@@ -61,19 +67,33 @@ pub(super) enum Listed {
     Places,
 }
 
+/// What is listed of a pair, that of the lower body first.
+#[inline(always)]
+fn in_order<L: Lanes>(l: L, listed: [L::I; 2], bodies: [L::I; 2]) -> [L::I; 2] {
+    let [one, other] = listed;
+    let swapped = l.gt_u32(bodies[0], bodies[1]);
+    [
+        l.select_u32(swapped, other, one),
+        l.select_u32(swapped, one, other),
+    ]
+}
+
 /// The candidates of a frame, the test that they must pass, and what is listed of those that do.
 #[derive(Clone, Copy)]
 pub(super) struct Listing<'a> {
     tier: Tier,
     finder: &'a PairFinder,
     first: First<'a>,
+    #[cfg(feature = "shapes")]
     listed: Listed,
+    #[cfg(feature = "shapes")]
     names: SlotNames<'a>,
     /// Each body's groups where not all collide with all.
     groups: Option<&'a [Groups]>,
 }
 
 impl<'a> Listing<'a> {
+    #[cfg(feature = "shapes")]
     pub(super) fn new(inputs: Inputs<'a>, listed: Listed) -> Self {
         let first = match inputs.settings.strategy.scheme().first {
             None => First::PassAll,
@@ -90,22 +110,68 @@ impl<'a> Listing<'a> {
         }
     }
 
-    /// What is listed of pairs with these names, that of the lower body first.
+    /// The entry of each slot that hits are looked up in: its name, or its body where slots name
+    /// themselves.
+    #[cfg(feature = "shapes")]
+    fn by_slot(&self) -> &'a [u32] {
+        match self.names {
+            SlotNames::Bodies | SlotNames::Places(_) => self.finder.names(),
+            SlotNames::Slots(body) => body,
+        }
+    }
+
+    #[cfg(not(feature = "shapes"))]
+    fn by_slot(&self) -> &'a [u32] {
+        self.finder.names()
+    }
+
+    /// What is listed of hits with these entries, that of the lower body first.
+    #[cfg(feature = "shapes")]
     #[inline(always)]
-    fn in_order<L: Lanes>(&self, l: L, names: [L::I; 2], bodies: [L::I; 2]) -> [L::I; 2] {
-        let [one, other] = match self.listed {
+    fn listed<L: Lanes>(&self, l: L, hits: Hits, hit: L::I, entries: [L::I; 2]) -> [L::I; 2] {
+        let (mut names, mut bodies) = (entries, entries);
+        match self.names {
+            SlotNames::Bodies => {}
+            // Written out: a closure would be compiled apart, without the tier's features.
+            SlotNames::Places(body) => {
+                bodies = [
+                    l.gather_u32(body, entries[0]),
+                    l.gather_u32(body, entries[1]),
+                ]
+            }
+            SlotNames::Slots(_) => names = hits.slots(l, hit),
+        }
+        let listed = match self.listed {
             Listed::Bodies => bodies,
             Listed::Places => names,
         };
-        let swapped = l.gt_u32(bodies[0], bodies[1]);
-        [
-            l.select_u32(swapped, other, one),
-            l.select_u32(swapped, one, other),
-        ]
+        in_order(l, listed, bodies)
     }
 
-    /// Lists the pairs of some parts of the finder's work that pass the first test, and counts tests and hits. `flush`
-    /// gets the list whenever it has reached `enough` pairs.
+    #[cfg(not(feature = "shapes"))]
+    #[inline(always)]
+    fn listed<L: Lanes>(&self, l: L, _: Hits, _: L::I, entries: [L::I; 2]) -> [L::I; 2] {
+        in_order(l, entries, entries)
+    }
+
+    /// The body of a name that is listed.
+    #[cfg(feature = "shapes")]
+    fn body_of(&self, name: u32) -> u32 {
+        match (self.listed, self.names) {
+            (Listed::Places, SlotNames::Places(body) | SlotNames::Slots(body)) => {
+                body[name as usize]
+            }
+            _ => name,
+        }
+    }
+
+    #[cfg(not(feature = "shapes"))]
+    fn body_of(&self, name: u32) -> u32 {
+        name
+    }
+
+    /// Lists the pairs of some parts of the finder's work that pass the first test, and counts
+    /// tests and hits. `flush` gets the list whenever it has reached `enough` pairs.
     pub(super) fn run(
         &self,
         parts: Range<usize>,
@@ -129,16 +195,18 @@ impl<'a> Listing<'a> {
     }
 }
 
+#[cfg(feature = "shapes")]
 /// Reports what passes the first test.
 pub(super) fn flow(inputs: Inputs<'_>, scratch: &mut Scratch, output: Output<'_>) -> Totals {
     list(inputs, Listed::Bodies, &mut scratch.tasks, output)
 }
 
+#[cfg(feature = "shapes")]
 /// Lists what passes the first test, on all threads.
 pub(super) fn list(
     inputs: Inputs<'_>,
     listed: Listed,
-    tasks: &mut Vec<Task>,
+    tasks: &mut Tasks,
     output: Output<'_>,
 ) -> Totals {
     list_parts(
@@ -162,24 +230,26 @@ pub(crate) struct BoxInputs<'a> {
 /// Lists the boxes that meet, by their names, on all threads.
 pub(crate) fn list_boxes(
     inputs: BoxInputs<'_>,
-    scratch: &mut Scratch,
+    tasks: &mut Tasks,
     output: Output<'_>,
 ) -> VolumeCounters {
     let listing = Listing {
         tier: inputs.executor.tier,
         finder: inputs.finder,
         first: First::Boxes(inputs.test),
+        #[cfg(feature = "shapes")]
         listed: Listed::Bodies,
+        #[cfg(feature = "shapes")]
         names: SlotNames::Bodies,
         groups: inputs.groups,
     };
-    list_parts(listing, inputs.executor.pool, &mut scratch.tasks, output).first
+    list_parts(listing, inputs.executor.pool, tasks, output).first
 }
 
 fn list_parts(
     listing: Listing<'_>,
     pool: &Threads,
-    tasks: &mut Vec<Task>,
+    tasks: &mut Tasks,
     output: Output<'_>,
 ) -> Totals {
     let work = |parts: Range<usize>, task: &mut Task, outlet: &Outlet<'_, '_>| {
@@ -207,8 +277,11 @@ impl Kernel for List<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> VolumeCounters {
         match self.listing.first {
+            #[cfg(feature = "shapes")]
             First::Spheres(slots) => self.with(l, &Spheres(slots)),
+            #[cfg(feature = "shapes")]
             First::Intervals(intervals) => self.with(l, intervals),
+            #[cfg(feature = "shapes")]
             First::PassAll => self.with(l, &PassAll),
             First::Boxes(BoxTest::Cubes(cubes)) => self.with(l, &cubes),
             First::Boxes(BoxTest::Ends(ends)) => self.with(l, ends),
@@ -220,10 +293,7 @@ impl List<'_> {
     #[inline(always)]
     fn with<L: Lanes>(self, l: L, test: &impl SlotTest) -> VolumeCounters {
         let finder = self.listing.finder;
-        let by_slot = match self.listing.names {
-            SlotNames::Bodies | SlotNames::Places(_) => finder.names(),
-            SlotNames::Slots(body) => body,
-        };
+        let by_slot = self.listing.by_slot();
         let mut lister = Lister {
             test,
             by_slot,
@@ -239,9 +309,11 @@ impl List<'_> {
     }
 }
 
+#[cfg(feature = "shapes")]
 /// The test that every candidate passes.
 struct PassAll;
 
+#[cfg(feature = "shapes")]
 impl SlotTest for PassAll {
     #[inline(always)]
     fn run<L: Lanes>(&self, _: L, _: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
@@ -307,6 +379,7 @@ enum Hits {
 }
 
 impl Hits {
+    #[cfg(feature = "shapes")]
     /// The slots of a vector of pairs.
     #[inline(always)]
     fn slots<L: Lanes>(self, l: L, hit: L::I) -> [L::I; 2] {
@@ -337,8 +410,9 @@ impl Hits {
 }
 
 impl<T> Lister<'_, '_, T> {
-    /// Prefetches the names that the next blocks will be the first to read: those behind the farthest slot so far. Apart, so that
-    /// scenes whose names are in the caches pay for a comparison only.
+    /// Prefetches the names that the next blocks will be the first to read: those behind the
+    /// farthest slot so far. Apart, so that scenes whose names are in the caches pay for a
+    /// comparison only.
     #[inline(never)]
     fn prefetch_beyond(&mut self, block: &Block<'_>) {
         let farthest = block.codes().last().map_or(0, |code| code >> 4) as usize;
@@ -365,21 +439,16 @@ impl<T> Lister<'_, '_, T> {
         }
     }
 
-    /// Lists them all, a vector at a time; what is computed of the lanes behind the last hit is overwritten by the next pairs.
+    /// Lists them all, a vector at a time; what is computed of the lanes behind the last hit is
+    /// overwritten by the next pairs.
     #[inline(always)]
     fn name<L: Lanes>(&mut self, l: L, found: usize, hits: Hits) {
         let (first, second) = self.out.room(found);
         let mut start = 0;
         while start < found {
             let hit = l.load_u32(&self.hits[start..]);
-            let [a, b] = hits.entries(l, hit, self.by_slot);
-            let (mut names, mut bodies) = ([a, b], [a, b]);
-            match self.listing.names {
-                SlotNames::Bodies => {}
-                SlotNames::Places(body) => bodies = [l.gather_u32(body, a), l.gather_u32(body, b)],
-                SlotNames::Slots(_) => names = hits.slots(l, hit),
-            }
-            let [lower, higher] = self.listing.in_order(l, names, bodies);
+            let entries = hits.entries(l, hit, self.by_slot);
+            let [lower, higher] = self.listing.listed(l, hits, hit, entries);
             l.store_u32(lower, &mut first[start..]);
             l.store_u32(higher, &mut second[start..]);
             start += L::WIDTH;
@@ -387,18 +456,11 @@ impl<T> Lister<'_, '_, T> {
         self.out.advance(found);
     }
 
-    /// Drops those listed from this one on whose bodies don't collide. Apart, so that the common case stays small.
+    /// Drops those listed from this one on whose bodies don't collide. Apart, so that the common
+    /// case stays small.
     #[inline(never)]
     fn keep_colliding(&mut self, listed: usize, groups: &[Groups]) {
-        let groups_of = |name: u32| {
-            let body = match (self.listing.listed, self.listing.names) {
-                (Listed::Places, SlotNames::Places(body) | SlotNames::Slots(body)) => {
-                    body[name as usize]
-                }
-                _ => name,
-            };
-            groups[body as usize]
-        };
+        let groups_of = |name: u32| groups[self.listing.body_of(name) as usize];
         self.out
             .keep_from(listed, |[a, b]| groups_of(a).collide(groups_of(b)));
     }

@@ -1,9 +1,10 @@
-//! Where listed pairs go: into one list, or portion after portion to a function, so that memory stays bounded whatever the
-//! number of pairs.
+//! Where listed pairs go: into one list, or portion after portion to a function, so that memory
+//! stays bounded whatever the number of pairs.
 //!
-//! Portions come in the order of the list, whichever thread found them: a thread whose list is full waits for its turn.
-//! Tasks are begun in their order, so the task whose turn it is always runs, and no thread waits for ever. While a task hands
-//! many portions over, the others wait: in a crowd, more threads bring nothing.
+//! Portions come in the order of the list, whichever thread found them: a thread whose list is full
+//! waits for its turn. Tasks are begun in their order, so the task whose turn it is always runs,
+//! and no thread waits for ever. While a task hands many portions over, the others wait: in a
+//! crowd, more threads bring nothing.
 
 use std::sync::{Condvar, Mutex, MutexGuard};
 
@@ -23,6 +24,7 @@ pub(crate) enum Output<'a> {
 /// Takes a portion.
 pub(crate) type Sink<'a> = dyn FnMut(&mut PairList) + Send + 'a;
 
+#[cfg(feature = "shapes")]
 impl Output<'_> {
     pub(super) fn is_in_portions(&self) -> bool {
         matches!(self, Self::Portions(_))
@@ -124,7 +126,8 @@ impl<'t, 's> Turn<'t, 's> {
 
 impl Drop for Turn<'_, '_> {
     fn drop(&mut self) {
-        // A poisoned lock means that the sink panicked: waiting tasks see that by themselves once they are woken.
+        // A poisoned lock means that the sink panicked: waiting tasks see that by themselves once
+        // they are woken.
         if let Ok(mut state) = self.turns.state.lock() {
             state.abandoned |= std::thread::panicking();
             state.task = self.task + 1;

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::time::Instant;
 
 use super::output::{Outlet, Output};
-use super::tasks::{Task, split_work};
+use super::tasks::{Task, Tasks, split_work};
 use super::{Inputs, Totals};
 use crate::counters::VolumeCounters;
 use crate::overlap::ordop::OrDopColumns;
@@ -40,7 +40,8 @@ impl<'a> Refine<'a> {
         }
     }
 
-    /// Tests pairs and appends the survivors to `out`, in list order. Called per block: the dispatch is paid once for all.
+    /// Tests pairs and appends the survivors to `out`, in list order. Called per block: the
+    /// dispatch is paid once for all.
     pub fn test(
         &self,
         [first, second]: [&[u32]; 2],
@@ -79,7 +80,8 @@ impl<'a> Refine<'a> {
     }
 }
 
-/// The places in which some pairs are, and those between: of bodies that move, which have the first places, and of the others.
+/// The places in which some pairs are, and those between: of bodies that move, which have the first
+/// places, and of the others.
 fn places_of(tier: Tier, moving: usize, pairs: [&[u32]; 2]) -> [Range<usize>; 2] {
     /// The least place and the one behind the greatest.
     struct Ends<'a>(u32, [&'a [u32]; 2]);
@@ -128,8 +130,9 @@ impl<'a> Refiner<'a> {
         }
     }
 
-    /// Tests all pairs of a list and appends the survivors to `out`; on all threads if their `tasks` are at hand.
-    pub fn refine(&mut self, list: &PairList, tasks: Option<&mut Vec<Task>>, out: &mut PairList) {
+    /// Tests all pairs of a list and appends the survivors to `out`; on all threads if their
+    /// `tasks` are at hand.
+    pub fn refine(&mut self, list: &PairList, tasks: Option<&mut Tasks>, out: &mut PairList) {
         let Some(tasks) = tasks else {
             return self.refine_range(list, 0..list.len(), out);
         };
@@ -156,7 +159,8 @@ impl<'a> Refiner<'a> {
         self.totals.update_seconds += done.update_seconds;
     }
 
-    /// Whether the places of each stretch of pairs lie so near each other that a window holds their rows.
+    /// Whether the places of each stretch of pairs lie so near each other that a window holds their
+    /// rows.
     fn are_near(&self, list: &PairList) -> bool {
         let Executor { tier, pool } = self.inputs.executor;
         let moving = self.inputs.posed.places.moving;
@@ -183,7 +187,8 @@ impl<'a> Refiner<'a> {
         Refine::new(self.inputs, self.rows).test(pairs, refining, refining_seconds, out);
     }
 
-    /// Makes the rows that this frame lacks: with lazy updates, those of some listed pairs, and else all.
+    /// Makes the rows that this frame lacks: with lazy updates, those of some listed pairs, and
+    /// else all.
     fn make_rows(&mut self, list: &PairList, range: Range<usize>) {
         let Inputs {
             executor,

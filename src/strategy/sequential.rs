@@ -1,8 +1,10 @@
-//! S-DOP, sequential (paper, section 4a): a pair whose spheres overlap goes to the or-DOP test at once.
+//! S-DOP, sequential (paper, section 4a): a pair whose spheres overlap goes to the or-DOP test at
+//! once.
 //!
-//! "At once" means a block of some [`BLOCK`] pairs here, since one pair can't fill a vector; no list of the potentially
-//! colliding set is kept. The same flow serves the object of interest (section 4c), where some pairs of the block are not
-//! refined, and oriented volumes without a sphere stage.
+//! "At once" means a block of some [`BLOCK`] pairs here, since one pair can't fill a vector; no
+//! list of the potentially colliding set is kept. The same flow serves the object of interest
+//! (section 4c), where some pairs of the block are not refined, and oriented volumes without a
+//! sphere stage.
 
 use std::ops::Range;
 
@@ -11,12 +13,16 @@ use super::listing::{Listed, Listing};
 use super::output::{Outlet, Output};
 use super::refine::Refine;
 use super::tasks::{Task, split_work};
-use super::{BLOCK, Inputs, Scratch, Totals};
+use super::{Inputs, Scratch, Totals};
 use crate::pairs::PairList;
 use crate::update::OrDopRows;
 
-/// Candidates that pass the first test, then or-DOPs block by block; with `interest`, only for pairs that have a body of
-/// interest.
+/// Pairs that flow through the or-DOP test at once where no list is kept: few enough for the
+/// first-level cache, enough to make the clock's cost vanish.
+const BLOCK: usize = 256;
+
+/// Candidates that pass the first test, then or-DOPs block by block; with `interest`, only for
+/// pairs that have a body of interest.
 pub(super) fn flow(
     inputs: Inputs<'_>,
     rows: &OrDopRows,

@@ -7,6 +7,7 @@ use super::output::{Outlet, Output, Turns};
 use crate::counters::VolumeCounters;
 use crate::pairs::PairList;
 use crate::threads::Threads;
+#[cfg(feature = "shapes")]
 use crate::update::RowWindow;
 
 /// Tasks per thread: a thread that is done early takes another.
@@ -23,6 +24,7 @@ pub(super) struct Task {
     pub selected: PairList,
     /// Those of them that survived.
     pub survivors: PairList,
+    #[cfg(feature = "shapes")]
     /// Rows that are made where they are tested.
     pub window: RowWindow,
     pub first: VolumeCounters,
@@ -33,17 +35,30 @@ pub(super) struct Task {
     pub update_seconds: f64,
 }
 
-impl Task {
-    /// All lists of pairs.
-    pub fn lists(&self) -> [&PairList; 4] {
-        [&self.out, &self.block, &self.selected, &self.survivors]
+/// The tasks of a frame, whose buffers stay for the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tasks(pub(super) Vec<Task>);
+
+impl Tasks {
+    /// Gives back the memory of all lists of pairs.
+    pub fn shrink_to_fit(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Bytes that lists of pairs hold.
+    pub fn pair_bytes(&self) -> usize {
+        let lists = |task: &Task| {
+            let lists = [&task.out, &task.block, &task.selected, &task.survivors];
+            lists.map(PairList::bytes).iter().sum::<usize>()
+        };
+        self.0.iter().map(lists).sum()
     }
 }
 
 /// Splits `units` of work into tasks; what they list goes to `output` in the order of the work.
 pub(super) fn split_work(
     pool: &Threads,
-    tasks: &mut Vec<Task>,
+    Tasks(tasks): &mut Tasks,
     units: usize,
     output: Output<'_>,
     work: impl Fn(Range<usize>, &mut Task, &Outlet<'_, '_>) + Sync,
@@ -97,7 +112,8 @@ pub(super) fn split_work(
 mod tests {
     use super::*;
 
-    /// What so much work leaves on so many threads: each task's share of it, in the order of the list, and the totals.
+    /// What so much work leaves on so many threads: each task's share of it, in the order of the
+    /// list, and the totals.
     fn shares(threads: usize, units: usize) -> (Vec<[u32; 2]>, Totals) {
         let pool = Threads::new(threads).expect("a few threads");
         let mut out = PairList::default();
@@ -106,7 +122,7 @@ mod tests {
             (task.first.tests, task.refining.hits) = (share.len() as u64, 1);
             task.seconds = 6.0;
         };
-        let mut tasks = Vec::new();
+        let mut tasks = Tasks::default();
         let totals = split_work(&pool, &mut tasks, units, Output::List(&mut out), work);
         (out.iter().collect(), totals)
     }

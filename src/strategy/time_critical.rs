@@ -1,8 +1,9 @@
-//! S-DOP under a budget (the paper's third phase; Hubbard 1996): the potentially colliding set is refined in a chosen order
-//! until the budget ends, and what isn't refined counts as colliding (Dingliana & O'Sullivan 2000).
+//! S-DOP under a budget (the paper's third phase; Hubbard 1996): the potentially colliding set is
+//! refined in a chosen order until the budget ends, and what isn't refined counts as colliding
+//! (Dingliana & O'Sullivan 2000).
 //!
-//! A budget of tests gives the same pairs everywhere; a budget of time is compared with the clock after every [`SLICE`]
-//! tests.
+//! A budget of tests gives the same pairs everywhere; a budget of time is compared with the clock
+//! after every [`SLICE`] tests.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -22,14 +23,16 @@ const SLICE: usize = 128;
 /// What a frame leaves to the next: when pairs were refined, and buffers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct History {
-    /// For each pair that spheres reported in the last frame, the frame in which it was last refined (0: never).
+    /// For each pair that spheres reported in the last frame, the frame in which it was last
+    /// refined (0: never).
     refined: HashMap<[u32; 2], u32>,
     before: HashMap<[u32; 2], u32>,
     ranked: Vec<RankedPair>,
 }
 
-/// When pairs were refined: sorted pairs of bodies, each with a rank that is 0 for never and grows by one from each frame in
-/// which some were refined last to the next such frame. So equal histories are equal, whatever the frames' numbers.
+/// When pairs were refined: sorted pairs of bodies, each with a rank that is 0 for never and grows
+/// by one from each frame in which some were refined last to the next such frame. So equal
+/// histories are equal, whatever the frames' numbers.
 #[cfg(feature = "serde")]
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Answers(pub Vec<([u32; 2], u32)>);
@@ -42,7 +45,8 @@ impl Answers {
     }
 }
 
-/// A pair in the order of refinement: by rank, then by body, so that the order is the same for every pair finder.
+/// A pair in the order of refinement: by rank, then by body, so that the order is the same for
+/// every pair finder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct RankedPair {
     rank: u32,
@@ -137,8 +141,8 @@ impl<'a> Spender<'a> {
         }
     }
 
-    /// Appends what is reported of some candidates to `out`: those that survive the or-DOP test, and those that the budget
-    /// leaves untested.
+    /// Appends what is reported of some candidates to `out`: those that survive the or-DOP test,
+    /// and those that the budget leaves untested.
     fn report(&mut self, candidates: &PairList, range: Range<usize>, out: &mut PairList) {
         let limit = range.end.min(range.start.saturating_add(self.tests_left));
         let slice = if self.deadline.is_some() {
@@ -227,13 +231,15 @@ impl History {
         Answers(answers)
     }
 
-    /// Takes over when pairs were refined; the coming frames have larger numbers than the latest rank.
+    /// Takes over when pairs were refined; the coming frames have larger numbers than the latest
+    /// rank.
     #[cfg(feature = "serde")]
     pub fn set_answers(&mut self, answers: &Answers) {
         self.refined = answers.0.iter().copied().collect();
     }
 
-    /// Notes in which frame each of the sphere hits was last refined: the first `refined` of `pairs` in this one.
+    /// Notes in which frame each of the sphere hits was last refined: the first `refined` of
+    /// `pairs` in this one.
     fn remember(&mut self, pairs: impl Iterator<Item = [u32; 2]>, refined: usize, stamp: u32) {
         std::mem::swap(&mut self.refined, &mut self.before);
         self.refined.clear();

@@ -1,5 +1,5 @@
-//! Eight f64 at a time, as plain arrays: compiled inside a [`Kernel`](crate::simd::Kernel), loops over them become vectors of
-//! its tier, and every lane computes what one f64 would, to the bit.
+//! Eight f64 at a time, as plain arrays: compiled inside a [`Kernel`](crate::simd::Kernel), loops
+//! over them become vectors of its tier, and every lane computes what one f64 would, to the bit.
 
 #![allow(
     clippy::needless_range_loop,

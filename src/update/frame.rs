@@ -13,7 +13,8 @@ use crate::volume::{Basis, Shape};
 pub const BASIS: usize = 0;
 /// Where the centre of its ball begins.
 pub const CENTRE: usize = 9;
-/// Where one over the length of each of the basis' columns begins, a number of f64 as the sum of three of f32.
+/// Where one over the length of each of the basis' columns begins, a number of f64 as the sum of
+/// three of f32.
 pub const UNIT: usize = 12;
 
 /// The frames of all shapes.
@@ -93,11 +94,11 @@ impl ShapeFrame {
         let frame = Self {
             shape: 0,
             margin: shape.rounding,
-            centre: shape.ball.centre.to_array(),
+            centre: shape.ball.centre,
             radius: 0.0,
             inflated: None,
             reach: shape.reach,
-            basis: basis.columns.map(|column| column.to_array()),
+            basis: basis.columns,
         };
         frame.with_radius(shape.ball.radius)
     }
@@ -163,7 +164,8 @@ impl ShapeFrame {
         let mut record = [0.0; ROW];
         record[BASIS..CENTRE].copy_from_slice(self.basis.as_flattened());
         record[CENTRE..UNIT].copy_from_slice(&self.centre);
-        // Lengths are in (1/2, 1], so each part takes 24 bits of what the ones before it leave, and none is left of 53.
+        // Lengths are in (1/2, 1], so each part takes 24 bits of what the ones before it leave, and
+        // none is left of 53.
         let mut rest = over_norm(self.basis[0]);
         for part in &mut record[UNIT..UNIT + 3] {
             *part = rest as f32;
@@ -217,7 +219,7 @@ mod tests {
                 radius: 0.0,
                 inflated: None,
                 reach: 0.0,
-                basis: basis.columns.map(|column| column.to_array()),
+                basis: basis.columns,
             };
             let record = frame.record();
             assert_eq!(record[..9], *frame.basis.as_flattened());

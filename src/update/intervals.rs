@@ -68,7 +68,8 @@ impl Intervals {
         self.ends = Vec::new();
     }
 
-    /// Re-fits the slabs of the bodies in a range of places, and the cubes about their boxes: centre and half side.
+    /// Re-fits the slabs of the bodies in a range of places, and the cubes about their boxes:
+    /// centre and half side.
     pub fn update(
         &mut self,
         executor: Executor<'_>,

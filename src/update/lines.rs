@@ -1,5 +1,5 @@
-//! Rows on cache lines of their own. A vector's memory is aligned as its elements are, that is to four bytes for floats: most rows would
-//! lie across two lines, and a row is read whole, at random.
+//! Rows on cache lines of their own. A vector's memory is aligned as its elements are, that is to
+//! four bytes for floats: most rows would lie across two lines, and a row is read whole, at random.
 
 use std::ops::{Deref, DerefMut};
 
@@ -8,7 +8,8 @@ use crate::simd::ROW;
 /// Bytes of a cache line, as many as a row has.
 const LINE: usize = ROW * size_of::<f32>();
 
-/// Rows, each on one cache line. Those of a clone may lie across two, which takes time and changes nothing.
+/// Rows, each on one cache line. Those of a clone may lie across two, which takes time and changes
+/// nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     floats: Vec<f32>,
@@ -23,7 +24,8 @@ impl Lines {
         let needed = (len + 1) * ROW;
         if needed > self.floats.len() {
             let mut floats = vec![0.0; needed];
-            // At most a row less a float; the hint to the contrary that the function may give costs alignment alone.
+            // At most a row less a float; the hint to the contrary that the function may give costs
+            // alignment alone.
             let first = floats.as_ptr().align_offset(LINE).min(ROW - 1);
             floats[first..first + self.len * ROW].copy_from_slice(self.as_flattened());
             (self.floats, self.first) = (floats, first);

@@ -4,8 +4,8 @@ use std::ops::Deref;
 
 use crate::simd::ROW;
 
-/// Rows that are found by their body's number: one a body, or two rings of a power of two, of which the first has rows of bodies
-/// that move, the second those of the others.
+/// Rows that are found by their body's number: one a body, or two rings of a power of two, of which
+/// the first has rows of bodies that move, the second those of the others.
 #[derive(Clone, Copy, Debug)]
 pub struct RowsByNumber<'a> {
     rows: &'a [[f32; ROW]],
@@ -29,7 +29,8 @@ impl<'a> RowsByNumber<'a> {
         }
     }
 
-    /// Two rings, equally long. The bodies of the numbers below `moving` have their rows in the first one.
+    /// Two rings, equally long. The bodies of the numbers below `moving` have their rows in the
+    /// first one.
     #[must_use]
     pub fn in_rings(rows: &'a [[f32; ROW]], moving: usize) -> Self {
         let ring = rows.len() / 2;

@@ -1,7 +1,8 @@
 //! The update stage (the paper's Nu): poses in, world-space volumes out.
 //!
-//! A body's volumes move, they are never re-fitted: a sphere update is a copy of the translation (ball-centred shapes) or one
-//! transformed point, an or-DOP update turns the basis. World-aligned volumes alone are re-fitted, from hull vertices.
+//! A body's volumes move, they are never re-fitted: a sphere update is a copy of the translation
+//! (ball-centred shapes) or one transformed point, an or-DOP update turns the basis. World-aligned
+//! volumes alone are re-fitted, from hull vertices.
 
 mod eight;
 mod frame;
@@ -27,20 +28,21 @@ use crate::bodies::{Bodies, Places, read_ahead};
 use crate::simd::prefetch_ends;
 use crate::threads::Executor;
 
-/// How many places ahead a pose is prefetched: bodies that are neighbours in space lie anywhere in the user's columns, and a
-/// cache miss takes as long as some ten updates.
+/// How many places ahead a pose is prefetched: bodies that are neighbours in space lie anywhere in
+/// the user's columns, and a cache miss takes as long as some ten updates.
 const AHEAD: usize = 64;
 
-/// Translations that are read ahead, up to so many bytes: of more, the second-level cache has lost the first when the last are read,
-/// and a third-level cache that is shared with others may have, too.
+/// Translations that are read ahead, up to so many bytes: of more, the second-level cache has lost
+/// the first when the last are read, and a third-level cache that is shared with others may have,
+/// too.
 const LONGEST: usize = 4 << 20;
 
 /// Bodies whose spheres one thread updates at a time: some ten microseconds.
 const SPHERES: usize = 4096;
 
-/// Updates the spheres (x, y, z, R) of the bodies in a range of places. Returns whether all translations, and the centres that
-/// a rotation takes part in, are within the contract: checked here, where they are at hand, this costs few instructions
-/// a body (`benches/README.md`).
+/// Updates the spheres (x, y, z, R) of the bodies in a range of places. Returns whether all
+/// translations, and the centres that a rotation takes part in, are within the contract: checked
+/// here, where they are at hand, this costs few instructions a body (`benches/README.md`).
 pub fn update_spheres(
     executor: Executor<'_>,
     spheres: &mut [[f32; 4]],
@@ -63,7 +65,8 @@ pub fn update_spheres(
             }
             let (body, frame) = (body as usize, &frames[shape as usize]);
             let t = bodies.translation[body];
-            // The rotation lies elsewhere in memory: reading it for nothing doubles the time of a million bodies.
+            // The rotation lies elsewhere in memory: reading it for nothing doubles the time of a
+            // million bodies.
             *sphere = match frame.inflated {
                 Some(inflated) => [t[0], t[1], t[2], inflated],
                 None => {
@@ -115,7 +118,7 @@ mod tests {
         let mut mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
         mesh.vertices
             .iter_mut()
-            .for_each(|v| *v += Vec3::from(centre));
+            .for_each(|v| *v = (Vec3::from(*v) + Vec3::from(centre)).to_array());
         let spec = ShapeSpec {
             origin: Origin::File,
             ..ShapeSpec::default()
@@ -135,7 +138,7 @@ mod tests {
             let frame = ShapeFrame::new(&shape, &shape.ordop.basis);
             let [radius, reach] = [shape.ball.radius, shape.reach];
             assert_eq!((frame.radius(), frame.reach()), (radius, reach));
-            assert_eq!(frame.centre(), shape.ball.centre.to_array());
+            assert_eq!(frame.centre(), shape.ball.centre);
             for margin in [1e-6, 0.3, 7000.0] {
                 let grown = frame.grown(margin);
                 let sum = |size: f32| f64::from(size) + f64::from(margin);

@@ -1,4 +1,5 @@
-//! The layout of an or-DOP's row: one cache line per body, of which the pair test transposes a vector at a time.
+//! The layout of an or-DOP's row: one cache line per body, of which the pair test transposes a
+//! vector at a time.
 
 /// Index of Q: the world direction of basis axis j in numbers 3j to 3j + 2.
 pub const Q: usize = 0;

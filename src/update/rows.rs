@@ -41,8 +41,8 @@ pub struct Posed<'a> {
     pub bodies: &'a Bodies,
     /// The body in each place.
     pub places: &'a Places,
-    /// Updated spheres by place, or none: where the centre of each ball is its body's origin, translations are read here, in order,
-    /// and not again from anywhere in the user's columns.
+    /// Updated spheres by place, or none: where the centre of each ball is its body's origin,
+    /// translations are read here, in order, and not again from anywhere in the user's columns.
     pub balls: &'a [[f32; 4]],
 }
 
@@ -78,8 +78,8 @@ impl OrDopRows {
         });
     }
 
-    /// Lazily updates the rows in the places `wanted` whose bodies move and whose rows are not yet made in this frame. Returns
-    /// how many were made.
+    /// Lazily updates the rows in the places `wanted` whose bodies move and whose rows are not yet
+    /// made in this frame. Returns how many were made.
     pub fn update_missing(
         &mut self,
         tier: Tier,
@@ -190,8 +190,8 @@ impl Posed<'_> {
         self.frames.are_centred() && !self.balls.is_empty()
     }
 
-    /// The translations of the bodies in sixteen places from `first` on, as the first three numbers of quads: the balls where they
-    /// stand, or else what is gathered in `buffer`.
+    /// The translations of the bodies in sixteen places from `first` on, as the first three numbers
+    /// of quads: the balls where they stand, or else what is gathered in `buffer`.
     #[inline(always)]
     fn origins<'b>(
         &'b self,
@@ -232,9 +232,9 @@ impl Posed<'_> {
         self.make(l, (&bodies, &shapes), origins, rows);
     }
 
-    /// The rows (Q, t, o, shape) of sixteen bodies; the first three numbers of `origins` are their translations. What is read a body
-    /// at a time is turned into columns, and these into rows again, a vector at a time: number by number it would take longer
-    /// than the arithmetic.
+    /// The rows (Q, t, o, shape) of sixteen bodies; the first three numbers of `origins` are their
+    /// translations. What is read a body at a time is turned into columns, and these into rows
+    /// again, a vector at a time: number by number it would take longer than the arithmetic.
     #[inline(always)]
     fn make<L: Lanes>(
         &self,
@@ -245,7 +245,8 @@ impl Posed<'_> {
     ) {
         let (mut codes, mut made) = ([0; BODIES], [[0.0; BODIES]; ROW]);
         for lane in 0..BODIES {
-            codes[lane] = bodies[lane] << 4; // fits: the contract has fewer bodies than there are codes
+            // fits: the contract has fewer bodies than there are codes
+            codes[lane] = bodies[lane] << 4;
             made[S][lane] = f32::from_bits(SHAPE + shapes[lane]);
         }
         let are_centred = self.frames.are_centred();
@@ -325,7 +326,9 @@ mod tests {
             .into_iter()
             .filter_map(|offset| {
                 let mut mesh = form.build().ok()?;
-                mesh.vertices.iter_mut().for_each(|v| *v += offset);
+                for vertex in &mut mesh.vertices {
+                    *vertex = (Vec3::from(*vertex) + offset).to_array();
+                }
                 let spec = ShapeSpec {
                     origin: Origin::File,
                     axes: Axes::Principal,
@@ -364,8 +367,8 @@ mod tests {
         };
         let expected = |body: usize| {
             let (shape, turn) = (body % 2, rotation(bodies.rotation[body]));
-            let basis = shapes[shape].ordop.basis.columns.map(|c| c.to_array());
-            let offset = rotate(&turn, shapes[shape].ball.centre.to_array());
+            let basis = shapes[shape].ordop.basis.columns;
+            let offset = rotate(&turn, shapes[shape].ball.centre);
             let mut row = [0.0; ROW];
             row[Q..Q + 9].copy_from_slice(world_axes(&turn, basis).as_flattened());
             row[T..T + 3].copy_from_slice(&bodies.translation[body]);

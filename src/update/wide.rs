@@ -1,7 +1,8 @@
 //! A vector of f64 in the formulas of a pose: every lane computes what one f64 would, to the bit.
 //!
-//! Lanes of a tier and not arrays of numbers: of arrays, the compiler makes vectors of its own choice, and where a formula has sums
-//! and differences of the same products it mixes lanes of different bodies.
+//! Lanes of a tier and not arrays of numbers: of arrays, the compiler makes vectors of its own
+//! choice, and where a formula has sums and differences of the same products it mixes lanes of
+//! different bodies.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -1,9 +1,10 @@
 //! or-DOP rows of stretches of places that move on through them.
 //!
-//! A million rows are 64 MB: written by the update and read by the test, they go to memory and back. Pairs come in the order of
-//! slots, and where places have nearly that order, rows made shortly before they are wanted are still in the second-level cache.
-//! The rows stand in two rings, so that one that leaves makes room for one that comes: bodies that move have the first places, the
-//! others the last, and those that are near each other in space lie near each other in both.
+//! A million rows are 64 MB: written by the update and read by the test, they go to memory and
+//! back. Pairs come in the order of slots, and where places have nearly that order, rows made
+//! shortly before they are wanted are still in the second-level cache. The rows stand in two rings,
+//! so that one that leaves makes room for one that comes: bodies that move have the first places,
+//! the others the last, and those that are near each other in space lie near each other in both.
 
 use std::ops::Range;
 
@@ -36,8 +37,9 @@ impl RowWindow {
         self.held = Default::default();
     }
 
-    /// Sees to it that the rows of these places are there, first those of bodies that move, then the others. There are no more
-    /// of either than [`MOST_ROWS`]. Bodies that don't move have their rows in `made`, by place.
+    /// Sees to it that the rows of these places are there, first those of bodies that move, then
+    /// the others. There are no more of either than [`MOST_ROWS`]. Bodies that don't move have
+    /// their rows in `made`, by place.
     pub fn cover(
         &mut self,
         tier: Tier,
@@ -71,8 +73,8 @@ impl RowWindow {
     }
 }
 
-/// Sees to it that a ring, which holds the rows of some places, has those that are wanted, and some that follow up to the place
-/// `limit`. `make` makes the rows from a place on.
+/// Sees to it that a ring, which holds the rows of some places, has those that are wanted, and some
+/// that follow up to the place `limit`. `make` makes the rows from a place on.
 fn fill(
     ring: &mut [[f32; ROW]],
     held: &mut Range<usize>,
@@ -108,7 +110,8 @@ mod tests {
     use crate::update::{OrDopRows, ShapeFrame};
     use crate::volume::{Shape, ShapeSpec};
 
-    /// Stretches that follow each other, that go back, that leave some out, and that are too long for the ring that is there.
+    /// Stretches that follow each other, that go back, that leave some out, and that are too long
+    /// for the ring that is there.
     #[test]
     fn the_rows_of_covered_places_are_those_of_an_update() {
         let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();

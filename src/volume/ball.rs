@@ -1,19 +1,22 @@
-//! The smallest enclosing ball, Welzl's problem, by pivoting: Gärtner, "Fast and robust smallest enclosing balls", 1999.
+//! The smallest enclosing ball, Welzl's problem, by pivoting: Gärtner, "Fast and robust smallest
+//! enclosing balls", 1999.
 //!
-//! The support set (at most four vertices) is replaced by that of itself and the farthest vertex until no vertex is
-//! outside. The ball of those few points needs no tolerance, whatever their position (duplicate, collinear, cospherical):
-//! its centre is the circumcentre of one of the subsets, namely the one whose farthest point is nearest. The radius
-//! grows in each step, so no support set returns. A dozen sweeps over the vertices are typical.
+//! The support set (at most four vertices) is replaced by that of itself and the farthest vertex
+//! until no vertex is outside. The ball of those few points needs no tolerance, whatever their
+//! position (duplicate, collinear, cospherical): its centre is the circumcentre of one of the
+//! subsets, namely the one whose farthest point is nearest. The radius grows in each step, so no
+//! support set returns. A dozen sweeps over the vertices are typical.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
+use crate::mesh::in_f64;
 use crate::rounding::up;
 
 /// A ball that contains every vertex of its mesh exactly: ‖v − c‖ ≤ r in real arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
     /// Centre in the body frame.
-    pub centre: Vec3,
+    pub centre: [f32; 3],
     /// Radius, rounded up.
     pub radius: f32,
 }
@@ -21,16 +24,18 @@ pub struct Ball {
 impl Ball {
     /// The ball about `centre` that just contains all vertices.
     #[must_use]
-    pub fn about(centre: Vec3, vertices: &[Vec3]) -> Self {
+    pub fn about(centre: impl Into<[f32; 3]>, vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
+        let centre = centre.into();
         Self {
             centre,
             radius: farthest_distance(centre, vertices),
         }
     }
 
-    /// The smallest enclosing ball with its centre rounded to f32: larger than the optimum by an ulp of |c| and r.
+    /// The smallest enclosing ball with its centre rounded to f32: larger than the optimum by an
+    /// ulp of |c| and r.
     #[must_use]
-    pub fn smallest(vertices: &[Vec3]) -> Self {
+    pub fn smallest(vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         Self::about(smallest_enclosing(vertices).0.as_vec3(), vertices)
     }
 
@@ -43,12 +48,13 @@ impl Ball {
 
 /// max ‖v − c‖, rounded up; exactly 0 when every vertex is c.
 ///
-/// The f64 steps err by less than 2⁻⁵⁰ in all (squares of f32 differences can't underflow); `up` covers 2⁻²⁶.
-pub(super) fn farthest_distance(centre: Vec3, vertices: &[Vec3]) -> f32 {
-    let centre = centre.as_dvec3();
+/// The f64 steps err by less than 2⁻⁵⁰ in all (squares of f32 differences can't underflow); `up`
+/// covers 2⁻²⁶.
+pub(super) fn farthest_distance(centre: [f32; 3], vertices: &[impl Into<[f32; 3]> + Copy]) -> f32 {
+    let centre = in_f64(&centre);
     let squared = vertices
         .iter()
-        .map(|v| v.as_dvec3().distance_squared(centre))
+        .map(|&v| in_f64(&v.into()).distance_squared(centre))
         .fold(0.0, f64::max);
     if squared == 0.0 {
         0.0
@@ -58,11 +64,11 @@ pub(super) fn farthest_distance(centre: Vec3, vertices: &[Vec3]) -> f32 {
 }
 
 /// Centre and radius of the smallest enclosing ball, in f64; the origin and 0 for no vertices.
-pub(super) fn smallest_enclosing(vertices: &[Vec3]) -> (DVec3, f64) {
-    let Some(first) = vertices.first() else {
+pub(super) fn smallest_enclosing(vertices: &[impl Into<[f32; 3]> + Copy]) -> (DVec3, f64) {
+    let Some(&first) = vertices.first() else {
         return (DVec3::ZERO, 0.0);
     };
-    let mut support = vec![first.as_dvec3()];
+    let mut support = vec![in_f64(&first.into())];
     let (mut centre, mut squared) = (support[0], 0.0);
     loop {
         let (farthest, distance) = farthest_from(centre, vertices);
@@ -79,10 +85,10 @@ pub(super) fn smallest_enclosing(vertices: &[Vec3]) -> (DVec3, f64) {
     (centre, farthest_from(centre, vertices).1.sqrt())
 }
 
-fn farthest_from(centre: DVec3, vertices: &[Vec3]) -> (DVec3, f64) {
+fn farthest_from(centre: DVec3, vertices: &[impl Into<[f32; 3]> + Copy]) -> (DVec3, f64) {
     let mut best = (centre, 0.0);
-    for v in vertices {
-        let v = v.as_dvec3();
+    for &v in vertices {
+        let v = in_f64(&v.into());
         let distance = v.distance_squared(centre);
         if distance > best.1 {
             best = (v, distance);
@@ -113,7 +119,8 @@ fn smallest_of_few(points: &[DVec3]) -> (Vec<DVec3>, DVec3, f64) {
     best
 }
 
-/// The point of the affine hull that is equally far from one to four points; not finite when they are dependent.
+/// The point of the affine hull that is equally far from one to four points; not finite when they
+/// are dependent.
 fn circumcentre(points: &[DVec3]) -> DVec3 {
     match *points {
         [p] => p,

@@ -1,13 +1,15 @@
 //! Exact orthogonal bases: rotations snapped to integer quaternions.
 //!
-//! For an integer q = (x, y, z, w) with n = |q|², n·R(q) has integer entries of magnitude ≤ n and orthogonal columns of
-//! norm n. With n ≤ 2²² and a scale by a power of two, the entries and their sums under coefficients from {−1, 0, 1} are
-//! integers below 2²⁴ times that power: exact in f32. A basis rounded to f32 vector by vector loses
-//! (1,1,0) = (1,0,0) + (0,1,0), and with it the weak-duality bound on supports.
+//! For an integer q = (x, y, z, w) with n = |q|², n·R(q) has integer entries of magnitude ≤ n and
+//! orthogonal columns of norm n. With n ≤ 2²² and a scale by a power of two, the entries and their
+//! sums under coefficients from {−1, 0, 1} are integers below 2²⁴ times that power: exact in f32. A
+//! basis rounded to f32 vector by vector loses (1,1,0) = (1,0,0) + (0,1,0), and with it the
+//! weak-duality bound on supports.
 
-use glam::{DMat3, DQuat, Vec3};
+use glam::DQuat;
 
 use crate::choice::choices;
+use crate::mesh::in_f64;
 
 /// The largest |q|² of an integer quaternion.
 const MAX_NORM: i64 = 1 << 22;
@@ -22,18 +24,19 @@ choices! {
     }
 }
 
-/// An orthogonal basis whose three columns have one common norm and f32-exact entries:
-/// an integer quaternion's rotation matrix times |q|² ≤ 2²², scaled by a power of two so that the norm is in (½, 1].
+/// An orthogonal basis whose three columns have one common norm and f32-exact entries: an integer
+/// quaternion's rotation matrix times |q|² ≤ 2²², scaled by a power of two so that the norm is in
+/// (½, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Basis {
     /// The basis vectors in the body frame.
-    pub columns: [Vec3; 3],
+    pub columns: [[f32; 3]; 3],
 }
 
 impl Basis {
     /// The model's own axes: the identity.
     pub const MODEL: Self = Self {
-        columns: [Vec3::X, Vec3::Y, Vec3::Z],
+        columns: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     };
 
     /// The basis of the integer quaternion (x, y, z, w). `None` unless 0 < |q|² ≤ 2²².
@@ -49,7 +52,7 @@ impl Basis {
         }
         let ceil_log2 = i64::BITS - (n - 1).leading_zeros();
         let scale = f32::from_bits((127 - ceil_log2) << 23);
-        let column = |a: i64, b: i64, c: i64| Vec3::new(a as f32, b as f32, c as f32) * scale;
+        let column = |a: i64, b: i64, c: i64| [a, b, c].map(|entry| entry as f32 * scale);
         Some(Self {
             columns: [
                 column(
@@ -71,11 +74,12 @@ impl Basis {
         })
     }
 
-    /// The basis nearest to a rotation: its unit quaternion times 2048, rounded to integers; off by less than 10⁻³ rad.
-    /// Rotations that differ by rounding errors snap to one basis, but for the few that lie between two.
+    /// The basis nearest to a rotation (x, y, z, w): its unit quaternion times 2048, rounded to
+    /// integers; off by less than 10⁻³ rad. Rotations that differ by rounding errors snap to one
+    /// basis, but for the few that lie between two.
     #[must_use]
-    pub fn snapped(rotation: DQuat) -> Self {
-        let unit = rotation.normalize().to_array();
+    pub fn snapped(rotation: impl Into<[f64; 4]>) -> Self {
+        let unit = DQuat::from_array(rotation.into()).normalize().to_array();
         // Rounding may lift |q| above 2048 by up to 1.
         (2046..=2048)
             .rev()
@@ -88,22 +92,24 @@ impl Basis {
     /// The common norm of the columns, exact: n·2⁻ᵐ.
     #[must_use]
     pub fn norm(&self) -> f64 {
-        // Entries are integers ≤ 2²² over one power of two, so the sum of squares n² ≤ 2⁴⁴ and its root are exact.
-        self.columns[0].as_dvec3().length_squared().sqrt()
+        // Entries are integers ≤ 2²² over one power of two, so the sum of squares n² ≤ 2⁴⁴ and its
+        // root are exact.
+        in_f64(&self.columns[0]).length_squared().sqrt()
     }
 
     /// The direction Σ cᵢ·columnsᵢ, exact for coefficients in {−1, 0, 1}.
     #[must_use]
-    pub fn direction(&self, coefficients: [i8; 3]) -> Vec3 {
+    pub fn direction(&self, coefficients: [i8; 3]) -> [f32; 3] {
         let [a, b, c] = coefficients.map(f32::from);
-        self.columns[0] * a + self.columns[1] * b + self.columns[2] * c
+        let [x, y, z] = &self.columns;
+        std::array::from_fn(|i| x[i] * a + y[i] * b + z[i] * c)
     }
 
-    /// The rotation whose columns are this basis, normalised.
+    /// The columns of the rotation that is this basis, normalised.
     #[must_use]
-    pub fn rotation(&self) -> DMat3 {
+    pub fn rotation(&self) -> [[f64; 3]; 3] {
         let norm = self.norm();
-        let [x, y, z] = self.columns.map(|c| c.as_dvec3() / norm);
-        DMat3::from_cols(x, y, z)
+        self.columns
+            .map(|column| column.map(|x| f64::from(x) / norm))
     }
 }

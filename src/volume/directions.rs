@@ -1,7 +1,8 @@
 //! The direction sets of the k-DOPs: small integer combinations of an orthogonal basis.
 //!
-//! Directions are never normalised, so (1,1,0) = (1,0,0) + (0,1,0) holds to the bit and the support of any axis can be
-//! bounded from the slabs alone (weak duality). All sets share one order: axes, face diagonals, cube diagonals.
+//! Directions are never normalised, so (1,1,0) = (1,0,0) + (0,1,0) holds to the bit and the support
+//! of any axis can be bounded from the slabs alone (weak duality). All sets share one order: axes,
+//! face diagonals, cube diagonals.
 
 use crate::choice::choices;
 

@@ -1,30 +1,35 @@
 //! The convex hull, exact: Quickhull (Barber, Dobkin, Huhdanpaa 1996) on Shewchuk's predicates.
 //!
-//! Re-fitted volumes are taken from hull vertices alone, so a vertex lost here is a missed collision later. Every
-//! decision is the sign of an exact orient3d, and a facet is visible from a point only if that is *strictly* outside.
-//! Then no degenerate facet arises, the visible region is a disk, and the result is a closed surface with all vertices on
-//! its inner side: duplicate, coplanar and cospherical vertices need no tolerance and there is no failure to handle.
-//! (Of the crates, quickhull works in f32 and turns a facet of the bunny inside out; chull walks randomly hashed sets, so
-//! that its facets change from run to run, and gives up on rotated grids.)
-//! The distances that choose the next vertex are approximate; they steer the speed only.
+//! Re-fitted volumes are taken from hull vertices alone, so a vertex lost here is a missed
+//! collision later. Every decision is the sign of an exact orient3d, and a facet is visible from a
+//! point only if that is *strictly* outside. Then no degenerate facet arises, the visible region is
+//! a disk, and the result is a closed surface with all vertices on its inner side: duplicate,
+//! coplanar and cospherical vertices need no tolerance and there is no failure to handle. (Of the
+//! crates, quickhull works in f32 and turns a facet of the bunny inside out; chull walks randomly
+//! hashed sets, so that its facets change from run to run, and gives up on rotated grids.) The
+//! distances that choose the next vertex are approximate; they steer the speed only.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
+
+use super::flat_hull;
+use crate::mesh::in_f64;
 
 /// The convex hull of a shape's vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
     /// Indices of the vertices that span the hull, ascending. All vertices when these are coplanar.
     pub vertices: Vec<u32>,
-    /// Triangles over the shape's vertices, counter-clockwise from outside. None when the vertices are coplanar.
+    /// Triangles over the shape's vertices, counter-clockwise from outside. None when the vertices
+    /// are coplanar.
     pub facets: Vec<[u32; 3]>,
 }
 
 impl Hull {
     /// The hull of finite vertices.
     #[must_use]
-    pub fn of(vertices: &[Vec3]) -> Self {
-        let points: Vec<_> = vertices.iter().map(|&v| coordinates(v)).collect();
+    pub fn of(vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
+        let points: Vec<_> = vertices.iter().map(|&v| coordinates(v.into())).collect();
         let Some(simplex) = initial_simplex(&points) else {
             return Self {
                 vertices: (0..vertices.len() as u32).collect(),
@@ -43,51 +48,66 @@ impl Hull {
 
     /// The positions of the hull's vertices: all that world-aligned volumes are re-fitted from.
     #[must_use]
-    pub fn points(&self, vertices: &[Vec3]) -> Vec<Vec3> {
-        let position = |&i: &u32| vertices[i as usize];
+    pub fn points(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Vec<[f32; 3]> {
+        let position = |&i: &u32| vertices[i as usize].into();
         self.vertices.iter().map(position).collect()
+    }
+
+    /// Indices of the vertices that span the hull, ascending: of a flat hull, too, whose `vertices`
+    /// are all there are.
+    #[must_use]
+    pub fn corners(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Vec<u32> {
+        if !self.facets.is_empty() {
+            return self.vertices.clone();
+        }
+        let points: Vec<_> = vertices.iter().map(|&v| coordinates(v.into())).collect();
+        flat_hull::corners(&points)
     }
 
     /// The hull's volume, from the shape's vertices.
     #[must_use]
-    pub fn volume(&self, vertices: &[Vec3]) -> f64 {
+    pub fn volume(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> f64 {
         self.fold_facets(vertices, |[p, q, r]| p.dot(q.cross(r)) / 6.0)
     }
 
     /// The hull's surface area, from the shape's vertices.
     #[must_use]
-    pub fn area(&self, vertices: &[Vec3]) -> f64 {
+    pub fn area(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> f64 {
         self.fold_facets(vertices, |[p, q, r]| (q - p).cross(r - p).length() / 2.0)
     }
 
     /// Σ over facets of a measure of its corners relative to one hull vertex.
-    fn fold_facets(&self, vertices: &[Vec3], measure: impl Fn([DVec3; 3]) -> f64) -> f64 {
-        let position = |i: u32| vertices[i as usize].as_dvec3();
+    fn fold_facets(
+        &self,
+        vertices: &[impl Into<[f32; 3]> + Copy],
+        measure: impl Fn([DVec3; 3]) -> f64,
+    ) -> f64 {
+        let position = |i: u32| in_f64(&vertices[i as usize].into());
         let origin = self.vertices.first().map_or(DVec3::ZERO, |&i| position(i));
         let facets = self.facets.iter();
+        // From 0, since the sum of no floats is −0.
         facets
             .map(|f| measure(f.map(|i| position(i) - origin)))
-            .sum()
+            .fold(0.0, |sum, part| sum + part)
     }
 }
 
 type Point = Coord3D<f64>;
 
-fn coordinates(v: Vec3) -> Point {
-    Point {
-        x: v.x.into(),
-        y: v.y.into(),
-        z: v.z.into(),
-    }
+fn coordinates(vertex: [f32; 3]) -> Point {
+    let [x, y, z] = vertex.map(f64::from);
+    Point { x, y, z }
 }
 
-/// How far `p` is outside the plane of (a, b, c), counter-clockwise from outside: exact sign, approximate size.
+/// How far `p` is outside the plane of (a, b, c), counter-clockwise from outside: exact sign,
+/// approximate size.
 fn height(points: &[Point], [a, b, c]: [u32; 3], p: u32) -> f64 {
     let [a, b, c, p] = [a, b, c, p].map(|i| points[i as usize]);
     -orient3d(a, b, c, p)
 }
 
-/// Four vertices that are not coplanar, the first three clockwise seen from the fourth; `None` when there are none.
+/// Four vertices that are not coplanar, the first three clockwise seen from the fourth; `None` when
+/// there are none.
 fn initial_simplex(points: &[Point]) -> Option<[u32; 4]> {
     let farthest = |measure: &dyn Fn(u32) -> f64| {
         let candidates = (0..points.len() as u32).map(|i| (i, measure(i)));
@@ -185,7 +205,8 @@ impl<'a> Builder<'a> {
         alive.map(|f| f.corners).collect()
     }
 
-    /// Gives each vertex to the first facet, from number `first` on, that it is strictly outside of.
+    /// Gives each vertex to the first facet, from number `first` on, that it is strictly outside
+    /// of.
     fn distribute(&mut self, vertices: Vec<u32>, first: usize) {
         for vertex in vertices {
             for facet in &mut self.facets[first..] {
@@ -198,7 +219,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Replaces all facets visible from the farthest outside vertex of `facet` by the cone from it to their horizon.
+    /// Replaces all facets visible from the farthest outside vertex of `facet` by the cone from it
+    /// to their horizon.
     fn extend_to_farthest(&mut self, facet: u32) {
         let outside = self.facets[facet as usize].outside.iter();
         let Some(&(apex, _)) = outside.max_by(|a, b| a.1.total_cmp(&b.1)) else {
@@ -209,7 +231,8 @@ impl<'a> Builder<'a> {
         for (i, edge) in horizon.iter().enumerate() {
             self.starting_at[edge.from as usize] = (first + i) as u32;
         }
-        // Facet i has the edges from → to, to → apex, apex → from; the last is shared with the facet that ends here.
+        // Facet i has the edges from → to, to → apex, apex → from; the last is shared with the
+        // facet that ends here.
         for edge in &horizon {
             let number = self.facets.len() as u32;
             let across = &mut self.facets[edge.beyond as usize];
@@ -230,7 +253,8 @@ impl<'a> Builder<'a> {
         self.distribute(orphans, first);
     }
 
-    /// Kills the facets that are visible from `apex`; returns their horizon and the other vertices outside them.
+    /// Kills the facets that are visible from `apex`; returns their horizon and the other vertices
+    /// outside them.
     fn remove_visible(&mut self, start: u32, apex: u32) -> (Vec<HorizonEdge>, Vec<u32>) {
         self.step += 1;
         let (mut horizon, mut orphans, mut stack) = (Vec::new(), Vec::new(), vec![start]);

@@ -1,13 +1,16 @@
-//! Eigenvectors of a symmetric 3 × 3 matrix by cyclic Jacobi rotations (Golub & Van Loan, *Matrix Computations*, §8.5).
+//! Eigenvectors of a symmetric 3 × 3 matrix by cyclic Jacobi rotations (Golub & Van Loan, *Matrix
+//! Computations*, §8.5).
 //!
-//! Each rotation makes one off-diagonal entry zero: with θ = (a_qq − a_pp)/2a_pq, its tangent is the smaller root
-//! t = sign(θ)/(|θ| + √(θ² + 1)). Only sums, products, quotients and square roots occur, in one written order,
-//! so every CPU computes the same bits. Convergence is quadratic: over 10⁶ random hulls and all shipped
-//! meshes, the last sweeps change nothing, and the snapped bases equal those of a library's solver.
+//! Each rotation makes one off-diagonal entry zero: with θ = (a_qq − a_pp)/2a_pq, its tangent is
+//! the smaller root t = sign(θ)/(|θ| + √(θ² + 1)). Only sums, products, quotients and square roots
+//! occur, in one written order, so every CPU computes the same bits. Convergence is quadratic: over
+//! 10⁶ random hulls and all shipped meshes, the last sweeps change nothing, and the snapped bases
+//! equal those of a library's solver.
 
 use glam::{DMat3, DVec3};
 
-/// Sweeps over the three off-diagonal entries. Five suffice for f64; the rest find zeros and are skipped.
+/// Sweeps over the three off-diagonal entries. Five suffice for f64; the rest find zeros and are
+/// skipped.
 const SWEEPS: usize = 8;
 
 /// Eigenvalues in falling order, each with its unit eigenvector of either sign. Their residuals
@@ -66,7 +69,8 @@ mod tests {
         let mut words = ChaCha8Rng::seed_from_u64(3);
         let mut random = move || f64::from(words.next_u32()) / 2f64.powi(31) - 1.0;
         for round in 0..100_000 {
-            // Entries of one size, of very different sizes, small integers, and nearly tied diagonals.
+            // Entries of one size, of very different sizes, small integers, and nearly tied
+            // diagonals.
             let scale = |i: i32| match round % 4 {
                 1 => 2f64.powi(-12 * i),
                 3 if i == 1 => 1e-9,

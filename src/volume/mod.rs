@@ -1,10 +1,12 @@
 //! Bounding volumes, built once per mesh (the paper's Co) in the body frame.
 //!
-//! One file a volume; each contains the f32 vertices as culled in exact arithmetic, before any inflation for rounding.
+//! One file a volume; each contains the f32 vertices as culled in exact arithmetic, before any
+//! inflation for rounding.
 
 mod ball;
 mod basis;
 mod directions;
+mod flat_hull;
 mod hull;
 mod jacobi;
 mod ordop;

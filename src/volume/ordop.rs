@@ -1,16 +1,18 @@
-//! Oriented k-DOPs: slabs `lo ≤ d·x ≤ hi` along directions fixed in the body frame, never re-fitted.
+//! Oriented k-DOPs: slabs `lo ≤ d·x ≤ hi` along directions fixed in the body frame, never
+//! re-fitted.
 //!
-//! Containment is exact. A direction has 24-bit entries, so each product of d·x is exact in f64 and only the two
-//! additions round; Knuth's two-sum recovers what they lost. An end that is an f32 (a box's face, a plate's zero) is kept
-//! to the bit, any other is the next f32 outward.
+//! Containment is exact. A direction has 24-bit entries, so each product of d·x is exact in f64 and
+//! only the two additions round; Knuth's two-sum recovers what they lost. An end that is an f32 (a
+//! box's face, a plate's zero) is kept to the bit, any other is the next f32 outward.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{Basis, DirectionSet};
+use crate::mesh::in_f64;
 use crate::rounding::{down, up};
 
-/// An oriented k-DOP in the body frame: `lo[i] ≤ d_i·x ≤ hi[i]` for every vertex x in exact arithmetic,
-/// with d_i = Σ_j coefficient_ij·column_j.
+/// An oriented k-DOP in the body frame: `lo[i] ≤ d_i·x ≤ hi[i]` for every vertex x in exact
+/// arithmetic, with d_i = Σ_j coefficient_ij·column_j.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrDop {
     /// Which slab directions.
@@ -24,13 +26,18 @@ pub struct OrDop {
 }
 
 impl OrDop {
-    /// The tightest slabs with f32 ends around the vertices. No vertices: empty slabs, lo = ∞ and hi = −∞.
+    /// The tightest slabs with f32 ends around the vertices. No vertices: empty slabs, lo = ∞ and
+    /// hi = −∞.
     #[must_use]
-    pub fn build(vertices: &[Vec3], basis: Basis, directions: DirectionSet) -> Self {
+    pub fn build(
+        vertices: &[impl Into<[f32; 3]> + Copy],
+        basis: Basis,
+        directions: DirectionSet,
+    ) -> Self {
         let (lo, hi) = directions
             .coefficients()
             .iter()
-            .map(|&coefficients| slab(basis.direction(coefficients).as_dvec3(), vertices))
+            .map(|&coefficients| slab(in_f64(&basis.direction(coefficients)), vertices))
             .unzip();
         Self {
             directions,
@@ -46,9 +53,9 @@ impl OrDop {
         let mut grown = self.clone();
         let ends = grown.lo.iter_mut().zip(&mut grown.hi);
         for ((lo, hi), &coefficients) in ends.zip(self.directions.coefficients()) {
-            // The factor is above what three f64 roundings take where lo and the margin nearly cancel; elsewhere the
-            // step outward is.
-            let length = self.basis.direction(coefficients).as_dvec3().length();
+            // The factor is above what three f64 roundings take where lo and the margin nearly
+            // cancel; elsewhere the step outward is.
+            let length = in_f64(&self.basis.direction(coefficients)).length();
             let out = f64::from(margin) * length * (1.0 + 2f64.powi(-40));
             (*lo, *hi) = (down(f64::from(*lo) - out), up(f64::from(*hi) + out));
         }
@@ -57,10 +64,10 @@ impl OrDop {
 }
 
 /// The ends of one slab: min and max of d·x over the vertices, rounded outward.
-fn slab(direction: DVec3, vertices: &[Vec3]) -> (f32, f32) {
+fn slab(direction: DVec3, vertices: &[impl Into<[f32; 3]> + Copy]) -> (f32, f32) {
     let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-    for v in vertices {
-        let (below, above) = dot_bounds(direction, v.as_dvec3());
+    for &v in vertices {
+        let (below, above) = dot_bounds(direction, in_f64(&v.into()));
         lo = lo.min(below);
         hi = hi.max(above);
     }
@@ -123,7 +130,8 @@ mod tests {
     #[test]
     fn the_exact_sum_of_products_lies_within_its_bounds() {
         let big = 1 << 30;
-        // Two equal losses; what is lost is all that is left; nothing is lost; losses of other signs.
+        // Two equal losses; what is lost is all that is left; nothing is lost; losses of other
+        // signs.
         assert!(holds_exactly([big, 1, 1], [big, 1, 1]));
         assert!(holds_exactly([big, 1, big], [big, 1, -big]));
         assert!(holds_exactly([big, 0, 3], [big, 7, -5]));
@@ -142,7 +150,7 @@ mod tests {
     #[test]
     fn an_end_at_zero_is_no_negative_zero() {
         for x in [0.0, -0.0] {
-            let (lo, hi) = slab(DVec3::X, &[Vec3::new(x, x, x)]);
+            let (lo, hi) = slab(DVec3::X, &[[x, x, x]]);
             assert_eq!([lo, hi].map(f32::to_bits), [0, 0]);
         }
     }
@@ -152,7 +160,7 @@ mod tests {
     fn no_end_is_minus_zero() {
         for vertices in [[-0.0, -1.0, -1.0], [0.0, 1.0, 1.0], [-0.0, 1.0, -1.0]] {
             for direction in [DVec3::X, DVec3::NEG_X] {
-                let (lo, hi) = slab(direction, &[Vec3::from(vertices)]);
+                let (lo, hi) = slab(direction, &[vertices]);
                 assert_eq!([lo, hi].map(f32::to_bits), [0, 0], "{vertices:?}");
             }
         }

@@ -1,22 +1,25 @@
 //! Principal axes: eigenvectors of the covariance of the convex hull's surface.
 //!
-//! With A_i, m_i the area and centroid of triangle (p, q, r)_i, A = ΣA_i and μ = ΣA_i m_i / A (Gottschalk 2000, §3.5):
-//! C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. Taken over the hull's surface, not the mesh's vertices, neither
-//! interior detail nor sampling density turns the axes.
+//! With A_i, m_i the area and centroid of triangle (p, q, r)_i, A = ΣA_i and μ = ΣA_i m_i / A
+//! (Gottschalk 2000, §3.5): C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. Taken over the
+//! hull's surface, not the mesh's vertices, neither interior detail nor sampling density turns the
+//! axes.
 
-use glam::{DMat3, DQuat, DVec3, Vec3};
+use glam::{DMat3, DQuat, DVec3};
 
 use super::jacobi::eigen;
 use super::{Axes, Basis, Hull};
+use crate::mesh::in_f64;
 
-/// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are whatever rounding
-/// makes of them. Far above f32 rounding (2⁻²⁴), so a symmetric mesh is seen as such after any rotation.
+/// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are
+/// whatever rounding makes of them. Far above f32 rounding (2⁻²⁴), so a symmetric mesh is seen as
+/// such after any rotation.
 const TIE: f64 = 1.0 / 8192.0;
 
 impl Axes {
     /// The basis for these vertices; only principal axes need their hull.
     #[must_use]
-    pub fn basis(self, vertices: &[Vec3]) -> Basis {
+    pub fn basis(self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Basis {
         match self {
             Self::Principal => Basis::principal(&Hull::of(vertices), vertices),
             Self::Model => Basis::MODEL,
@@ -25,9 +28,10 @@ impl Axes {
 }
 
 impl Basis {
-    /// The principal axes, longest first, snapped; the model axes when they are tied or the hull is flat.
+    /// The principal axes, longest first, snapped; the model axes when they are tied or the hull is
+    /// flat.
     #[must_use]
-    pub fn principal(hull: &Hull, vertices: &[Vec3]) -> Self {
+    pub fn principal(hull: &Hull, vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         surface_covariance(hull, vertices)
             .and_then(principal_rotation)
             .map_or(Self::MODEL, |rotation| {
@@ -37,9 +41,9 @@ impl Basis {
 }
 
 /// The covariance of the hull's surface, relative to its size; `None` without facets.
-fn surface_covariance(hull: &Hull, vertices: &[Vec3]) -> Option<DMat3> {
-    let origin = vertices[*hull.facets.first()?.first()? as usize].as_dvec3();
-    let corner = |i: u32| vertices[i as usize].as_dvec3() - origin;
+fn surface_covariance(hull: &Hull, vertices: &[impl Into<[f32; 3]> + Copy]) -> Option<DMat3> {
+    let origin = in_f64(&vertices[*hull.facets.first()?.first()? as usize].into());
+    let corner = |i: u32| in_f64(&vertices[i as usize].into()) - origin;
     let scale = 1.0
         / hull
             .vertices
@@ -89,8 +93,8 @@ fn sign_of_largest(v: DVec3) -> f64 {
 mod tests {
     use super::*;
 
-    /// Of a box with these half sides, wherever it is: (bc·a² + (ab + ca)·a²/3)/(ab + bc + ca) along a, in units of its
-    /// diagonal.
+    /// Of a box with these half sides, wherever it is: (bc·a² + (ab + ca)·a²/3)/(ab + bc + ca)
+    /// along a, in units of its diagonal.
     #[test]
     fn the_covariance_of_a_box_is_that_of_its_surface_in_its_own_size() {
         let [a, b, c] = [1.0, 2.0, 4.0];
@@ -103,7 +107,7 @@ mod tests {
                     + size * DVec3::new(3.0, 5.0, -2.0))
                 .as_vec3()
             };
-            let vertices: Vec<Vec3> = (0..8).map(corner).collect();
+            let vertices: Vec<_> = (0..8).map(corner).collect();
             let found = surface_covariance(&Hull::of(&vertices), &vertices).unwrap_or_default();
             let squared = 4.0 * (a * a + b * b + c * c);
             let wanted = DMat3::from_diagonal(DVec3::new(along(a), along(b), along(c)) / squared);

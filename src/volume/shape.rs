@@ -1,21 +1,24 @@
-//! A mesh made ready for culling: placed in its body frame, with its volumes (the paper's one-off construction, Co).
+//! A mesh made ready for culling: placed in its body frame, with its volumes (the paper's one-off
+//! construction, Co).
 //!
-//! `origin = "file"`, the default, keeps the mesh's own origin, to which an engine's poses refer. `origin = "ball"` moves the
-//! smallest enclosing ball's centre into the body origin, so that the sphere of a posed body is a copy of its translation.
-//! Either way every volume is computed from, and contains exactly, the f32 vertices as culled:
+//! `origin = "file"`, the default, keeps the mesh's own origin, to which an engine's poses refer.
+//! `origin = "ball"` moves the smallest enclosing ball's centre into the body origin, so that the
+//! sphere of a posed body is a copy of its translation. Either way every volume is computed from,
+//! and contains exactly, the f32 vertices as culled:
 //!
 //! > vertex = scale · (point of the file − offset), rounded to f32
 //!
-//! with the [`Shape::offset`] and [`Shape::scale`] that the shape keeps. A mesh that is far from its own origin is the
-//! exception to "keeps": its vertices are about a point near it, and its [`Shape::pose_offset`] says where that lies, seen from
-//! the point that poses refer to. Its volumes are grown by what rounding has moved, [`Shape::rounding`].
+//! with the [`Shape::offset`] and [`Shape::scale`] that the shape keeps. A mesh that is far from
+//! its own origin is the exception to "keeps": its vertices are about a point near it, and its
+//! [`Shape::pose_offset`] says where that lies, seen from the point that poses refer to. Its
+//! volumes are grown by what rounding has moved, [`Shape::rounding`].
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{Axes, Ball, Basis, DirectionSet, Hull, OrDop, ball};
 use crate::{
     choice::choices,
-    mesh::TriangleMesh,
+    mesh::{TriangleMesh, in_f64},
     rounding::{LIMIT, exp2, up},
     simd::in_default_mode,
 };
@@ -35,7 +38,8 @@ choices! {
 pub struct ShapeSpec {
     /// The body's origin: the point that poses place. By default the mesh's own, [`Origin::File`].
     pub origin: Origin,
-    /// The radius to which the smallest enclosing ball is scaled, about the body's origin; `None` keeps the mesh's size.
+    /// The radius to which the smallest enclosing ball is scaled, about the body's origin; `None`
+    /// keeps the mesh's size.
     pub radius: Option<f32>,
     /// The or-DOP's directions.
     pub directions: DirectionSet,
@@ -60,20 +64,21 @@ pub struct Shape {
     /// The mesh's name.
     pub name: String,
     /// Vertices as culled, in the body frame: scale · (point of the mesh − offset), rounded to f32.
-    pub vertices: Vec<Vec3>,
+    pub vertices: Vec<[f32; 3]>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// The point of the file's coordinates that is the origin of `vertices`: zero for [`Origin::File`], unless the mesh is far
-    /// from its origin.
+    /// The point of the file's coordinates that is the origin of `vertices`: zero for
+    /// [`Origin::File`], unless the mesh is far from its origin.
     pub offset: [f64; 3],
     /// By how much the mesh was scaled: 1 without a [`ShapeSpec::radius`].
     pub scale: f64,
-    /// Where the origin of `vertices` lies in the frame that poses place: zero, or scale · offset for a mesh that is far from
-    /// its origin and keeps it. A pose (q, t) stands for vertices at (q, t + R(q)·pose_offset), which a
-    /// [`World`](crate::World) composes in f64; what has poses in f32 refuses such a shape.
+    /// Where the origin of `vertices` lies in the frame that poses place: zero, or scale · offset
+    /// for a mesh that is far from its origin and keeps it. A pose (q, t) stands for vertices at
+    /// (q, t + R(q)·pose_offset), which a [`World`](crate::World) composes in f64; what has poses
+    /// in f32 refuses such a shape.
     pub pose_offset: [f64; 3],
-    /// How far a vertex of a far mesh is at most from the f64 point that it stands for: 0 for any other mesh. Ball, reach and
-    /// slabs are grown by it.
+    /// How far a vertex of a far mesh is at most from the f64 point that it stands for: 0 for any
+    /// other mesh. Ball, reach and slabs are grown by it.
     pub rounding: f32,
     /// Smallest enclosing ball of `vertices`, rounded up.
     pub ball: Ball,
@@ -94,18 +99,18 @@ impl Shape {
 
     fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
         let placement = Placement::of(mesh, spec)?;
-        let vertices: Vec<Vec3> = mesh
+        let vertices: Vec<[f32; 3]> = mesh
             .vertices
             .iter()
-            .map(|v| placement.point(v).as_vec3())
+            .map(|v| placement.point(v).as_vec3().to_array())
             .collect();
         let rounding = placement.rounding(mesh, &vertices);
         let mut ball = match spec.origin {
             Origin::File => Ball::smallest(&vertices),
-            Origin::Ball => Ball::about(Vec3::ZERO, &vertices),
+            Origin::Ball => Ball::about([0.0; 3], &vertices),
         };
         ball.radius = grown(ball.radius, rounding);
-        let reach = grown(ball::farthest_distance(Vec3::ZERO, &vertices), rounding);
+        let reach = grown(ball::farthest_distance([0.0; 3], &vertices), rounding);
         let within = reach <= LIMIT; // false for NaN; bounds the centre and the ball's radius too
         if !within {
             return Err(VolumeError::TooLarge {
@@ -156,7 +161,8 @@ impl Shape {
         in_default_mode(|| self.slabs(axes.basis(&self.vertices), directions))
     }
 
-    /// The oriented bounding box: an or-DOP of three slabs along the principal axes, whatever the or-DOP's own axes.
+    /// The oriented bounding box: an or-DOP of three slabs along the principal axes, whatever the
+    /// or-DOP's own axes.
     #[must_use]
     pub fn obb(&self, hull: &Hull) -> OrDop {
         in_default_mode(|| self.slabs(Basis::principal(hull, &self.vertices), DirectionSet::K6))
@@ -164,7 +170,7 @@ impl Shape {
 }
 
 /// The or-DOP of vertices that rounding has moved.
-fn slabs(vertices: &[Vec3], basis: Basis, directions: DirectionSet, rounding: f32) -> OrDop {
+fn slabs(vertices: &[[f32; 3]], basis: Basis, directions: DirectionSet, rounding: f32) -> OrDop {
     let ordop = OrDop::build(vertices, basis, directions);
     if rounding == 0.0 {
         ordop
@@ -198,7 +204,11 @@ impl Placement {
         if mesh.vertices.is_empty() {
             return Err(VolumeError::Empty { shape: shape() });
         }
-        if let Some(vertex) = mesh.vertices.iter().position(|v| !v.is_finite()) {
+        if let Some(vertex) = mesh
+            .vertices
+            .iter()
+            .position(|v| !v.iter().all(|x| x.is_finite()))
+        {
             return Err(VolumeError::NotFinite {
                 shape: shape(),
                 vertex,
@@ -251,23 +261,25 @@ impl Placement {
     }
 
     /// A vertex before it is rounded.
-    fn point(&self, vertex: &Vec3) -> DVec3 {
-        (vertex.as_dvec3() - self.centre) * self.scale
+    fn point(&self, vertex: &[f32; 3]) -> DVec3 {
+        (in_f64(vertex) - self.centre) * self.scale
     }
 
-    /// How far a vertex is at most from scale · (point of the file − offset), or with the pose's offset from scale · point: 0
-    /// for a mesh that has been rounded where it is, whose own vertices count.
-    fn rounding(&self, mesh: &TriangleMesh, vertices: &[Vec3]) -> f32 {
+    /// How far a vertex is at most from scale · (point of the file − offset), or with the pose's
+    /// offset from scale · point: 0 for a mesh that has been rounded where it is, whose own
+    /// vertices count.
+    fn rounding(&self, mesh: &TriangleMesh, vertices: &[[f32; 3]]) -> f32 {
         if !mesh.is_far() && mesh.rounding == 0.0 {
             return 0.0;
         }
         let pairs = mesh.vertices.iter().zip(vertices);
         let (mut placed, mut size) = (0.0_f64, 0.0_f64);
         for (vertex, rounded) in pairs {
-            placed = placed.max(self.point(vertex).distance(rounded.as_dvec3()));
-            size = size.max(vertex.as_dvec3().abs().max_element());
+            placed = placed.max(self.point(vertex).distance(in_f64(rounded)));
+            size = size.max(in_f64(vertex).abs().max_element());
         }
-        // In f64 the difference and the product round each coordinate twice, and a scaled offset once.
+        // In f64 the difference and the product round each coordinate twice, and a scaled offset
+        // once.
         let size = (size + self.centre.abs().max_element()) * self.scale;
         let scaled = if self.scale == 1.0 {
             0.0
@@ -288,18 +300,16 @@ impl Placement {
 }
 
 /// Why a mesh has no volumes.
-#[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum VolumeError {
     /// No vertices.
     #[error("shape `{shape}` has no vertices")]
-    #[diagnostic(help("a shape needs at least one vertex: check the mesh file"))]
     Empty {
         /// The mesh's name.
         shape: String,
     },
     /// A coordinate is NaN or infinite.
     #[error("vertex {vertex} of shape `{shape}` is not finite")]
-    #[diagnostic(help("coordinates must be finite f32: mend the mesh file"))]
     NotFinite {
         /// The mesh's name.
         shape: String,
@@ -308,7 +318,6 @@ pub enum VolumeError {
     },
     /// The requested radius is not a positive number within the limit.
     #[error("radius {radius} of shape `{shape}` is not in 0 < radius ≤ 2⁶⁰")]
-    #[diagnostic(help("give a positive radius, or none to keep the mesh's own size"))]
     Radius {
         /// The mesh's name.
         shape: String,
@@ -317,7 +326,6 @@ pub enum VolumeError {
     },
     /// A mesh of one point can't be scaled.
     #[error("shape `{shape}` is a single point and can't be scaled to radius {radius}")]
-    #[diagnostic(help("leave the radius out: the point is culled as a ball of radius 0"))]
     NoExtent {
         /// The mesh's name.
         shape: String,
@@ -326,11 +334,26 @@ pub enum VolumeError {
     },
     /// Vertices too far from the body origin for the culler's f32 arithmetic.
     #[error("shape `{shape}` reaches {reach:e} from its origin, beyond the limit of 2⁶⁰ ≈ 1.15e18")]
-    #[diagnostic(help("scale the mesh down, or give a radius"))]
     TooLarge {
         /// The mesh's name.
         shape: String,
         /// The largest vertex norm.
         reach: f32,
     },
+}
+
+impl VolumeError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        match self {
+            Self::Empty { .. } => "a shape needs at least one vertex: check the mesh file",
+            Self::NotFinite { .. } => "coordinates must be finite f32: mend the mesh file",
+            Self::Radius { .. } => "give a positive radius, or none to keep the mesh's own size",
+            Self::NoExtent { .. } => {
+                "leave the radius out: the point is culled as a ball of radius 0"
+            }
+            Self::TooLarge { .. } => "scale the mesh down, or give a radius",
+        }
+    }
 }

@@ -15,14 +15,15 @@ pub struct Body {
     pub translation: [f64; 3],
     /// Which bodies it may collide with.
     pub groups: Groups,
-    /// Contact margin, a length ≥ 0: a pair is reported when its meshes, each grown by its margin, meet. The culler may
-    /// round it up by an eighth.
+    /// Contact margin, a length ≥ 0: a pair is reported when its meshes, each grown by its margin,
+    /// meet. The culler may round it up by an eighth.
     pub margin: f32,
 }
 
 impl Body {
-    /// A dynamic body of a shape at a pose, that collides with all, without a margin: rotation as a quaternion (x, y, z, w) of
-    /// any non-zero norm, translation of the body origin in the world frame.
+    /// A dynamic body of a shape at a pose, that collides with all, without a margin: rotation as a
+    /// quaternion (x, y, z, w) of any non-zero norm, translation of the body origin in the world
+    /// frame.
     #[must_use]
     pub fn at(shape: u32, rotation: impl Into<[f32; 4]>, translation: impl Into<[f64; 3]>) -> Self {
         Self {
@@ -44,7 +45,8 @@ impl Body {
 }
 
 impl Default for Body {
-    /// A dynamic body of the first shape at the origin, unturned, that collides with all, without a margin.
+    /// A dynamic body of the first shape at the origin, unturned, that collides with all, without a
+    /// margin.
     fn default() -> Self {
         Self {
             shape: 0,

@@ -2,7 +2,8 @@
 
 use crate::volume::Shape;
 
-/// FNV-1a over words: shapes that differ in one word have different digests, others by all but 2⁻⁶⁴ of chance.
+/// FNV-1a over words: shapes that differ in one word have different digests, others by all but 2⁻⁶⁴
+/// of chance.
 struct Digest(u64);
 
 impl Digest {

@@ -1,6 +1,5 @@
 //! What a world refuses.
 
-use miette::Diagnostic;
 use thiserror::Error;
 
 use super::BodyId;
@@ -8,27 +7,22 @@ use crate::bodies::contract::ContractError;
 use crate::culler::CullError;
 
 /// A request that a world can't carry out. The world is as it was before.
-#[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum WorldError {
     /// The body has been removed.
     #[error("body {0} is no longer in this world")]
-    #[diagnostic(help("it was removed; ids are never given again"))]
     Gone(BodyId),
     /// A number of the body is outside of the contract.
     #[error(transparent)]
-    #[diagnostic(transparent)]
     Contract(#[from] ContractError),
     /// A culler that can't be made.
     #[error(transparent)]
-    #[diagnostic(transparent)]
     Cull(#[from] CullError),
     /// Bodies too far from each other to be culled about one origin.
     #[error("bodies lie farther apart than 2^60: {0} is out of reach of the others")]
-    #[diagnostic(help("keep separate worlds for what can't meet"))]
     Apart(BodyId),
     /// A shape that some body has can't be removed.
     #[error("shape {shape} (`{name}`) is the shape of body {body}")]
-    #[diagnostic(help("remove the bodies that have it first, or give them another shape"))]
     ShapeInUse {
         /// The shape's number.
         shape: u32,
@@ -39,8 +33,24 @@ pub enum WorldError {
     },
     /// A number that no shape has.
     #[error("no shape of this world has the number {0}")]
-    #[diagnostic(help(
-        "numbers come from `World::add_shape`, or count the shapes that the world began with"
-    ))]
     NoShape(u32),
+}
+
+impl WorldError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        match self {
+            Self::Gone(_) => "it was removed; ids are never given again",
+            Self::Contract(error) => error.help(),
+            Self::Cull(error) => error.help(),
+            Self::Apart(_) => "keep separate worlds for what can't meet",
+            Self::ShapeInUse { .. } => {
+                "remove the bodies that have it first, or give them another shape"
+            }
+            Self::NoShape(_) => {
+                "numbers come from `World::add_shape`, or count the shapes that the world began with"
+            }
+        }
+    }
 }

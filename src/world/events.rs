@@ -1,10 +1,16 @@
-//! What has changed between two lists of pairs, found by merging them: no list of changes is kept.
+//! What has changed between two culls: read off a merge of their lists, or listed where little has
+//! changed.
 
 use std::iter::Peekable;
 use std::sync::Arc;
 
 use super::BodyId;
-use super::pair_log::{PairIds, Reported};
+use super::pair_log::{PairIds, Reported, WorldPairs};
+use crate::pairs::Partners;
+
+/// Changes are listed while they are at most one in so many pairs of both culls, and some more.
+const LISTED_SHARE: usize = 8;
+const ALWAYS_LISTED: usize = 64;
 
 /// A change of one pair, or none: the lower slot first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,31 +23,96 @@ pub enum Event {
     Ended([BodyId; 2]),
 }
 
-/// What two lists of pairs have in common and what not, each kind sorted by slots.
+/// What the pairs of two culls have in common and what not, each kind sorted by slots.
 ///
-/// Holds both lists, and borrows nothing of the world: bodies may be removed while events are read. Each iterator is one
-/// pass over both lists and takes no memory; with millions of pairs, use [`Self::iter`] once instead of all three.
+/// Borrows nothing of the world: bodies may be removed while events are read. [`Self::begun`] and
+/// [`Self::ended`] cost what has changed, or one pass over both lists of pairs where that is much;
+/// [`Self::persisting`] and [`Self::iter`] are one pass over the pairs. Drop the events before the
+/// next cull, or that copies the pairs that they share with the world.
 #[derive(Clone, Debug, Default)]
 pub struct Events {
-    pub(super) before: Arc<Reported>,
-    pub(super) now: Arc<Reported>,
+    pub(super) now: CurrentPairs,
+    pub(super) change: PairDifference,
+}
+
+/// The pairs of the later cull.
+#[derive(Clone, Debug)]
+pub(super) enum CurrentPairs {
+    List(Arc<Reported>),
+    Partners {
+        slots: Arc<Partners>,
+        generation: Arc<Vec<u32>>,
+    },
+}
+
+/// How the pairs of the former cull differ from them.
+#[derive(Clone, Debug)]
+pub(super) enum PairDifference {
+    /// These were reported.
+    Since(Arc<Reported>),
+    /// Both sorted.
+    Listed {
+        begun: Vec<[BodyId; 2]>,
+        ended: Vec<[BodyId; 2]>,
+    },
+}
+
+impl Default for CurrentPairs {
+    fn default() -> Self {
+        Self::List(Arc::default())
+    }
+}
+
+impl Default for PairDifference {
+    fn default() -> Self {
+        Self::Since(Arc::default())
+    }
+}
+
+impl CurrentPairs {
+    pub fn pairs(&self) -> WorldPairs<'_> {
+        match self {
+            Self::List(list) => list.pairs(),
+            Self::Partners { slots, generation } => WorldPairs::of_partners(slots, generation),
+        }
+    }
 }
 
 impl Events {
+    /// Those between two culls.
+    pub(super) fn between(before: Arc<Reported>, now: Arc<Reported>) -> Self {
+        let change = changes_between(&before, &now).unwrap_or(PairDifference::Since(before));
+        let now = CurrentPairs::List(now);
+        Self { now, change }
+    }
+
     /// All events, sorted by the slots of their pairs.
     pub fn iter(&self) -> impl Iterator<Item = Event> + '_ {
-        Merge {
-            before: self.before.pairs().iter().peekable(),
-            now: self.now.pairs().iter().peekable(),
+        let now = self.now.pairs().iter().peekable();
+        match &self.change {
+            PairDifference::Since(before) => Either::One(Merge {
+                before: before.pairs().iter().peekable(),
+                now,
+            }),
+            PairDifference::Listed { begun, ended } => Either::Other(Replay {
+                now,
+                begun: begun.iter().peekable(),
+                ended: ended.iter().peekable(),
+            }),
         }
     }
 
     /// Pairs reported now and not before.
     pub fn begun(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
-        self.iter().filter_map(|event| match event {
-            Event::Begun(pair) => Some(pair),
-            _ => None,
-        })
+        match &self.change {
+            PairDifference::Listed { begun, .. } => Either::One(begun.iter().copied()),
+            PairDifference::Since(_) => {
+                Either::Other(self.iter().filter_map(|event| match event {
+                    Event::Begun(pair) => Some(pair),
+                    _ => None,
+                }))
+            }
+        }
     }
 
     /// Pairs reported now and before.
@@ -54,10 +125,66 @@ impl Events {
 
     /// Pairs reported before and not now; those of a body removed since then are among them.
     pub fn ended(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
-        self.iter().filter_map(|event| match event {
-            Event::Ended(pair) => Some(pair),
-            _ => None,
-        })
+        match &self.change {
+            PairDifference::Listed { ended, .. } => Either::One(ended.iter().copied()),
+            PairDifference::Since(_) => {
+                Either::Other(self.iter().filter_map(|event| match event {
+                    Event::Ended(pair) => Some(pair),
+                    _ => None,
+                }))
+            }
+        }
+    }
+}
+
+/// Lists what has changed between two culls, unless it is much.
+fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> {
+    let [former, later] = [before, now].map(|reported| reported.slots.len());
+    let most = (former + later) / LISTED_SHARE + ALWAYS_LISTED;
+    if former.abs_diff(later) > most {
+        return None;
+    }
+    let (mut begun, mut ended) = (Vec::new(), Vec::new());
+    let slots = [before, now].map(|reported| (reported.slots.first(), reported.slots.second()));
+    let ids = [before, now].map(|reported| reported.pairs().iter());
+    let are_of_one_time = Arc::ptr_eq(&before.generation, &now.generation);
+    let pair = |list: usize, at: usize| ids[list].at([slots[list].0[at], slots[list].1[at]]);
+    let (mut i, mut j) = (0, 0);
+    while i < former && j < later {
+        let is_same = slots[0].0[i] == slots[1].0[j] && slots[0].1[i] == slots[1].1[j];
+        if is_same && (are_of_one_time || pair(0, i) == pair(1, j)) {
+            (i, j) = (i + 1, j + 1);
+            continue;
+        }
+        if pair(0, i) < pair(1, j) {
+            ended.push(pair(0, i));
+            i += 1;
+        } else {
+            begun.push(pair(1, j));
+            j += 1;
+        }
+        if begun.len() + ended.len() > most {
+            return None;
+        }
+    }
+    ended.extend((i..former).map(|at| pair(0, at)));
+    begun.extend((j..later).map(|at| pair(1, at)));
+    Some(PairDifference::Listed { begun, ended })
+}
+
+/// One of two iterators.
+enum Either<A, B> {
+    One(A),
+    Other(B),
+}
+
+impl<T, A: Iterator<Item = T>, B: Iterator<Item = T>> Iterator for Either<A, B> {
+    type Item = T;
+    fn next(&mut self) -> Option<T> {
+        match self {
+            Self::One(iter) => iter.next(),
+            Self::Other(iter) => iter.next(),
+        }
     }
 }
 
@@ -80,6 +207,30 @@ impl Iterator for Merge<'_> {
         match self.before.next_if_eq(&pair) {
             Some(_) => Some(Event::Persisting(pair)),
             None => Some(Event::Begun(pair)),
+        }
+    }
+}
+
+/// The later pairs with the changes that led to them, all sorted.
+struct Replay<'a> {
+    now: Peekable<PairIds<'a>>,
+    begun: Peekable<std::slice::Iter<'a, [BodyId; 2]>>,
+    ended: Peekable<std::slice::Iter<'a, [BodyId; 2]>>,
+}
+
+impl Iterator for Replay<'_> {
+    type Item = Event;
+    fn next(&mut self) -> Option<Event> {
+        let Some(&pair) = self.now.peek() else {
+            return self.ended.next().copied().map(Event::Ended);
+        };
+        if let Some(gone) = self.ended.next_if(|&&gone| gone < pair) {
+            return Some(Event::Ended(*gone));
+        }
+        self.now.next();
+        match self.begun.next_if(|&&begun| begun == pair) {
+            Some(_) => Some(Event::Begun(pair)),
+            None => Some(Event::Persisting(pair)),
         }
     }
 }

@@ -14,11 +14,27 @@ pub struct BodyId {
 }
 
 impl BodyId {
-    /// Where a column a body may keep this one's entry: below [`World::slots`](super::World::slots), and given to another
-    /// body once this one is removed.
+    /// Where a column a body may keep this one's entry: below
+    /// [`World::slots`](super::World::slots), and given to another body once this one is removed.
     #[must_use]
     pub fn slot(self) -> usize {
         self.slot as usize
+    }
+
+    /// The id as a number, for languages and files that have no such type: the generation above the
+    /// slot.
+    #[must_use]
+    pub fn to_bits(self) -> u64 {
+        u64::from(self.generation) << 32 | u64::from(self.slot)
+    }
+
+    /// The id of [`Self::to_bits`]. Any other number is an id that no world has given.
+    #[must_use]
+    pub fn from_bits(bits: u64) -> Self {
+        Self {
+            slot: bits as u32,
+            generation: (bits >> 32) as u32,
+        }
     }
 }
 
@@ -37,7 +53,8 @@ pub(crate) struct Ids {
     /// Empty slots, and those emptied since the last cull, which its pairs still name.
     pub(super) free: Vec<u32>,
     pub(super) emptied: Vec<u32>,
-    /// The generation of a new slot, above all of the slots that were given back ([`Self::shrink`]).
+    /// The generation of a new slot, above all of the slots that were given back
+    /// ([`Self::shrink`]).
     pub(super) first_generation: u32,
     pub(super) bodies: usize,
 }
@@ -72,8 +89,8 @@ impl Ids {
         Ok(())
     }
 
-    /// A cull's pairs name none of the bodies that have been removed: their slots may be given away, unless all their
-    /// generations have been.
+    /// A cull's pairs name none of the bodies that have been removed: their slots may be given
+    /// away, unless all their generations have been.
     pub fn settle(&mut self) {
         let generation = &self.generation;
         let emptied = self.emptied.drain(..);
@@ -81,7 +98,8 @@ impl Ids {
         self.free.extend(lasting);
     }
 
-    /// Gives back free slots at the end; returns how many slots are left. Ids that they had are never given again.
+    /// Gives back free slots at the end; returns how many slots are left. Ids that they had are
+    /// never given again.
     pub fn shrink(&mut self) -> usize {
         let mut is_free = vec![false; self.slots()];
         for &slot in &self.free {

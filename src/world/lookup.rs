@@ -1,4 +1,5 @@
-//! Whether a pair was reported, by a look-up instead of a walk through the list: for engines that call back pair by pair.
+//! Whether a pair was reported, by a look-up instead of a walk through the list: for engines that
+//! call back pair by pair.
 
 use super::{BodyId, World};
 
@@ -43,7 +44,8 @@ impl PairLookup {
         }
     }
 
-    /// Whether the pair is among them, in either order. A body that was removed before that cull is in no pair.
+    /// Whether the pair is among them, in either order. A body that was removed before that cull is
+    /// in no pair.
     #[must_use]
     pub fn contains(&self, a: BodyId, b: BodyId) -> bool {
         let pair = if a.slot <= b.slot { [a, b] } else { [b, a] };

@@ -1,7 +1,9 @@
-//! Few margins for many bodies: each is rounded up to a class, and a shape with a class is one model of the culler.
+//! Few margins for many bodies: each is rounded up to a class, and a shape with a class is one
+//! model of the culler.
 //!
-//! Classes are eight steps an octave, so a body grows by at most an eighth of its margin too much. Rounding errors of
-//! local translations alone have a class in common as long as they are below 2⁻¹² of the shape.
+//! Classes are eight steps an octave, so a body grows by at most an eighth of its margin too much.
+//! Rounding errors of local translations alone have a class in common as long as they are below
+//! 2⁻¹² of the shape.
 
 use std::collections::HashMap;
 
@@ -23,8 +25,8 @@ pub(super) struct Margins {
 }
 
 impl Margins {
-    /// The model for a shape of size `reach` and with the number `shape` among the models, with a margin, placed with an error of
-    /// at most `moved`; `grow` makes it where it is new.
+    /// The model for a shape of size `reach` and with the number `shape` among the models, with a
+    /// margin, placed with an error of at most `moved`; `grow` makes it where it is new.
     pub fn model(
         &mut self,
         shape: u32,
@@ -90,8 +92,8 @@ pub(super) fn check_margin(body: usize, reach: f32, margin: f32) -> Result<(), C
     refuse(body, "margin", format!("{margin}"), hint)
 }
 
-/// The bits of the smallest class above `margin` > 0: an f32 of three significant bits behind the first, so that exponent
-/// and bits are one integer that steps through the classes.
+/// The bits of the smallest class above `margin` > 0: an f32 of three significant bits behind the
+/// first, so that exponent and bits are one integer that steps through the classes.
 fn class_of(margin: f64) -> u32 {
     const STEP: u32 = 1 << 20;
     let above = crate::rounding::up(margin).to_bits();

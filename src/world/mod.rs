@@ -1,13 +1,15 @@
 //! Long-lived worlds: bodies come and go, and every frame asks who might touch.
 //!
-//! What an engine needs around a [`Culler`]: stable ids, static and dynamic bodies, groups and masks, contact margins,
-//! translations in f64, and pairs as a list or as events. The promise is the same, margins included: at every
-//! [`World::cull`], if two meshes, each grown by its body's margin and posed at its f64 translation, meet in exact
-//! arithmetic, and one of them is dynamic, and their groups collide, the pair is reported.
+//! What an engine needs around a [`Culler`]: stable ids, static and dynamic bodies, groups and
+//! masks, contact margins, translations in f64, and pairs as a list or as events. The promise is
+//! the same, margins included: at every [`World::cull`], if two meshes, each grown by its body's
+//! margin and posed at its f64 translation, meet in exact arithmetic, and one of them is dynamic,
+//! and their groups collide, the pair is reported.
 //!
-//! Bodies that come or go leave what is known of the others: until a sixteenth of all are new, the next cull takes a sort
-//! more, and places static bodies anew. Poses, margins and groups change at the price of a copy. Lists, and their order, depend on
-//! the bodies as they are now, never on the finder, the CPU or threads ([`World::cull`]).
+//! Bodies that come or go leave what is known of the others: until a sixteenth of all are new, the
+//! next cull takes a sort more, and places static bodies anew. Poses, margins and groups change at
+//! the price of a copy. Lists, and their order, depend on the bodies as they are now, never on the
+//! finder, the CPU or threads ([`World::cull`]).
 //!
 //! ```
 //! use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};
@@ -24,56 +26,82 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "shapes")]
 mod body;
+#[cfg(feature = "shapes")]
+mod bounds;
+mod change_log;
+#[cfg(feature = "shapes")]
 mod crowds;
-#[cfg(feature = "serde")]
+#[cfg(all(feature = "shapes", feature = "serde"))]
 mod digest;
 mod error;
 mod events;
 mod ids;
+mod live_pairs;
+#[cfg(feature = "shapes")]
 mod local;
+#[cfg(feature = "shapes")]
 mod lookup;
+#[cfg(feature = "shapes")]
 mod margins;
+#[cfg(feature = "shapes")]
 mod offset;
 mod pair_log;
+#[cfg(feature = "shapes")]
 mod pair_test;
+#[cfg(feature = "shapes")]
+mod region;
+#[cfg(feature = "shapes")]
+mod regions;
 #[cfg(feature = "serde")]
 mod saved;
+#[cfg(feature = "shapes")]
 mod shapes;
-#[cfg(feature = "serde")]
+#[cfg(all(feature = "shapes", feature = "serde"))]
 mod snapshot;
 
 pub use crate::bodies::Groups;
+#[cfg(feature = "shapes")]
 pub use body::Body;
 pub use error::WorldError;
 pub use events::{Event, Events};
 pub use ids::BodyId;
+#[cfg(feature = "shapes")]
 pub use lookup::PairLookup;
 pub use pair_log::{PairIds, WorldPairs};
+#[cfg(feature = "shapes")]
 pub use pair_test::PairTest;
 #[cfg(feature = "serde")]
 pub use saved::SnapshotError;
-#[cfg(feature = "serde")]
+#[cfg(all(feature = "shapes", feature = "serde"))]
 pub use snapshot::WorldSnapshot;
 
 pub(crate) use self::ids::{Ids, shrink_column};
-use self::local::Local;
-use self::margins::{Margins, check_margin};
-pub(crate) use self::pair_log::PairLog;
+pub(crate) use self::live_pairs::LivePairs;
 #[cfg(feature = "serde")]
-pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length};
-use self::shapes::{ShapeSlot, check_shape};
-use crate::bodies::Bodies;
-use crate::bodies::contract::{ContractError, check_number, check_pose};
-use crate::counters::{Counters, Seconds};
-use crate::culler::{CullError, Culler, CullerBuilder};
-use crate::settings::{Interest, SettingsError};
-use crate::simd::in_default_mode;
-use crate::volume::Shape;
+pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length, damaged};
+#[cfg(feature = "shapes")]
+use self::{
+    margins::{Margins, check_margin},
+    pair_log::PairLog,
+    shapes::{ShapeSlot, check_shape},
+};
+#[cfg(feature = "shapes")]
+use crate::{
+    bodies::Bodies,
+    bodies::contract::{ContractError, check_number, check_pose},
+    counters::{Counters, Seconds},
+    culler::{CullError, Culler, CullerBuilder},
+    settings::{Finder, Interest, SettingsError},
+    simd::in_default_mode,
+    volume::Shape,
+};
 
 /// Bodies in slots, and their culler.
 ///
 /// A clone goes on as the original would, on threads that it starts for itself.
+#[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 pub struct World {
     shapes: Vec<ShapeSlot>,
@@ -86,7 +114,6 @@ pub struct World {
     translation: Vec<[f64; 3]>,
     margin: Vec<f32>,
     groups: Vec<Groups>,
-    local: Local,
     margins: Margins,
     interest: Vec<BodyId>,
     culler: Culler,
@@ -96,6 +123,7 @@ pub struct World {
     regrouped: bool,
 }
 
+#[cfg(feature = "shapes")]
 impl World {
     /// A world without bodies, culled with every default ([`Culler::new`]).
     ///
@@ -105,11 +133,12 @@ impl World {
         Self::with(shapes, &Culler::builder())
     }
 
-    /// A world without bodies, culled as the builder says. Bodies of interest, where the strategy needs them, are set by
-    /// [`Self::set_interest`].
+    /// A world without bodies, culled as the builder says. Bodies of interest, where the strategy
+    /// needs them, are set by [`Self::set_interest`].
     ///
     /// # Errors
-    /// Settings that can't be carried out, a view cone, a shape beyond the contract, threads that the system refuses.
+    /// Settings that can't be carried out, a view cone, a shape beyond the contract, threads that
+    /// the system refuses.
     pub fn with(shapes: Vec<Shape>, culler: &CullerBuilder) -> Result<Self, WorldError> {
         let settings = &culler.settings;
         if let Some(interest) = &settings.interest {
@@ -131,7 +160,6 @@ impl World {
             translation: Vec::new(),
             margin: Vec::new(),
             groups: Vec::new(),
-            local: Local::default(),
             margins: Margins::default(),
             interest: Vec::new(),
             culler,
@@ -197,8 +225,8 @@ impl World {
         self.ids().map(|id| (id, self.body_at(id.slot())))
     }
 
-    /// Changes a body in any of its properties. A dynamic body's pose may change by any amount: nothing is assumed of the
-    /// way between two culls.
+    /// Changes a body in any of its properties. A dynamic body's pose may change by any amount:
+    /// nothing is assumed of the way between two culls.
     ///
     /// # Errors
     /// A body that has been removed; a pose, shape or margin outside of the contract.
@@ -244,14 +272,16 @@ impl World {
         Ok(())
     }
 
-    /// Finds the pairs that might touch now, and returns them: the lower slot first, sorted by slots. Under every strategy,
-    /// list and order are a function of the bodies as they are now (with [`Order::OldestAnswer`](crate::Order), also of when
-    /// pairs were refined, and with a budget of time, of the clock), whatever the finder, the threads and the calls before.
-    /// Translations that f32 has to round are the exception: the origin about which they are rounded follows the bodies, and
-    /// how much wider their volumes are depends on where it has been.
+    /// Finds the pairs that might touch now, and returns them: the lower slot first, sorted by
+    /// slots. Under every strategy, list and order are a function of the bodies as they are now
+    /// (with [`Order::OldestAnswer`](crate::Order), also of when pairs were refined, and with a
+    /// budget of time, of the clock), whatever the finder, the threads and the calls before. That
+    /// holds for translations that f32 has to round, too: the origins about which they are rounded
+    /// follow from the bodies as they are now.
     ///
     /// # Errors
-    /// Bodies more than 2⁶⁰ apart; [`Self::pairs`] are still those of the cull before.
+    /// Bodies that can't be placed within 2⁶⁰ of an origin, which takes meshes far from their own
+    /// origins; [`Self::pairs`] are still those of the cull before.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
         self.cull_with(|culler, bodies| culler.cull(bodies).map(|_| ()))
     }
@@ -297,8 +327,8 @@ impl World {
         self.log.pairs().iter()
     }
 
-    /// What the last cull reports that it didn't at the last call of this, and the other way round. The events are apart
-    /// from the world: bodies may be removed while they are read.
+    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    /// The events are apart from the world: bodies may be removed while they are read.
     pub fn events(&mut self) -> Events {
         self.log.events()
     }
@@ -321,6 +351,12 @@ impl World {
         self.ids.slots()
     }
 
+    /// The pair finder at work: the one asked for, or what `auto` picked last.
+    #[must_use]
+    pub fn finder(&self) -> Finder {
+        self.culler.finder()
+    }
+
     /// Counters summed over all culls.
     #[must_use]
     pub fn counters(&self) -> &Counters {
@@ -331,47 +367,6 @@ impl World {
     #[must_use]
     pub fn seconds(&self) -> &Seconds {
         self.culler.seconds()
-    }
-
-    /// Brings all bodies near the local origin, in the model that their margin and rounding call for.
-    fn place(&mut self) -> Result<(), WorldError> {
-        let (ids, slots) = (&self.ids, 0..self.ids.slots());
-        let present = slots.filter(|&slot| ids.present()[slot]);
-        let translations = present.clone().map(|slot| self.composed(slot).0);
-        let local = self.local.follow(translations);
-        self.replaced |= local != self.local; // static bodies have moved, as seen from there
-        if let Some(slot) = present
-            .clone()
-            .find(|&slot| !local.reaches(self.composed(slot).0))
-        {
-            return Err(WorldError::Apart(ids.id(slot as u32)));
-        }
-        self.local = local;
-        let mut changed = false;
-        for slot in present {
-            let (translation, composed) = self.composed(slot);
-            let (place, moved) = local.place(translation);
-            let moved = moved + composed;
-            let shape = self.shape[slot] as usize;
-            let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
-            let grow = |model, margin| self.culler.grow(model, margin);
-            let model = self
-                .margins
-                .model(self.models[shape], reach, margin, moved, grow);
-            changed |= self.bodies.shape[slot] != model;
-            self.bodies.shape[slot] = model;
-            self.bodies.translation[slot] = place;
-        }
-        if changed && !self.replaced {
-            self.culler.reread_shapes(&self.bodies);
-        }
-        Ok(())
-    }
-
-    /// The translation of the vertices of the body in a slot, and how far from the exact one it may be.
-    fn composed(&self, slot: usize) -> ([f64; 3], f64) {
-        let offset = self.shapes[self.shape[slot] as usize].pose_offset;
-        offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)
     }
 
     /// Tells the culler of the bodies of interest that are still there.

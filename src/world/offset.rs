@@ -1,7 +1,8 @@
 //! Meshes far from their origin: poses refer to it, volumes lie about a point near the mesh.
 //!
-//! A pose (q, t) places the vertices' own origin at t + R(q)·offset. That is computed in f64 as any posed point is, so each
-//! coordinate is within 24·2⁻⁵³ of max(|offset|∞, |t|∞), and the place within √3 times that. The bound joins the body's margin.
+//! A pose (q, t) places the vertices' own origin at t + R(q)·offset. That is computed in f64 as any
+//! posed point is, so each coordinate is within 24·2⁻⁵³ of max(|offset|∞, |t|∞), and the place
+//! within √3 times that. The bound joins the body's margin.
 
 use crate::rounding::pose::{OFFSET_ERROR, rotate_of, rotation};
 
@@ -41,7 +42,8 @@ mod tests {
         assert!(bound > 0.0 && bound < 1.0e-5, "{bound}");
     }
 
-    /// Quaternion and vectors are whole numbers, so that the exact place is a fraction over |q|² in i128.
+    /// Quaternion and vectors are whole numbers, so that the exact place is a fraction over |q|² in
+    /// i128.
     fn share([q, o, t]: [[i64; 4]; 3]) -> f64 {
         let [x, y, z, w] = q.map(i128::from);
         let n = x * x + y * y + z * z + w * w;

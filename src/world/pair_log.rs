@@ -1,46 +1,68 @@
-//! The pairs that culls have reported: those of the last cull, and those that events were last read of.
+//! The pairs that culls have reported: those of the last cull, and those that events were last read
+//! of.
 
 use std::iter::Zip;
 use std::slice::Iter;
 use std::sync::Arc;
 
 use super::{BodyId, Events, Ids};
-use crate::pairs::{PairList, PairSorter};
+use crate::pairs::{PairList, PairSorter, PartnerPairs, Partners};
 
 /// Pairs of bodies, the lower slot first.
 #[derive(Clone, Copy, Debug)]
 pub struct WorldPairs<'a> {
-    slots: &'a PairList,
+    slots: SlotPairs<'a>,
     generation: &'a [u32],
+}
+
+/// Pairs of slots, in one of the forms that they are kept in.
+#[derive(Clone, Copy, Debug)]
+enum SlotPairs<'a> {
+    List(&'a PairList),
+    Partners(&'a Partners),
 }
 
 impl<'a> WorldPairs<'a> {
     pub(crate) fn new(slots: &'a PairList, generation: &'a [u32]) -> Self {
+        let slots = SlotPairs::List(slots);
+        Self { slots, generation }
+    }
+
+    pub(super) fn of_partners(slots: &'a Partners, generation: &'a [u32]) -> Self {
+        let slots = SlotPairs::Partners(slots);
         Self { slots, generation }
     }
 
     /// Number of pairs.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.slots.len()
+        match self.slots {
+            SlotPairs::List(list) => list.len(),
+            SlotPairs::Partners(partners) => partners.len(),
+        }
     }
 
     /// Whether there is no pair.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.slots.is_empty()
+        self.len() == 0
     }
 
     /// The pairs in the order of the list.
     #[must_use]
     pub fn iter(&self) -> PairIds<'a> {
+        let slots = match self.slots {
+            SlotPairs::List(list) => SlotIter::List(list.first().iter().zip(list.second())),
+            SlotPairs::Partners(partners) => SlotIter::Partners(partners.iter()),
+        };
         PairIds {
-            slots: self.slots.first().iter().zip(self.slots.second()),
+            slots,
             generation: self.generation,
         }
     }
 
-    /// The pairs sorted by slots: the order that the pairs of a world's cull have anyway, and portions don't.
+    /// The pairs sorted by slots: the order that the pairs of a world's cull have anyway, and
+    /// portions don't.
     #[must_use]
     pub fn sorted(&self) -> Vec<[BodyId; 2]> {
         let mut pairs: Vec<_> = self.iter().collect();
@@ -60,22 +82,41 @@ impl<'a> IntoIterator for WorldPairs<'a> {
 /// The pairs of [`WorldPairs`], one after the other.
 #[derive(Clone, Debug)]
 pub struct PairIds<'a> {
-    slots: Zip<Iter<'a, u32>, Iter<'a, u32>>,
+    slots: SlotIter<'a>,
     generation: &'a [u32],
+}
+
+#[derive(Clone, Debug)]
+enum SlotIter<'a> {
+    List(Zip<Iter<'a, u32>, Iter<'a, u32>>),
+    Partners(PartnerPairs<'a>),
+}
+
+impl PairIds<'_> {
+    /// The bodies in two slots.
+    #[inline(always)]
+    pub(super) fn at(&self, pair: [u32; 2]) -> [BodyId; 2] {
+        pair.map(|slot| BodyId {
+            slot,
+            generation: self.generation[slot as usize],
+        })
+    }
 }
 
 impl Iterator for PairIds<'_> {
     type Item = [BodyId; 2];
     fn next(&mut self) -> Option<[BodyId; 2]> {
-        let (&first, &second) = self.slots.next()?;
-        let id = |slot: u32| BodyId {
-            slot,
-            generation: self.generation[slot as usize],
+        let [first, second] = match &mut self.slots {
+            SlotIter::List(list) => list.next().map(|(&first, &second)| [first, second])?,
+            SlotIter::Partners(partners) => partners.next()?,
         };
-        Some([id(first), id(second)])
+        Some(self.at([first, second]))
     }
     fn size_hint(&self) -> (usize, Option<usize>) {
-        self.slots.size_hint()
+        match &self.slots {
+            SlotIter::List(list) => list.size_hint(),
+            SlotIter::Partners(partners) => partners.size_hint(),
+        }
     }
 }
 
@@ -113,7 +154,8 @@ impl Reported {
 
 /// The pairs of the last cull, those at the last look for events, and memory for the next.
 ///
-/// Lists are shared with the [`Events`] that are read of them, and none is copied: two lists take turns.
+/// Lists are shared with the [`Events`] that are read of them, and none is copied: two lists take
+/// turns.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairLog {
     pub(super) last: Arc<Reported>,
@@ -125,7 +167,6 @@ pub(crate) struct PairLog {
 
 impl PairLog {
     /// The pairs of a cull, and those that events were read of.
-    #[cfg(feature = "serde")]
     pub(super) fn of(last: Arc<Reported>, watched: Arc<Reported>) -> Self {
         Self {
             last,
@@ -160,7 +201,7 @@ impl PairLog {
         let now = self.last.clone();
         let before = std::mem::replace(&mut self.watched, now.clone());
         self.spare = Some(before.clone());
-        Events { before, now }
+        Events::between(before, now)
     }
 
     /// Bytes that lists of pairs hold.
@@ -220,7 +261,7 @@ mod tests {
             cull(&mut log, &ids, pairs.map(|i| [i, i + 7]));
             let events = log.events();
             assert_eq!(
-                events.now.slots.len(),
+                events.now.pairs().len(),
                 events.iter().count() - events.ended().count()
             );
             bytes.push(log.bytes());
@@ -246,7 +287,7 @@ mod tests {
         let few = log.events();
         log.shrink_to_fit();
         assert!(log.bytes() < 1000, "{}", log.bytes());
-        assert!(log.pairs().iter().eq(few.now.pairs()) && log.pairs().len() == 2);
+        assert!(log.pairs().iter().eq(few.now.pairs().iter()) && log.pairs().len() == 2);
         assert_eq!(log.events().persisting().count(), 2);
         drop((crowd, few));
     }

@@ -1,8 +1,10 @@
-//! One pair at a time, without a set of bodies: for engines that call back with two shapes and their relative pose.
+//! One pair at a time, without a set of bodies: for engines that call back with two shapes and
+//! their relative pose.
 //!
-//! A [`World`](super::World) finds the pairs of all bodies and tests them a vector at a time; here somebody else's broad
-//! phase has found a pair, and its or-DOPs are tested alone, by the same arithmetic. That takes some ten times as long a
-//! pair as a world's test, and still a fraction of a narrow-phase check.
+//! A [`World`](super::World) finds the pairs of all bodies and tests them a vector at a time; here
+//! somebody else's broad phase has found a pair, and its or-DOPs are tested alone, by the same
+//! arithmetic. That takes some ten times as long a pair as a world's test, and still a fraction of
+//! a narrow-phase check.
 
 use super::margins::check_margin;
 use crate::bodies::contract::{ContractError, check_pose, check_shape};
@@ -76,10 +78,12 @@ impl PairTest {
         Ok(self.push(ordop, frame))
     }
 
-    /// Adds what a shape is with all points up to `margin` away; returns its number. Each call adds one: keep it.
+    /// Adds what a shape is with all points up to `margin` away; returns its number. Each call adds
+    /// one: keep it.
     ///
     /// # Errors
-    /// A number that is no shape's, a margin that is negative, not finite or beyond 2⁶⁰ with the shape.
+    /// A number that is no shape's, a margin that is negative, not finite or beyond 2⁶⁰ with the
+    /// shape.
     pub fn grown(&mut self, shape: u32, margin: f32) -> Result<u32, ContractError> {
         let Some(model) = self.models.get(shape as usize) else {
             return Err(ContractError {
@@ -96,11 +100,12 @@ impl PairTest {
         Ok(self.push(ordop, frame))
     }
 
-    /// Whether two shapes may touch, the second posed in the frame of the first: false only if their meshes, grown by their
-    /// margins, are apart in exact arithmetic. Numbers that are no shapes', or a pose outside of the contract, may touch.
+    /// Whether two shapes may touch, the second posed in the frame of the first: false only if
+    /// their meshes, grown by their margins, are apart in exact arithmetic. Numbers that are no
+    /// shapes', or a pose outside of the contract, may touch.
     ///
-    /// `rotation` is a quaternion (x, y, z, w) of any non-zero norm, `translation` the second body's origin. A pose that was
-    /// rounded to f32 needs a margin for what that moved.
+    /// `rotation` is a quaternion (x, y, z, w) of any non-zero norm, `translation` the second
+    /// body's origin. A pose that was rounded to f32 needs a margin for what that moved.
     #[must_use]
     pub fn may_touch(
         &self,

@@ -1,8 +1,8 @@
-//! What the snapshots of both worlds have in common: version, ids, pairs, and what is wrong with damaged ones.
+//! What the snapshots of both worlds have in common: version, ids, pairs, and what is wrong with
+//! damaged ones.
 
 use std::sync::Arc;
 
-use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -15,24 +15,19 @@ use crate::pairs::PairList;
 const VERSION: u32 = 1;
 
 /// A snapshot that a world can't be restored from. The world is as it was before.
-#[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum SnapshotError {
     /// Numbers that no world has written.
     #[error("the snapshot is damaged: {problem}")]
-    #[diagnostic(help("take another from `snapshot`, and store and send it unchanged"))]
     Damaged {
         /// What is wrong.
         problem: String,
     },
     /// A body outside of the contract, which no world has held.
     #[error("the snapshot is damaged")]
-    #[diagnostic(help("take another from `snapshot`, and store and send it unchanged"))]
     Contract(#[from] ContractError),
     /// A shape of the snapshot that the world lacks.
     #[error("shape {shape} of the snapshot is `{name}`, but {found}")]
-    #[diagnostic(help(
-        "snapshots hold no meshes: give the world the same shapes under the same numbers, built with the same `ShapeSpec`"
-    ))]
     Shape {
         /// Its number.
         shape: u32,
@@ -41,6 +36,21 @@ pub enum SnapshotError {
         /// What the world has in its place.
         found: String,
     },
+}
+
+impl SnapshotError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        match self {
+            Self::Damaged { .. } | Self::Contract(_) => {
+                "take another from `snapshot`, and store and send it unchanged"
+            }
+            Self::Shape { .. } => {
+                "snapshots hold no meshes: give the world the same shapes under the same numbers, built with the same `ShapeSpec`"
+            }
+        }
+    }
 }
 
 pub(crate) fn damaged<T>(problem: impl Into<String>) -> Result<T, SnapshotError> {

@@ -1,6 +1,7 @@
 //! The shapes of a world, from the call that adds them to the call that removes them.
 //!
-//! A world keeps no meshes: the culler has what it needs of each shape, and a number of a shape that is gone is given again.
+//! A world keeps no meshes: the culler has what it needs of each shape, and a number of a shape
+//! that is gone is given again.
 
 use super::{World, WorldError};
 use crate::bodies::contract::{ContractError, refuse};
@@ -59,7 +60,8 @@ impl World {
     /// Adds a shape. Bodies take it by the returned number: the lowest that no shape has.
     ///
     /// # Errors
-    /// A shape beyond the contract, or with other slab directions than those before; nothing is added.
+    /// A shape beyond the contract, or with other slab directions than those before; nothing is
+    /// added.
     pub fn add_shape(&mut self, shape: Shape) -> Result<u32, WorldError> {
         let model = self.culler.add_shape_about_vertices(&shape)?;
         let slot = ShapeSlot::new(&shape);
@@ -74,7 +76,8 @@ impl World {
         Ok(number as u32)
     }
 
-    /// Removes a shape that no body has. Its number is given to the next shape that is added, and its memory serves again.
+    /// Removes a shape that no body has. Its number is given to the next shape that is added, and
+    /// its memory serves again.
     ///
     /// # Errors
     /// A number that no shape has, a shape that some body has; nothing is removed.
@@ -97,11 +100,12 @@ impl World {
         Ok(())
     }
 
-    /// Puts a shape in the place of another: the bodies that have the other one have this one from the next cull on.
+    /// Puts a shape in the place of another: the bodies that have the other one have this one from
+    /// the next cull on.
     ///
     /// # Errors
-    /// A number that no shape has, a shape beyond the contract, or so large that with the margin of some body it is; other
-    /// slab directions than the other shapes have. Nothing is replaced.
+    /// A number that no shape has, a shape beyond the contract, or so large that with the margin of
+    /// some body it is; other slab directions than the other shapes have. Nothing is replaced.
     pub fn replace_shape(&mut self, number: u32, shape: &Shape) -> Result<(), WorldError> {
         let at = self.shape_at(number)?;
         for id in self.ids.iter().filter(|id| self.shape[id.slot()] == number) {
@@ -145,7 +149,8 @@ impl World {
             .remove(model, |grown| culler.remove_grown(grown));
     }
 
-    /// Removes the models of margins that no body has any more, if they are many. Every body has the model that it needs.
+    /// Removes the models of margins that no body has any more, if they are many. Every body has
+    /// the model that it needs.
     pub(super) fn sweep_margins(&mut self, are_many: bool) {
         if are_many && !self.margins.are_many() {
             return;

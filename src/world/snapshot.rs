@@ -1,24 +1,24 @@
-//! A world saved, and restored or rolled back to: all that decides its pairs, events and ids from then on.
+//! A world saved, and restored or rolled back to: all that decides its pairs, events and ids from
+//! then on.
 //!
-//! Pairs and their order are a function of the bodies ([`World::cull`]), so no state of a pair finder is saved. Numbers are
-//! saved as their bits, which no text format rounds. Meshes aren't saved: a digest of each shape is.
+//! Pairs and their order are a function of the bodies ([`World::cull`]), so no state of a pair
+//! finder is saved. Numbers are saved as their bits, which no text format rounds. Meshes aren't
+//! saved: a digest of each shape is.
 
 use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::local::Local;
 use super::saved::{IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged};
 use super::shapes::{ShapeSlot, check_shape};
 use super::{BodyId, Groups, World, check_margin, check_pose};
 use crate::bodies::Bodies;
-use crate::rounding::LIMIT;
 use crate::strategy::Answers;
 
 /// A [`World`] at one moment, to be stored or sent in any format of serde.
 ///
-/// It has a version, and one of another version isn't read. Equal calls leave equal snapshots, so that two peers can compare
-/// theirs.
+/// It has a version, and one of another version isn't read. Equal calls leave equal snapshots, so
+/// that two peers can compare theirs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WorldSnapshot {
     version: Version,
@@ -31,8 +31,6 @@ pub struct WorldSnapshot {
     margin: Vec<u32>,
     groups: Vec<[u32; 2]>,
     interest: Vec<BodyId>,
-    /// About which translations are f32: it follows the bodies, and so depends on where they have been.
-    origin: [u64; 3],
     pairs: PairsSnapshot,
     answers: Vec<([u32; 2], u32)>,
 }
@@ -45,9 +43,10 @@ struct ShapeSnapshot {
 }
 
 impl World {
-    /// The world as it is now, for [`Self::restore`]: bodies with ids, poses, margins and groups, the slots that ids are given
-    /// from, the bodies of interest, the pairs of the last cull and those that events were last read of, and, where a budget
-    /// is spent on the oldest answers first, when pairs were refined. Counters and seconds are not in it.
+    /// The world as it is now, for [`Self::restore`]: bodies with ids, poses, margins and groups,
+    /// the slots that ids are given from, the bodies of interest, the pairs of the last cull and
+    /// those that events were last read of, and, where a budget is spent on the oldest answers
+    /// first, when pairs were refined. Counters and seconds are not in it.
     ///
     /// ```
     /// # use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};
@@ -90,20 +89,22 @@ impl World {
             margin: self.margin.iter().copied().map(bits).collect(),
             groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
             interest: self.interest.clone(),
-            origin: self.local.origin.map(f64::to_bits),
             pairs: PairsSnapshot::of(&self.log),
             answers: self.culler.answers().0,
         }
     }
 
-    /// Makes this world the one of a snapshot. From then on the same calls give the same ids, pairs and events, in the same
-    /// order, as they give in the world that it was taken of, as long as both are culled by the same strategy with the same
-    /// settings; finder, threads and tier may differ, and so may a budget of time.
+    /// Makes this world the one of a snapshot. From then on the same calls give the same ids, pairs
+    /// and events, in the same order, as they give in the world that it was taken of, as long as
+    /// both are culled by the same strategy with the same settings; finder, threads and tier may
+    /// differ, and so may a budget of time.
     ///
-    /// The world must have the snapshot's shapes under the same numbers. Others that it has in addition stay.
+    /// The world must have the snapshot's shapes under the same numbers. Others that it has in
+    /// addition stay.
     ///
     /// # Errors
-    /// A shape that the world lacks, or that is another one; a snapshot that isn't as it was taken. The world stays as it was.
+    /// A shape that the world lacks, or that is another one; a snapshot that isn't as it was taken.
+    /// The world stays as it was.
     pub fn restore(&mut self, snapshot: &WorldSnapshot) -> Result<(), SnapshotError> {
         check_shapes(&snapshot.shapes, &self.shapes)?;
         let ids = snapshot.ids.restored()?;
@@ -141,13 +142,6 @@ impl World {
                 counts[shape as usize] += 1;
             }
         }
-        let origin = snapshot.origin.map(f64::from_bits);
-        if origin
-            .iter()
-            .any(|x| x.abs() > f64::from(LIMIT) || x.is_nan())
-        {
-            return damaged(format!("its origin is {origin:?}"));
-        }
         let log = snapshot.pairs.restored(&ids)?;
         let answers = checked(&snapshot.answers, slots)?;
 
@@ -158,7 +152,6 @@ impl World {
             translation: vec![[0.0; 3]; slots],
         };
         (self.ids, self.log) = (ids, log);
-        self.local = Local { origin };
         (self.shape, self.translation, self.margin) = (snapshot.shape.clone(), translation, margin);
         let groups = snapshot.groups.iter();
         self.groups = groups
@@ -201,7 +194,8 @@ fn checked(answers: &[([u32; 2], u32)], slots: usize) -> Result<Answers, Snapsho
         i < j && (j as usize) < slots && rank as usize <= answers.len()
     };
     let is_sorted = answers.is_sorted_by(|(a, _), (b, _)| a < b);
-    // Ranks are 1, 2, 3 … without a gap, as they are written, and 0 of pairs that were never refined.
+    // Ranks are 1, 2, 3 … without a gap, as they are written, and 0 of pairs that were never
+    // refined.
     let ranks: BTreeSet<u32> = answers.iter().map(|&(_, rank)| rank).chain([0]).collect();
     let is_dense = ranks.iter().copied().eq(0..ranks.len() as u32);
     if is_sorted && is_dense && answers.iter().all(is_sound) {

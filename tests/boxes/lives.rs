@@ -3,13 +3,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use sdop::boxes::{BoxBody, BoxWorldSnapshot};
-use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Tier, WorldError};
+use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Motion, Tier, WorldError};
 
 use crate::scenes::{Kind, Random, boxes, expected, moved};
 
-fn drawn(random: &mut Random, kind: Kind) -> BoxBody {
+pub fn drawn(random: &mut Random, kind: Kind) -> BoxBody {
     let bounds = boxes(kind, 8, random)[random.below(8)];
-    let dynamic = random.below(4) != 0;
+    let motion = match random.below(8) {
+        0..2 => Motion::Fixed,
+        2..4 => Motion::Resting,
+        _ => Motion::Dynamic,
+    };
     let groups = match random.below(4) {
         0 => Groups {
             member: 1 << random.below(2),
@@ -19,25 +23,29 @@ fn drawn(random: &mut Random, kind: Kind) -> BoxBody {
     };
     BoxBody {
         bounds,
-        dynamic,
+        motion,
         groups,
     }
 }
 
 /// The pairs of the boxes that are there, the lower slot first.
-fn pairs(bodies: &BTreeMap<BodyId, BoxBody>) -> BTreeSet<[BodyId; 2]> {
+pub fn pairs(bodies: &BTreeMap<BodyId, BoxBody>) -> BTreeSet<[BodyId; 2]> {
     let (ids, bodies): (Vec<BodyId>, Vec<BoxBody>) =
         bodies.iter().map(|(&id, &body)| (id, body)).unzip();
     let bounds: Vec<Aabb> = bodies.iter().map(|body| body.bounds).collect();
-    let found = expected(&bounds, |i| bodies[i].dynamic, |i| bodies[i].groups);
+    let found = expected(
+        &bounds,
+        |i| bodies[i].motion != Motion::Fixed,
+        |i| bodies[i].groups,
+    );
     found
         .into_iter()
         .map(|pair| pair.map(|i| ids[i as usize]))
         .collect()
 }
 
-/// Inserts, removes, changes and moves boxes, and holds what the world says against the definition. `before_frame` may put
-/// another world in the place of this one, if it makes no difference.
+/// Inserts, removes, changes and moves boxes, and holds what the world says against the definition.
+/// `before_frame` may put another world in the place of this one, if it makes no difference.
 fn live(world: &mut BoxWorld, kind: Kind, seed: u64, before_frame: fn(&mut BoxWorld, usize)) {
     let random = &mut Random(seed);
     let mut bodies: BTreeMap<BodyId, BoxBody> = BTreeMap::new();
@@ -71,7 +79,10 @@ fn live(world: &mut BoxWorld, kind: Kind, seed: u64, before_frame: fn(&mut BoxWo
                 }
             }
         }
-        for (&id, body) in bodies.iter_mut().filter(|(_, body)| body.dynamic) {
+        for (&id, body) in bodies
+            .iter_mut()
+            .filter(|(_, body)| body.motion == Motion::Dynamic)
+        {
             moved(std::slice::from_mut(&mut body.bounds), 0.02, random);
             world.set_bounds(id, body.bounds).unwrap();
         }
@@ -130,14 +141,15 @@ fn whatever_comes_and_goes_pairs_and_events_are_those_of_the_definition() {
     }
 }
 
-fn through_text(world: &BoxWorld) -> BoxWorldSnapshot {
+pub fn through_text(world: &BoxWorld) -> BoxWorldSnapshot {
     serde_json::from_str(&serde_json::to_string(&world.snapshot()).unwrap()).unwrap()
 }
 
-/// Goes astray in a clone and rolls it back, or restores the world in another that culls by another finder.
+/// Goes astray in a clone and rolls it back, or restores the world in another that culls by another
+/// finder.
 fn restore(world: &mut BoxWorld, frame: usize) {
     let saved = through_text(world);
-    let mut other = if frame % 3 == 0 {
+    let mut other = if frame.is_multiple_of(3) {
         world.clone()
     } else {
         let finder = Finder::ALL[frame % Finder::ALL.len()];
@@ -236,7 +248,7 @@ fn a_box_at_rest_that_is_moved_is_found_where_it_is() {
     let cube = |x: f32| Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
     let still = world
         .insert(BoxBody {
-            dynamic: false,
+            motion: Motion::Fixed,
             ..cube(0.0).into()
         })
         .unwrap();
@@ -262,7 +274,7 @@ fn a_plate_at_rest_is_no_cube_because_those_that_move_are() {
         let plate = Aabb::new([-9.0, -9.0, -0.125], [9.0, 9.0, 0.0]);
         let plate = world
             .insert(BoxBody {
-                dynamic: false,
+                motion: Motion::Fixed,
                 ..plate.into()
             })
             .unwrap();

@@ -1,8 +1,10 @@
-//! Given boxes: exactly those that have a point in common, by every finder, in every tier, on any number of threads.
+//! Given boxes: exactly those that have a point in common, by every finder, in every tier, on any
+//! number of threads.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod lives;
 mod misuse;
+mod movers;
 mod scenes;
 
 use sdop::boxes::BoxCullerBuilder;
@@ -63,7 +65,8 @@ fn the_pairs_of_a_hundred_boxes_are_exact() {
     }
 }
 
-/// The cubes about neighbours touch, and those within don't: each pair is looked up, in runs as in blocks.
+/// The cubes about neighbours touch, and those within don't: each pair is looked up, in runs as in
+/// blocks.
 #[test]
 fn boxes_that_are_nearly_cubes_touch_or_miss_each_other_by_a_step() {
     let random = &mut Random(7);
@@ -89,7 +92,8 @@ fn boxes_that_are_nearly_cubes_touch_or_miss_each_other_by_a_step() {
     }
 }
 
-/// The cubes about long boxes stay as they are where a short side grows, and lists of neighbours are followed meanwhile.
+/// The cubes about long boxes stay as they are where a short side grows, and lists of neighbours
+/// are followed meanwhile.
 #[test]
 fn long_boxes_that_grow_within_their_cubes_are_found() {
     let random = &mut Random(8);
@@ -234,4 +238,39 @@ fn frames_of_little_work_stay_on_the_caller_s_thread() {
         let take = |_: &sdop::PairList| assert_eq!(std::thread::current().id(), here);
         assert!(culler.cull_in_portions(&now, take).unwrap() > 0);
     }
+}
+
+/// The same boxes as in `python/tests/test_boxes.py`, and the same hash.
+#[test]
+fn pairs_are_those_of_python() {
+    use sha2::{Digest as _, Sha256};
+
+    let sixteenth = |number: u32| number as f32 / 16.0;
+    let of = |i: u32| {
+        let min = [7, 131, 577].map(|k| sixteenth(i * k % 1021));
+        let sides = [3, 11, 29].map(|k| sixteenth(i * k % 61));
+        Aabb::new(
+            min,
+            std::array::from_fn::<f32, 3, _>(|axis| min[axis] + sides[axis]),
+        )
+    };
+    let boxes: Vec<Aabb> = (0..3000).map(of).collect();
+    let mut hash = Sha256::new();
+    for number in BoxCuller::new()
+        .cull(&boxes)
+        .unwrap()
+        .sorted()
+        .as_flattened()
+    {
+        hash.update(number.to_le_bytes());
+    }
+    let hex: String = hash
+        .finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    assert_eq!(
+        hex,
+        "bf3a97d3cf6860a4eba71ead750f8e5a0928f8a2a647e078928cac46621b6769"
+    );
 }

@@ -1,4 +1,5 @@
-//! What happens when boxes are given otherwise than meant. No entry may panic, hang or silently drop a pair.
+//! What happens when boxes are given otherwise than meant. No entry may panic, hang or silently
+//! drop a pair.
 //!
 //! | misuse | what happens |
 //! |---|---|

@@ -153,7 +153,8 @@ fn from_ends(ends: [[f32; 2]; 3]) -> Aabb {
     Aabb::new(ends.map(|[a, b]| a.min(b)), ends.map(|[a, b]| a.max(b)))
 }
 
-/// A box that begins where another ends on one axis, or ends where it begins, within a step either way.
+/// A box that begins where another ends on one axis, or ends where it begins, within a step either
+/// way.
 fn beside(other: &Aabb, random: &mut Random) -> Aabb {
     let (mut next, axis) = (*other, random.below(3));
     let length = random.unit();
@@ -188,7 +189,8 @@ pub fn moved(boxes: &mut [Aabb], step: f32, random: &mut Random) {
     }
 }
 
-/// The pairs that the definition asks for, sorted: a point in common, one of the two dynamic, groups that collide.
+/// The pairs that the definition asks for, sorted: a point in common, one of the two dynamic,
+/// groups that collide.
 pub fn expected(
     boxes: &[Aabb],
     dynamic: impl Fn(usize) -> bool,

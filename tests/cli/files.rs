@@ -65,7 +65,8 @@ fn a_run_that_is_interrupted_leaves_the_former_record_or_none() {
     }
 }
 
-/// Waits for the end, 20 s at most: a shell may start tests in the background with signals ignored, which children inherit.
+/// Waits for the end, 20 s at most: a shell may start tests in the background with signals ignored,
+/// which children inherit.
 fn ended(mut child: Child, signal: &str) -> ExitStatus {
     let start = Instant::now();
     loop {

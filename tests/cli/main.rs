@@ -44,8 +44,8 @@ fn json(args: &[&str]) -> Value {
     serde_json::from_str(&stdout(&[args, &["--format", "json"]].concat())).unwrap()
 }
 
-/// The message of a command that must refuse its input: exit code 2, nothing on standard output. Line breaks and
-/// frames that fit it to a screen are taken out.
+/// The message of a command that must refuse its input: exit code 2, nothing on standard output.
+/// Line breaks and frames that fit it to a screen are taken out.
 fn refusal(args: &[&str]) -> String {
     let output = sdop(args);
     let stderr = String::from_utf8(output.stderr).unwrap();

@@ -94,3 +94,30 @@ fn bad_meshes_are_refused_with_file_line_and_help() {
     assert_eq!(chosen["unused_vertices"], 1);
     assert!(refusal(&["mesh", "data/meshes/README.md"]).contains("names no mesh format"));
 }
+
+/// Of a flat square with a vertex in its middle, four vertices span it, and nothing is wider for a
+/// vertex that no triangle uses.
+#[test]
+fn facts_are_of_the_used_vertices() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("square.obj");
+    let square = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 1 0\n";
+    let faces = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+    std::fs::write(
+        &path,
+        format!("{square}v 9 9 9\nv 0 0 0\n{faces}f 1 5 3\nf 1 2 7\n"),
+    )
+    .unwrap();
+    let report = json(&["mesh", text(&path)]);
+    assert_eq!(report["hull_vertices"], 4);
+    assert_eq!(report["hull_volume"].to_string(), "0.0");
+    assert_eq!(report["unused_vertices"], 1);
+    assert_eq!(report["degenerate_triangles"], 2);
+    let radius = report["ball"][3].as_f64().unwrap();
+    assert!((radius - 2_f64.sqrt()).abs() < 1e-6, "{radius}");
+    let shown = stdout(&["mesh", text(&path)]);
+    assert!(
+        shown.contains("culled shapes contain all vertices"),
+        "{shown}"
+    );
+}

@@ -1,5 +1,5 @@
-//! `sdop run --record`: read back by a stranger who knows the format alone, to the same bits as in the library, and judged
-//! by the reference from the recorded numbers alone.
+//! `sdop run --record`: read back by a stranger who knows the format alone, to the same bits as in
+//! the library, and judged by the reference from the recorded numbers alone.
 
 use sdop::simd::Tier;
 use sdop_bench::scene::SceneFile;
@@ -115,11 +115,10 @@ fn a_recording_reads_back_to_the_same_bits() {
     assert_eq!((header.scene.as_str(), header.seed), ("recorded", 7));
     assert_eq!(header.shapes.len(), scene.shapes.len());
     for (recorded, shape) in header.shapes.iter().zip(&scene.shapes) {
-        let vertices: Vec<_> = shape.vertices.iter().map(|v| v.to_array()).collect();
-        let basis = shape.ordop.basis.columns.map(|column| column.to_array());
-        let [x, y, z] = shape.ball.centre.to_array();
+        let basis = shape.ordop.basis.columns;
+        let [x, y, z] = shape.ball.centre;
         assert_eq!(recorded.name, shape.name);
-        assert_eq!(bits(&recorded.vertices), bits(&vertices));
+        assert_eq!(bits(&recorded.vertices), bits(&shape.vertices));
         assert_eq!(recorded.triangles, shape.triangles);
         assert_eq!(
             bits(&[recorded.ball]),

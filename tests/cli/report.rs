@@ -1,4 +1,5 @@
-//! Records, their comparison and the pages that quote them: one digit changed by hand is found wherever it stands.
+//! Records, their comparison and the pages that quote them: one digit changed by hand is found
+//! wherever it stands.
 
 use std::path::Path;
 
@@ -6,7 +7,10 @@ use sdop_bench::report::{Experiment, Store};
 
 use super::{command, sdop, text};
 
-const PAGE: &str = "# Page\n\nA frame takes <!--= (csv(\"box/times/times.csv\") | one(scene=\"a\")).ms | fixed(1) -->1.5<!--/--> ms.\n";
+const PAGE: &str = "# Page\n<!-- BEGIN frame -->\nA frame takes 1.5 ms.\n<!-- END frame -->\n";
+
+const BLOCK: &str =
+    "A frame takes {{ (csv(\"box/times/times.csv\") | one(scene=\"a\")).ms | fixed(1) }} ms.\n";
 
 /// A repository with one page and two records of one experiment.
 fn repository() -> tempfile::TempDir {
@@ -22,7 +26,14 @@ fn repository() -> tempfile::TempDir {
         adopt(root.path(), "times", machine);
     }
     std::fs::write(root.path().join("README.md"), PAGE).unwrap();
+    template(root.path(), "frame.md", BLOCK);
     root
+}
+
+fn template(root: &Path, name: &str, text: &str) {
+    let path = root.join("paper/templates").join(name);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(path, text).unwrap();
 }
 
 /// Exit code and output of `sdop report --check`.
@@ -59,7 +70,7 @@ fn pages_that_agree_with_whole_records_pass() {
 fn a_digit_changed_in_a_page_is_found_and_rendered_again() {
     let root = repository();
     let page = root.path().join("README.md");
-    edit(&page, "1.5<!--/-->", "1.4<!--/-->");
+    edit(&page, "1.5", "1.4");
     let (code, said) = check(root.path());
     assert_eq!(code, Some(1));
     assert!(said.contains("README.md:3"), "{said}");
@@ -89,36 +100,44 @@ fn a_digit_changed_in_a_record_or_its_manifest_is_found() {
 }
 
 #[test]
-fn a_digit_changed_in_the_report_s_data_is_found() {
+fn a_whole_page_is_what_its_template_gives() {
     let root = repository();
-    std::fs::create_dir_all(root.path().join("paper")).unwrap();
-    let source = root.path().join("paper/report.typ");
-    let marker = "A frame takes /*= (csv(\"box/times/times.csv\") | one(scene=\"a\")).ms | fixed(1) */1.5/**/ ms.\n";
-    std::fs::write(&source, marker).unwrap();
+    template(
+        root.path(),
+        "pages/paper/report.typ",
+        &format!("= Report\n{BLOCK}"),
+    );
+    assert_eq!(check(root.path()).0, Some(1), "it isn't made yet");
+    sdop(&["report", "--root", text(root.path())]);
+    let page = root.path().join("paper/report.typ");
+    let made = std::fs::read_to_string(&page).unwrap();
+    assert_eq!(made, "= Report\nA frame takes 1.5 ms.\n");
     assert_eq!(check(root.path()).0, Some(0));
-    edit(&source, "1.5/**/", "1.6/**/");
+    edit(&page, "1.5", "1.6");
     let (code, said) = check(root.path());
     assert_eq!(code, Some(1));
-    assert!(said.contains("report.typ:1"), "{said}");
+    assert!(said.contains("report.typ:2"), "{said}");
 }
 
 #[test]
 fn two_pages_that_give_one_number_differently_are_found() {
     let root = repository();
-    let page = "It is <!--= ((csv(\"box/times/times.csv\") | one(scene=\"a\")).ms / 7) | fixed(2) -->?<!--/-->.\n";
-    std::fs::create_dir_all(root.path().join("paper")).unwrap();
-    for name in ["README.md", "paper/guide.md"] {
-        std::fs::write(root.path().join(name), page).unwrap();
+    let page = |digits: usize| {
+        format!(
+            "It is {{{{ ((csv(\"box/times/times.csv\") | one(scene=\"a\")).ms / 7) | fixed({digits}) }}}}.\n"
+        )
+    };
+    for name in ["pages/paper/machines.md", "pages/paper/many-ranks.md"] {
+        template(root.path(), name, &page(2));
     }
     let rendered = sdop(&["report", "--quantities", "--root", text(root.path())]);
     let said = String::from_utf8_lossy(&rendered.stdout).into_owned();
     assert_eq!(rendered.status.code(), Some(0), "{said}");
     assert!(
-        said.contains("0.21") && said.contains("paper/guide.md"),
+        said.contains("0.21") && said.contains("paper/many-ranks.md"),
         "{said}"
     );
-    let guide = root.path().join("paper/guide.md");
-    edit(&guide, "fixed(2)", "fixed(1)");
+    template(root.path(), "pages/paper/many-ranks.md", &page(1));
     sdop(&["report", "--root", text(root.path())]);
     let (code, said) = check(root.path());
     assert_eq!(code, Some(1));
@@ -126,11 +145,11 @@ fn two_pages_that_give_one_number_differently_are_found() {
 }
 
 #[test]
-fn a_page_that_belongs_to_a_record_is_its_copy() {
+fn a_figure_of_a_record_is_its_copy() {
     let root = repository();
     let record = root.path().join("data/record/box/reproduce");
-    std::fs::create_dir_all(&record).unwrap();
-    std::fs::write(record.join("summary.md"), "# Summary\n\n1.5 ms\n").unwrap();
+    std::fs::create_dir_all(record.join("figures")).unwrap();
+    std::fs::write(record.join("figures/costs.svg"), "<svg>1.5 ms</svg>\n").unwrap();
     std::fs::write(
         root.path().join("data/record/quoted.toml"),
         "machine = \"box\"\n",
@@ -140,10 +159,10 @@ fn a_page_that_belongs_to_a_record_is_its_copy() {
     let rendered = sdop(&["report", "--root", text(root.path())]);
     assert_eq!(rendered.status.code(), Some(0));
     assert_eq!(check(root.path()).0, Some(0));
-    edit(&root.path().join("paper/summary.md"), "1.5", "1.4");
+    edit(&root.path().join("paper/figures/costs.svg"), "1.5", "1.4");
     let (code, said) = check(root.path());
     assert_eq!(code, Some(1));
-    assert!(said.contains("paper/summary.md"), "{said}");
+    assert!(said.contains("paper/figures/costs.svg"), "{said}");
 }
 
 /// Runs git in a repository of its own.
@@ -170,6 +189,7 @@ fn a_record_older_than_the_code_must_be_called_so() {
     git(root.path(), &["commit", "-q", "-m", "code"]);
     adopt(root.path(), "times", "box");
     std::fs::write(root.path().join("README.md"), PAGE).unwrap();
+    template(root.path(), "frame.md", BLOCK);
     let (code, said) = check(root.path());
     assert_eq!(code, Some(0), "{said}");
     std::fs::write(root.path().join("src/lib.rs"), "// 2\n").unwrap();
@@ -177,12 +197,89 @@ fn a_record_older_than_the_code_must_be_called_so() {
     let (code, said) = check(root.path());
     assert_eq!(code, Some(1));
     assert!(said.contains("older than the code"), "{said}");
-    let named =
-        format!("{PAGE}\nCommit <!--= record(\"box/times\").code.commit[:7] --><!--/-->.\n");
-    std::fs::write(root.path().join("README.md"), named).unwrap();
+    let named = format!("{BLOCK}Commit {{{{ record(\"box/times\").code.commit[:7] }}}}.\n");
+    template(root.path(), "frame.md", &named);
     sdop(&["report", "--root", text(root.path())]);
     let (code, said) = check(root.path());
     assert_eq!(code, Some(0), "{said}");
+}
+
+/// A scene on which a comparison takes a moment.
+const SCENE: &str = r#"
+name = "small"
+frames = 5
+[box]
+side = 5.0
+[[bodies]]
+shape = "torus"
+count = 12
+radius = [0.5, 1.0]
+speed = [0.5, 2.0]
+[effects]
+motion = true
+"#;
+
+#[test]
+fn fresh_results_make_their_pages() {
+    let root = tempfile::tempdir().unwrap();
+    let root = root.path();
+    let scene = root.join("small.toml");
+    std::fs::write(&scene, SCENE).unwrap();
+    let records = root.join("data/record/box");
+    let [reproduced, compared] = ["reproduce", "tradeoff"].map(|name| records.join(name));
+    let cache = root.join("cache");
+    for arguments in [
+        &[
+            "reproduce",
+            "--seeds",
+            "2",
+            "--frames",
+            "3",
+            "--out",
+            text(&reproduced),
+        ][..],
+        &[
+            "tradeoff",
+            text(&scene),
+            "--frames",
+            "2",
+            "--cache",
+            text(&cache),
+            "--out",
+            text(&compared),
+        ],
+    ] {
+        let output = sdop(&[arguments, &["--quick"]].concat());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+    }
+    std::fs::write(root.join("data/record/quoted.toml"), "machine = \"box\"\n").unwrap();
+    git(root, &["init", "-q"]);
+    git(root, &["add", "data"]);
+    git(root, &["commit", "-q", "-m", "records"]);
+    adopt(root, "reproduce", "box");
+    adopt(root, "tradeoff", "box");
+    let own = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../paper"));
+    for name in [
+        "templates/pages/paper/summary.md",
+        "templates/pages/paper/tradeoff.md",
+        "quantities.jinja",
+    ] {
+        let to = root.join("paper").join(name);
+        std::fs::create_dir_all(to.parent().unwrap()).unwrap();
+        std::fs::copy(own.join(name), to).unwrap();
+    }
+    let made = sdop(&["report", "--root", text(root)]);
+    let said = String::from_utf8_lossy(&made.stderr);
+    assert_eq!(made.status.code(), Some(0), "{said}");
+    for (page, last) in [
+        ("summary.md", "## References"),
+        ("tradeoff.md", "## The price of safety"),
+    ] {
+        let made = std::fs::read_to_string(root.join("paper").join(page)).unwrap();
+        assert!(made.contains(last), "{page}");
+        assert!(!made.contains("NaN"), "{page}");
+    }
 }
 
 #[test]

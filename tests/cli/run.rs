@@ -315,6 +315,36 @@ fn a_body_that_leaves_the_contract_is_named_with_its_frame() {
     assert!(message.contains("at most 2^60"), "{message}");
 }
 
+/// Unit boxes that overlap by 0.3 where f32 steps by 64, and one that is 0.1 apart from them.
+#[test]
+fn far_poses_are_culled_exactly() {
+    let group = |x: &str| {
+        format!(
+            "[[bodies]]\nshape = \"box\"\nsizes = {{ x = 1, y = 1, z = 1 }}\nposes = [[0, 0, 0, 1, {x}, 0, 0]]\n"
+        )
+    };
+    let groups = ["1000000031.5", "1000000032.2", "1000000033.3"].map(group);
+    let (directory, path) = scene_file(&format!("name = \"far\"\nframes = 1\n{}", groups.concat()));
+    let record = directory.path().join("far.ndjson");
+    let report = json(&["run", text(&path), "--record", text(&record)]);
+    assert_eq!(report["counters"]["reported"], 1);
+    let frame = std::fs::read_to_string(&record).unwrap();
+    assert!(
+        frame.contains("\"translations\":[[1000000031.5,0.0,0.0],"),
+        "{frame}"
+    );
+    let truth = refusal(&["run", text(&path), "--record", text(&record), "--truth"]);
+    assert!(
+        truth.contains("the exact reference reads f32 poses"),
+        "{truth}"
+    );
+    let study = refusal(&["cost", text(&path)]);
+    assert!(
+        study.contains("`sdop run` culls f64 translations"),
+        "{study}"
+    );
+}
+
 #[test]
 fn a_recording_that_cannot_be_written_is_refused() {
     let output = sdop(&[&FAST[..], &["--record", "no/such/directory/x.ndjson"]].concat());

@@ -1,4 +1,4 @@
-//! Work shared by many: shards and their merge, journals that are gone on from. All of it gives the result of one process.
+//! Work shared by many: shards, merged, give the result of one process.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,8 @@ motion = true
 walls = "specular"
 "#;
 
-/// Units of every kind in a moment: two groups of hard cases, a seed, two blocks of a scene's frames.
+/// Units of every kind in a moment: two groups of hard cases, a seed, two blocks of a scene's
+/// frames.
 const VERIFY: [&str; 14] = [
     "verify",
     "--group",
@@ -70,11 +71,6 @@ impl Place {
         assert_eq!(output.status.code(), Some(0), "{said}");
         self.path(&format!("verify-{index}-of-{of}.units"))
     }
-
-    fn refused(&self, more: &[&str]) -> String {
-        let out = [text(self.directory.path()), text(&self.scene)];
-        refusal(&[&VERIFY[..], &out, more].concat())
-    }
 }
 
 /// The report without what a clock has said.
@@ -108,11 +104,9 @@ fn shards_merged_are_the_whole() {
     let place = Place::new();
     let whole = report(&place.verify(&[]));
     assert_eq!(whole["sources"].as_array().unwrap().len(), 4);
-    assert!(!place.path("verify.journal").exists());
     let shards = [1, 2, 3].map(|index| place.shard(index, 3, &[]));
     let [one, two, three] = shards.each_ref().map(PathBuf::as_path);
     assert_eq!(report(&merge(&place, &[two, three, one])), whole);
-    assert!(!place.path("verify-1-of-3.journal").exists());
 
     // One process, and two who share: no part of the work is in both or in none.
     let alone = place.shard(1, 1, &[]);
@@ -180,10 +174,14 @@ fn sha256(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn a_shard_that_lacks_a_unit_is_no_shard() {
+fn a_shard_without_a_unit_is_refused() {
     let place = Place::new();
     let one = place.shard(1, 1, &[]);
     let mut lines = lines(&one);
+    let cut_off = place.path("cut.units");
+    fs::write(&cut_off, lines[..9].concat() + &lines[9][..20]).unwrap();
+    let message = merge_refused(&[&cut_off]);
+    assert!(message.contains("is no finished shard"), "{message}");
     let lost = lines.remove(5);
     fs::write(&one, lines.concat()).unwrap();
     reseal(&one);
@@ -191,54 +189,6 @@ fn a_shard_that_lacks_a_unit_is_no_shard() {
     assert!(lost.starts_with("done 4 "), "{lost}");
     assert!(
         message.contains("has not the units of shard 1/1; unit 4 is the first"),
-        "{message}"
-    );
-}
-
-#[test]
-fn an_interrupted_run_is_gone_on_from() {
-    let place = Place::new();
-    let whole = report(&place.verify(&["--resume"]));
-    let shard = place.shard(1, 1, &[]);
-    assert_eq!(report(&merge(&place, &[&shard])), whole);
-
-    // What a kill leaves: some units, in the order in which they were done, one begun, one torn.
-    let mut left = lines(&shard);
-    let header = left
-        .remove(0)
-        .replace(r#""shard":{"index":1,"of":1}"#, r#""shard":null"#);
-    let [early, late] = [3, 20].map(|n| left[n].clone());
-    let torn = &left[9][..20];
-    let journal = place.path("verify.journal");
-    fs::write(&journal, format!("{header}start 11 2\n{late}{early}{torn}")).unwrap();
-
-    let resumed = place.verify(&["--resume"]);
-    assert_eq!(report(&resumed), whole);
-    let said = String::from_utf8(resumed.stderr).unwrap();
-    for told in [
-        "2 of 26 units are done already",
-        "last line was torn (20 bytes) and is dropped",
-        "rank 2 had begun unit 11, hard cases counts, k = ",
-    ] {
-        assert!(said.contains(told), "{said}");
-    }
-    assert!(!journal.exists());
-}
-
-#[test]
-fn a_journal_of_other_work_is_refused() {
-    let place = Place::new();
-    let shard = place.shard(1, 2, &[]);
-    let journal = place.path("verify-1-of-2.journal");
-    fs::copy(&shard, &journal).unwrap();
-    let message = place.refused(&["--shard", "1/2"]);
-    assert!(
-        message.contains("is the journal of a run that was interrupted"),
-        "{message}"
-    );
-    let message = place.refused(&["--shard", "1/2", "--resume", "--first-seed", "2"]);
-    assert!(
-        message.contains("the setting `first_seed` is 2 here and 1 there"),
         "{message}"
     );
 }

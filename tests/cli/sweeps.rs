@@ -1,4 +1,4 @@
-//! Every command whose work can be shared: shards of it, merged, are the work of one process, and so is a journal gone on from.
+//! Every command whose work can be shared: shards of it, merged, are the work of one process.
 //! `.ci/mpi` shows the same of ranks.
 
 use std::fs;
@@ -11,7 +11,8 @@ use super::{refusal, scene_file, stdout, text};
 /// A command whose work can be shared.
 struct Sweep {
     name: &'static str,
-    /// Arguments of a run that takes a moment; they end before the output directory. A scene's path goes where `SCENE` stands.
+    /// Arguments of a run that takes a moment; they end before the output directory. A scene's path
+    /// goes where `SCENE` stands.
     arguments: &'static [&'static str],
     /// Further ones, behind all others.
     last: &'static [&'static str],
@@ -20,7 +21,8 @@ struct Sweep {
     result: &'static str,
     /// How shards become its result, where `sdop merge` doesn't do it.
     merge: Option<&'static str>,
-    /// Files that don't depend on who did the work, but for the keys of [`CLOCK`]; of none, what it prints.
+    /// Files that don't depend on who did the work, but for the keys of [`CLOCK`]; of none, what it
+    /// prints.
     facts: &'static [&'static str],
 }
 
@@ -70,7 +72,8 @@ const SWEEPS: &[Sweep] = &[
     },
 ];
 
-/// Keys below which a clock, the machine's load or the day has a say, and digests of what they are in.
+/// Keys below which a clock, the machine's load or the day has a say, and digests of what they are
+/// in.
 const CLOCK: &[&str] = &[
     "seconds",
     "lazy_seconds",
@@ -283,18 +286,15 @@ fn a_record_is_of_its_own_shards_alone() {
 }
 
 #[test]
-fn a_record_made_anew_has_nothing_of_an_interrupted_one() {
+fn an_interrupted_record_is_made_anew() {
     let sweep = SWEEPS.iter().find(|sweep| sweep.name == "record").unwrap();
     let (directory, scene) = scene_file(SCENE);
     let out = directory.path().join("out");
     let part = out.join("box/reproduce.part");
     fs::create_dir_all(&part).unwrap();
-    fs::write(part.join("reproduce.journal"), "{\"form\":").unwrap();
+    fs::write(part.join("left.csv"), "an,earlier,run\n").unwrap();
     sweep.run(&scene, &out, &[]);
-    let files = fs::read_dir(out.join(sweep.result)).unwrap();
-    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
-    let left: Vec<String> = names.filter(|name| name.ends_with(".journal")).collect();
-    assert_eq!(left, [""; 0]);
+    assert!(!out.join(sweep.result).join("left.csv").exists());
 }
 
 #[test]
@@ -309,7 +309,7 @@ fn what_has_no_units_is_not_shared() {
             "cost/quiet is measured in one process",
         ),
         (
-            &["record", "verify", "reproduce", "--resume"],
+            &["record", "verify", "reproduce", "--share-cores"],
             "several experiments can't be shared at once",
         ),
         (

@@ -1,4 +1,5 @@
-//! What a terminal gets: completions, manual pages, numbers for people, and no colour or progress where nobody asked for any.
+//! What a terminal gets: completions, manual pages, numbers for people, and no colour or progress
+//! where nobody asked for any.
 
 use crate::{command, stdout, text};
 

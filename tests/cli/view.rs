@@ -1,11 +1,11 @@
-//! `sdop view`: what pages hold, and what is said of records that are broken, old or strange. What a browser makes of a page is
-//! tested in `benches/src/view/web/test/`.
+//! `sdop view`: what pages hold, and what is said of records that are broken, old or strange. What
+//! a browser makes of a page is tested in `benches/src/view/web/test/`.
 
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::{command, refusal, scene_file, sdop, stdout, text};
+use crate::{refusal, scene_file, sdop, stdout, text};
 
 const SCENE: &str = r#"
 name = "seen </script>"
@@ -190,7 +190,8 @@ fn two_strategies_or_two_records_stand_side_by_side() {
     );
 }
 
-/// Runs a view that must fail, and returns what it says and the header of the page that it wrote all the same.
+/// Runs a view that must fail, and returns what it says and the header of the page that it wrote
+/// all the same.
 fn broken(path: &Path) -> (String, Value) {
     let page = path.with_extension("html");
     let output = sdop(&["view", text(path), "--no-prices", "--out", text(&page)]);
@@ -386,7 +387,8 @@ fn a_case_is_shown_with_the_answers_to_it() {
     assert!(message.contains("its poses are given"), "{message}");
 }
 
-/// A case of boxes, of which a program reports nothing in the frames from `missed` on; the header of its page.
+/// A case of boxes, of which a program reports nothing in the frames from `missed` on; the header
+/// of its page.
 fn silent_from(missed: u64, name: &str) -> serde_json::Value {
     let directory = tempfile::tempdir().unwrap();
     let cases = directory.path().join("cases");
@@ -424,7 +426,8 @@ fn silent_from(missed: u64, name: &str) -> serde_json::Value {
 /// The page of a case about boxes has the judged boxes, and opens at the missed pair.
 #[test]
 fn a_counter_example_shows_what_was_judged() {
-    // Pairs meet in every other frame, from the second on; there is nothing to be missed in the first.
+    // Pairs meet in every other frame, from the second on; there is nothing to be missed in the
+    // first.
     let header = silent_from(0, "churn/teleport/0004");
     assert_eq!(header["layers"], serde_json::json!(["boxes"]));
     let focus = &header["focus"];
@@ -454,40 +457,4 @@ fn a_counter_example_shows_what_was_judged() {
             .contains("frames 3 to 3 of 6"),
         "{header}"
     );
-}
-
-#[test]
-fn without_a_browser_a_picture_is_refused_clearly() {
-    let (directory, scene) = scene_file(SCENE);
-    let page = directory.path().join("page.html");
-    let args = [
-        "view",
-        text(&scene),
-        "--no-prices",
-        "--out",
-        text(&page),
-        "--png",
-        "3",
-    ];
-    let output = command(&args)
-        .env("PATH", directory.path())
-        .output()
-        .unwrap();
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(
-        message.contains("there is none on this machine")
-            && message.contains("apt-get install chromium"),
-        "{message}"
-    );
-    assert!(page.exists(), "the page needs no browser");
-    let nowhere = refusal_of_browser(&args, directory.path());
-    assert!(nowhere.contains("no browser at"), "{nowhere}");
-}
-
-fn refusal_of_browser(args: &[&str], directory: &Path) -> String {
-    let missing = directory.join("no-browser");
-    let output = sdop(&[args, &["--browser", text(&missing)]].concat());
-    assert_eq!(output.status.code(), Some(2));
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }

@@ -31,7 +31,8 @@ fn bodies(of: impl IntoIterator<Item = (u32, [f32; 3])>) -> Bodies {
     columns
 }
 
-/// Every strategy and finder on every number of ranks reports what one process does, once, and nothing that meets is missing.
+/// Every strategy and finder on every number of ranks reports what one process does, once, and
+/// nothing that meets is missing.
 fn judge(what: &str, shapes: &[Shape], frames: &[Bodies]) {
     let judge = Judge::new(shapes).unwrap();
     let truth: Vec<_> = frames
@@ -71,7 +72,8 @@ fn judge(what: &str, shapes: &[Shape], frames: &[Bodies]) {
     }
 }
 
-/// A row of balls, each touching the next to the last bit: wherever the plane is, a pair touches across it.
+/// A row of balls, each touching the next to the last bit: wherever the plane is, a pair touches
+/// across it.
 #[test]
 fn touching_across_a_cut() {
     let ball = shape("icosphere", 1.0);
@@ -86,7 +88,8 @@ fn touching_across_a_cut() {
     }
 }
 
-/// Eight boxes about one point, and eight more around each of their far corners: planes meet where boxes do.
+/// Eight boxes about one point, and eight more around each of their far corners: planes meet where
+/// boxes do.
 #[test]
 fn at_a_corner_of_eight() {
     let half = 0.5_f32;
@@ -100,7 +103,8 @@ fn at_a_corner_of_eight() {
     judge("corners", &[cube], &[bodies(lattice)]);
 }
 
-/// One body over all domains, whose ball and box reach every other, and another that just reaches some.
+/// One body over all domains, whose ball and box reach every other, and another that just reaches
+/// some.
 #[test]
 fn a_giant_over_all_domains() {
     let shapes = [
@@ -142,7 +146,8 @@ fn all_in_one_domain_and_empty_ranks() {
     judge("one body", &shapes, &[bodies([(0, [0.0; 3])])]);
 }
 
-/// Bodies that jump to the far end, all to one place, and back: owners change, domains empty and fill.
+/// Bodies that jump to the far end, all to one place, and back: owners change, domains empty and
+/// fill.
 #[test]
 fn teleports() {
     let shapes = support::shapes(DirectionSet::K18, Axes::Principal);
@@ -165,7 +170,8 @@ fn teleports() {
     judge("teleports", &shapes, &frames);
 }
 
-/// Steps far below and just above the skin: owners stay for some frames, and ghosts come into reach meanwhile.
+/// Steps far below and just above the skin: owners stay for some frames, and ghosts come into reach
+/// meanwhile.
 #[test]
 fn slow_drift() {
     let shapes = [shape("box", 1.0), shape("icosphere", 0.5)];
@@ -183,12 +189,14 @@ fn slow_drift() {
     judge("drift", &shapes, &(0..12).map(frame).collect::<Vec<_>>());
 }
 
-/// Many near-touching pairs at distances around 2R, over the border or not: what a reach a little small would lose.
+/// Many near-touching pairs at distances around 2R, over the border or not: what a reach a little
+/// small would lose.
 #[test]
 fn near_touching_pairs_on_either_side() {
     let ball = shape("icosphere", 1.0);
     let reach = 2.0 * ball.ball.radius;
-    // Pairs along x, at the distance that is still reported and just above: all at the same x, so that the cut is between.
+    // Pairs along x, at the distance that is still reported and just above: all at the same x, so
+    // that the cut is between.
     let pair = |i: usize| {
         let apart = f32::from_bits(reach.to_bits() + (i % 12) as u32);
         let (y, z) = ((i % 8) as f32 * 3.0, (i / 8) as f32 * 3.0);
@@ -208,14 +216,15 @@ fn near_touching_pairs_on_either_side() {
         &[bodies(all.into_iter().chain(crowd))],
     );
 }
-/// Pairs that stand as far apart as the skin lets them be forgotten, and then come to touch, each by a little less than a skin:
-/// the ghosts found before must have been those that are needed now.
+/// Pairs that stand as far apart as the skin lets them be forgotten, and then come to touch, each
+/// by a little less than a skin: the ghosts found before must have been those that are needed now.
 #[test]
 fn pairs_that_come_together_by_a_skin_each() {
     let ball = shape("icosphere", 1.0);
     let (reach, step) = (ball.ball.radius, 0.4999 * ball.ball.radius);
     let frame = |apart: f32| {
-        // The right one has the higher number, then the lower; a crowd on either side keeps the first plane on the right ones.
+        // The right one has the higher number, then the lower; a crowd on either side keeps the
+        // first plane on the right ones.
         let pair = |i: usize| {
             let (y, z) = ((i % 8) as f32 * 5.0, (i / 8) as f32 * 5.0);
             let (left, right) = ((0, [-reach - apart, y, z]), (0, [reach + apart, y, z]));

@@ -1,4 +1,5 @@
-//! One world on many ranks, each a thread here: the same pairs as one process, whatever the ranks, strategy and finder.
+//! One world on many ranks, each a thread here: the same pairs as one process, whatever the ranks,
+//! strategy and finder.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -16,9 +17,9 @@ use sdop::bodies::Bodies;
 use sdop::settings::CullSettings;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
-use sdop_bench::domain::local::on_ranks;
-use sdop_bench::domain::{DomainError, DomainSummary, Network as _, Rank, RankLine, run};
+use sdop_bench::domain::{DomainError, DomainSummary, Rank, RankLine, run};
 use sdop_bench::effects::{EffectsSpec, Velocities};
+use sdop_bench::network::{Network as _, on_ranks};
 use sdop_bench::scene::{Scene, SceneFile, Share};
 use sdop_bench::simulate::SimulationError;
 
@@ -62,6 +63,7 @@ fn scene_of(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings) -> Scene
             angular: still,
         },
         bodies: bodies.clone(),
+        fine: Default::default(),
         share: None,
         effects: EffectsSpec::default(),
         cull: settings.clone(),
@@ -96,7 +98,8 @@ fn share_of(scene: &Scene, rank: usize, ranks: usize) -> Scene {
     }
 }
 
-/// The sorted pairs of each frame that so many ranks report of bodies at given poses; each pair as often as it is reported.
+/// The sorted pairs of each frame that so many ranks report of bodies at given poses; each pair as
+/// often as it is reported.
 fn pairs_on(
     ranks: usize,
     shapes: &[Shape],

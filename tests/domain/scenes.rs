@@ -1,6 +1,6 @@
 //! Whole scenes: the digest, the hash and what must add up, over ranks, strategies and finders.
 
-use sdop::settings::{Finder, Interest, Strategy, Updates};
+use sdop::settings::{CullSettings, Finder, Interest, Strategy, Updates};
 use sdop_bench::scene::Scene;
 
 use crate::{RANKS, alone, build, ghosts, on, parse};
@@ -32,7 +32,8 @@ fn scene(radius: &str, placement: &str, box_of: &str) -> Scene {
     ))
 }
 
-/// Unit balls on a lattice: each touches its neighbours, and any plane cuts through rows of touching ones.
+/// Unit balls on a lattice: each touches its neighbours, and any plane cuts through rows of
+/// touching ones.
 fn straddling() -> Scene {
     let at = |i: i32| [i % 6, i / 6 % 6, i / 36].map(|x| 2 * x - 5);
     let poses = (0..216).map(|i| {
@@ -122,7 +123,8 @@ fn a_cone_that_a_body_looks_along_sees_the_same_from_every_rank() {
         "{ body = 17, direction = [0, 0, 1], half_angle = 40 }",
         "{ apex = [1, 2, 3], direction = [1, 0, 1], half_angle = 60, range = 6.0 }",
     ] {
-        scene.cull.interest = Some(cone.parse().unwrap());
+        let text = format!("interest = {cone}");
+        scene.cull.interest = toml::from_str::<CullSettings>(&text).unwrap().interest;
         let whole = alone(&scene);
         assert!(
             whole.counters.ordop.tests < whole.counters.sphere.hits,
@@ -142,7 +144,8 @@ fn ghosts_are_a_skin_of_the_domain_and_owners_are_kept_while_bodies_are_slow() {
     let summary = on(8, &build(text)).unwrap();
     for line in &summary.ranks {
         assert!((900..1100).contains(&line.bodies), "{line:?}");
-        // A cell of side 20 with a border of two reaches and two skins on three sides: (21.5/20)³ − 1 is 0.24.
+        // A cell of side 20 with a border of two reaches and two skins on three sides: (21.5/20)³ −
+        // 1 is 0.24.
         let a_frame = line.ghosts / 24;
         assert!((100..350).contains(&a_frame), "{line:?}");
         // A skin of half the radius lasts fifteen steps of a sixtieth at speed 1.
@@ -230,16 +233,25 @@ fn what_needs_one_order_over_all_pairs_is_refused_on_many_ranks() {
         "name = \"r\"\nframes = 2\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n[effects]\nresponse = \"elastic\"\n",
     );
     assert_eq!(refusal(&response), "effect response on 2 ranks");
+    let fine = parse(
+        "name = \"f\"\nframes = 1\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0.1, 0, 0]]\n",
+    );
+    let fine = fine.build_exact().unwrap();
+    assert_eq!(
+        refusal(&fine),
+        "translations that f32 doesn't hold on 2 ranks"
+    );
 }
 
 #[test]
 fn a_body_that_leaves_the_contract_is_named_by_its_number_on_every_rank() {
     let text = "name = \"far\"\nframes = 3\ndt = 1.0\n[[bodies]]\nshape = \"box\"
-        poses = [[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 5, 0, 0], [0, 0, 0, 1, 9, 0, 0], [0, 0, 0, 1, 1e18, 0, 0]]
+        poses = [[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 5, 0, 0], [0, 0, 0, 1, 9, 0, 0], [0, 0, 0, 1, 999999984306749440, 0, 0]]
         velocities = [[0, 0, 0], [0, 0, 0], [0, 0, 0], [1e18, 0, 0]]\n[effects]\nmotion = true\n";
     let file = parse(text);
-    let all = sdop_bench::domain::local::on_ranks(3, |net| {
-        use sdop_bench::domain::{Network as _, Rank, run};
+    let all = sdop_bench::network::on_ranks(3, |net| {
+        use sdop_bench::domain::{Rank, run};
+        use sdop_bench::network::Network as _;
         let scene = file.build_share(net.rank(), 3).unwrap();
         let rank = Rank::new(net, scene, sdop::Tier::detect(), 1).unwrap();
         run(rank, |_| ()).unwrap_err().to_string()

@@ -1,4 +1,5 @@
-//! Effects: only what a scene lists runs, static bodies stay as they are, and each effect does what its equation says.
+//! Effects: only what a scene lists runs, static bodies stay as they are, and each effect does what
+//! its equation says.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod response;
@@ -45,8 +46,8 @@ fn after(scene: &Scene, steps: usize) -> (Bodies, Velocities) {
     (bodies, effects.velocities().clone())
 }
 
-/// What each effect does to a crowd: its line of `[effects]`, and the one column that it changes there; the walls of a crowd
-/// that stays inside change nothing.
+/// What each effect does to a crowd: its line of `[effects]`, and the one column that it changes
+/// there; the walls of a crowd that stays inside change nothing.
 const EACH: &[(&str, &str, Option<Column>)] = &[
     (
         "gravity",
@@ -211,7 +212,8 @@ fn bounding_spheres_stay_inside_and_speeds_stay() {
             for body in 0..bodies.len() {
                 let ball = scene.shapes[bodies.shape[body] as usize].ball;
                 let q = glam::Quat::from_array(bodies.rotation[body]);
-                let centre = q * ball.centre + glam::Vec3::from(bodies.translation[body]);
+                let centre =
+                    q * glam::Vec3::from(ball.centre) + glam::Vec3::from(bodies.translation[body]);
                 let room = 6.0 - ball.radius + 1e-5;
                 assert!(
                     centre.abs().max_element() <= room,

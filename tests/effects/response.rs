@@ -6,13 +6,13 @@ use sdop_bench::scene::Scene;
 
 use super::{after, report, scene};
 
-/// The response by its formula alone: all pairs in order, everything in f64. The velocities after it, and how many pairs
-/// exchanged momentum.
+/// The response by its formula alone: all pairs in order, everything in f64. The velocities after
+/// it, and how many pairs exchanged momentum.
 fn respond(scene: &Scene) -> (Vec<[f32; 3]>, usize) {
     let (bodies, mut velocity) = (&scene.bodies, scene.velocities.linear.clone());
     let sphere = |bodies: &Bodies, body: usize| {
         let ball = scene.shapes[bodies.shape[body] as usize].ball;
-        assert_eq!(ball.centre, glam::Vec3::ZERO);
+        assert_eq!(ball.centre, [0.0; 3]);
         (
             glam::DVec3::from(bodies.translation[body].map(f64::from)),
             f64::from(ball.radius),
@@ -98,7 +98,8 @@ fn response_keeps_momentum_and_energy() {
     let changed = report(&effects, "response").changed;
     assert!(changed > 500, "{changed}");
     let (momentum_now, energy_now) = totals(effects.velocities());
-    // Each exchange rounds six velocities by 2⁻²⁴ of their size; roundings add up like a random walk at most.
+    // Each exchange rounds six velocities by 2⁻²⁴ of their size; roundings add up like a random
+    // walk at most.
     let scale = changed as f64 * 2.0_f64.powi(-24);
     assert!(
         (momentum_now - momentum).length() < scale * 10.0,

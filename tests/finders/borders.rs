@@ -1,5 +1,6 @@
-//! Scenes on the borders between cells, to a unit in the last place of f64: three that once lost a pair or panicked, and a
-//! short search for others. `cargo bench --bench finder_borders` is the long one.
+//! Scenes on the borders between cells, to a unit in the last place of f64: three that once lost a
+//! pair or panicked, and a short search for others. `cargo bench --bench finder_borders` is the
+//! long one.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -13,7 +14,8 @@ use super::{compare, run, settings};
 
 const NO_TURN: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
-/// A bar whose ends lie so far from its middle, for each reach; of the bodies, `(shape, moves, centre)`.
+/// A bar whose ends lie so far from its middle, for each reach; of the bodies, `(shape, moves,
+/// centre)`.
 fn scene(reaches: &[f32], bodies: impl IntoIterator<Item = (u32, bool, [f32; 3])>) -> Scene {
     let mut columns = Bodies::default();
     for (shape, moves, centre) in bodies {
@@ -53,8 +55,9 @@ fn judge(scene: &Scene, strategies: &[Strategy], what: &str) {
     }
 }
 
-/// The extent between these two, 10.494775749…, lies one unit in the last place of f64 below 5½ cells of the bars below:
-/// the division gave six cells, 0 to 5, and the farthest bar fell in number 6.
+/// The extent between these two, 10.494775749…, lies one unit in the last place of f64 below 5½
+/// cells of the bars below: the division gave six cells, 0 to 5, and the farthest bar fell in
+/// number 6.
 #[allow(clippy::excessive_precision, reason = "as the culler got them")]
 const ENDS: [f32; 2] = [2.255_456_088_562_368_7e-8, 10.494_775_772_094_727];
 #[allow(clippy::excessive_precision, reason = "as the culler got it")]
@@ -84,7 +87,8 @@ fn a_moving_bar_meets_the_farthest_static_one() {
 
 #[test]
 fn a_giant_bar_meets_the_farthest_small_one() {
-    // In three dimensions a cell beyond the box is in its table still: nothing panics, and the giant doesn't look there.
+    // In three dimensions a cell beyond the box is in its table still: nothing panics, and the
+    // giant doesn't look there.
     let small = ENDS.into_iter().chain(between(1998)).zip(0..);
     let bars = small.map(|(x, i)| (0, true, [x, 2.0 * (i / 2 % 4) as f32, (i / 8 % 5) as f32]));
     let giant = (1, true, [ENDS[1] + 8.0 + 0.95, 0.0, 0.0]);
@@ -94,7 +98,8 @@ fn a_giant_bar_meets_the_farthest_small_one() {
     judge(&scene, &[Strategy::Sphere], "a giant bar");
 }
 
-/// How many scenes the short search draws, and how many of them at least a division must count otherwise than the grid.
+/// How many scenes the short search draws, and how many of them at least a division must count
+/// otherwise than the grid.
 const SCENES: usize = 6000;
 const DIVIDED: usize = 100;
 

@@ -1,5 +1,5 @@
-//! Every pair finder reports what all-pairs reports, on scenes made to be hard for it: the same set, in every tier and on
-//! any number of threads the same list and the same counts.
+//! Every pair finder reports what all-pairs reports, on scenes made to be hard for it: the same
+//! set, in every tier and on any number of threads the same list and the same counts.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -8,6 +8,7 @@ mod neighbours;
 mod outside;
 mod plan;
 mod scenes;
+mod sizes;
 #[path = "../support/mod.rs"]
 mod support;
 mod windows;
@@ -23,8 +24,8 @@ use sdop::simd::Tier;
 
 use scenes::{Scene, hard_scenes, near_touching, unequal_near_touching, uniform};
 
-/// Whatever a strategy needs: a cone that holds some bodies, and a budget that doesn't run out, since what is refined before
-/// it does depends on the order of candidates.
+/// Whatever a strategy needs: a cone that holds some bodies, and a budget that doesn't run out,
+/// since what is refined before it does depends on the order of candidates.
 fn settings(strategy: Strategy, pairs: Finder) -> CullSettings {
     let cone = ViewCone {
         body: None,
@@ -149,8 +150,8 @@ fn no_finder_loses_a_near_touching_pair() {
     }
 }
 
-/// A ball just this side of a border between cells, and one that touches it from as far beyond as can be: cells a
-/// hundred-thousandth too small put a whole cell between them.
+/// A ball just this side of a border between cells, and one that touches it from as far beyond as
+/// can be: cells a hundred-thousandth too small put a whole cell between them.
 #[test]
 fn no_pair_is_lost_across_a_cell() {
     for axis in 0..3 {
@@ -178,8 +179,8 @@ fn no_pair_is_lost_across_a_cell() {
     }
 }
 
-/// Far clusters wrap the table of cells: rows of touching balls lie across its end in some of these scenes, and so do the
-/// tiny ones that other levels look for.
+/// Far clusters wrap the table of cells: rows of touching balls lie across its end in some of these
+/// scenes, and so do the tiny ones that other levels look for.
 #[test]
 fn no_pair_is_lost_at_the_end_of_the_table() {
     for (seeds, rows, radii) in [(80, 20, vec![1.0]), (16, 70, vec![1.0, 0.1])] {
@@ -212,8 +213,8 @@ fn no_pair_is_lost_at_the_end_of_the_table() {
     }
 }
 
-/// Cells of far clusters share places in the table, so a giant that looked through more than three of them each way would
-/// come upon some bodies twice.
+/// Cells of far clusters share places in the table, so a giant that looked through more than three
+/// of them each way would come upon some bodies twice.
 #[test]
 fn giants_meet_the_tiny_ones_of_far_clusters_once() {
     let mut scene = Scene::new("giants in far clusters", &[0.02, 0.5], 12_000, |i, rng| {
@@ -350,7 +351,8 @@ fn lists_and_counts_are_the_same_in_every_tier_and_on_every_number_of_threads() 
 
 #[test]
 fn bodies_may_gather_and_part_over_many_frames() {
-    // Everybody falls to the middle and flies apart again: levels are planned anew, places reordered.
+    // Everybody falls to the middle and flies apart again: levels are planned anew, places
+    // reordered.
     let mut scene = Scene::new("gathering", &[0.3, 1.0, 4.0], 400, |_, rng| {
         uniform(rng, 100.0).map(|x| x - 50.0)
     });

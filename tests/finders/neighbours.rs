@@ -1,5 +1,5 @@
-//! Neighbour lists: whatever bodies do between two lists, each frame's pairs are those of all pairs, in every tier; and lists
-//! are kept, or there would be nothing to see.
+//! Neighbour lists: whatever bodies do between two lists, each frame's pairs are those of all
+//! pairs, in every tier; and lists are kept, or there would be nothing to see.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -22,8 +22,8 @@ fn culler(scene: &Scene, strategy: Strategy, finder: Finder, tier: Tier) -> Cull
         .unwrap()
 }
 
-/// Culls the frames that `step` makes by neighbour lists in every tier, and by all pairs. Returns how many pairs there were,
-/// and how many tests lists and the grid made.
+/// Culls the frames that `step` makes by neighbour lists in every tier, and by all pairs. Returns
+/// how many pairs there were, and how many tests lists and the grid made.
 fn judge(
     scene: &Scene,
     strategy: Strategy,
@@ -56,7 +56,8 @@ fn judge(
     (pairs, tests)
 }
 
-/// Pairs of balls along x, each pair by itself, `apart` between their centres; R is what the finder is given.
+/// Pairs of balls along x, each pair by itself, `apart` between their centres; R is what the finder
+/// is given.
 fn couples(apart: impl Fn(usize, f32) -> f32, fixed: bool) -> (Scene, f32) {
     let mut scene = Scene::new("couples", &[1.0], 600, |_, _| [0.0; 3]);
     let radius = scene.shapes[0].ball.radius * (1.0 + 8.0 * 0.5f32.powi(24)) + 0.5f32.powi(70);
@@ -71,8 +72,8 @@ fn couples(apart: impl Fn(usize, f32) -> f32, fixed: bool) -> (Scene, f32) {
     (scene, radius)
 }
 
-/// Two bodies that a list doesn't hold, since they were just out of its reach, come together in one frame: by their skins,
-/// by a unit in the last place less or more, by half more, and back again.
+/// Two bodies that a list doesn't hold, since they were just out of its reach, come together in one
+/// frame: by their skins, by a unit in the last place less or more, by half more, and back again.
 #[test]
 fn bodies_that_move_by_their_skins_meet_whom_they_meet() {
     for fixed in [false, true] {
@@ -104,8 +105,8 @@ fn bodies_that_move_by_their_skins_meet_whom_they_meet() {
     }
 }
 
-/// Small balls beside wide ones come together as above, by a skin of the same length for both: one of six, since a frame in which
-/// all move by half a small one's radius has ended the first list.
+/// Small balls beside wide ones come together as above, by a skin of the same length for both: one
+/// of six, since a frame in which all move by half a small one's radius has ended the first list.
 #[test]
 fn small_bodies_and_wide_ones_that_move_by_a_common_length_meet_whom_they_meet() {
     let mut scene = Scene::new("small beside wide", &[0.1, 1.0], 240, |_, _| [0.0; 3]);
@@ -142,7 +143,8 @@ fn small_bodies_and_wide_ones_that_move_by_a_common_length_meet_whom_they_meet()
     }
 }
 
-/// Bodies that keep their course, by so many of the radii that `pace` makes of theirs a frame, and turn round now and then.
+/// Bodies that keep their course, by so many of the radii that `pace` makes of theirs a frame, and
+/// turn round now and then.
 fn fly(
     scene: &Scene,
     pace: impl Fn(f32) -> f32,

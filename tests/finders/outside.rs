@@ -1,5 +1,5 @@
-//! Balls outside the contract: NaN with any payload, infinities, the largest numbers. Culler and World refuse them; a finder
-//! that gets them anyway ends, without a panic, whatever it finds.
+//! Balls outside the contract: NaN with any payload, infinities, the largest numbers. Culler and
+//! World refuse them; a finder that gets them anyway ends, without a panic, whatever it finds.
 
 use std::ops::Range;
 

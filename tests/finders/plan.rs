@@ -1,5 +1,6 @@
-//! Plans depend on the bodies alone, and stay as recorded: how many candidates a finder hands out, in which order, of how many
-//! bytes and in how many parts. Each change of them is a change of speed that counts can show, on any machine.
+//! Plans depend on the bodies alone, and stay as recorded: how many candidates a finder hands out,
+//! in which order, of how many bytes and in how many parts. Each change of them is a change of
+//! speed that counts can show, on any machine.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -17,12 +18,14 @@ use super::{advance, settings};
 /// What was recorded, a line a scene and finder; a test that fails prints what it found.
 const RECORDED: &str = include_str!("plan.txt");
 
-/// More than any finder waits before it reorders places, or looks at its plan again. All pairs have no plan.
+/// More than any finder waits before it reorders places, or looks at its plan again. All pairs have
+/// no plan.
 fn frames(finder: Finder) -> usize {
     if finder == Finder::AllPairs { 2 } else { 40 }
 }
 
-/// The hard scenes, and some in which sizes, crowds and axes call for another plan while bodies move.
+/// The hard scenes, and some in which sizes, crowds and axes call for another plan while bodies
+/// move.
 fn scenes() -> Vec<Scene> {
     let mut scenes = hard_scenes();
     let wide: Vec<f32> = (0..12).map(|i| 0.02 * 2f32.powf(0.7 * i as f32)).collect();

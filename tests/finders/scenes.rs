@@ -66,7 +66,8 @@ pub fn hard_scenes() -> Vec<Scene> {
         Scene::new("crowded", &[1.0], 400, |_, rng| uniform(rng, 6.0)),
         Scene::new("coincident", &[1.0], 150, |_, _| [3.0, -2.0, 7.0]),
         Scene::new("on cell borders", &[1.0], 500, |i, _| {
-            // Diameters of a little more than 2: neighbours touch, and the grid's borders run between them.
+            // Diameters of a little more than 2: neighbours touch, and the grid's borders run
+            // between them.
             [i % 8, i / 8 % 8, i / 64].map(|k| k as f32 * 2.000_002)
         }),
         Scene::new("half a cell off", &[1.0], 500, |i, _| {
@@ -153,7 +154,8 @@ fn random_scene() -> Scene {
     }
 }
 
-/// Pairs of equal balls whose distance is that of touching up to a few roundings, in any direction or along an axis.
+/// Pairs of equal balls whose distance is that of touching up to a few roundings, in any direction
+/// or along an axis.
 pub fn near_touching(seed: u64, radius: f32, offset: f32) -> Scene {
     let mut scene = Scene::new("near-touching", &[radius], 1200, |_, _| [0.0; 3]);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -173,8 +175,9 @@ pub fn near_touching(seed: u64, radius: f32, offset: f32) -> Scene {
     scene
 }
 
-/// Pairs of unequal balls that touch to the last bit along an axis, on either side of its origin: there the difference of
-/// centres and the sum of radii round, so that a test reports pairs whose exact ends lie apart.
+/// Pairs of unequal balls that touch to the last bit along an axis, on either side of its origin:
+/// there the difference of centres and the sum of radii round, so that a test reports pairs whose
+/// exact ends lie apart.
 pub fn unequal_near_touching(seed: u64) -> Scene {
     let mut scene = Scene::new("unequal near-touching", &[1.0, 0.37], 1200, |_, _| [0.0; 3]);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);

@@ -1,5 +1,6 @@
-//! or-DOP rows that are made where they are tested, as batches do with many bodies, against rows that are all made before, as the
-//! sequential strategy has them: the same pairs and counts, in every tier and on any number of threads.
+//! or-DOP rows that are made where they are tested, as batches do with many bodies, against rows
+//! that are all made before, as the sequential strategy has them: the same pairs and counts, in
+//! every tier and on any number of threads.
 
 use super::*;
 
@@ -41,8 +42,8 @@ fn near_places_share_windows_in_every_tier() {
     batches_equal_sequences(&scene, &finders, &[Tier::detect()]);
 }
 
-/// Wide bodies and small ones have slots of their own, so that those of a pair lie farther apart than a window is long: those that
-/// move, or those that don't.
+/// Wide bodies and small ones have slots of their own, so that those of a pair lie farther apart
+/// than a window is long: those that move, or those that don't.
 #[test]
 fn pairs_whose_places_are_far_apart_are_tested_by_rows_that_are_all_made() {
     let radii = [0.3, 0.3, 0.3, 0.3, 4.0];

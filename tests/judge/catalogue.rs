@@ -1,4 +1,5 @@
-//! Cases are the same whenever they are drawn, differ by seed, and come back from their files as they went.
+//! Cases are the same whenever they are drawn, differ by seed, and come back from their files as
+//! they went.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! The command line: examples, known failures, halves on two machines, timing, recordings of others.
+//! The command line: examples, known failures, halves on two machines, timing, recordings of
+//! others.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -87,7 +88,8 @@ fn the_python_example_passes_and_its_full_buffer_is_found_with_a_small_scene_tha
     assert!(sdop(directory.path(), &again).0.status.success());
 }
 
-/// What a culler of boxes that reports nothing is told, by the smallest case; the lines that a person reads.
+/// What a culler of boxes that reports nothing is told, by the smallest case; the lines that a
+/// person reads.
 fn silence(directory: &Path, more: &[&str]) -> (Output, String) {
     let silent = answering(RIGHT);
     let arguments = ["verify", "--exec", &silent, "--timeout", "60", "--no-fresh"];
@@ -167,7 +169,8 @@ fn a_miss_of_meshes_is_a_scene_where_a_scene_can_state_it() {
     assert!(directory.path().join("missed-pair.ndjson").exists() && !scene.exists());
 }
 
-/// Runs a counter-example's unit test with a culler that reports all pairs, and one that reports none.
+/// Runs a counter-example's unit test with a culler that reports all pairs, and one that reports
+/// none.
 fn as_test(language: &str, claim: &str, case: &str) {
     let (compiler, arguments, culler, end): (&str, &[&str], &str, &str) = match language {
         "python" => (
@@ -285,11 +288,13 @@ fn a_list_of_known_failures_cannot_go_stale() {
         .collect();
     // Known failures alone: nothing was shown to be right.
     assert_eq!(run(&all, "table").0.status.code(), Some(1));
-    let (output, text) = run(&format!("{all}box/grid/0009\n"), "json");
+    let (output, _) = run(&format!("{all}box/grid/0009\n"), "json");
+    let error = String::from_utf8_lossy(&output.stderr);
     assert!(
-        output.status.code() == Some(1)
-            && text.contains("\"stale\": [\n    \"box/grid/0009\"\n  ]"),
-        "{text}"
+        output.status.code() == Some(2)
+            && error.contains("`box/grid/0009` is no case of the claim aabb")
+            && error.contains("did you mean `box/grid/000"),
+        "{error}"
     );
     let (output, text) = run("", "junit");
     assert_eq!(output.status.code(), Some(1));
@@ -356,6 +361,93 @@ fn cases_are_written_answered_elsewhere_and_checked() {
         .code(),
         Some(2)
     );
+}
+
+#[test]
+fn records_without_all_frames_are_incomplete() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = "name = \"two\"\nframes = 4\n[[bodies]]\nshape = \"box\"\nposes = [[0,0,0,1,0,0,0],[0,0,0,1,0.5,0,0]]\n";
+    std::fs::write(directory.path().join("two.toml"), scene).unwrap();
+    let recorded = ["run", "two.toml", "--record", "whole"];
+    assert!(sdop(directory.path(), &recorded).0.status.success());
+    let whole = std::fs::read_to_string(directory.path().join("whole")).unwrap();
+    let lines: Vec<&str> = whole.lines().collect();
+    assert_eq!(lines.len(), 5);
+    let missed = lines[2].replace("[[0,1]]", "[]");
+    for (kept, code, said) in [
+        (lines.clone(), 0, "PASS"),
+        (lines[..4].to_vec(), 3, "3 of its 4 frames"),
+        (vec![lines[0], lines[2], lines[4]], 3, "2 of its 4 frames"),
+        (vec![lines[0]], 3, "0 of its 4 frames"),
+        (vec![lines[0], &missed], 1, "NOT PASSED"),
+        (vec![lines[0], lines[2], lines[1]], 2, ""),
+    ] {
+        std::fs::write(directory.path().join("part"), kept.join("\n")).unwrap();
+        let (output, text) = sdop(directory.path(), &["check", "part"]);
+        assert_eq!(output.status.code(), Some(code), "{said}: {text}");
+        assert!(text.contains(said), "{text}");
+        if [1, 3].contains(&code) {
+            reason(&output);
+        }
+    }
+}
+
+/// The only line of standard error that starts with the program's name, without it.
+fn reason(output: &Output) -> String {
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    let mut lines = error.lines().filter_map(|line| line.strip_prefix("sdop: "));
+    let reason = lines.next().unwrap_or_else(|| panic!("no reason: {error}"));
+    assert_eq!(lines.next(), None, "{error}");
+    reason.to_owned()
+}
+
+#[test]
+fn no_success_without_a_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let skips = answering(r#"echo '{"frame":0,"skipped":"no grids"}'; exit 0"#);
+    let silent = answering(RIGHT);
+    for (program, code, says) in [
+        (&skips, 3, "0 of 8 cases were judged: 8 skipped, 0 not run"),
+        (
+            &silent,
+            1,
+            "8 of 8 cases failed, first box/grid/0000 misses ",
+        ),
+        (
+            &"false".to_owned(),
+            1,
+            "8 of 8 cases failed, first box/grid/0000 crashed",
+        ),
+    ] {
+        let case = ["--claims", "aabb", "--case", "box/grid/*", "--no-fresh"];
+        let more = ["--timeout", "60", "--format", "json"];
+        let run = [&["verify", "--exec", program], &case[..], &more].concat();
+        let (output, text) = sdop(directory.path(), &run);
+        assert_eq!(output.status.code(), Some(code), "{text}");
+        let (why, found): (_, serde_json::Value) =
+            (reason(&output), serde_json::from_str(&text).unwrap());
+        assert!(why.starts_with(says), "{why}");
+        assert_eq!(found["why"], why.as_str());
+        let word = if code == 3 {
+            "incomplete"
+        } else {
+            "not-passed"
+        };
+        assert_eq!(
+            (&found["conclusion"], &found["asked"]),
+            (&word.into(), &8.into())
+        );
+    }
+    // A timing's rows say it themselves.
+    let scene =
+        "name = \"one\"\nframes = 2\n[[bodies]]\nshape = \"box\"\nposes = [[0,0,0,1,0,0,0]]\n";
+    std::fs::write(directory.path().join("one.toml"), scene).unwrap();
+    let timing = [
+        "bench", "one.toml", "--exec", &skips, "--frames", "2", "--rounds", "1",
+    ];
+    let (output, _) = sdop(directory.path(), &timing);
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    assert!(reason(&output).ends_with("skipped the scene: no grids"));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use sdop::culler::Culler;
 use sdop::rounding::pose::{rotation, transform};
 use sdop::settings::Strategy;
 use sdop::volume::Shape;
-use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Groups};
+use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Groups, Motion};
 use sdop_judge::{Contestant, PairTest, Scene, WorldBox};
 
 /// Our own culler.
@@ -80,7 +80,11 @@ impl Contestant for BoxesOfAWorld {
         for (i, id) in self.ids.iter_mut().enumerate() {
             let body = BoxBody {
                 bounds: self.boxes[i],
-                dynamic: bodies.dynamic[i],
+                motion: if bodies.dynamic[i] {
+                    Motion::Dynamic
+                } else {
+                    Motion::Fixed
+                },
                 groups: Groups::ALL,
             };
             match *id {
@@ -117,7 +121,7 @@ fn ball(shapes: &[Shape], bodies: &Bodies, i: u32) -> ([f64; 3], f64) {
     let i = i as usize;
     let ball = shapes[bodies.shape[i] as usize].ball;
     let pose = rotation(bodies.rotation[i]);
-    let centre = transform(&pose, ball.centre.to_array(), bodies.translation[i]);
+    let centre = transform(&pose, ball.centre, bodies.translation[i]);
     (centre, f64::from(ball.radius))
 }
 

@@ -1,11 +1,12 @@
-//! Programs under judgement: what each ill behaviour is called, that none is waited for, and that the next case is run.
+//! Programs under judgement: what each ill behaviour is called, that none is waited for, and that
+//! the next case is run.
 
 use std::time::{Duration, Instant};
 
 use sdop_judge::answer::Trouble;
 use sdop_judge::process::Program;
 use sdop_judge::wire::Wire;
-use sdop_judge::{Claim, Options, Outcome, Verdict, examine};
+use sdop_judge::{Claim, Conclusion, Options, Outcome, Verdict, examine};
 
 /// A program that reads frames and answers each with what `answer` says; $n is the frame's number.
 pub fn answering(answer: &str) -> String {
@@ -215,7 +216,8 @@ fn a_program_may_skip_a_case_and_a_run_of_skipped_cases_is_no_pass() {
             20.0,
             "churn/swap/000[0-9]".replace("[0-9]", "?").as_str(),
         );
-        assert!(!verdict.passed());
+        assert_eq!(verdict.conclusion(), Conclusion::Incomplete);
+        assert_eq!((verdict.judged(), verdict.asked()), (0, 4));
         assert!(
             verdict.cases.len() == 7
                 && verdict.cases.iter().all(
@@ -226,6 +228,42 @@ fn a_program_may_skip_a_case_and_a_run_of_skipped_cases_is_no_pass() {
     };
     skips(Wire::Ndjson, r#"{"frame":0,"skipped":"no swaps"}"#);
     skips(Wire::Text, "skip no swaps");
+}
+
+/// Answers frames without pairs, and skips each case in which there is one.
+#[test]
+fn skipping_what_meets_is_incomplete() {
+    let skip = r#"echo "{\"frame\":$n,\"skipped\":\"something meets\"}"; exit 0"#;
+    let first = format!("read -r header; n=0; {RIGHT}; read -r frame; n=1; {skip}");
+    let verdict = run(&first, Wire::Ndjson, 20.0, "churn/teleport/*");
+    // The first frames are answered wrongly, which no later word takes back.
+    assert_eq!(verdict.conclusion(), Conclusion::NotPassed, "{verdict}");
+    assert!(verdict.pairs().missed > 0);
+    let always = answering(skip);
+    let verdict = run(&always, Wire::Ndjson, 20.0, "churn/teleport/*");
+    assert_eq!(verdict.conclusion(), Conclusion::Incomplete, "{verdict}");
+    let said = verdict.to_string();
+    assert!(
+        said.starts_with("claim aabb: INCOMPLETE, 0 of 4 cases judged"),
+        "{said}"
+    );
+}
+
+#[test]
+fn cases_without_time_are_incomplete() {
+    let program = Program {
+        command: "true".to_owned(),
+        wire: Wire::Ndjson,
+        timeout: Duration::from_secs(1),
+    };
+    let options = Options {
+        claim: Claim::Aabb,
+        time: Some(Duration::ZERO),
+        ..Options::default()
+    };
+    let verdict = examine(&program, &options, |_, _| {}).unwrap();
+    assert_eq!(verdict.conclusion(), Conclusion::Incomplete);
+    assert!(verdict.cases.is_empty() && verdict.not_run > 100);
 }
 
 #[test]

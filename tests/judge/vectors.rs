@@ -1,4 +1,5 @@
-//! The vectors in `data/vectors` are what the command makes, say the same in hex and decimal, and decide both ways.
+//! The vectors in `data/vectors` are what the command makes, say the same in hex and decimal, and
+//! decide both ways.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! Meshes far from their origin: what f64 coordinates become, and that a near mesh is the f32 that its file says.
+//! Meshes far from their origin: what f64 coordinates become, and that a near mesh is the f32 that
+//! its file says.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -6,11 +7,12 @@ use sdop::mesh::topology::Topology;
 use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes, write_bytes};
 use sdop::volume::{Hull, Shape, ShapeSpec};
 
-const FORMATS: [MeshFormat; 4] = [
+const FORMATS: [MeshFormat; 5] = [
     MeshFormat::Tri,
     MeshFormat::Obj,
     MeshFormat::Stl,
     MeshFormat::Ply,
+    MeshFormat::Off,
 ];
 
 fn read(format: MeshFormat, text: impl AsRef<[u8]>) -> TriangleMesh {
@@ -63,6 +65,7 @@ fn file(format: MeshFormat, real: &str, points: &[[String; 3]], triangles: &[[u3
             lines(""),
             faces("3 ", 0)
         ),
+        MeshFormat::Off => format!("OFF\n{n} {t} 0\n{}{}", lines(""), faces("3 ", 0)),
         MeshFormat::Stl => {
             let facet = |t: &[u32; 3]| {
                 let corners = t.map(|i| points[i as usize].join(" "));
@@ -109,7 +112,8 @@ fn a_wall_on_a_map_keeps_its_form() {
     }
 }
 
-/// Numbers as exporters write them, some of them next to the middle of two f32, where f64 alone would round to the other one.
+/// Numbers as exporters write them, some of them next to the middle of two f32, where f64 alone
+/// would round to the other one.
 #[test]
 fn near_coordinates_are_the_nearest_f32() {
     let mut random = ChaCha8Rng::seed_from_u64(5);
@@ -149,7 +153,7 @@ fn near_coordinates_are_the_nearest_f32() {
         for format in FORMATS {
             let mesh = read(format, file(format, "float", &words, &BOX));
             assert_eq!((mesh.offset, mesh.rounding), ([0.0; 3], 0.0));
-            let corners = |t: [u32; 3]| t.map(|i| mesh.vertices[i as usize].to_array());
+            let corners = |t: [u32; 3]| t.map(|i| mesh.vertices[i as usize]);
             for (found, wanted_triangle) in mesh.triangles.iter().zip(BOX) {
                 let wanted = wanted_triangle.map(|i| wanted[i as usize]);
                 assert_eq!(corners(*found), wanted, "{format:?}");
@@ -165,7 +169,8 @@ fn near_coordinates_are_the_nearest_f32() {
 /// A box whose one corner rounds by `moved` times 2⁻²⁰ of its size.
 fn moved_by(moved: f64) -> TriangleMesh {
     let mut points = corners([1.0; 3], [1.0; 3]);
-    // Near 2¹⁶ an f32 steps by 2⁻⁷; the size is chosen so that the wanted part of a step is 2⁻²⁰ of it.
+    // Near 2¹⁶ an f32 steps by 2⁻⁷; the size is chosen so that the wanted part of a step is 2⁻²⁰ of
+    // it.
     let far = f64::from(1 << 16);
     let off = 2f64.powi(-9);
     let size = off * 2f64.powi(20) / moved;
@@ -184,7 +189,7 @@ fn a_mesh_is_far_from_two_to_the_minus_twenty_on() {
     for moved in [0.01, 0.5, 0.9] {
         let mesh = moved_by(moved);
         assert_eq!((mesh.offset, mesh.rounding), ([0.0; 3], 0.0), "{moved}");
-        assert_eq!(mesh.vertices[0].x, 65536.0);
+        assert_eq!(mesh.vertices[0][0], 65536.0);
     }
 }
 

@@ -4,18 +4,22 @@
 mod decimate;
 mod far;
 mod obj;
+mod off;
 mod prop;
+mod scale;
 mod shapes;
 mod stl_ply;
+mod tolerant;
 mod topology;
 mod tri;
 
 use sdop::mesh::TriangleMesh;
 use sha2::{Digest, Sha256};
 
-/// Six times the signed volume is the sum of det(a, b, c): positive when counter-clockwise faces look outward.
+/// Six times the signed volume is the sum of det(a, b, c): positive when counter-clockwise faces
+/// look outward.
 fn signed_volume(mesh: &TriangleMesh) -> f64 {
-    let corner = |i: u32| mesh.vertices[i as usize].as_dvec3();
+    let corner = |i: u32| glam::Vec3::from(mesh.vertices[i as usize]).as_dvec3();
     let six_volumes = mesh
         .triangles
         .iter()

@@ -18,7 +18,10 @@ fn groups_materials_and_texture_seams_leave_one_mesh() {
                 vn 0 0 1\nusemtl red\nf 1/1/1 2/2/1 3/1/1\ng second\nv 0 0 2 2\nusemtl blue\nf 1/2 3 -1\n";
     let mesh = read_text(text).unwrap();
     assert_eq!(mesh.name, "cube");
-    assert_eq!(mesh.vertices, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
+    assert_eq!(
+        mesh.vertices,
+        [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|v| v.to_array())
+    );
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
 }
 
@@ -86,14 +89,9 @@ fn bad_files_are_refused_with_their_line() {
             "{text}"
         );
     }
-    let binary = b"v 0 0 0\nf 1 1 1\n\xff\xfe";
-    assert_eq!(
-        read_text(binary).unwrap_err().to_string(),
-        "cube.obj:3: this is not text: byte 0xff at offset 16"
-    );
 }
 
-/// This file makes tobj 4.0 panic when it gets the normals to see.
+/// Indices of normals are not read, those of vertices are compared without overflow.
 #[test]
 fn indices_near_the_end_of_their_type_do_no_harm() {
     let text = "v 0 0 0\nvn 0 0 1\nf 1//6148914691236517206 1 1\n";

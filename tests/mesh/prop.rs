@@ -1,14 +1,16 @@
-//! Meshes survive every format to the bit, and no reader panics, hangs or asks for more memory than the bytes warrant.
+//! Meshes survive every format to the bit, and no reader panics, hangs or asks for more memory than
+//! the bytes warrant.
 
 use glam::Vec3;
 use proptest::prelude::*;
 use sdop::mesh::{MeshFormat, ReadOptions, TriFormat, TriangleMesh, read_bytes, write_bytes};
 
-const FORMATS: [MeshFormat; 4] = [
+const FORMATS: [MeshFormat; 5] = [
     MeshFormat::Tri,
     MeshFormat::Obj,
     MeshFormat::Stl,
     MeshFormat::Ply,
+    MeshFormat::Off,
 ];
 
 /// Any finite f32 up to 2⁶⁰: both zeros, subnormals, and every exponent as often as the others.
@@ -40,19 +42,12 @@ fn mesh() -> impl Strategy<Value = TriangleMesh> {
 }
 
 fn bits(mesh: &TriangleMesh) -> Vec<[u32; 3]> {
-    mesh.vertices
-        .iter()
-        .map(|v| v.to_array().map(f32::to_bits))
-        .collect()
+    mesh.vertices.iter().map(|v| v.map(f32::to_bits)).collect()
 }
 
 /// The positions of all corners, with one zero: what a format of loose triangles can keep.
 fn corners(mesh: &TriangleMesh) -> Vec<[u32; 3]> {
-    let corner = |&i: &u32| {
-        mesh.vertices[i as usize]
-            .to_array()
-            .map(|x| (x + 0.0).to_bits())
-    };
+    let corner = |&i: &u32| mesh.vertices[i as usize].map(|x| (x + 0.0).to_bits());
     mesh.triangles.as_flattened().iter().map(corner).collect()
 }
 
@@ -89,7 +84,7 @@ fn word() -> impl Strategy<Value = String> {
                  element vertex|element face|element x|property float x|property double y|property uchar z|\
                  property list uchar int vertex_indices|property list int uint vertex_index|\
                  property list float char q|end_header|comment|v|vn|vt|f|l|o|g|usemtl|mtllib|1//2|-1/-1/-1|\
-                 1//6148914691236517206|#|-|0x|solid|endsolid|facet normal 0 0 1|outer loop|vertex|endloop|endfacet|\u{feff}|\u{0}";
+                 1//6148914691236517206|#|-|0x|solid|endsolid|facet normal 0 0 1|outer loop|vertex|endloop|endfacet|end|OFF|4OFF|element tristrips|nan(ind)|1.#QNAN|1d5|\\|\u{feff}|\u{0}";
     let words: Vec<String> = words
         .split('|')
         .map(|word| word.trim_start().to_owned())
@@ -113,7 +108,7 @@ fn damaged_file() -> impl Strategy<Value = Vec<u8>> {
     let changes = prop::collection::vec(change, 0..4);
     (
         mesh(),
-        0..4_usize,
+        0..=FORMATS.len(),
         changes,
         any::<Option<prop::sample::Index>>(),
     )
@@ -139,7 +134,7 @@ fn binary_ply(mesh: &TriangleMesh) -> Vec<u8> {
     let end = text.find("end_header\n").unwrap() + "end_header\n".len();
     let mut bytes = text.as_bytes()[..end].to_vec();
     for vertex in &mesh.vertices {
-        bytes.extend(vertex.to_array().iter().flat_map(|x| x.to_le_bytes()));
+        bytes.extend(vertex.iter().flat_map(|x| x.to_le_bytes()));
     }
     for triangle in &mesh.triangles {
         bytes.push(3);
@@ -154,7 +149,7 @@ proptest! {
     #[test]
     fn indexed_formats_keep_every_bit(mesh in mesh()) {
         let binary = (MeshFormat::Ply, binary_ply(&mesh));
-        let written = [MeshFormat::Tri, MeshFormat::Obj, MeshFormat::Ply];
+        let written = [MeshFormat::Tri, MeshFormat::Obj, MeshFormat::Ply, MeshFormat::Off];
         for (format, bytes) in written.map(|f| (f, write_bytes(&mesh, f))).into_iter().chain([binary]) {
             let back = read_bytes("mesh", format, &bytes, &ReadOptions::default()).unwrap();
             prop_assert_eq!(bits(&back), bits(&mesh), "{:?}", format);

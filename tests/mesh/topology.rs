@@ -1,7 +1,7 @@
 //! Components, closedness and counts: of small meshes made to go wrong, and of the shipped ones.
 
 use glam::Vec3;
-use sdop::mesh::topology::{Component, Topology};
+use sdop::mesh::topology::{Component, Topology, without_area};
 use sdop::mesh::{MAX_COORDINATE, ReadOptions, TriangleMesh, read};
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
@@ -147,4 +147,20 @@ fn a_mesh_keeps_its_contract() {
     }
     let largest = Vec3::splat(-MAX_COORDINATE);
     assert!(TriangleMesh::new("largest", vec![largest], vec![triangle]).is_ok());
+}
+
+/// Exactly: the last triangle's corners are on a line but for half an ulp.
+#[test]
+fn triangles_without_area_are_counted() {
+    let vertices = [
+        [0.0, 0.0, 0.0],
+        [1.0, 1.0, 1.0],
+        [3.0, 3.0, 3.0],
+        [0.0, 0.0, -0.0],
+        [3.0, 3.0, 3.0000002],
+    ];
+    let triangles = vec![[0, 1, 1], [0, 1, 2], [0, 3, 2], [2, 2, 2], [0, 1, 4]];
+    let mesh = TriangleMesh::new("a", vertices, triangles).unwrap();
+    assert_eq!(without_area(&mesh), 4);
+    assert_eq!(Topology::of(&mesh).total().degenerate, 2);
 }

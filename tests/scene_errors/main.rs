@@ -1,4 +1,5 @@
-//! What is wrong with a scene file is said with file, line, column and a way to mend it; nothing panics.
+//! What is wrong with a scene file is said with file, line, column and a way to mend it; nothing
+//! panics.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod contract;

@@ -6,7 +6,7 @@ use super::{build, changed, posed, refusal};
 fn unknown_keys_and_names_suggest_the_nearest() {
     assert_eq!(
         changed("radius", "raduis"),
-        "a.toml:8:1: unknown field `raduis`, expected one of `mesh`, `shape`, `sizes`, `count`, `poses`, `radius`, \
+        "a.toml:8:1: unknown field `raduis`, expected one of `mesh`, `shape`, `sizes`, `scale`, `count`, `poses`, `radius`, \
          `origin`, `static`, `speed`, `velocities`, `placement` | did you mean `radius`?"
     );
     assert_eq!(
@@ -136,10 +136,12 @@ fn exclusive_keys_are_refused() {
 
 #[test]
 fn floats_read_as_the_nearest_f32_of_their_text() {
-    // Just above the midpoint of 1 and the next f32: as f64 it is the midpoint itself, and ties to even give 1.
+    // Just above the midpoint of 1 and the next f32: as f64 it is the midpoint itself, and ties to
+    // even give 1.
     let text = "1.00000005960464477539062500000000000000001";
     assert_eq!(text.parse::<f64>().unwrap() as f32, 1.0);
-    let scene = build(&posed(&format!("[0, 0, 0, 1, {text}, 16777217, 0]"))).unwrap();
-    assert_eq!(scene.bodies.translation[1][0], 1.0_f32.next_up());
-    assert_eq!(scene.bodies.translation[1][1], 16_777_216.0);
+    let scene = build(&posed(&format!("[0, 0, {text}, 16777217, 0.1, 0, 0]"))).unwrap();
+    assert_eq!(scene.bodies.rotation[1][2], 1.0_f32.next_up());
+    assert_eq!(scene.bodies.rotation[1][3], 16_777_216.0);
+    assert_eq!(scene.bodies.translation[1][0], 0.1);
 }

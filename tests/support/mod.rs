@@ -13,7 +13,8 @@ use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_judge::ours::draw::rotation;
 
-/// Every procedural shape at bounding radius 1, and an L-shape about its file's own origin, far off its ball's centre.
+/// Every procedural shape at bounding radius 1, and an L-shape about its file's own origin, far off
+/// its ball's centre.
 pub fn shapes(directions: DirectionSet, axes: Axes) -> Vec<Shape> {
     let centred = ShapeSpec {
         origin: Origin::Ball,
@@ -33,13 +34,14 @@ pub fn shapes(directions: DirectionSet, axes: Axes) -> Vec<Shape> {
         .collect();
     let mut off_centre = mesh("l-shape");
     for vertex in &mut off_centre.vertices {
-        *vertex += glam::Vec3::new(0.7, -0.3, 0.4);
+        *vertex = (glam::Vec3::from(*vertex) + glam::Vec3::new(0.7, -0.3, 0.4)).to_array();
     }
     shapes.push(Shape::build(&off_centre, &about_file).unwrap());
     shapes
 }
 
-/// `n` bodies with uniform centres in a cube, uniform orientations of various norms, every tenth body static.
+/// `n` bodies with uniform centres in a cube, uniform orientations of various norms, every tenth
+/// body static.
 pub fn random_bodies(seed: u64, n: usize, side: f32, shapes: usize) -> Bodies {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut bodies = Bodies::default();

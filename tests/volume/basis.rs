@@ -47,7 +47,7 @@ proptest! {
     fn snapping_stays_within_a_thousandth(rotation in rotation()) {
         let basis = Basis::snapped(rotation);
         assert_exact(&basis);
-        let off = basis.rotation() * DMat3::from_quat(rotation).transpose();
+        let off = DMat3::from_cols_array_2d(&basis.rotation()) * DMat3::from_quat(rotation).transpose();
         let trace = off.x_axis.x + off.y_axis.y + off.z_axis.z;
         let angle = ((trace - 1.0) / 2.0).clamp(-1.0, 1.0).acos();
         prop_assert!(angle < 1e-3, "{angle}");

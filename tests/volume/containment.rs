@@ -1,4 +1,5 @@
-//! Ball and slabs contain every vertex in exact arithmetic: all k, axes and origins, all scales, any degeneracy.
+//! Ball and slabs contain every vertex in exact arithmetic: all k, axes and origins, all scales,
+//! any degeneracy.
 
 use glam::Vec3;
 use proptest::prelude::*;
@@ -23,7 +24,7 @@ fn check(vertices: &[Vec3], radius: Option<f32>) -> Result<(), TestCaseError> {
             let shape = Shape::build(&mesh(vertices.to_vec()), &spec).unwrap();
             prop_assert!(ball_contains(&shape.ball, &shape.vertices), "{shape:?}");
             let about_origin = Ball {
-                centre: Vec3::ZERO,
+                centre: [0.0; 3],
                 radius: shape.reach,
             };
             prop_assert!(ball_contains(&about_origin, &shape.vertices), "{shape:?}");
@@ -47,8 +48,9 @@ proptest! {
         check(&vertices, Some(2.0_f64.powi(exponent) as f32 * 0.7 + f32::from_bits(1)))?;
     }
 
-    /// Neither slab ends nor radii are more than two steps of f32 from the exact ones, so moving an end inward by two
-    /// must expel a vertex. (The slabs could also be missed by a check that always says yes: this one would notice.)
+    /// Neither slab ends nor radii are more than two steps of f32 from the exact ones, so moving an
+    /// end inward by two must expel a vertex. (The slabs could also be missed by a check that
+    /// always says yes: this one would notice.)
     #[test]
     fn volumes_are_tight_to_two_steps(vertices in extended(), rotation in rotation()) {
         let basis = Basis::snapped(rotation);

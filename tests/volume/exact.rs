@@ -1,7 +1,6 @@
 //! Exact arithmetic for the checks: every finite f32 is an integer multiple of 2⁻¹⁴⁹.
 
 use dashu_int::IBig;
-use glam::Vec3;
 use sdop::volume::{Ball, OrDop};
 
 /// x·2¹⁴⁹.
@@ -16,8 +15,8 @@ pub fn integer(x: f32) -> IBig {
     if x < 0.0 { -magnitude } else { magnitude }
 }
 
-pub fn point(v: Vec3) -> [IBig; 3] {
-    v.to_array().map(integer)
+pub fn point(v: impl Into<[f32; 3]>) -> [IBig; 3] {
+    v.into().map(integer)
 }
 
 pub fn dot(a: &[IBig; 3], b: &[IBig; 3]) -> IBig {
@@ -29,7 +28,7 @@ pub fn sub(a: &[IBig; 3], b: &[IBig; 3]) -> [IBig; 3] {
 }
 
 /// ‖v − c‖² ≤ r² for every vertex.
-pub fn ball_contains(ball: &Ball, vertices: &[Vec3]) -> bool {
+pub fn ball_contains(ball: &Ball, vertices: &[impl Into<[f32; 3]> + Copy]) -> bool {
     let (centre, radius) = (point(ball.centre), integer(ball.radius));
     let squared = &radius * &radius;
     ball.radius >= 0.0
@@ -40,7 +39,7 @@ pub fn ball_contains(ball: &Ball, vertices: &[Vec3]) -> bool {
 }
 
 /// lo ≤ d·v ≤ hi for every slab and vertex, with d summed exactly from the basis.
-pub fn slabs_contain(ordop: &OrDop, vertices: &[Vec3]) -> bool {
+pub fn slabs_contain(ordop: &OrDop, vertices: &[impl Into<[f32; 3]> + Copy]) -> bool {
     let basis = ordop.basis.columns.map(point);
     let coefficients = ordop.directions.coefficients();
     assert_eq!(coefficients.len(), ordop.lo.len());

@@ -1,4 +1,5 @@
-//! Slabs that are grown by a margin contain every point within it, in exact arithmetic and by no ulp more than they must.
+//! Slabs that are grown by a margin contain every point within it, in exact arithmetic and by no
+//! ulp more than they must.
 
 use dashu_int::IBig;
 use rand::{RngExt, SeedableRng};
@@ -21,8 +22,8 @@ fn lengths_squared(ordop: &OrDop) -> Vec<IBig> {
     coefficients.map(length).collect()
 }
 
-/// Whether an end that was moved from `before` to `after`, upward, lets in all that a ball of radius `margin` adds:
-/// after − before ≥ margin·‖d‖.
+/// Whether an end that was moved from `before` to `after`, upward, lets in all that a ball of
+/// radius `margin` adds: after − before ≥ margin·‖d‖.
 fn is_far_enough(before: f32, after: f32, margin: f32, length_squared: &IBig) -> bool {
     let (moved, margin) = (integer(after) - integer(before), integer(margin));
     // Squares of integers carry 2²⁹⁸, and ‖d‖² another 2²⁹⁸.
@@ -41,7 +42,6 @@ fn slabs_grow_by_the_margin_to_the_ulp() {
                 axes,
                 origin: Origin::Ball,
                 radius: Some(rng.random_range(0.5..2.0)),
-                ..ShapeSpec::default()
             };
             let ordop = Shape::build(&mesh, &spec).unwrap().ordop;
             let lengths = lengths_squared(&ordop);
@@ -54,7 +54,8 @@ fn slabs_grow_by_the_margin_to_the_ulp() {
                         let what =
                             || format!("{name}, k = {directions}, {axes}, slab {i}, {margin:e}");
                         assert!(is_far_enough(before, after, margin, length), "{}", what());
-                        // Where the end and the margin cancel, its ulps are finer than the margin's.
+                        // Where the end and the margin cancel, its ulps are finer than the
+                        // margin's.
                         ends += 1;
                         if after.abs() >= margin * 2_f32.powi(-8) {
                             let nearer = (0..3).fold(after, |x, _| x.next_down());
@@ -69,7 +70,8 @@ fn slabs_grow_by_the_margin_to_the_ulp() {
     assert!(close > ends / 2, "{close} of {ends}");
 }
 
-/// Where the margin nearly cancels an end, the end's own ulps are finer than the roundings of f64 that the margin takes.
+/// Where the margin nearly cancels an end, the end's own ulps are finer than the roundings of f64
+/// that the margin takes.
 #[test]
 fn an_end_that_the_margin_nearly_cancels_moves_far_enough() {
     let mut rng = ChaCha8Rng::seed_from_u64(8);
@@ -85,7 +87,11 @@ fn an_end_that_the_margin_nearly_cancels_moves_far_enough() {
         .directions
         .coefficients()
         .iter()
-        .map(|&c| ordop.basis.direction(c).as_dvec3().length())
+        .map(|&c| {
+            glam::Vec3::from(ordop.basis.direction(c))
+                .as_dvec3()
+                .length()
+        })
         .collect();
     let mut close = 0;
     for _ in 0..100_000 {

@@ -1,4 +1,5 @@
-//! The hull is exact: a closed surface with every vertex on its inner side, by integer determinants.
+//! The hull is exact: a closed surface with every vertex on its inner side, by integer
+//! determinants.
 
 use std::collections::HashSet;
 
@@ -12,8 +13,9 @@ use crate::{
     meshes::{box_corners, box_grid, rotated, rotation, vertices},
 };
 
-/// A consistently oriented closed surface, each facet of which has all points on its inner side, bounds their hull.
-pub fn assert_hull(points: &[Vec3]) -> Hull {
+/// A consistently oriented closed surface, each facet of which has all points on its inner side,
+/// bounds their hull.
+pub fn assert_hull(points: &[impl Into<[f32; 3]> + Copy + std::fmt::Debug]) -> Hull {
     let hull = Hull::of(points);
     let exact: Vec<[IBig; 3]> = points.iter().map(|&v| point(v)).collect();
     let edges: Vec<(u32, u32)> = hull
@@ -132,7 +134,8 @@ fn interior_and_repeated_vertices_are_dropped() {
     assert_eq!(hull.vertices, (2..10).collect::<Vec<u32>>());
     assert!((hull.volume(&points) - 1.0).abs() < 1e-15);
     assert_eq!(hull.area(&points), 6.0);
-    assert_eq!(hull.points(&points), points[2..10]);
+    let kept: Vec<[f32; 3]> = points[2..10].iter().map(Vec3::to_array).collect();
+    assert_eq!(hull.points(&points), kept);
 }
 
 #[test]
@@ -147,8 +150,8 @@ fn a_large_set_is_exact() {
     assert!(hull.vertices.len() < 500 && hull.vertices.len() > 100);
 }
 
-/// Steep seen from its first vertex, along any axis, near the origin or beyond it: neither a sum of differences with a sign nor
-/// one of sums is a size.
+/// Steep seen from its first vertex, along any axis, near the origin or beyond it: neither a sum of
+/// differences with a sign nor one of sums is a size.
 #[test]
 fn a_needle_along_any_axis_is_not_flat() {
     let needle = [
@@ -187,9 +190,33 @@ fn a_far_cube_is_as_large_as_a_near_one() {
     }
 }
 
-/// Every other vertex differs from the first in one coordinate alone: no product of differences is a size.
+/// Every other vertex differs from the first in one coordinate alone: no product of differences is
+/// a size.
 #[test]
 fn the_corner_of_a_box_is_not_flat() {
     let corner = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     assert_eq!(assert_hull(&corner).facets.len(), 4);
+}
+
+/// Of a flat set `vertices` are all, but few span it: the outline's corners, the ends of a line, or
+/// a point, each once.
+#[test]
+fn flat_sets_have_corners() {
+    let point = |x: f32, y: f32| Vec3::new(x, y, 2.0 * x + y);
+    let grid: Vec<Vec3> = (0..25)
+        .map(|i| point((i % 5) as f32, (i / 5) as f32))
+        .collect();
+    let corners = |points: &[Vec3]| Hull::of(points).corners(points);
+    assert_eq!(Hull::of(&grid).vertices.len(), 25);
+    assert_eq!(corners(&grid), [0, 4, 20, 24]);
+    let wall: Vec<Vec3> = grid.iter().map(|p| Vec3::new(0.0, p.x, p.y)).collect();
+    assert_eq!(corners(&wall), [0, 4, 20, 24]);
+    assert_eq!(
+        corners(&[grid[12], grid[0], grid[24], grid[6], grid[24]]),
+        [1, 2]
+    );
+    assert_eq!(corners(&[Vec3::ZERO, -Vec3::ZERO]).len(), 1);
+    assert_eq!(Hull::of(&grid).volume(&grid).to_bits(), 0);
+    let solid = box_corners(Vec3::ONE);
+    assert_eq!(corners(&solid), Hull::of(&solid).vertices);
 }

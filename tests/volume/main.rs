@@ -1,4 +1,5 @@
-//! Volumes contain their meshes exactly, are as small as they claim, and are built the same way everywhere.
+//! Volumes contain their meshes exactly, are as small as they claim, and are built the same way
+//! everywhere.
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
 mod ball;

@@ -8,7 +8,7 @@ use sdop::mesh::TriangleMesh;
 pub fn mesh(vertices: Vec<Vec3>) -> TriangleMesh {
     TriangleMesh {
         name: "test".into(),
-        vertices,
+        vertices: vertices.iter().map(Vec3::to_array).collect(),
         triangles: Vec::new(),
         ..TriangleMesh::default()
     }
@@ -53,8 +53,8 @@ pub fn rotation() -> impl Strategy<Value = DQuat> {
         .prop_map(DQuat::normalize)
 }
 
-/// 1 to 40 vertices of one magnitude, from subnormal to 2⁵⁹, with a share of equal, small-integer and zero coordinates; a
-/// point, a segment or coplanar in three of four cases.
+/// 1 to 40 vertices of one magnitude, from subnormal to 2⁵⁹, with a share of equal, small-integer
+/// and zero coordinates; a point, a segment or coplanar in three of four cases.
 pub fn vertices() -> impl Strategy<Value = Vec<Vec3>> {
     let exponent = prop_oneof![Just(0), -149..=58_i32];
     let coordinate = prop_oneof![

@@ -20,7 +20,6 @@ fn shape(name: &str, axes: Axes) -> Shape {
         radius: Some(1.0),
         directions: DirectionSet::K26,
         axes,
-        ..ShapeSpec::default()
     };
     Shape::build(&mesh, &spec).unwrap()
 }
@@ -41,7 +40,8 @@ fn the_hull_of_spot_is_exact() {
     assert_eq!(assert_hull(&shape.vertices).facets.len(), 606);
 }
 
-/// The eigenvectors' last bits differ between CPUs; the snapped bases and all that follows must not.
+/// The eigenvectors' last bits differ between CPUs; the snapped bases and all that follows must
+/// not.
 #[test]
 fn principal_volumes_are_the_same_everywhere() {
     let shapes = ["spot", "teapot", "bunny"].map(|name| shape(name, Axes::Principal));

@@ -70,7 +70,8 @@ fn a_ball_is_alike_from_all_sides() {
 
 #[test]
 fn a_turning_cube_needs_its_mean_box() {
-    // 3.4087 ± .0012: an average over 4·10⁵ orthonormalised Gaussian frames, made apart from this code.
+    // 3.4087 ± .0012: an average over 4·10⁵ orthonormalised Gaussian frames, made apart from this
+    // code.
     let cube = mean_world_aligned_volume(&box_corners(Vec3::ONE), DirectionSet::K6, 4000);
     assert!(near(cube, 3.409, 0.01), "{cube}");
 }

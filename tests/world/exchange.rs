@@ -11,7 +11,8 @@ use rand_chacha::rand_core::SeedableRng;
 
 const BODIES: usize = 400;
 
-/// A body of small steps in a box that holds some overlaps a body; one in 40 is a giant, and one in five static.
+/// A body of small steps in a box that holds some overlaps a body; one in 40 is a giant, and one in
+/// five static.
 fn drifting(random: &mut Random, small: u32) -> Body {
     let shape = match random.below(40) {
         0 => small,

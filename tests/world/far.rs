@@ -80,8 +80,8 @@ fn rounded_box(random: &mut Random) -> (TriangleMesh, f64) {
     (TriangleMesh::from_f64(&points, &faces).unwrap(), length)
 }
 
-/// Boxes that touch along a face, at places that neither f32 nor a re-centred mesh holds exactly. A turn of a quarter about z has
-/// the offset go round, too.
+/// Boxes that touch along a face, at places that neither f32 nor a re-centred mesh holds exactly. A
+/// turn of a quarter about z has the offset go round, too.
 #[test]
 fn far_boxes_that_touch_are_reported() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(21));
@@ -129,7 +129,7 @@ fn poses_in_f32_refuse_a_far_shape() {
     let mut bodies = Bodies::default();
     bodies.push(0, true, UNTURNED, [0.0; 3]);
     let mends = |error: CullError| {
-        let help = miette::Diagnostic::help(&error).unwrap().to_string();
+        let help = error.help();
         assert!(error.to_string().contains("far from the origin"), "{error}");
         assert!(
             help.contains("`World`") && help.contains("`Origin::Ball`"),
@@ -149,6 +149,35 @@ fn poses_in_f32_refuse_a_far_shape() {
     let refused = PairTest::new(DirectionSet::K18).add(&far).unwrap_err();
     assert!(refused.hint.contains("`World`"), "{refused}");
     assert!(PairTest::new(DirectionSet::K18).add(&near).is_ok());
+}
+
+/// An object of 1 m some 20 m from its file's origin along all axes: in f32, decimals there are off
+/// by more than 2⁻²⁰ of it.
+#[test]
+fn decimal_meshes_are_told_the_remedy() {
+    let mut bodies = Bodies::default();
+    bodies.push(0, true, UNTURNED, [0.0; 3]);
+    let culler = |at: [f64; 3]| {
+        let shape = Shape::build(&tetrahedron(at), &ShapeSpec::default()).unwrap();
+        Culler::new(&[shape], &bodies)
+    };
+    assert!(culler([20.125, 20.25, 20.5]).is_ok(), "all f32");
+    assert!(culler([2.1, 2.2, 2.3]).is_ok(), "near");
+    let error = culler([20.1, 20.2, 20.3]).unwrap_err();
+    assert!(
+        error.to_string().contains("more than 2^-20 of its size"),
+        "{error}"
+    );
+    let help = error.help();
+    for remedy in ["`World`", "near its origin", "`Origin::Ball`"] {
+        assert!(help.contains(remedy), "{help}");
+    }
+    let mut world = world_of(&CullSettings::default(), &[tetrahedron([20.1, 20.2, 20.3])]);
+    world.insert(Body::at(0, UNTURNED, [0.0; 3])).unwrap();
+    world
+        .insert(Body::at(0, UNTURNED, [0.3, 0.0, 0.0]))
+        .unwrap();
+    assert_eq!(world.cull().unwrap().sorted().len(), 1);
 }
 
 /// The radius scales about the file's own origin, however far that is.
@@ -173,7 +202,7 @@ fn a_scaled_far_mesh_keeps_its_origin() {
     assert!(twice.rounding > 0.0 && twice.rounding < 1e-6);
 }
 
-/// The origin follows bodies that go far away, and stays while they come halfway back: it isn't theirs alone.
+/// The origin follows bodies that go far away and come back, and is no part of a snapshot.
 #[test]
 fn restored_worlds_round_about_one_origin() {
     let far = 1.0e9 + 0.1;

@@ -1,7 +1,8 @@
-//! What a world holds of its bodies: ids, interest and groups, from insertion to removal, and what it refuses.
+//! What a world holds of its bodies: ids, interest and groups, from insertion to removal, and what
+//! it refuses.
 
 use sdop::culler::Culler;
-use sdop::settings::{CullSettings, DirectionSet, Strategy};
+use sdop::settings::{CullSettings, DirectionSet, Interest, Strategy};
 use sdop::world::{Body, BodyId, Groups, PairLookup, World, WorldError};
 
 use super::shapes;
@@ -74,7 +75,7 @@ fn what_breaks_the_contract_is_refused_and_changes_nothing() {
     assert!(lost.unwrap_err().to_string().contains("translation"));
     assert_eq!((world.len(), world.body(id).unwrap()), (1, Body::default()));
     let cone = CullSettings {
-        interest: Some("0".parse().unwrap()),
+        interest: Some(Interest::Bodies(vec![0])),
         ..CullSettings::all_pairs()
     };
     assert!(World::with(shapes(), &Culler::builder().settings(&cone)).is_err());
@@ -431,7 +432,8 @@ fn crowds_come_in_portions_or_up_to_a_limit() {
     }
 }
 
-/// What bodies have can't be removed; what they had is given again, and has its new form at once, for those at rest too.
+/// What bodies have can't be removed; what they had is given again, and has its new form at once,
+/// for those at rest too.
 #[test]
 fn shapes_go_when_no_body_has_them() {
     for way in super::ways() {

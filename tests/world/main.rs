@@ -1,4 +1,5 @@
-//! Long-lived worlds: whatever has come and gone, a world reports what a culler made for the moment would.
+//! Long-lived worlds: whatever has come and gone, a world reports what a culler made for the moment
+//! would.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -8,6 +9,7 @@ mod lives;
 mod many;
 mod margins;
 mod pair_test;
+mod regions;
 mod saves;
 
 use std::collections::{BTreeSet, HashMap};
@@ -267,8 +269,8 @@ fn margins_reach_as_far_as_they_say_and_little_farther() {
     }
 }
 
-/// Spheres of f64 translations far out that touch exactly, by Pythagorean quadruples: sizes of thousands, 10⁹ away, where
-/// f32 steps by 64.
+/// Spheres of f64 translations far out that touch exactly, by Pythagorean quadruples: sizes of
+/// thousands, 10⁹ away, where f32 steps by 64.
 #[test]
 fn touching_spheres_meet_wherever_f64_puts_them() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(3));
@@ -286,7 +288,8 @@ fn touching_spheres_meet_wherever_f64_puts_them() {
         ];
         let length = m * m + n * n + p * p + q * q;
         let scale = 2.0f64.powi(-8);
-        // Both radii are the shape's own, whose ball is built to contain it: half the distance, rounded down to f32.
+        // Both radii are the shape's own, whose ball is built to contain it: half the distance,
+        // rounded down to f32.
         let radius = (length as f64 * scale / 2.0) as f32;
         if length % 2 == 1 || f64::from(radius) != length as f64 * scale / 2.0 || radius < 1.0 {
             continue;

@@ -1,4 +1,5 @@
-//! Worlds of many shapes, margins and places: whether two bodies are reported follows from theirs, and not from those of others.
+//! Worlds of many shapes, margins and places: whether two bodies are reported follows from theirs,
+//! and not from those of others.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -28,11 +29,12 @@ fn shapes() -> Vec<Shape> {
     (0..SHAPES).map(cube).collect()
 }
 
-/// Far apart, and where f32 rounds; the middle of them is the origin, whose bodies keep their places.
+/// Far apart, and where f32 rounds; the middle of them is the origin, whose bodies keep their
+/// places.
 const PLACES: [f64; 5] = [0.0, 3.0e5 + 0.3, -3.0e5 - 0.3, 7.0e6 + 0.1, -7.0e6 - 0.1];
 
-/// How far a body of size `half` may be moved by rounding at most, and be grown for it: by the place's distance, and 2⁻¹²
-/// of its size.
+/// How far a body of size `half` may be moved by rounding at most, and be grown for it: by the
+/// place's distance, and 2⁻¹² of its size.
 fn rounding(body: &Body) -> f64 {
     let far = body
         .translation
@@ -73,7 +75,8 @@ fn meet(a: &Body, b: &Body) -> bool {
     squares.iter().sum::<f64>() <= reach * reach
 }
 
-/// Whether no strategy of these volumes may report them: margins are rounded up by an eighth at most.
+/// Whether no strategy of these volumes may report them: margins are rounded up by an eighth at
+/// most.
 fn are_apart(strategy: Strategy, a: &Body, b: &Body) -> bool {
     let grown = 1.13 * (f64::from(a.margin) + f64::from(b.margin)) + rounding(a) + rounding(b);
     match strategy {

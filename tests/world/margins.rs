@@ -1,4 +1,5 @@
-//! Margins: bodies that touch to the ulp once they are grown, along faces, edges and corners, and margins that change.
+//! Margins: bodies that touch to the ulp once they are grown, along faces, edges and corners, and
+//! margins that change.
 
 use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
@@ -9,7 +10,11 @@ use sdop_judge::ours::ways::{variants, ways};
 
 /// A cube of edge 2.
 fn cube(directions: DirectionSet, axes: Axes) -> Shape {
-    let [x, y, z] = [2.0; 3];
+    sized(directions, axes, 2.0)
+}
+
+fn sized(directions: DirectionSet, axes: Axes, edge: f32) -> Shape {
+    let [x, y, z] = [edge; 3];
     let mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
     let spec = ShapeSpec {
         directions,
@@ -33,8 +38,8 @@ fn is_reported(world: &mut World) -> bool {
     world.pairs().len() == 1
 }
 
-/// The largest δ of whole 2⁻²², so that 2 + δ is an f32, with n·δ² ≤ reach²: cubes that are δ apart in n coordinates are no
-/// farther apart than `reach`, decided in integers.
+/// The largest δ of whole 2⁻²², so that 2 + δ is an f32, with n·δ² ≤ reach²: cubes that are δ apart
+/// in n coordinates are no farther apart than `reach`, decided in integers.
 fn farthest(n: u64, reach: f64) -> f64 {
     let step = f64::from(1 << 22);
     let unit = 2_f64.powi(26);
@@ -102,14 +107,15 @@ fn bodies_that_touch_to_the_ulp_once_grown_are_reported() {
     assert!(too_far > 100);
 }
 
-/// Cubes that touch along a face, an edge or a corner, where f32 about the origin moves each of them away from the other by
-/// all but its last half step in every coordinate: 2³⁰ away, 64 each.
+/// Cubes that touch along a face, an edge or a corner, where f32 about the origin moves each of
+/// them away from the other by all but its last half step in every coordinate: 2²⁵ away, 2 each. A
+/// giant at the origin is wide enough that all are one region.
 #[test]
 fn touching_bodies_are_reported_though_rounding_moves_them_apart() {
-    let first = 2_f64.powi(30) + 64.0;
+    let first = 2_f64.powi(25) + 2.0;
     assert_eq!(
         [first, first + 2.0].map(|x| x as f32 - first as f32),
-        [0.0, 128.0]
+        [0.0, 4.0]
     );
     for (k, axes) in variants() {
         let shape = cube(k, axes);
@@ -118,8 +124,9 @@ fn touching_bodies_are_reported_though_rounding_moves_them_apart() {
                 continue;
             }
             let (mut world, [a, b]) = two(&way, &shape, [Body::default(); 2]);
-            // Keeps the origin where it is.
-            world.insert(Body::default()).unwrap();
+            let giant = world.add_shape(sized(k, axes, 32_768.0)).unwrap();
+            let giant = Body::at(giant, Body::default().rotation, [0.0; 3]);
+            world.insert(giant).unwrap();
             for margins in [[0.0; 2], [0.0, 0.25], [17.0, 46.0_f32.next_down()]] {
                 let reach: f64 = margins.iter().map(|&m| f64::from(m)).sum();
                 for n in 1..=3 {

@@ -1,5 +1,6 @@
-//! Worlds that are saved and restored, cloned or rolled back go on as if nothing had happened: the same ids, pairs, order
-//! and events, at every frame of random histories, in which shapes come and go, too.
+//! Worlds that are saved and restored, cloned or rolled back go on as if nothing had happened: the
+//! same ids, pairs, order and events, at every frame of random histories, in which shapes come and
+//! go, too.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -196,8 +197,8 @@ fn note(forms: &mut Vec<Option<Shape>>, call: &Call, answer: &Answer) {
 
 const FRAMES: usize = 10;
 
-/// At every frame a snapshot is restored in another world, with another finder and other threads, and in a clone that has
-/// gone astray; both do what the world does from then on.
+/// At every frame a snapshot is restored in another world, with another finder and other threads,
+/// and in a clone that has gone astray; both do what the world does from then on.
 #[test]
 fn restored_worlds_go_on_alike() {
     for (number, settings) in strategies().into_iter().enumerate() {
@@ -245,7 +246,8 @@ fn restored_worlds_go_on_alike() {
     }
 }
 
-/// The same bodies, put into new worlds in one order, are reported in one order, whatever the finder and the past.
+/// The same bodies, put into new worlds in one order, are reported in one order, whatever the
+/// finder and the past.
 #[test]
 fn finders_and_threads_report_in_one_order() {
     for settings in strategies() {
@@ -298,7 +300,8 @@ fn budgeted() -> CullSettings {
     }
 }
 
-/// Each number of a snapshot's text in turn becomes another, each list shorter or longer: an error, or a world that culls.
+/// Each number of a snapshot's text in turn becomes another, each list shorter or longer: an error,
+/// or a world that culls.
 #[test]
 fn damaged_snapshots_are_refused_and_change_nothing() {
     let world = lived(&budgeted());

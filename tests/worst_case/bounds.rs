@@ -1,4 +1,5 @@
-//! Every bound with its search: shared by the short test and by the long search in `benches/criterion/worst_case.rs`.
+//! Every bound with its search: shared by the short test and by the long search in
+//! `benches/criterion/worst_case.rs`.
 
 use sdop::rounding::pose::{COORDINATE_ERROR, REFIT_MARGIN};
 use sdop::rounding::slab::{SLAB_FLOOR, SLAB_MARGIN, SUPPORT_ERROR};

@@ -1,7 +1,9 @@
-//! Hill climbing over f32 parameters: worst cases of rounding are needles that sampling doesn't hit.
+//! Hill climbing over f32 parameters: worst cases of rounding are needles that sampling doesn't
+//! hit.
 //!
-//! A step moves up to three parameters by ± 2^j ulps, j uniform, so that all scales are tried alike. A step that doesn't
-//! lose is taken, which lets the walk cross plateaus. Stuck, it starts anew from a fresh point or from its best.
+//! A step moves up to three parameters by ± 2^j ulps, j uniform, so that all scales are tried
+//! alike. A step that doesn't lose is taken, which lets the walk cross plateaus. Stuck, it starts
+//! anew from a fresh point or from its best.
 
 /// SplitMix64: a seeded stream that is the same everywhere.
 pub struct Random(u64);
@@ -38,11 +40,12 @@ impl Random {
 /// Steps without a new peak before a new start.
 const PATIENCE: u64 = 20_000;
 
-/// Late acceptance: a step that beats the score of so many steps ago is taken too. The landscape is all ridges; strict
-/// climbing found two thirds of what this finds.
+/// Late acceptance: a step that beats the score of so many steps ago is taken too. The landscape is
+/// all ridges; strict climbing found two thirds of what this finds.
 const MEMORY: usize = 2_000;
 
-/// The best score that `evaluations` steps find, and where. A score of −∞ marks a point outside the search's domain.
+/// The best score that `evaluations` steps find, and where. A score of −∞ marks a point outside the
+/// search's domain.
 pub fn climb<const N: usize>(
     seed: u64,
     evaluations: u64,

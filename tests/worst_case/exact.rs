@@ -1,4 +1,5 @@
-//! What the arithmetic should have given: double-double for the f64 pose, plain f64 for errors of f32 (2⁻²⁹ of a u).
+//! What the arithmetic should have given: double-double for the f64 pose, plain f64 for errors of
+//! f32 (2⁻²⁹ of a u).
 
 use std::ops::{Add, Mul};
 

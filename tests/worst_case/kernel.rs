@@ -1,5 +1,5 @@
-//! The arithmetic that the searches attack is the culler's: supports equal to the bit, decisions equal on pairs near
-//! contact, with denormals kept and flushed.
+//! The arithmetic that the searches attack is the culler's: supports equal to the bit, decisions
+//! equal on pairs near contact, with denormals kept and flushed.
 
 use glam::Vec3;
 use sdop::mesh::TriangleMesh;
@@ -80,7 +80,8 @@ pub fn supports_agree<const FLUSH: bool>(tier: Tier) {
     }
 }
 
-/// The culler decides as the searches' arithmetic does at the last f32 distance that overlaps and at the next one.
+/// The culler decides as the searches' arithmetic does at the last f32 distance that overlaps and
+/// at the next one.
 pub fn decisions_agree<const FLUSH: bool>(tier: Tier) {
     for (k, directions) in SETS {
         let shapes: Vec<Shape> = (0..6).map(|seed| shape(seed, directions)).collect();
@@ -169,7 +170,8 @@ fn shape(seed: u64, directions: DirectionSet) -> Shape {
     } else {
         Vec3::new(1.5, -0.25, 0.5)
     };
-    let mut vertex = || Vec3::new(random.signed(), random.signed(), random.signed()) + away;
+    let mut vertex =
+        || (Vec3::new(random.signed(), random.signed(), random.signed()) + away).to_array();
     let mesh = TriangleMesh {
         name: format!("cloud {seed}"),
         vertices: (0..12).map(|_| vertex()).collect(),
@@ -228,11 +230,8 @@ fn turned(random: &mut Random, shapes: &[Shape]) -> Body {
     let which = random.below(shapes.len());
     let shape = &shapes[which];
     let turn = rotation([(); 4].map(|()| random.signed()));
-    let offset = rotate(&turn, shape.ball.centre.to_array());
-    let axes = world_axes(
-        &turn,
-        shape.ordop.basis.columns.map(|column| column.to_array()),
-    );
+    let offset = rotate(&turn, shape.ball.centre);
+    let axes = world_axes(&turn, shape.ordop.basis.columns);
     let mut row = [0.0; ROW];
     row[Q..Q + 9].copy_from_slice(axes.as_flattened());
     for i in 0..3 {

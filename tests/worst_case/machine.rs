@@ -1,5 +1,5 @@
-//! f32 as a CPU computes it: denormals kept, or read and written as zero (software DAZ and FTZ). Written apart from the
-//! culler's own emulation, so that each checks the other.
+//! f32 as a CPU computes it: denormals kept, or read and written as zero (software DAZ and FTZ).
+//! Written apart from the culler's own emulation, so that each checks the other.
 
 use std::ops::{Add, Mul, Neg, Sub};
 

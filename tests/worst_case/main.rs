@@ -1,5 +1,6 @@
-//! The worst error that hill climbing finds stays below each bound's constant, and comes near enough to what a long
-//! search finds that the short one has teeth. `cargo bench --bench worst_case` is the long one.
+//! The worst error that hill climbing finds stays below each bound's constant, and comes near
+//! enough to what a long search finds that the short one has teeth. `cargo bench --bench
+//! worst_case` is the long one.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -42,7 +43,8 @@ fn nothing_leaves_its_volume() {
     }
 }
 
-/// Controls: with less than the constants, the same searches do find a touching pair that is culled.
+/// Controls: with less than the constants, the same searches do find a touching pair that is
+/// culled.
 #[test]
 fn a_lower_floor_or_factor_misses() {
     let floor = 2.0f32.powi(-78);

@@ -1,5 +1,6 @@
-//! The separating-axis arithmetic once more, number by number on [`F`], so that a search can look at τ and the supports
-//! that the culler's kernel only compares. `kernel.rs` holds both against each other.
+//! The separating-axis arithmetic once more, number by number on [`F`], so that a search can look
+//! at τ and the supports that the culler's kernel only compares. `kernel.rs` holds both against
+//! each other.
 
 use sdop::overlap::ordop::table::{COEFFICIENTS, members_of};
 
@@ -137,8 +138,8 @@ fn combine<const FLUSH: bool>(c: [i8; 3], v: V<FLUSH>) -> F<FLUSH> {
     signed.fold(first, |sum, x| sum + x)
 }
 
-/// The multipliers of the slab groups in direction |e| = (a, b, c): axes, pairs ab ac bc, the octant's cube diagonal and
-/// those bent over c, b, a.
+/// The multipliers of the slab groups in direction |e| = (a, b, c): axes, pairs ab ac bc, the
+/// octant's cube diagonal and those bent over c, b, a.
 pub struct Multipliers<const FLUSH: bool> {
     pub axes: V<FLUSH>,
     pub pairs: V<FLUSH>,

@@ -1,4 +1,5 @@
-//! Attacks on the f64 pose: transformed coordinates, ball centres, re-fitted extents, and the f32 axes with their product.
+//! Attacks on the f64 pose: transformed coordinates, ball centres, re-fitted extents, and the f32
+//! axes with their product.
 
 use sdop::rounding::U;
 use sdop::rounding::pose::{refit, rotation, transform, world_axes};

@@ -1,8 +1,10 @@
-//! Attacks on the separating-axis test: how far rounding alone, slabs uninflated, favours separation.
+//! Attacks on the separating-axis test: how far rounding alone, slabs uninflated, favours
+//! separation.
 //!
-//! A body is one vertex with its slabs about c, or a box (k = 6), both rounded outward to f32 but without the margin:
-//! their exact supports are known, and `τ − fl(h_A + h_B)` computed minus exact, over u·(ρ_A + ρ_B)·‖a‖, is what the
-//! margin must exceed. Quaternions are f64 here, so that a search can turn a body by less than an ulp of its axes.
+//! A body is one vertex with its slabs about c, or a box (k = 6), both rounded outward to f32 but
+//! without the margin: their exact supports are known, and `τ − fl(h_A + h_B)` computed minus
+//! exact, over u·(ρ_A + ρ_B)·‖a‖, is what the margin must exceed. Quaternions are f64 here, so that
+//! a search can turn a body by less than an ulp of its axes.
 
 use sdop::overlap::ordop::edges;
 use sdop::overlap::ordop::table::{COEFFICIENTS, members_of};

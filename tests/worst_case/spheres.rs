@@ -1,4 +1,5 @@
-//! Attacks on the sphere test: the rounding of d² against s², the floor, and what finders must widen by.
+//! Attacks on the sphere test: the rounding of d² against s², the floor, and what finders must
+//! widen by.
 
 use sdop::rounding::U;
 use sdop::rounding::sphere::{RADIUS_FACTOR, inflate_radius};
@@ -36,7 +37,8 @@ pub fn decision(seed: u64, evaluations: u64) -> f64 {
     })
 }
 
-/// √D/(R_A + R_B) − 1 in u, for d² = t: how far beyond the stored radii a pair may be and still be reported.
+/// √D/(R_A + R_B) − 1 in u, for d² = t: how far beyond the stored radii a pair may be and still be
+/// reported.
 pub fn reported(seed: u64, evaluations: u64) -> f64 {
     worst(seed, evaluations, |[d2, exact, t, s2]| {
         (exact / d2 * (t / s2)).sqrt() - 1.0
@@ -54,7 +56,8 @@ fn worst(seed: u64, evaluations: u64, error: impl Fn([f64; 4]) -> f64) -> f64 {
     climb(seed, evaluations, start, of).0
 }
 
-/// How near to being culled touching pairs come with radii as the culler inflates them: 1 culled, below 0 not.
+/// How near to being culled touching pairs come with radii as the culler inflates them: 1 culled,
+/// below 0 not.
 pub fn touching(seed: u64, evaluations: u64) -> f64 {
     touching_with(seed, evaluations, inflate_radius)
 }

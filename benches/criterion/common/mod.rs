@@ -42,7 +42,8 @@ pub fn scene(name: &str) -> Scene {
     scene_file(name).build().unwrap()
 }
 
-/// The calibration scenes of the paper's 500 objects, named by their number of bodies and the side of their box.
+/// The calibration scenes of the paper's 500 objects, named by their number of bodies and the side
+/// of their box.
 pub fn calibration_scenes() -> Vec<(String, Scene)> {
     let named = |scene: Scene| {
         (
@@ -60,8 +61,8 @@ pub fn frames(scene: &Scene) -> Vec<Bodies> {
     frames.collect::<Result<_, _>>().unwrap()
 }
 
-/// Times one stage of a strategy, frame after frame of the scene. Throughput is the stage's count a frame, so that the time
-/// an element is the stage's price if it had only one.
+/// Times one stage of a strategy, frame after frame of the scene. Throughput is the stage's count a
+/// frame, so that the time an element is the stage's price if it had only one.
 pub fn stage(
     group: &mut BenchmarkGroup<'_, WallTime>,
     id: BenchmarkId,

@@ -1,4 +1,5 @@
-//! Bodies for pair finders: 1.5 sphere partners each, which move a tenth of the smallest radius per frame unless said.
+//! Bodies for pair finders: 1.5 sphere partners each, which move a tenth of the smallest radius per
+//! frame unless said.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -41,7 +42,8 @@ impl Swarm {
         Self::moving(kind, n, 0.1)
     }
 
-    /// `n` bodies of a kind whose coordinates change by up to so many of the smallest radii per frame.
+    /// `n` bodies of a kind whose coordinates change by up to so many of the smallest radii per
+    /// frame.
     pub fn moving(kind: Kind, n: usize, most: f32) -> Self {
         let octaves = match kind {
             Kind::Mixed => 4,

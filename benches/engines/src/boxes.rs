@@ -1,6 +1,7 @@
 //! What every engine is handed: world-aligned boxes, as the lower and upper end on each axis.
 //!
-//! Intervals are closed: boxes that touch are a pair. The ends are fl(t − r) and fl(t + r), the same bits for everyone.
+//! Intervals are closed: boxes that touch are a pair. The ends are fl(t − r) and fl(t + r), the
+//! same bits for everyone.
 
 use sdop::Aabb;
 use sdop::bodies::Bodies;
@@ -14,7 +15,8 @@ pub type Slabs = [[f32; 2]; 3];
 pub struct Frame {
     /// The box of every body.
     pub boxes: Vec<Slabs>,
-    /// The same as corners, for engines that take those; each is handed the boxes in the order that it wants.
+    /// The same as corners, for engines that take those; each is handed the boxes in the order that
+    /// it wants.
     pub corners: Vec<Aabb>,
     /// The radius of every body.
     pub radii: Vec<f32>,
@@ -31,7 +33,8 @@ impl Frame {
         self.set_boxes(boxes);
     }
 
-    /// Takes over the poses; boxes are [`LONG`] in place of balls, the sides in an order that the body's shape tells.
+    /// Takes over the poses; boxes are [`LONG`] in place of balls, the sides in an order that the
+    /// body's shape tells.
     pub fn fill_long(&mut self, bodies: &Bodies, shapes: &[Shape]) {
         self.take(bodies, shapes);
         let boxes = bodies.translation.iter().zip(&bodies.shape);

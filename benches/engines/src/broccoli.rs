@@ -1,4 +1,5 @@
-//! broccoli: a k-d tree of sweeps in two dimensions, built anew each frame; the third is compared pair by pair.
+//! broccoli: a k-d tree of sweeps in two dimensions, built anew each frame; the third is compared
+//! pair by pair.
 //!
 //! Its intervals are closed, as ours.
 
@@ -17,7 +18,6 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     version: "6.3.0",
     work: Work::Boxes,
     threads: 1,
-    slack: 0,
     ages: false,
     new: |setup| Ok(Box::new(Broccoli::new(setup))),
 }];

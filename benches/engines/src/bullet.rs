@@ -9,7 +9,6 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     version: "3.24",
     work: Work::Boxes,
     threads: 1,
-    slack: 0,
     ages: true,
     new: |setup| {
         new(

@@ -13,7 +13,8 @@ impl Changes {
         self.0.push((pair, begins));
     }
 
-    /// What the changes add up to. A pair that begins twice is there twice, so that the check sees it.
+    /// What the changes add up to. A pair that begins twice is there twice, so that the check sees
+    /// it.
     pub fn pairs(&self) -> Vec<[u32; 2]> {
         let mut counts: HashMap<[u32; 2], i32> = HashMap::new();
         for &(pair, begins) in &self.0 {

@@ -4,7 +4,7 @@ use miette::Diagnostic;
 use sdop::rounding::U;
 use thiserror::Error;
 
-use crate::boxes::{Frame, Slabs, meet};
+use crate::boxes::{Frame, meet};
 use crate::entry::{Entry, Work};
 use crate::oracle;
 
@@ -32,7 +32,8 @@ impl<'a> Truth<'a> {
     /// The truth about a frame.
     pub fn of(frame: &'a Frame, number: usize) -> Self {
         let boxes = oracle::pairs(&frame.boxes);
-        // Spheres that touch lie in boxes that do. What f64 can't tell from a contact isn't required.
+        // Spheres that touch lie in boxes that do. What f64 can't tell from a contact isn't
+        // required.
         let touch = |&pair: &[u32; 2]| relative_gap(frame, pair) <= -1e-14;
         Self {
             spheres: boxes.iter().copied().filter(touch).collect(),
@@ -52,7 +53,8 @@ impl<'a> Truth<'a> {
         self.boxes.len()
     }
 
-    /// Compares an engine's pairs, which may come in any order and either way round. Returns their number.
+    /// Compares an engine's pairs, which may come in any order and either way round. Returns their
+    /// number.
     ///
     /// # Errors
     /// The first pair that is missing, too much or there twice.
@@ -87,25 +89,20 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// The first pair that touches by no reading.
+    /// The first pair that doesn't touch.
     fn first_wrong(&self, entry: &Entry, pairs: &[[u32; 2]]) -> Option<[u32; 2]> {
         let bodies = self.frame.boxes.len();
         let touch = |&[i, j]: &[u32; 2]| match entry.work {
             _ if i == j || j as usize >= bodies => false,
             Work::Boxes => {
                 let [a, b] = [i, j].map(|body| &self.frame.boxes[body as usize]);
-                meet(a, b) || meet(&loosened(a, entry.slack), &loosened(b, entry.slack))
+                meet(a, b)
             }
             // What the sphere test's rounding may add: `sdop::rounding::sphere`.
             _ => relative_gap(self.frame, [i, j]) <= 15.0 * U,
         };
         pairs.iter().copied().find(|pair| !touch(pair))
     }
-}
-
-/// The box with each end moved outward by so many steps between neighbouring f32.
-fn loosened(slabs: &Slabs, steps: u32) -> Slabs {
-    slabs.map(|[lo, hi]| (0..steps).fold([lo, hi], |[lo, hi], _| [lo.next_down(), hi.next_up()]))
 }
 
 /// How far two spheres are apart over the sum of their radii; negative when they overlap.
@@ -148,20 +145,19 @@ mod tests {
         frame
     }
 
-    fn engine(work: Work, slack: u32) -> Entry {
+    fn engine(work: Work) -> Entry {
         Entry {
             name: "engine",
             version: "",
             work,
             threads: 1,
-            slack,
             ages: true,
             new: |_| Err(miette::miette!("never asked for")),
         }
     }
 
     fn fault(work: Work, pairs: &[[u32; 2]]) -> Option<String> {
-        let judged = Truth::of(&row(), 7).judge(&engine(work, 0), pairs.to_vec());
+        let judged = Truth::of(&row(), 7).judge(&engine(work), pairs.to_vec());
         judged.err().map(|mismatch| mismatch.to_string())
     }
 
@@ -184,20 +180,5 @@ mod tests {
         expect(&[[0, 1], [1, 2]], "(1, 2) is no pair");
         expect(&[[0, 1], [2, 2]], "(2, 2) is no pair");
         expect(&[[0, 1], [1, 9]], "(1, 9) is no pair");
-    }
-
-    #[test]
-    fn slack_excuses_a_pair_too_much_by_so_many_steps_and_never_one_that_is_missing() {
-        let mut frame = row();
-        frame.boxes[1][0][0] = (0..6).fold(1.0_f32, |x, _| x.next_up());
-        let judge = |slack, pairs: &[[u32; 2]]| {
-            let judged = Truth::of(&frame, 0).judge(&engine(Work::Boxes, slack), pairs.to_vec());
-            judged.is_ok()
-        };
-        assert!(judge(3, &[[0, 1]]) && judge(3, &[]));
-        assert!(!judge(2, &[[0, 1]]));
-        frame.boxes[1][0][0] = 1.0;
-        let judged = Truth::of(&frame, 0).judge(&engine(Work::Boxes, 3), Vec::new());
-        assert!(judged.is_err());
     }
 }

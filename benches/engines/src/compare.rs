@@ -1,9 +1,11 @@
 //! One scene, everyone on the same frames: checked, then timed in turns.
 //!
-//! Turns are those of every measurement here ([`Turns`]). Frames are made between turns and never timed. A time is the mean of a
-//! turn's frames, a ratio theirs over ours *on the same frames*; both are medians over turns.
+//! Turns are those of every measurement here ([`Turns`]). Frames are made between turns and never
+//! timed. A time is the mean of a turn's frames, a ratio theirs over ours *on the same frames*;
+//! both are medians over turns.
 //!
-//! Where a limit is given, an engine that takes longer than that for a frame is left out, and named.
+//! Where a limit is given, an engine that takes longer than that for a frame is left out, and
+//! named.
 
 use std::time::Instant;
 
@@ -70,7 +72,8 @@ pub struct EngineTiming {
     pub work: &'static str,
     /// Pairs in the last frame.
     pub pairs: usize,
-    /// Milliseconds per frame, the mean of a turn: over turns the lower quartile, the median and the upper quartile.
+    /// Milliseconds per frame, the mean of a turn: over turns the lower quartile, the median and
+    /// the upper quartile.
     pub ms_low: f64,
     /// See above.
     pub ms: f64,
@@ -131,7 +134,8 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compa
 /// Who has passed, and who has not been asked.
 type Checked<'a> = (Vec<(&'a Entry, Memory)>, Vec<LeftOut>);
 
-/// Runs every engine alone over the first frames and judges its pairs; counts its memory on the way.
+/// Runs every engine alone over the first frames and judges its pairs; counts its memory on the
+/// way.
 fn check<'a>(case: Case, entries: &[&'a Entry], limit_ms: f64) -> miette::Result<Checked<'a>> {
     let mut course = course(case)?;
     let count = case.schedule.checked;
@@ -176,7 +180,8 @@ fn check<'a>(case: Case, entries: &[&'a Entry], limit_ms: f64) -> miette::Result
 /// How often the limit the first frame may take, which builds an engine's structures.
 const FIRST_FRAME: f64 = 4.0;
 
-/// The engine after these frames, and milliseconds of the last one or of the first that showed that it is too slow.
+/// The engine after these frames, and milliseconds of the last one or of the first that showed that
+/// it is too slow.
 fn tried(
     entry: &Entry,
     setup: &Setup<'_>,

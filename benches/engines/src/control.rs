@@ -1,9 +1,10 @@
-//! What a second thread is worth: ours on one and on several threads, in turns with two control loops that divide without
-//! a rest, one bound by arithmetic and one by memory.
+//! What a second thread is worth: ours on one and on several threads, in turns with two control
+//! loops that divide without a rest, one bound by arithmetic and one by memory.
 //!
-//! speed-up = t(one thread) / t(several) of the same frames, the median over turns; a control's is what the machine
-//! has to give at the time, and ours is quoted as a share of it. The loops run on the same pool, in as many pieces, with as
-//! much work or as many bytes per body as the culler, so that waking threads costs them what it costs us.
+//! speed-up = t(one thread) / t(several) of the same frames, the median over turns; a control's is
+//! what the machine has to give at the time, and ours is quoted as a share of it. The loops run on
+//! the same pool, in as many pieces, with as much work or as many bytes per body as the culler, so
+//! that waking threads costs them what it costs us.
 
 use std::fmt::Write as _;
 use std::hint::black_box;
@@ -14,6 +15,7 @@ use sdop::threads::Threads;
 use serde::Serialize;
 
 use sdop_bench::measure::turns::median;
+use sdop_bench::remedy::OrReport as _;
 use sdop_judge::contestant::Contestant;
 
 use crate::boxes::Frame;
@@ -179,7 +181,7 @@ struct Loop {
 impl Loop {
     fn new(threads: usize, numbers: usize, work: fn(&mut [f32])) -> miette::Result<Self> {
         Ok(Self {
-            pool: Threads::new(threads)?,
+            pool: Threads::new(threads).or_report()?,
             pieces: vec![vec![1.0; numbers / PIECES]; PIECES],
             work,
         })

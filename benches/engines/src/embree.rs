@@ -9,7 +9,6 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     version: "3.13.5",
     work: Work::Boxes,
     threads: usize::MAX,
-    slack: 0,
     ages: false,
     new: |setup| {
         new(

@@ -1,6 +1,7 @@
 //! What an engine must offer to stand in the comparison.
 //!
-//! A new engine is a file with a `Contestant` of [`Frame`]s and its [`Entry`], and a line in `roster.rs`.
+//! A new engine is a file with a `Contestant` of [`Frame`]s and its [`Entry`], and a line in
+//! `roster.rs`.
 
 use sdop_bench::scene::Scene;
 use sdop_judge::Claim;
@@ -8,7 +9,8 @@ use sdop_judge::contestant::Contestant;
 
 use crate::boxes::Frame;
 
-/// An engine with the bodies of one scene. What is timed goes from the frame's boxes to a complete answer in its own memory.
+/// An engine with the bodies of one scene. What is timed goes from the frame's boxes to a complete
+/// answer in its own memory.
 pub type Engine = Box<dyn Contestant<Frame>>;
 
 /// What is found.
@@ -71,11 +73,8 @@ pub struct Entry {
     pub work: Work,
     /// The most threads that it can use.
     pub threads: usize,
-    /// Steps between neighbouring f32 by which it widens each end of a box before it compares: 0 but for engines that
-    /// round, each of which says why.
-    pub slack: u32,
-    /// Whether it keeps anything but buffers from frame to frame. What starts from nothing each frame has no age, and joins
-    /// for the last of the frames before the clock counts.
+    /// Whether it keeps anything but buffers from frame to frame. What starts from nothing each
+    /// frame has no age, and joins for the last of the frames before the clock counts.
     pub ages: bool,
     /// Builds it.
     pub new: fn(&Setup<'_>) -> miette::Result<Engine>,

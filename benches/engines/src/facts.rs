@@ -1,4 +1,5 @@
-//! What must be known to read a measurement: the command that makes it again, the machine and what else ran on it.
+//! What must be known to read a measurement: the command that makes it again, the machine and what
+//! else ran on it.
 
 use std::fmt::{self, Display, Formatter};
 use std::fs;

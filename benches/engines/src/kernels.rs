@@ -1,4 +1,5 @@
-//! What criterion has measured, as one table: nanoseconds an element, the median with its confidence interval.
+//! What criterion has measured, as one table: nanoseconds an element, the median with its
+//! confidence interval.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,12 +1,10 @@
-//! `sdop-peers`: what users would pick instead of sdop, on the same frames, checked to find the same pairs.
+//! `sdop-peers`: what users would pick instead of sdop, on the same frames, checked to find the
+//! same pairs.
 
 mod boxes;
 mod broccoli;
 #[cfg(feature = "debian")]
 mod bullet;
-mod bvh;
-#[cfg(feature = "debian")]
-mod cgal;
 mod changes;
 mod check;
 mod compare;
@@ -20,7 +18,6 @@ mod memory;
 mod narrow;
 #[cfg(feature = "debian")]
 mod native;
-mod obvhs;
 mod oracle;
 mod ours;
 mod parry;
@@ -29,7 +26,6 @@ mod physx;
 mod rapier;
 mod record;
 mod roster;
-mod rstar;
 mod scenes;
 mod threads;
 mod turns;
@@ -44,7 +40,8 @@ use miette::miette;
 use record::Record;
 use scenes::{Order, Schedule, Spread};
 
-/// Finds the same pairs with sdop and with its peers, checks that they agree, and times them in turns
+/// Finds the same pairs with sdop and with its peers, checks that they agree, and times them in
+/// turns
 ///
 /// Exit codes: 0 all is well, 1 an engine's pairs differ or an engine failed, 2 bad arguments.
 #[derive(Parser)]

@@ -1,5 +1,5 @@
-//! What an engine keeps in memory: bytes held and the most held at once, by everything that allocates through this
-//! process's allocator, and by glibc's own books for engines in C++.
+//! What an engine keeps in memory: bytes held and the most held at once, by everything that
+//! allocates through this process's allocator, and by glibc's own books for engines in C++.
 //!
 //! The allocator counts only while asked to, in passes that aren't timed.
 

@@ -1,8 +1,9 @@
-//! Cp: what a real narrow phase costs for each pair that culling leaves, in nanoseconds, for pairs that it finds to touch
-//! and pairs that it doesn't.
+//! Cp: what a real narrow phase costs for each pair that culling leaves, in nanoseconds, for pairs
+//! that it finds to touch and pairs that it doesn't.
 //!
-//! Pairs of one answer are timed together, since one alone takes less than reading a clock is good for. Every answer is
-//! held against the exact one: `missed` are pairs that meet exactly and are denied, which a conservative method never has.
+//! Pairs of one answer are timed together, since one alone takes less than reading a clock is good
+//! for. Every answer is held against the exact one: `missed` are pairs that meet exactly and are
+//! denied, which a conservative method never has.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -16,6 +17,7 @@ use sdop::culler::Culler;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::Shape;
 use sdop_bench::hull_test::{HullGraph, PosedHull, may_touch};
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::tradeoff::truth::samples;
 use sdop_judge::contestant::Contestant;
@@ -85,7 +87,6 @@ const fn entry(
         version,
         work,
         threads: 1,
-        slack: 0,
         ages: false,
         new,
     }
@@ -158,11 +159,12 @@ fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<M
     };
     let mut culler = Culler::builder()
         .settings(&settings)
-        .build(&scene.shapes, &scene.bodies)?;
+        .build(&scene.shapes, &scene.bodies)
+        .or_report()?;
     let samples = samples(scene, frames)?;
     let survivors: Vec<_> = samples
         .iter()
-        .map(|sample| Ok(culler.cull(&sample.bodies)?.sorted()))
+        .map(|sample| Ok(culler.cull(&sample.bodies).or_report()?.sorted()))
         .collect::<miette::Result<_>>()?;
     let bodies = || samples.iter().map(|sample| &sample.bodies);
     let ask = |judge: &Judge<'_>| -> miette::Result<Vec<Vec<bool>>> {
@@ -233,10 +235,7 @@ fn nanoseconds(pairs: &[(&Bodies, [u32; 2])], judge: &Judge<'_>) -> miette::Resu
 }
 
 fn exact(shapes: &[Shape]) -> miette::Result<Judge<'static>> {
-    let mesh = |shape: &Shape| {
-        let vertices: Vec<_> = shape.vertices.iter().map(|v| v.to_array()).collect();
-        Mesh::new(&vertices, &shape.triangles).into_diagnostic()
-    };
+    let mesh = |shape: &Shape| Mesh::new(&shape.vertices, &shape.triangles).into_diagnostic();
     let meshes = shapes
         .iter()
         .map(mesh)
@@ -289,7 +288,7 @@ fn parry(
 
 fn vertices(shape: &Shape) -> Vec<Vector> {
     let corners = shape.vertices.iter();
-    corners.map(|v| Vector::from_array(v.to_array())).collect()
+    corners.map(|v| Vector::from_array(*v)).collect()
 }
 
 fn convex(shape: &Shape) -> miette::Result<Box<dyn Solid>> {

@@ -1,7 +1,8 @@
-//! The pairs that every engine must report, found by no engine: columns of cells over y and z, a sweep along x in each.
+//! The pairs that every engine must report, found by no engine: columns of cells over y and z, a
+//! sweep along x in each.
 //!
-//! A box stands in every column that it reaches into. A pair is taken in the column that holds the larger of both lower
-//! ends on y and on z: there is exactly one, and both boxes reach into it.
+//! A box stands in every column that it reaches into. A pair is taken in the column that holds the
+//! larger of both lower ends on y and on z: there is exactly one, and both boxes reach into it.
 
 use crate::boxes::{Slabs, meet};
 

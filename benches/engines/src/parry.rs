@@ -19,7 +19,6 @@ pub const ENTRIES: [Entry; 2] = [
         version: VERSION,
         work: Work::Boxes,
         threads: usize::MAX,
-        slack: 0,
         ages: true,
         new: |setup| Ok(Box::new(Parry::new(setup, false)?)),
     },
@@ -28,7 +27,6 @@ pub const ENTRIES: [Entry; 2] = [
         version: VERSION,
         work: Work::Boxes,
         threads: usize::MAX,
-        slack: 0,
         ages: true,
         new: |setup| Ok(Box::new(Parry::new(setup, true)?)),
     },
@@ -61,7 +59,8 @@ impl Contestant<Frame> for Parry {
         for (i, slabs) in frame.boxes.iter().enumerate() {
             tree.insert_or_update_partially(aabb(slabs), i as u32, 0.0);
         }
-        // As rapier does it: improve first, so that the refit lays the tree out in depth-first order.
+        // As rapier does it: improve first, so that the refit lays the tree out in depth-first
+        // order.
         if self.rebuilt {
             tree.rebuild(workspace, BvhBuildStrategy::Binned);
         } else {

@@ -1,9 +1,7 @@
-//! PhysX's broad phases, driven alone through their low-level interface: automatic box pruning (ABP), multi box pruning
-//! (MBP, sixteen regions by its own helper) and incremental sweep and prune (SAP).
+//! PhysX's broad phase, driven alone through its low-level interface: automatic box pruning (ABP).
 //!
-//! Objects are dynamic, each in a group of its own, with no contact distance. Results are what began and what ended. ABP
-//! compares ends as they are; MBP and SAP snap each end outward to the next but one multiple of sixteen steps between
-//! neighbouring f32 (`BpBroadPhaseIntegerAABB.h`), so these two report pairs that miss each other by up to twice that.
+//! Objects are dynamic, each in a group of its own, with no contact distance. Results are what
+//! began and what ended. ABP compares ends as they are.
 
 #![allow(unsafe_code, reason = "PhysX is C++")]
 
@@ -12,50 +10,29 @@ use std::sync::OnceLock;
 
 use miette::miette;
 use physx_sys::{
-    PxBounds3, PxBroadPhase, PxBroadPhase_getRegions_mut, PxBroadPhase_release_mut,
-    PxBroadPhase_update_mut_1, PxBroadPhaseDesc_new, PxBroadPhaseExt_createRegionsFromWorldBounds,
-    PxBroadPhasePair, PxBroadPhaseRegion, PxBroadPhaseRegions_addRegion_mut, PxBroadPhaseResults,
-    PxBroadPhaseResults_new, PxBroadPhaseType, PxBroadPhaseUpdateData_new, PxVec3,
-    phys_PxCreateBroadPhase, phys_PxGetBroadPhaseDynamicFilterGroup, physx_create_foundation,
+    PxBounds3, PxBroadPhase, PxBroadPhase_release_mut, PxBroadPhase_update_mut_1,
+    PxBroadPhaseDesc_new, PxBroadPhasePair, PxBroadPhaseResults, PxBroadPhaseResults_new,
+    PxBroadPhaseType, PxBroadPhaseUpdateData_new, PxVec3, phys_PxCreateBroadPhase,
+    phys_PxGetBroadPhaseDynamicFilterGroup, physx_create_foundation,
 };
 
 use sdop_judge::contestant::Contestant;
 
 use crate::boxes::{Frame, Slabs};
 use crate::changes::Changes;
-use crate::entry::{Engine, Entry, Setup, Work};
+use crate::entry::{Entry, Setup, Work};
 
 const VERSION: &str = "5 (physx-sys 0.11.5)";
 
-/// Steps between neighbouring f32 by which snapping moves an end.
-const SNAP: u32 = 32;
-
-/// Three algorithms, each on one thread.
-pub const ENTRIES: [Entry; 3] = [
-    entry("PhysX ABP", 0, |setup| new(setup, PxBroadPhaseType::Abp)),
-    entry("PhysX MBP", SNAP, |setup| new(setup, PxBroadPhaseType::Mbp)),
-    entry("PhysX SAP", SNAP, |setup| new(setup, PxBroadPhaseType::Sap)),
-];
-
-const fn entry(
-    name: &'static str,
-    slack: u32,
-    new: fn(&Setup<'_>) -> miette::Result<Engine>,
-) -> Entry {
-    Entry {
-        name,
-        version: VERSION,
-        work: Work::Boxes,
-        threads: 1,
-        slack,
-        ages: true,
-        new,
-    }
-}
-
-fn new(setup: &Setup<'_>, kind: PxBroadPhaseType) -> miette::Result<Engine> {
-    Ok(Box::new(PhysX::new(setup, kind)?))
-}
+/// One way to drive it, on one thread.
+pub const ENTRIES: [Entry; 1] = [Entry {
+    name: "PhysX ABP",
+    version: VERSION,
+    work: Work::Boxes,
+    threads: 1,
+    ages: true,
+    new: |setup| Ok(Box::new(PhysX::new(setup)?)),
+}];
 
 struct PhysX {
     broad_phase: *mut PxBroadPhase,
@@ -76,12 +53,13 @@ fn has_foundation() -> bool {
 }
 
 impl PhysX {
-    fn new(setup: &Setup<'_>, kind: PxBroadPhaseType) -> miette::Result<Self> {
+    fn new(setup: &Setup<'_>) -> miette::Result<Self> {
         let objects: Vec<u32> = (0..setup.first.boxes.len() as u32).collect();
-        // SAFETY: the foundation exists before anything else is asked for; descriptions are passed by value or live on.
+        // SAFETY: the foundation exists before anything else is asked for; descriptions are passed
+        // by value or live on.
         let (broad_phase, groups) = unsafe {
             let broad_phase = if has_foundation() {
-                phys_PxCreateBroadPhase(&PxBroadPhaseDesc_new(kind))
+                phys_PxCreateBroadPhase(&PxBroadPhaseDesc_new(PxBroadPhaseType::Abp))
             } else {
                 ptr::null_mut()
             };
@@ -103,43 +81,9 @@ impl PhysX {
             changes: Changes::default(),
         };
         physx.take(setup.first);
-        if kind == PxBroadPhaseType::Mbp {
-            physx.add_regions(setup)?;
-        }
         physx.update(true);
         physx.settle();
         Ok(physx)
-    }
-
-    /// Four by four regions over the box that the bodies never leave.
-    fn add_regions(&mut self, setup: &Setup<'_>) -> miette::Result<()> {
-        let half = setup.scene.side.ok_or_else(|| miette!("MBP needs walls"))?;
-        let corner = |x| PxVec3 { x, y: x, z: x };
-        let world = PxBounds3 {
-            minimum: corner(-half),
-            maximum: corner(half),
-        };
-        let mut regions = vec![world; 16];
-        // SAFETY: sixteen regions are what 4 × 4 subdivisions fill; bounds and distances outlive the call.
-        unsafe {
-            let count =
-                PxBroadPhaseExt_createRegionsFromWorldBounds(regions.as_mut_ptr(), &world, 4, 1);
-            let list = PxBroadPhase_getRegions_mut(self.broad_phase);
-            for &bounds in regions.iter().take(count as usize) {
-                let region = PxBroadPhaseRegion {
-                    mBounds: bounds,
-                    mUserData: ptr::null_mut(),
-                };
-                PxBroadPhaseRegions_addRegion_mut(
-                    list,
-                    &region,
-                    false,
-                    self.bounds.as_ptr(),
-                    self.distances.as_ptr(),
-                );
-            }
-        }
-        Ok(())
     }
 
     fn take(&mut self, frame: &Frame) {
@@ -151,8 +95,8 @@ impl PhysX {
     fn update(&mut self, first: bool) {
         let (all, count) = (self.objects.as_ptr(), self.objects.len() as u32);
         let (created, updated) = if first { (count, 0) } else { (0, count) };
-        // SAFETY: the columns have as many elements as there are objects, and one more where PhysX reads past the end;
-        // they stay in place until the next call.
+        // SAFETY: the columns have as many elements as there are objects, and one more where PhysX
+        // reads past the end; they stay in place until the next call.
         unsafe {
             let data = PxBroadPhaseUpdateData_new(
                 all,

@@ -1,8 +1,9 @@
-//! rapier3d's `BroadPhaseBvh`, driven alone: a tree of boxes, a map of pairs, and events for what changed in it.
+//! rapier3d's `BroadPhaseBvh`, driven alone: a tree of boxes, a map of pairs, and events for what
+//! changed in it.
 //!
-//! The length unit is next to nothing, so that the skin rounds away and leaves are the boxes to the bit. Boxes go in by
-//! `set_aabb`: outside of its physics pipeline nothing resets a collider's list of changes, and `update` would then take
-//! every moved collider out of the tree and put it back.
+//! The length unit is next to nothing, so that the skin rounds away and leaves are the boxes to the
+//! bit. Boxes go in by `set_aabb`: outside of its physics pipeline nothing resets a collider's list
+//! of changes, and `update` would then take every moved collider out of the tree and put it back.
 
 use rapier3d::dynamics::{IntegrationParameters, RigidBodySet};
 use rapier3d::geometry::{
@@ -24,7 +25,6 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     version: "0.36.1",
     work: Work::Boxes,
     threads: usize::MAX,
-    slack: 0,
     ages: true,
     new: |setup| Ok(Box::new(Rapier::new(setup)?)),
 }];

@@ -3,9 +3,9 @@
 use crate::entry::Entry;
 #[cfg(feature = "physx")]
 use crate::physx;
-use crate::{broccoli, bvh, obvhs, ours, parry, rapier, rstar};
+use crate::{broccoli, ours, parry, rapier};
 #[cfg(feature = "debian")]
-use crate::{bullet, cgal, embree};
+use crate::{bullet, embree};
 
 /// Every engine that was compiled in.
 pub fn roster() -> Vec<Entry> {
@@ -13,18 +13,13 @@ pub fn roster() -> Vec<Entry> {
         &ours::ENTRIES,
         &parry::ENTRIES,
         &rapier::ENTRIES,
-        &obvhs::ENTRIES,
-        &bvh::ENTRIES,
         &broccoli::ENTRIES,
-        &rstar::ENTRIES,
         #[cfg(feature = "physx")]
         &physx::ENTRIES,
         #[cfg(feature = "debian")]
         &embree::ENTRIES,
         #[cfg(feature = "debian")]
         &bullet::ENTRIES,
-        #[cfg(feature = "debian")]
-        &cgal::ENTRIES,
     ];
     all.concat()
 }

@@ -1,7 +1,9 @@
-//! The scenes that everyone is measured on, made by the library's own scene code: the same frames for all.
+//! The scenes that everyone is measured on, made by the library's own scene code: the same frames
+//! for all.
 //!
-//! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a unit radius per frame,
-//! mirrored at walls. The paper's scene stands in for the smallest uniform one: 500 bodies in a box of 16.1.
+//! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a
+//! unit radius per frame, mirrored at walls. The paper's scene stands in for the smallest uniform
+//! one: 500 bodies in a box of 16.1.
 
 use std::path::Path;
 
@@ -9,6 +11,7 @@ use clap::ValueEnum;
 use sdop::bodies::Bodies;
 use sdop::mesh::ProceduralShape;
 use sdop_bench::effects::Effects;
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::scene::{Scene, SceneFile};
 use serde::Serialize;
 
@@ -76,7 +79,8 @@ impl Schedule {
     }
 }
 
-/// Pairs of boxes in the first frame, by spread and number of bodies: a definition that drifts is no comparison.
+/// Pairs of boxes in the first frame, by spread and number of bodies: a definition that drifts is
+/// no comparison.
 pub const EXPECTED: [(Spread, usize, usize); 19] = [
     (Spread::Uniform, 500, 2229),
     (Spread::Uniform, 1000, 1604),
@@ -110,7 +114,8 @@ pub struct Course {
 }
 
 impl Course {
-    /// The scene of so many bodies, numbered in the wished order; `timed_from` is the first timed frame.
+    /// The scene of so many bodies, numbered in the wished order; `timed_from` is the first timed
+    /// frame.
     pub fn new(
         spread: Spread,
         bodies: usize,
@@ -144,7 +149,7 @@ impl Course {
     /// Writes the next frame; the first is the scene as placed.
     pub fn next_frame(&mut self, frame: &mut Frame) -> miette::Result<()> {
         if self.started {
-            self.effects.step(&mut self.bodies)?;
+            self.effects.step(&mut self.bodies).or_report()?;
         }
         self.started = true;
         if self.is_long {

@@ -1,11 +1,7 @@
 //! Threads for engines that work on rayon's.
 
 use miette::IntoDiagnostic as _;
-use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-
-/// Bodies whose pairs one thread finds at once.
-const CHUNK: usize = 1024;
 
 /// The caller's thread alone, or a pool of several.
 pub struct Threads(Option<ThreadPool>);
@@ -34,41 +30,16 @@ impl Threads {
     }
 }
 
-/// The answers of a tree that is asked for one body after the other.
-pub struct Queries(Vec<Vec<[u32; 2]>>);
-
-impl Queries {
-    /// Room for the answers about so many bodies.
-    pub fn new(bodies: usize) -> Self {
-        Self(vec![Vec::new(); bodies.div_ceil(CHUNK)])
-    }
-
-    /// Asks for each of `bodies` on the threads at hand; `ask` appends what it finds to the list.
-    pub fn ask<T: Sync>(&mut self, bodies: &[T], ask: impl Fn(u32, &T, &mut Vec<[u32; 2]>) + Sync) {
-        let chunks = self.0.par_iter_mut().zip(bodies.par_chunks(CHUNK));
-        chunks.enumerate().for_each(|(chunk, (pairs, bodies))| {
-            pairs.clear();
-            for (number, body) in (chunk * CHUNK..).zip(bodies) {
-                ask(number as u32, body, pairs);
-            }
-        });
-    }
-
-    /// All of them.
-    pub fn pairs(&self) -> Vec<[u32; 2]> {
-        self.0.concat()
-    }
-}
-
-/// Makes the caller's thread all that rayon has outside of a pool: engines that ask it whatever the number of threads
-/// would else take every CPU, or hand each search to another thread.
+/// Makes the caller's thread all that rayon has outside of a pool: engines that ask it whatever the
+/// number of threads would else take every CPU, or hand each search to another thread.
 pub fn claim_caller() -> miette::Result<()> {
     let alone = ThreadPoolBuilder::new().num_threads(1).use_current_thread();
     alone.build_global().into_diagnostic()
 }
 
-/// Does the work on a thread that is no pool's. [`claim_caller`] makes the caller's one of rayon's, and on such a thread a culler with
-/// threads of its own starts another one for each section of a frame, lest it take up the pool's other jobs while it waits.
+/// Does the work on a thread that is no pool's. [`claim_caller`] makes the caller's one of rayon's,
+/// and on such a thread a culler with threads of its own starts another one for each section of a
+/// frame, lest it take up the pool's other jobs while it waits.
 pub fn outside_of_pools<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let done = std::thread::scope(|scope| scope.spawn(work).join());
     done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))

@@ -10,7 +10,8 @@ use crate::scenes::{Course, Schedule};
 pub struct Timed {
     /// The engine.
     pub engine: Engine,
-    /// Whether it keeps anything but buffers from frame to frame; if not, it joins for the last turn before the clock counts.
+    /// Whether it keeps anything but buffers from frame to frame; if not, it joins for the last
+    /// turn before the clock counts.
     pub ages: bool,
     /// On how many threads it works.
     pub threads: usize,
@@ -29,8 +30,9 @@ impl Timed {
         }
     }
 
-    /// The mean of each turn of so many frames. An engine that does something now and then, a list of neighbours or a balanced
-    /// tree, pays for it in the frame where it happens, which a median over frames would hide.
+    /// The mean of each turn of so many frames. An engine that does something now and then, a list
+    /// of neighbours or a balanced tree, pays for it in the frame where it happens, which a median
+    /// over frames would hide.
     pub fn turns(&self, turn: usize) -> Vec<f64> {
         means(&self.ms, turn)
     }
@@ -41,7 +43,8 @@ fn means(ms: &[f64], turn: usize) -> Vec<f64> {
     ms.chunks(turn).map(mean).collect()
 }
 
-/// Builds engines on the first frame of a course, and times them in turns on those behind it. Returns them with the last frame.
+/// Builds engines on the first frame of a course, and times them in turns on those behind it.
+/// Returns them with the last frame.
 pub fn take_turns(
     mut course: Course,
     schedule: Schedule,

@@ -1,5 +1,5 @@
-//! Every engine under judgement by the cases of what it claims, each case in a process of its own, since an engine that crashes
-//! must not end the others' trial.
+//! Every engine under judgement by the cases of what it claims, each case in a process of its own,
+//! since an engine that crashes must not end the others' trial.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -59,7 +59,8 @@ fn everyone() -> Vec<Entry> {
     [roster(), narrow::ENTRIES.to_vec()].concat()
 }
 
-/// Runs `answer`. An engine whose set of bodies changes is made anew; one without bodies isn't asked.
+/// Runs `answer`. An engine whose set of bodies changes is made anew; one without bodies isn't
+/// asked.
 ///
 /// # Errors
 /// An engine that isn't here, a case that can't be read.

@@ -13,9 +13,10 @@ const CHECK: f64 = 1000.0;
 
 /// Which volume, axes and finder to use for a scene, in three lines, with the settings to paste
 ///
-/// Times every finder, then spheres, boxes, S-DOP at each k along both kinds of axes, and hulls, on the scene's first frames,
-/// counts the pairs that each leaves to the narrow phase, and adds both up. Every volume reports all pairs that meet: they
-/// differ in time and in false pairs. --pairs and --axes narrow down what is tried.
+/// Times every finder, then spheres, boxes, S-DOP at each k along both kinds of axes, and hulls, on
+/// the scene's first frames, counts the pairs that each leaves to the narrow phase, and adds both
+/// up. Every volume reports all pairs that meet: they differ in time and in false pairs. --pairs
+/// and --axes narrow down what is tried.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop advise data/scenes/paper-500.toml --narrow-ns 200")]
 pub struct Args {

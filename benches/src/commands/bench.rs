@@ -15,8 +15,9 @@ use super::{Outcome, one_of};
 
 /// Time a program beside ours on a scene's frames
 ///
-/// Every frame is judged before its time counts. A program's time is the `ns` that it reports with each answer, and the
-/// table says so: self-reported. Ours is the wall time around the call. They take turns.
+/// Every frame is judged before its time counts. A program's time is the `ns` that it reports with
+/// each answer, and the table says so: self-reported. Ours is the wall time around the call. They
+/// take turns.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop bench data/scenes/paper-500.toml --exec ./mine --wire text --claims sphere --frames 50"
@@ -61,18 +62,23 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     };
     let table = compare(&args.exec, &program, &case, args.claims, args.rounds).into_diagnostic()?;
     emit(args.format, &table, |table| page(table, args))?;
-    let failed = table.iter().find(|row| row.outcome != CaseOutcome::Pass);
-    let why = failed.map(|row| format!("{}: {}", row.name, judged(row)));
-    Ok(Outcome::of(why.as_deref()))
+    Ok(outcome(&table))
 }
 
-fn judged(row: &ContestantTiming) -> String {
-    match &row.outcome {
-        CaseOutcome::Pass => "pass".to_owned(),
-        CaseOutcome::Fail { why } => format!("FAIL: {why}"),
-        CaseOutcome::Skipped { why } => format!("skipped: {why}"),
-        CaseOutcome::Error { trouble } => format!("ERROR: {trouble}"),
+/// A contestant that is wrong counts before one that skips the scene.
+fn outcome(table: &[ContestantTiming]) -> Outcome {
+    let mut skipped = None;
+    for ContestantTiming { name, outcome, .. } in table {
+        match outcome {
+            CaseOutcome::Pass => {}
+            CaseOutcome::Fail { why } => return Outcome::Failed(format!("{name} {why}")),
+            CaseOutcome::Error { trouble } => return Outcome::Failed(format!("{name} {trouble}")),
+            CaseOutcome::Skipped { why } => {
+                skipped.get_or_insert_with(|| format!("{name} skipped the scene: {why}"));
+            }
+        }
     }
+    skipped.map_or(Outcome::Passed, Outcome::Incomplete)
 }
 
 fn page(table: &[ContestantTiming], args: &Args) -> String {
@@ -84,12 +90,18 @@ fn page(table: &[ContestantTiming], args: &Args) -> String {
         "clock",
     ];
     let line = |row: &ContestantTiming| {
+        let judged = match &row.outcome {
+            CaseOutcome::Pass => "pass".to_owned(),
+            CaseOutcome::Fail { why } => format!("FAIL: {why}"),
+            CaseOutcome::Skipped { why } => format!("skipped: {why}"),
+            CaseOutcome::Error { trouble } => format!("ERROR: {trouble}"),
+        };
         let time = row
             .median_ns
             .map_or_else(|| "none".to_owned(), |ns| ns.to_string());
         vec![
             row.name.clone(),
-            judged(row),
+            judged,
             row.reported.to_string(),
             time,
             row.clock.to_owned(),

@@ -15,8 +15,8 @@ use super::{Outcome, files, one_of};
 
 /// Write the cases that cullers are judged by as files
 ///
-/// One file a case, named like the case. A program reads it and answers each frame with a line; `sdop check CASE --pairs FILE`
-/// judges the answers.
+/// One file a case, named like the case. A program reads it and answers each frame with a line;
+/// `sdop check CASE --pairs FILE` judges the answers.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop cases --out cases --claims mesh\n          sdop cases --case exact/tip-to-tip/0003 --out - | ./mine | sdop check cases/exact/tip-to-tip/0003.ndjson --pairs -"
@@ -37,7 +37,8 @@ pub struct Args {
     /// Fresh cases of this seed in place of the published ones
     #[arg(long, value_name = "SEED")]
     fresh: Option<u64>,
-    /// Write Broadmark's recordings (.aabbs) in place of text; for the claim aabb, without cases whose bodies change
+    /// Write Broadmark's recordings (.aabbs) in place of text; for the claim aabb, without cases
+    /// whose bodies change
     #[arg(long, conflicts_with = "wire")]
     aabbs: bool,
     /// How they are written

@@ -6,7 +6,7 @@ use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_judge::answer::{Answer, Stop};
 use sdop_judge::run::examine_given;
 use sdop_judge::wire::{Said, Wire};
-use sdop_judge::{Case, Claim, Options, Subject};
+use sdop_judge::{Case, Claim, Options, Outcome as CaseOutcome, Subject};
 
 use super::files::ReadArgs;
 use super::judge::{ReportFormat, emit_verdict, read_case};
@@ -14,8 +14,8 @@ use super::{Outcome, one_of};
 
 /// Judge the pairs of a record, or a program's answers to a case
 ///
-/// Without --pairs the record's own pairs are judged. The exact reference decides: a pair that meets and isn't there ends
-/// in exit code 1.
+/// Without --pairs the record's own pairs are judged. The exact reference decides: a pair that
+/// meets and isn't there ends in exit code 1, a record without all of its frames in exit code 3.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop check run.ndjson --claims mesh\n          ./mine < cases/touch/vertex/0000.ndjson | sdop check cases/touch/vertex/0000.ndjson --pairs -"
@@ -73,9 +73,19 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         }
         None => Ok(recorded(args, read.pairs)?),
     };
-    let verdict = examine_given(&Given(answers), &options, vec![read.case]).into_diagnostic()?;
+    let mut verdict =
+        examine_given(&Given(answers), &options, vec![read.case]).into_diagnostic()?;
+    if let Some(why) = read.lacks {
+        // A miss in the frames that are there is one all the same.
+        for case in &mut verdict.cases {
+            if case.outcome == CaseOutcome::Pass {
+                let why = why.clone();
+                case.outcome = CaseOutcome::Skipped { why };
+            }
+        }
+    }
     emit_verdict(args.format, &verdict)?;
-    Ok(Outcome::of(verdict.why().as_deref()))
+    Ok(Outcome::from(&verdict))
 }
 
 fn recorded(args: &Args, pairs: Vec<Option<Vec<[u32; 2]>>>) -> miette::Result<Vec<Answer>> {
@@ -120,7 +130,10 @@ pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop>
         }
         match wire.decode(answers.len(), line)? {
             Said::Answer(answer) => answers.push(answer),
-            Said::Skipped(why) => return Err(Stop::Skipped(why)),
+            Said::Skipped(why) => {
+                let answered = answers;
+                return Err(Stop::Skipped { why, answered });
+            }
         }
     }
     Ok(answers)

@@ -9,13 +9,13 @@ use sdop_bench::report::{Change, Code, Comparison, compare};
 use tempfile::TempDir;
 
 use super::Outcome;
-use super::output::{Reasoned, csv_text, print, rows};
+use super::output::{csv_text, json_with_reason, print, rows};
 
 /// Compare two records: counts must be equal, times are ratios with intervals
 ///
-/// Rows that both have are compared, those of one alone are counted in one line. Counts that differ are named. Times are listed as
-/// the second over the first, the largest change first, the control last; "same" where the intervals of both meet, "?" where a
-/// record has no intervals.
+/// Rows that both have are compared; one line counts those that only one of them has. Counts that
+/// differ are named. Times are listed as the second over the first, the largest change first, the
+/// control last; "same" where the intervals of both meet, "?" where a record has no intervals.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop cmp data/record/epyc-2core-avx512/reproduce data/record/xeon-2core-avx512/reproduce\n         \
@@ -59,28 +59,27 @@ enum Format {
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let [first, second] = [place(&args.first)?, place(&args.second)?];
     let comparison = compare(first.path(), second.path())?;
-    let percent = args.fail_slower.unwrap_or(f64::INFINITY);
-    let why = if let Some(first) = comparison.differences.first() {
-        let count = comparison.differences.len();
-        Some(format!(
-            "{count} counts differ, first {}: {}",
-            first.file, first.row
-        ))
-    } else {
-        let grown = 100.0 * comparison.slowest();
-        (grown > percent).then(|| format!("a time grew by {grown:.1} %, more than {percent} %"))
-    };
+    let why = why(&comparison, args.fail_slower);
     let text = match args.format {
         Format::Table => table(&comparison, args.most),
         Format::Markdown => markdown(&comparison, args.most),
-        Format::Json => {
-            let (result, why) = (&comparison, why.as_deref());
-            serde_json::to_string_pretty(&Reasoned { result, why }).into_diagnostic()?
-        }
+        Format::Json => json_with_reason(&comparison, why.as_deref())?,
         Format::Csv => csv_text(serde_json::to_value(&comparison.changes).into_diagnostic()?)?,
     };
     print(text.trim_end())?;
-    Ok(Outcome::of(why.as_deref()))
+    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
+}
+
+/// What differs that should not.
+fn why(comparison: &Comparison, fail_slower: Option<f64>) -> Option<String> {
+    let (differences, slowest) = (comparison.differences.len(), 100.0 * comparison.slowest());
+    if differences > 0 {
+        return Some(format!("{differences} results differ that should be equal"));
+    }
+    let limit = fail_slower.filter(|percent| slowest > *percent)?;
+    Some(format!(
+        "a time is slower by {slowest:.1} %, more than {limit} %"
+    ))
 }
 
 /// Where a record can be read.

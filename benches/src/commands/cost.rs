@@ -29,10 +29,11 @@ const EFFORT: Effort = Effort {
 
 /// What each strategy costs: predicted by the formula against measured
 ///
-/// T = Co + Nu·Cu + F + Nv·Cv: construction, updates, pair finding, tests. The paper's equation has no F. Counts are those of
-/// the scene's runs; prices come from other seeds, other numbers of bodies and other boxes, whose frames take turns with
-/// the scene's, so that the formula predicts. Warm frames follow one another; before a cold one other cullers ran. The
-/// residual is measured over predicted, less one. Without --strategy, every strategy is measured that the scene has
+/// T = Co + Nu·Cu + F + Nv·Cv: construction, updates, pair finding, tests. The paper's equation has
+/// no F. Counts are those of the scene's runs; prices come from other seeds, other numbers of
+/// bodies and other boxes, whose frames take turns with the scene's, so that the formula predicts.
+/// Warm frames follow one another; before a cold one other cullers ran. The residual is measured
+/// over predicted, less one. Without --strategy, every strategy is measured that the scene has
 /// settings for.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
@@ -245,7 +246,8 @@ fn percents(residual: &Estimate) -> [String; 2] {
     ]
 }
 
-/// What each volume of each strategy counts, what one update and one test cost, and the terms that both make.
+/// What each volume of each strategy counts, what one update and one test cost, and the terms that
+/// both make.
 fn volume_rows(report: &Report) -> Table {
     let mut rows = table(&[
         "strategy",

@@ -50,8 +50,8 @@ pub fn read(path: &Path) -> miette::Result<String> {
 /// The variable in which `sdop record` names itself to what it runs.
 pub const COMMAND: &str = "SDOP_COMMAND";
 
-/// The command that makes these results again: `sdop record`'s, or this one's. Absolute paths are this machine's own business,
-/// and who shared the work changes no result.
+/// The command that makes these results again: `sdop record`'s, or this one's. Absolute paths are
+/// this machine's own business, and who shared the work changes no result.
 pub fn command() -> String {
     if let Ok(command) = std::env::var(COMMAND) {
         return command;

@@ -9,8 +9,9 @@ use super::{Outcome, reproduce, tradeoff, verify};
 
 /// Put the shards of a sweep together
 ///
-/// What --shard left behind, by whatever machines, becomes the result of the command run whole: the same counts, hashes and
-/// pages. Shards of other code, settings or scenes are refused, and so are missing ones and those that come twice.
+/// What --shard left behind, by whatever machines, becomes the result of the command run whole: the
+/// same counts, hashes and pages. Shards of other code, settings or scenes are refused, and so are
+/// missing ones and those that come twice.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop merge shards/verify-*.units -o target/verify")]
 pub struct Args {

@@ -1,12 +1,14 @@
-//! `sdop mesh`: what a mesh is, how tight each volume is about it, and conversion to another format.
+//! `sdop mesh`: what a mesh is, how tight each volume is about it, and conversion to another
+//! format.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use sdop::mesh::decimate::decimate;
-use sdop::mesh::topology::Topology;
+use sdop::mesh::topology::{Topology, without_area};
 use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};
 use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::tightness::{Size, TURNS};
 use serde::Serialize;
 
@@ -16,8 +18,10 @@ use super::{Outcome, one_of};
 
 /// Describe a mesh and its bounding volumes, or convert it
 ///
-/// Prints counts, whether the mesh is closed, its smallest enclosing ball and the size of every volume over that of the
-/// convex hull. World-aligned volumes (aabb, k-dop) are re-fitted when a body turns: theirs is the mean over 64 rotations.
+/// Prints counts, whether the mesh is closed, its smallest enclosing ball and the size of every
+/// volume over that of the convex hull. World-aligned volumes (aabb, k-dop) are re-fitted when a
+/// body turns: theirs is the mean over 64 rotations. Vertices that no triangle uses are left out of
+/// ball, hull and volumes.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop mesh data/meshes/spot.tri\n          sdop mesh model.obj --to model.tri\n          sdop mesh model.obj --triangles 4000 --to coarse.tri"
@@ -50,12 +54,14 @@ struct Report {
     vertices: usize,
     unused_vertices: usize,
     triangles: usize,
+    /// Without area: a repeated index, two equal corners, or three on a line.
     degenerate_triangles: usize,
     components: usize,
     closed_components: usize,
     boundary_edges: usize,
     non_manifold_edges: usize,
-    /// Smallest enclosing ball (x, y, z, r) in the file's coordinates.
+    /// Smallest enclosing ball (x, y, z, r) in the file's coordinates, of the vertices that
+    /// triangles use, as all that follows.
     ball: [f64; 4],
     /// Where the vertices' origin lies in them: zero unless the mesh is far from its origin.
     offset: [f64; 3],
@@ -73,12 +79,12 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         tri_format: args.tri_format,
         max_bytes: args.files.max_bytes(),
     };
-    let mut mesh = read(&args.file, &options)?;
+    let mut mesh = read(&args.file, &options).or_report()?;
     if let Some(most) = args.triangles {
         mesh = decimate(&mesh, most as usize);
     }
     if let Some(path) = &args.to {
-        write(&mesh, path)?;
+        write(&mesh, path).or_report()?;
     }
     let report = describe(args, &mesh)?;
     emit(args.format, &report, text)?;
@@ -92,9 +98,9 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
         origin: Origin::File,
         ..ShapeSpec::default()
     };
-    let shape = Shape::build(mesh, &spec)?;
+    let shape = Shape::build(&of_used_vertices(mesh), &spec).or_report()?;
     let hull = Hull::of(&shape.vertices);
-    let centre = shape.ball.centre.to_array();
+    let centre = shape.ball.centre;
     let [x, y, z] = std::array::from_fn(|i| shape.offset[i] + f64::from(centre[i]));
     Ok(Report {
         name: mesh.name.clone(),
@@ -103,17 +109,37 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
         vertices: mesh.vertices.len(),
         unused_vertices: topology.unused_vertices,
         triangles: mesh.triangles.len(),
-        degenerate_triangles: total.degenerate,
+        degenerate_triangles: without_area(mesh),
         components: topology.components.len(),
         closed_components: topology.closed_components(),
         boundary_edges: total.boundary_edges,
         non_manifold_edges: total.non_manifold_edges,
         ball: [x, y, z, shape.ball.radius.into()],
         offset: shape.offset,
-        hull_vertices: hull.vertices.len(),
+        hull_vertices: hull.corners(&shape.vertices).len(),
         hull_volume: hull.volume(&shape.vertices),
         volumes: Size::of_all(&shape, &hull),
     })
+}
+
+/// The mesh without the vertices that no triangle uses: no surface of it reaches there.
+fn of_used_vertices(mesh: &TriangleMesh) -> TriangleMesh {
+    let mut used = mesh.triangles.as_flattened().to_vec();
+    used.sort_unstable();
+    used.dedup();
+    let mut new_index = vec![0; mesh.vertices.len()];
+    for (new, &old) in used.iter().enumerate() {
+        new_index[old as usize] = new as u32; // no more than there were
+    }
+    let mut mesh = mesh.clone();
+    mesh.vertices = used
+        .iter()
+        .map(|&old| mesh.vertices[old as usize])
+        .collect();
+    for index in mesh.triangles.as_flattened_mut() {
+        *index = new_index[*index as usize];
+    }
+    mesh
 }
 
 fn text(report: &Report) -> String {
@@ -142,6 +168,12 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
         "components: {all}, {state}; boundary edges: {}, non-manifold edges: {}",
         report.boundary_edges, report.non_manifold_edges
     )?;
+    if report.unused_vertices > 0 {
+        writeln!(
+            out,
+            "ball, hull and volumes are of the vertices that triangles use; culled shapes contain all vertices"
+        )?;
+    }
     // What is far below the ball's size is rounding.
     let at = |x: f64| decimal(if x.abs() < 1e-6 * r { 0.0 } else { x });
     writeln!(

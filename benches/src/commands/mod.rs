@@ -1,6 +1,8 @@
-//! The command line: one file a command. A command parses its arguments, calls the library and prints the result.
+//! The command line: one file a command. A command parses its arguments, calls the library and
+//! prints the result.
 //!
-//! A new command is a file with `Args` and `run`, a module line, a variant and a line in [`Cli::run`].
+//! A new command is a file with `Args` and `run`, a module line, a variant and a line in
+//! [`Cli::run`].
 
 mod advise;
 mod bench;
@@ -33,15 +35,17 @@ use std::io::Write as _;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use miette::MietteHandlerOpts;
+use sdop_bench::mpi;
+use sdop_judge::{Conclusion, Verdict};
 
 /// Collision culling by sphere-encapsulated or-DOPs (S-DOP): verified, vectorised, measured.
 #[derive(Parser)]
 #[command(
     name = "sdop",
     version,
-    after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input."
+    after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input, 3 not all that was asked for was judged. Standard error says why."
 )]
-pub struct Cli {
+struct Cli {
     #[command(subcommand)]
     command: Command,
 }
@@ -91,40 +95,33 @@ impl Command {
         }
     }
 
-    /// Whether its work can be shared by the ranks of `mpirun`. Another command would be run by each of them, all of it.
+    /// Whether its work can be shared by the ranks of `mpirun`. Another command would be run by
+    /// each of them, all of it.
     fn takes_ranks(&self) -> bool {
         self.is_sweep() || matches!(self, Self::Run(_))
     }
 }
 
+/// The exit code of bad input.
+pub const BAD_INPUT: u8 = 2;
+
 /// How a command ended when its input was good.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// All is well: exit code 0.
     Passed,
-    /// A check failed: exit code 1.
-    Failed,
+    /// A check failed, and which, on one line: exit code 1.
+    Failed(String),
+    /// No check failed, but some that were asked for were not made, and how many: exit code 3.
+    Incomplete(String),
     /// The input was bad, all ranks know, and one of them has said it: exit code 2.
     #[cfg(feature = "mpi")]
     Told,
 }
 
-impl Outcome {
-    /// A failed check, with the reason on standard error, in one line. JSON has the same text as `why`.
-    fn failed(why: impl std::fmt::Display) -> Self {
-        // Nobody may be listening: that is no reason to panic.
-        let _ = writeln!(std::io::stderr(), "sdop: {why}");
-        Self::Failed
-    }
-
-    /// Whether there is no reason why a check failed.
-    fn of(why: Option<&str>) -> Self {
-        why.map_or(Self::Passed, Self::failed)
-    }
-}
-
 impl Cli {
-    /// Refuses to share work that can't be, above all to be one of many ranks where each would do all of it.
+    /// Refuses to share work that can't be, above all to be one of many ranks where each would do
+    /// all of it.
     ///
     /// # Errors
     /// Many ranks, and the program or the command doesn't take them.
@@ -162,17 +159,74 @@ impl Cli {
     }
 }
 
+/// Runs the program with these arguments, its own name first, and returns its exit code.
+pub fn main(arguments: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>) -> u8 {
+    report_errors_whole();
+    let ending = mpi::Ending;
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(told) => {
+            // Nobody may be listening: that is no reason to panic.
+            ending.alike(|| drop(told.print()));
+            // Help is no error.
+            return if told.exit_code() == 0 { 0 } else { BAD_INPUT };
+        }
+    };
+    if let Err(report) = cli.refuse() {
+        ending.alike(|| complain(&report));
+        return BAD_INPUT;
+    }
+    match cli.run() {
+        Ok(outcome) => {
+            ending.well();
+            outcome.into_code()
+        }
+        Err(report) => {
+            complain(&report);
+            ending.badly(BAD_INPUT.into());
+            BAD_INPUT
+        }
+    }
+}
+
+impl Outcome {
+    /// The exit code. Why it is 1 or 3 goes to standard error, on one line.
+    fn into_code(self) -> u8 {
+        let (code, why) = match self {
+            Self::Passed => return 0,
+            #[cfg(feature = "mpi")]
+            Self::Told => return BAD_INPUT,
+            Self::Failed(why) => (1, why),
+            Self::Incomplete(why) => (3, why),
+        };
+        // Nobody may be listening: that is no reason to panic.
+        let _ = writeln!(std::io::stderr(), "sdop: {why}");
+        code
+    }
+}
+
+impl From<&Verdict> for Outcome {
+    fn from(verdict: &Verdict) -> Self {
+        let why = verdict.why().unwrap_or_default();
+        match verdict.conclusion() {
+            Conclusion::Pass => Self::Passed,
+            Conclusion::Incomplete => Self::Incomplete(why),
+            Conclusion::NotPassed => Self::Failed(why),
+        }
+    }
+}
+
 /// Says an error. Nobody may be listening on standard error: that is no reason to panic.
-pub fn complain(report: &miette::Report) {
+fn complain(report: &miette::Report) {
     let _ = writeln!(std::io::stderr(), "{report:?}");
 }
 
 /// Has errors printed unwrapped: a path or a command in a hint must survive being copied.
-pub fn report_errors_whole() {
+fn report_errors_whole() {
     let hook = miette::set_hook(Box::new(|_| {
         Box::new(MietteHandlerOpts::new().wrap_lines(false).build())
     }));
-    debug_assert!(hook.is_ok(), "set before the first error");
+    drop(hook); // another call of the same process has set it before
 }
 
 /// Reads one of a library enum's names; help and errors list them all.

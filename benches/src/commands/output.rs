@@ -1,4 +1,5 @@
-//! Results on standard output: one value, printed as a table for people or as JSON or CSV for programs.
+//! Results on standard output: one value, printed as a table for people or as JSON or CSV for
+//! programs.
 
 use std::io::{ErrorKind, Write as _};
 
@@ -41,6 +42,40 @@ pub fn emit<T: Serialize>(
     print(text.trim_end())
 }
 
+/// A result with the reason why it is no success.
+#[derive(Serialize)]
+struct WithReason<'a, T> {
+    #[serde(flatten)]
+    value: &'a T,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    why: Option<&'a str>,
+}
+
+/// As [`emit`], for a value with named fields: in JSON, the field `why` says why the exit code is
+/// not 0.
+///
+/// # Errors
+/// As [`emit`].
+pub fn emit_with_reason<T: Serialize>(
+    format: Format,
+    value: &T,
+    why: Option<&str>,
+    table: impl FnOnce(&T) -> String,
+) -> miette::Result<()> {
+    match format {
+        Format::Json => print(&json_with_reason(value, why)?),
+        Format::Table | Format::Csv => emit(format, value, table),
+    }
+}
+
+/// The JSON that [`emit_with_reason`] prints.
+///
+/// # Errors
+/// A value that is no JSON.
+pub fn json_with_reason<T: Serialize>(value: &T, why: Option<&str>) -> miette::Result<String> {
+    serde_json::to_string_pretty(&WithReason { value, why }).into_diagnostic()
+}
+
 /// Prints lines.
 ///
 /// # Errors
@@ -78,15 +113,6 @@ pub fn rows<T>(header: &[&str], items: &[T], row: impl Fn(&T) -> Vec<String>) ->
     table
 }
 
-/// A result, and why the exit code isn't 0: JSON has the reason as `why`.
-#[derive(Serialize)]
-pub struct Reasoned<'a, T> {
-    #[serde(flatten)]
-    pub result: &'a T,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub why: Option<&'a str>,
-}
-
 /// A number for people: six significant digits, plain unless it is tiny or huge, never minus zero.
 pub fn decimal(x: f64) -> String {
     if x == 0.0 {
@@ -116,7 +142,8 @@ pub fn progress(steps: u64, what: &str) -> ProgressBar {
 
 /// CSV of a list of records, or of one.
 ///
-/// Objects are flattened with dots, lists of named objects by their names; the header is the union over all records.
+/// Objects are flattened with dots, lists of named objects by their names; the header is the union
+/// over all records.
 pub fn csv_text(value: Value) -> miette::Result<String> {
     let records = match value {
         Value::Array(records) => records,

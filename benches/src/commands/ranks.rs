@@ -2,7 +2,8 @@
 
 use sdop_bench::mpi;
 
-/// Refuses a start as one of many ranks by a program or a command that would do all of the work in each of them.
+/// Refuses a start as one of many ranks by a program or a command that would do all of the work in
+/// each of them.
 ///
 /// # Errors
 /// Many ranks, and the program is built without MPI or the command doesn't take them.

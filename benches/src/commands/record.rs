@@ -20,13 +20,14 @@ use super::sweep::{SHARING, SweepArgs};
 
 /// Run an experiment and keep its measurements under data/record
 ///
-/// Writes the experiment's tables and record.json: command, commit, date, machine, compiler, load before and after, and the digest of
-/// every file and input. Without an experiment, lists them. Experiments that are sweeps (reproduce, tradeoff, verify) can be
-/// shared by ranks of mpirun or made in shards; others are measured in one process.
+/// Writes the experiment's tables and record.json: command, commit, date, machine, compiler, load
+/// before and after, and the digest of every file and input. Without an experiment, lists them.
+/// Experiments that are sweeps (reproduce, tradeoff, verify) can be shared by ranks of mpirun or
+/// made in shards; others are measured in one process.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop record\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick\n          \
-    mpirun -n 65 sdop record verify --name my-cluster\n          sdop record verify --name my-cluster --shard 3/64, and for all: --merge"
+    mpirun -n 64 sdop record verify --name my-cluster\n          sdop record verify --name my-cluster --shard 3/64, and for all: --merge"
 )]
 pub struct Args {
     /// The experiments; kernels and peers stand for all of theirs
@@ -37,14 +38,15 @@ pub struct Args {
     /// Where records go
     #[arg(long, value_name = "DIR", default_value = "data/record")]
     out: PathBuf,
-    /// Describe the files that are there already instead of measuring; they keep the commit that last touched them
+    /// Describe the files that are there already instead of measuring; they keep the commit that
+    /// last touched them
     #[arg(long)]
     adopt: bool,
     /// A note for readers of the record
     #[arg(long, value_name = "TEXT")]
     note: Option<String>,
     /// Make the record of the shards that --shard left beside it
-    #[arg(long, conflicts_with_all = ["adopt", "shard", "resume", "share_cores"])]
+    #[arg(long, conflicts_with_all = ["adopt", "shard", "share_cores"])]
     merge: bool,
     #[command(flatten)]
     sweep: SweepArgs,
@@ -173,8 +175,7 @@ fn say(directory: &Path) -> miette::Result<()> {
 
 /// Measures into a directory beside, and puts it in its place when it is whole.
 fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
-    let resumes = mpi::launched() > 1 || args.sweep.resumes();
-    let part = prepare(directory, resumes)?;
+    let part = prepare(directory)?;
     let (before, start) = (Load::now(), Instant::now());
     execute(args, experiment, &part)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -196,15 +197,11 @@ fn beside(directory: &Path, ending: &str) -> PathBuf {
     beside.into()
 }
 
-/// The directory for a record that isn't whole, without what an earlier run left there. With `resumes` a journal stays: the
-/// command that finds it goes on from it, or says how.
-fn prepare(directory: &Path, resumes: bool) -> miette::Result<PathBuf> {
+/// The directory for a record that isn't whole, without what an earlier run left there.
+fn prepare(directory: &Path) -> miette::Result<PathBuf> {
     let part = beside(directory, ".part");
-    let journal = |entry: std::io::Result<std::fs::DirEntry>| {
-        entry.is_ok_and(|entry| entry.path().extension().is_some_and(|e| e == "journal"))
-    };
     let prepare = || {
-        if part.exists() && !(resumes && std::fs::read_dir(&part)?.any(journal)) {
+        if part.exists() {
             std::fs::remove_dir_all(&part)?;
         }
         std::fs::create_dir_all(&part)
@@ -237,7 +234,8 @@ fn finish(
         .wrap_err_with(|| format!("cannot write {}", directory.display()))
 }
 
-/// What a step's command gets beyond its own arguments: the SIMD level too, which the record names, so that it is what ran.
+/// What a step's command gets beyond its own arguments: the SIMD level too, which the record names,
+/// so that it is what ran.
 fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> {
     let behind = |flag: &&&str| {
         args.more
@@ -292,7 +290,7 @@ fn complete(
     if shared::sweep(experiment) {
         command.args(args.sweep.arguments());
         if file.is_some() {
-            // Its journal, or its shard.
+            // Its shard.
             command.arg("--out").arg(out);
         }
     }

@@ -1,4 +1,5 @@
-//! `sdop report`: renders every page's numbers from the records, or checks that they are what the records say.
+//! `sdop report`: renders every page's numbers from the records, or checks that they are what the
+//! records say.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,30 +12,22 @@ use super::Outcome;
 use super::files::write;
 use super::output::{print, rows};
 
-/// Pages whose numbers come from records.
-const PAGES: [&str; 17] = [
+/// Pages that people write, with blocks whose numbers come from records or without any.
+const WRITTEN: [&str; 10] = [
     "README.md",
     "paper/results.md",
     "ARCHITECTURE.md",
-    "benches/README.md",
     "benches/engines/BIAS.md",
-    "benches/engines/VERDICTS.md",
     "examples/rapier/ENGINES.md",
-    "examples/rapier/README.md",
-    "examples/bullet/README.md",
     "tests/README.md",
     "paper/guide.md",
     "paper/artifact.md",
-    "paper/machines.md",
-    "paper/many-ranks.md",
     "paper/proofs/README.md",
-    "paper/report.typ",
     "data/hard_cases/README.md",
 ];
 
-/// Pages and figures that an experiment writes whole; they stand in its record, and here as copies.
-const WHOLE: [(&str, &str); 10] = [
-    ("reproduce/summary.md", "paper/summary.md"),
+/// Figures that an experiment draws; they are part of its record, and these are copies.
+const FIGURES: [(&str, &str); 8] = [
     ("reproduce/figures/costs.svg", "paper/figures/costs.svg"),
     (
         "reproduce/figures/frame_rates.svg",
@@ -49,7 +42,6 @@ const WHOLE: [(&str, &str); 10] = [
         "reproduce/figures/useful_tests.svg",
         "paper/figures/useful_tests.svg",
     ),
-    ("tradeoff/tradeoff.md", "paper/tradeoff.md"),
     (
         "tradeoff/figures/tradeoff.svg",
         "paper/figures/tradeoff.svg",
@@ -67,23 +59,27 @@ const WHOLE: [(&str, &str); 10] = [
 /// Macros that pages share.
 const MACROS: &str = "paper/quantities.jinja";
 
-/// One template for each block that a page may carry, named after it.
+/// One template for each block that a page may carry, named after it; below `pages`, one for each
+/// whole page.
 const TEMPLATES: &str = "paper/templates";
 
 /// Render the numbers of README and the other pages from data/record
 ///
-/// A page quotes a record between markers, <!--= EXPRESSION -->3.14<!--/-->, in Typst /*= EXPRESSION */3.14/**/. Whole blocks stand
-/// between <!-- BEGIN NAME --> and <!-- END NAME -->, from the template paper/templates/NAME.md. Every record's digests are
-/// checked first, so a digit changed by hand is found wherever it stands, in a page or in a record. A number must look the same on
-/// every page. A record that is older than the code it measures must have its commit named on the pages that quote it.
-/// data/record/quoted.toml names the machine whose records are quoted.
+/// A template paper/templates/pages/PAGE gives a whole page. Other pages carry blocks between <!--
+/// BEGIN NAME --> and <!-- END NAME -->, from the template paper/templates/NAME.md. Templates read
+/// records by csv("EXPERIMENT/FILE"), md, json, text, record and records, choose rows by where and
+/// one, and round by fixed, sig, thousands and percent. Every record's digests are checked first,
+/// so a digit changed by hand is found wherever it stands, in a page or in a record. A number must
+/// look the same on every page. A record that is older than the code it measures must have its
+/// commit named on the pages that quote it. data/record/quoted.toml names the machine whose records
+/// are quoted.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop report\n          sdop report --check\n          sdop report --quantities"
 )]
 pub struct Args {
-    /// Change nothing; exit with 1 when a page would change, a record was changed, two pages give a number differently, or an old
-    /// record isn't called old
+    /// Change nothing; exit with 1 when a page would change, a record was changed, two pages give a
+    /// number differently, or an old record isn't called old
     #[arg(long)]
     check: bool,
     /// List the numbers that stand on more than one page
@@ -97,7 +93,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// A marker without a value; pages that can't be read or written.
+/// An expression without a value; pages that can't be read or written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let records = args.root.join("data/record");
     let whole = Store::new(&records)?;
@@ -115,18 +111,28 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
             problems.push(error.to_string());
         }
     }
-    for (from, to) in WHOLE {
+    for (from, to) in FIGURES {
         problems.extend(copy(args, &whole, from, to)?);
     }
     let quantities = Arc::new(Quantities::default());
     let macros = std::fs::read_to_string(args.root.join(MACROS)).unwrap_or_default();
-    let templates = templates(&args.root)?;
+    let root = args.root.join(TEMPLATES);
+    let templates: BTreeMap<String, String> = templates(&root, &root)?
+        .into_iter()
+        .filter_map(|(name, text)| Some((name.strip_suffix(".md")?.to_owned(), text)))
+        .collect();
+    let wholes = root.join(pages::WHOLE);
+    let wholes = self::templates(&wholes, &wholes)?;
     let now = Code::here(&args.root);
-    let pages: Vec<&str> = PAGES
+    let written = WRITTEN
         .into_iter()
         .filter(|page| args.root.join(page).is_file())
-        .collect();
-    for page in &pages {
+        .map(|page| (page, None));
+    let made = wholes
+        .iter()
+        .map(|(page, template)| (page.as_str(), Some(template.as_str())));
+    let pages: Vec<(&str, Option<&str>)> = written.chain(made).collect();
+    for (page, template) in &pages {
         // A store of its own knows which records the page quotes.
         let sources = pages::Sources {
             store: Arc::new(Store::new(&records)?),
@@ -134,7 +140,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
             templates: templates.clone(),
             quantities: quantities.clone(),
         };
-        problems.extend(one_page(args, page, &sources, now.as_ref())?);
+        problems.extend(one_page(args, page, *template, &sources, now.as_ref())?);
     }
     let differing = quantities.given_differently();
     problems.extend(
@@ -156,26 +162,31 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     let table = rows(&["problem"], &problems, |problem| vec![problem.clone()]);
     print(&table.to_string())?;
-    let first = problems.first().map_or("", String::as_str);
-    Ok(Outcome::failed(format!(
-        "{} problems, first: {first}",
-        problems.len()
+    Ok(Outcome::Failed(format!(
+        "{} problems, the first: {}",
+        problems.len(),
+        problems[0]
     )))
 }
 
-/// The templates of blocks, by name. A repository may have none.
-fn templates(root: &Path) -> miette::Result<BTreeMap<String, String>> {
-    let Ok(entries) = root.join(TEMPLATES).read_dir() else {
+/// Files of a directory, and of those in it, by their path from `root`. A repository may have none.
+fn templates(root: &Path, directory: &Path) -> miette::Result<BTreeMap<String, String>> {
+    let Ok(entries) = directory.read_dir() else {
         return Ok(BTreeMap::new());
     };
     let mut found = BTreeMap::new();
     for entry in entries {
         let path = entry.into_diagnostic()?.path();
+        if path.is_dir() {
+            found.extend(templates(root, &path)?);
+            continue;
+        }
         let text = std::fs::read_to_string(&path)
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot read {}", path.display()))?;
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        found.insert(name.into_owned(), text);
+        let parts = path.strip_prefix(root).into_diagnostic()?.iter();
+        let parts: Vec<_> = parts.map(|part| part.to_string_lossy()).collect();
+        found.insert(parts.join("/"), text);
     }
     Ok(found)
 }
@@ -201,15 +212,12 @@ fn list(quantities: &Quantities) -> miette::Result<()> {
     print(&table.to_string())
 }
 
-/// Copies a page or figure out of the record that is quoted, or says that the copy differs. A record of before pages
-/// were part of it has none.
+/// Copies a figure out of the record that is quoted, or says that the copy differs. A record
+/// without it has none.
 fn copy(args: &Args, store: &Store, from: &str, to: &str) -> miette::Result<Option<String>> {
-    let Ok(mut text) = store.text(from) else {
+    let Ok(text) = store.text(from) else {
         return Ok(None);
     };
-    if to.ends_with(".md") {
-        text.push_str(&origin(store, from)?);
-    }
     let path = args.root.join(to);
     if std::fs::read_to_string(&path).is_ok_and(|copy| copy == text) {
         return Ok(None);
@@ -222,35 +230,26 @@ fn copy(args: &Args, store: &Store, from: &str, to: &str) -> miette::Result<Opti
     Ok(None)
 }
 
-/// The last line of a copied page: which record it is, and of which code.
-fn origin(store: &Store, from: &str) -> miette::Result<String> {
-    let (experiment, _) = from.split_once('/').unwrap_or((from, ""));
-    let manifest = store.manifest(experiment)?;
-    let commit = manifest
-        .code
-        .as_ref()
-        .and_then(|code| code.commit.get(..7))
-        .map_or(String::new(), |commit| format!(", commit {commit}"));
-    Ok(format!(
-        "\nRecord {} of {}{commit} (`data/record/{}`).\n",
-        manifest.id(),
-        manifest.date,
-        store.place(experiment)
-    ))
-}
-
-/// Renders or checks one page; what is wrong with it.
+/// Renders or checks one page, of its own template or with blocks; what is wrong with it.
 fn one_page(
     args: &Args,
     page: &str,
+    template: Option<&str>,
     sources: &pages::Sources,
     now: Option<&Code>,
 ) -> miette::Result<Vec<String>> {
     let path = args.root.join(page);
-    let text = std::fs::read_to_string(&path)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot read {}", path.display()))?;
-    let rendered = match pages::render(page, &text, sources) {
+    let text = match std::fs::read_to_string(&path) {
+        Err(_) if template.is_some() => String::new(), // not made yet
+        text => text
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot read {}", path.display()))?,
+    };
+    let rendered = match template {
+        Some(template) => pages::whole(page, template, sources),
+        None => pages::blocks(page, &text, sources),
+    };
+    let rendered = match rendered {
         Ok(rendered) => rendered,
         Err(error) if args.check => return Ok(vec![error.to_string()]),
         Err(error) => return Err(error.into()),

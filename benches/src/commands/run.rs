@@ -10,6 +10,7 @@ use sdop_bench::domain::{BorderSeconds, RankLine};
 use sdop_bench::effects::EffectReport;
 use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::percentiles::Percentiles;
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::scene::Scene;
 use sdop_bench::simulate::{Simulation, Summary};
 use sdop_bench::tradeoff::TradeoffError;
@@ -27,10 +28,10 @@ use super::scene_args::{MachineArgs, SceneArgs};
 
 /// Simulate and cull one scene
 ///
-/// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of each stage, what single frames
-/// take, and hashes.
-/// Counters and hashes depend on scene, seed and flags alone, not on the CPU or threads; with --budget-us they depend on the clock.
-/// Under mpirun, ranks share the scene and report the same pairs; built with the feature `mpi`.
+/// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of
+/// each stage, what single frames take, and hashes. Counters and hashes depend on scene, seed and
+/// flags alone, not on the CPU or threads; with --budget-us they depend on the clock. Under mpirun,
+/// ranks share the scene and report the same pairs; built with the feature `mpi`.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
@@ -39,7 +40,8 @@ pub struct Args {
     /// Write every frame's poses and pairs to this file, as lines of JSON
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Have the record say, too, which meshes truly meet, decided in exact arithmetic: slow for large scenes
+    /// Have the record say, too, which meshes truly meet, decided in exact arithmetic: slow for
+    /// large scenes
     #[arg(long, requires = "record")]
     truth: bool,
     /// How the result is printed
@@ -107,19 +109,28 @@ struct EffectLine {
 /// Runs the command.
 ///
 /// # Errors
-/// A bad scene, settings that it can't have, a body that leaves the contract, a recording that can't be written.
+/// A bad scene, settings that it can't have, a body that leaves the contract, a recording that
+/// can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     #[cfg(feature = "mpi")]
     if sdop_bench::mpi::launched() > 1 {
         return Ok(ranks::run(args));
     }
-    let scene = args.scene.build()?;
+    let scene = args.scene.read()?.build_exact()?;
     let tier = args.machine.tier();
     let mut recorder = match &args.record {
-        Some(path) => Some(Recorder::create(path, &sdop_bench::record::header(&scene))?),
+        Some(path) => {
+            Some(Recorder::create(path, &sdop_bench::record::header(&scene)).or_report()?)
+        }
         None => None,
     };
     let judge = if args.truth {
+        if !scene.fine.is_empty() {
+            miette::bail!(
+                help = "leave --truth out, or round the translations to f32",
+                "--truth, and translations that f32 doesn't hold: the exact reference reads f32 poses"
+            );
+        }
         Some(Judge::new(&scene.shapes).map_err(TradeoffError::from)?)
     } else {
         None
@@ -134,14 +145,14 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
             if let Some(judge) = &judge {
                 line.meets = Some(judge.meetings(frame.bodies).map_err(TradeoffError::from)?);
             }
-            recorder.frame(&line)?;
+            recorder.frame(&line).or_report()?;
         }
         bar.inc(1);
         Ok(())
     })?;
     bar.finish_and_clear();
     if let Some(recorder) = recorder {
-        recorder.finish()?;
+        recorder.finish().or_report()?;
     }
     let conditions = before.after(std::iter::empty());
     print(args, &scene, &summary, conditions, None)?;

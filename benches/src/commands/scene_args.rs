@@ -1,15 +1,17 @@
-//! The arguments of every command that runs a scene: the file, and flags that override what it says.
+//! The arguments of every command that runs a scene: the file, and flags that override what it
+//! says.
 
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
-use miette::Diagnostic as _;
 use sdop::Tier;
 use sdop::settings::{
     Axes, Budget, CullSettings, Finder, Interest, Order, Overlap, Strategy, Updates,
 };
 use sdop::volume::DirectionSet;
 use sdop_bench::scene::{Scene, SceneFile};
+use serde::Deserialize as _;
+use toml::de::ValueDeserializer;
 
 use super::files::ReadArgs;
 use super::one_of;
@@ -53,7 +55,8 @@ pub struct CullArgs {
     /// When or-DOP poses are updated
     #[arg(long, value_parser = one_of::<Updates>(Updates::NAMES))]
     updates: Option<Updates>,
-    /// Bodies of interest, as in 0,5,7, or a view cone, as in '{ body = 0, direction = [0, 0, 1], half_angle = 30 }'
+    /// Bodies of interest, as in 0,5,7, or a view cone, as in '{ body = 0, direction = [0, 0, 1],
+    /// half_angle = 30 }'
     #[arg(long, value_parser = interest)]
     interest: Option<Interest>,
     /// Time-critical: or-DOP tests a frame
@@ -77,10 +80,11 @@ pub struct MachineArgs {
 }
 
 impl SceneArgs {
-    /// Reads and builds the scene with the overrides in place.
+    /// Reads and builds the scene with the overrides in place, to be studied in f32.
     ///
     /// # Errors
-    /// A scene that can't be read or built, or settings that it can't have.
+    /// A scene that can't be read or built, translations that f32 rounds too far, or settings that
+    /// it can't have.
     pub fn build(&self) -> miette::Result<Scene> {
         Ok(self.read()?.build()?)
     }
@@ -177,14 +181,17 @@ impl CullArgs {
     }
 }
 
-/// Reads an interest; clap shows no help text of its own for an error, so it goes into the message.
+/// Reads `0,5,7` or, as in a scene file, `{ body = 0, direction = [0, 0, 1], half_angle = 30 }`.
 fn interest(text: &str) -> Result<Interest, String> {
-    text.parse::<Interest>().map_err(|error| {
-        let help = error
-            .help()
-            .map_or(String::new(), |help| format!("; {help}"));
-        format!("{error}{help}")
-    })
+    let value = if text.trim_start().starts_with(['{', '[']) {
+        text.to_owned()
+    } else {
+        format!("[{text}]")
+    };
+    let read = ValueDeserializer::parse(&value).and_then(Interest::deserialize);
+    // clap shows no help text of its own for an error, so it goes into the message.
+    let hint = "body indices as in 0,5,7 or a cone as in { body = 0, direction = [0, 0, 1], half_angle = 30 }";
+    read.map_err(|error| format!("interest: {}; {hint}", error.message()))
 }
 
 impl MachineArgs {
@@ -196,5 +203,28 @@ impl MachineArgs {
     /// The SIMD level of `--simd`, if it was given.
     pub fn asked(&self) -> Option<Tier> {
         self.simd
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::{Interest, interest};
+
+    #[test]
+    fn interest_reads_as_a_list_or_a_cone() {
+        let list = interest("0, 5,7").unwrap();
+        assert_eq!(list, Interest::Bodies(vec![0, 5, 7]));
+        let cone = interest("{ body = 3, direction = [0, 0, 1], half_angle = 30 }").unwrap();
+        let Interest::Cone(cone) = cone else {
+            panic!("a cone")
+        };
+        assert_eq!(
+            (cone.body, cone.direction, cone.half_angle, cone.range),
+            (Some(3), [0.0, 0.0, 1.0], 30.0, None)
+        );
+        let error = interest("0,x").unwrap_err();
+        assert!(error.starts_with("interest: "), "{error}");
     }
 }

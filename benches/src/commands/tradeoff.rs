@@ -1,6 +1,5 @@
 //! `sdop tradeoff`: what each step of accuracy costs in time on one scene, and when it pays.
 
-mod page;
 mod plot;
 mod tables;
 mod tidy;
@@ -19,20 +18,20 @@ use serde::{Deserialize, Serialize};
 
 use super::Outcome;
 use super::files::{self, command, write};
-use super::output::{Format, Reasoned, csv_text, emit};
+use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::{MachineArgs, SceneArgs};
 use super::sweep::{self, SweepArgs};
 
 /// What accuracy costs in time, for every volume and strategy
 ///
-/// Culls sample frames of the scene with every volume and strategy, compares with the exact truth about the meshes, then
-/// measures the time of frames that follow one another (warm) and of frames between which others ran (cold). Counts depend on
-/// scene and flags alone; seconds are this machine's. Given the JSON of an earlier run instead of a scene, prints and draws
-/// that.
+/// Culls sample frames of the scene with every volume and strategy, compares with the exact truth
+/// about the meshes, then measures the time of frames that follow one another (warm) and of frames
+/// between which others ran (cold). Counts depend on scene and flags alone; seconds are this
+/// machine's. Given the JSON of an earlier run instead of a scene, prints and draws that.
 #[derive(clap::Args)]
 #[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
     Examples: sdop tradeoff data/scenes/paper-500.toml --out target/tradeoff\n          \
-    mpirun -n 9 sdop tradeoff data/scenes/paper-500.toml --seeds 64 --out target/tradeoff")]
+    mpirun -n 8 sdop tradeoff data/scenes/paper-500.toml --seeds 64 --out target/tradeoff")]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
@@ -47,10 +46,11 @@ pub struct Args {
     /// Print every table, not only the recommendation and what it rests on
     #[arg(long)]
     all: bool,
-    /// Write the page, the figures, JSON and CSV into this directory
+    /// Write the figures, JSON and CSV into this directory; of a record, `sdop report` makes the
+    /// page paper/tradeoff.md
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write the page and the figures into this directory instead
+    /// Write the figures into this directory instead
     #[arg(long, value_name = "DIR", requires = "out")]
     paper: Option<PathBuf>,
     /// Where exact truths are kept between runs [default: sdop/truth in the user's cache directory]
@@ -99,13 +99,11 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let mut findings = Findings::default();
     let mut take = |_, result: &str| findings.take(result);
     let directory = args.out.as_deref().unwrap_or(Path::new("."));
-    let Some(finished) = args.sweep.run(&comparison, directory, &mut take)? else {
+    if args.sweep.run(&comparison, directory, &mut take)?.is_none() {
         return Ok(Outcome::Passed);
-    };
+    }
     let settings = comparison.settings();
-    let outcome = args.tell(&Recorded::new(command(), findings, &settings, before)?)?;
-    finished.clear()?;
-    Ok(outcome)
+    args.tell(&Recorded::new(command(), findings, &settings, before)?)
 }
 
 /// What merged shards give.
@@ -168,14 +166,11 @@ fn print(
     match format {
         // A line per number of a variant; the rest is in the other formats.
         Format::Csv => emit(Format::Csv, &tidy::lines(result), |_| String::new())?,
-        format => {
-            let (result, why) = (recorded, why.as_deref());
-            emit(format, &Reasoned { result, why }, |_| {
-                text(&recorded.result)
-            })?;
-        }
+        format => emit_with_reason(format, recorded, why.as_deref(), |recorded| {
+            text(&recorded.result)
+        })?,
     }
-    Ok(Outcome::of(why.as_deref()))
+    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
 fn plan(args: &Args) -> Plan {
@@ -191,8 +186,8 @@ fn plan(args: &Args) -> Plan {
     }
 }
 
-/// Where the user's programs keep what can be made again: on Linux `$XDG_CACHE_HOME`, or `~/.cache`. None where there is no
-/// home either: then nothing is kept.
+/// Where the user's programs keep what can be made again: on Linux `$XDG_CACHE_HOME`, or
+/// `~/.cache`. None where there is no home either: then nothing is kept.
 fn cache() -> Option<PathBuf> {
     let directories = etcetera::choose_base_strategy().ok()?;
     Some(directories.cache_dir().join("sdop/truth"))
@@ -211,7 +206,7 @@ fn read(path: &Path) -> miette::Result<Recorded> {
         .wrap_err_with(|| format!("{} is no result of sdop tradeoff", path.display()))
 }
 
-/// Writes the numbers to one directory, the page and its figures to another.
+/// Writes the numbers to one directory, the figures to another.
 fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Result<()> {
     let result = &recorded.result;
     let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
@@ -221,7 +216,6 @@ fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Resul
     write(&numbers.join("tradeoff.csv"), &csv)?;
     write(&numbers.join("tradeoff-seeds.csv"), &seeds)?;
     let figures = paper.join("figures");
-    write(&paper.join("tradeoff.md"), page::page(recorded))?;
     write(&figures.join("tradeoff.svg"), &plot::precision(result)?)?;
     write(
         &figures.join("tradeoff-pays.svg"),

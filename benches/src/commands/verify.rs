@@ -1,4 +1,5 @@
-//! `sdop verify`: the optimised culler against the exact reference, on hard cases, seeded rounds and scenes.
+//! `sdop verify`: the optimised culler against the exact reference, on hard cases, seeded rounds
+//! and scenes.
 
 mod report;
 
@@ -20,17 +21,19 @@ use sdop_judge::ours::rounds::{Failure, Ledger};
 use super::Outcome;
 use super::files::{self, ReadArgs};
 use super::judge::{self, ReportFormat};
-use super::output::{Format, emit, print, progress};
+use super::output::{Format, emit_with_reason, print, progress};
 use super::sweep::{self, SweepArgs};
 use report::Report;
 
 /// Judge the optimised culler by the exact reference
 ///
-/// Hard cases first, then seeded rounds (a probe among bodies that nearly touch it, and a random crowd, for every k and
-/// axes), then the scenes given, meshes included. Strategies, overlap tests, finders, k, axes, update modes, SIMD tiers and
-/// numbers of threads meet in every combination; the matrix at the end says how often. Each list is held against the
-/// exact answers and against that of all-pairs. Given boxes are held against their definition. A missed pair, a list that differs from all-pairs' and an empty cell of the
-/// matrix end in exit code 1, the first two with the smallest scene that shows it.
+/// Hard cases first, then seeded rounds (a probe among bodies that nearly touch it, and a random
+/// crowd, for every k and axes), then the scenes given, meshes included. Strategies, overlap tests,
+/// finders, k, axes, update modes, SIMD tiers and numbers of threads meet in every combination; the
+/// matrix at the end says how often. Each list is held against the exact answers and against that
+/// of all-pairs. Given boxes are held against their definition. A missed pair, a list that differs
+/// from all-pairs' and an empty cell of the matrix end in exit code 1, the first two with the
+/// smallest scene that shows it.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100\n          \
@@ -58,7 +61,7 @@ pub struct Args {
     /// One SIMD tier alone, instead of all that the CPU has
     #[arg(long, value_name = "TIER")]
     simd: Option<Tier>,
-    /// Where the scene that shows a missed pair is written, and shards and journals
+    /// Where the scene that shows a missed pair is written, and shards
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// Write the hard cases' exact answers and their page into this directory, and judge nothing
@@ -105,15 +108,14 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let run = verification(args)?;
     let mut taken = Taken::default();
     let mut take = |unit, result: &str| taken.take(&run, unit, result);
-    let Some(finished) = args.sweep.run(&run, &args.out, &mut take)? else {
+    let Some(seconds) = args.sweep.run(&run, &args.out, &mut take)? else {
         return Ok(Outcome::Passed);
     };
-    let outcome = taken.report(&run, finished.seconds, format, &args.out)?;
-    finished.clear()?;
-    Ok(outcome)
+    taken.report(&run, seconds, format, &args.out)
 }
 
-/// The report of merged shards. A scene whose frames show a failure is read again, if it is where it was.
+/// The report of merged shards. A scene whose frames show a failure is read again, if it is where
+/// it was.
 ///
 /// # Errors
 /// Results of another command, a CPU that lacks a tier, a directory that can't be written.
@@ -202,8 +204,9 @@ impl Taken {
         let none = Ledger::default();
         let boxes = self.ledgers.get(&Origin::Boxes).unwrap_or(&none);
         report.finish(seconds, &boxes.boxes, run.rotation());
-        emit(format, &report, Report::tables)?;
-        let Some(why) = report.why() else {
+        let why = report.why();
+        emit_with_reason(format, &report, why.as_deref(), Report::tables)?;
+        let Some(why) = why else {
             return Ok(Outcome::Passed);
         };
         if let Some((origin, &unit)) = self.failed.first_key_value() {
@@ -215,7 +218,7 @@ impl Taken {
                 (None, None) => print("the failure doesn't show on this machine")?,
             }
         }
-        Ok(Outcome::failed(why))
+        Ok(Outcome::Failed(why))
     }
 }
 

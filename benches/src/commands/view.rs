@@ -1,14 +1,14 @@
 //! `sdop view`: a run as one HTML page that anybody can open.
 
 mod input;
-mod still;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use miette::{IntoDiagnostic as _, Report, WrapErr as _, miette};
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::files::Whole;
 use sdop::settings::{CullSettings, Strategy};
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::view::{Culled, Page, Show, decide_truth};
 
 use super::Outcome;
@@ -18,8 +18,9 @@ use input::Input;
 
 /// Write a page that shows a run: bodies, pairs, volumes and counts, frame by frame
 ///
-/// The page holds everything it needs and opens from disk. Bodies change colour when their pair is reported, and another when
-/// their meshes truly meet; a missed pair flashes and is listed. A record shows what any program reported.
+/// The page holds everything it needs and opens from disk. Bodies change colour when their pair is
+/// reported, and another when their meshes truly meet; a missed pair flashes and is listed. A
+/// record shows what any program reported.
 #[derive(clap::Args)]
 #[command(
     mut_arg("scene", |arg| arg.value_name("SCENE|RECORD|CASE").help(
@@ -28,34 +29,24 @@ use input::Input;
     after_help = "Examples: sdop view data/scenes/paper-500.toml --open\n          sdop run data/scenes/paper-50.toml --record run.ndjson && sdop view run.ndjson --beside sphere"
 )]
 pub struct Args {
-    /// The page, or with --png the picture when it ends in .png [default: the scene's name, in the current directory]
+    /// The page [default: the scene's name, in the current directory]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Open the page in the browser
     #[arg(long)]
     open: bool,
-    /// Also draw the frame with this number as a PNG beside the page, by an installed Chromium
-    #[arg(long, value_name = "FRAME")]
-    png: Option<u32>,
-    /// Width and height of the PNG in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x800", requires = "png", value_parser = still::size)]
-    size: (u32, u32),
-    /// Parameters of the page's address for the PNG, as the page keeps them: camera=…&show=spheres,ordops&body=7
-    #[arg(long, value_name = "PARAMETERS", requires = "png")]
-    with: Option<String>,
-    /// The browser that draws the PNG [default: chromium or chrome, wherever installed]
-    #[arg(long, value_name = "FILE", requires = "png")]
-    browser: Option<PathBuf>,
     /// A second strategy on the same frames, or another record of them, side by side
     #[arg(long, value_name = "STRATEGY|RECORD")]
     beside: Option<String>,
-    /// What a program answered to a case (`sdop cases`) or record, one line a frame; - is standard input
+    /// What a program answered to a case (`sdop cases`) or record, one line a frame; - is standard
+    /// input
     #[arg(long, value_name = "FILE")]
     answers: Option<PathBuf>,
     /// Which run of a group of hard cases
     #[arg(long, value_name = "N")]
     run: Option<usize>,
-    /// Leave out which meshes truly meet, unless the record says: the exact decision is slow for large scenes
+    /// Leave out which meshes truly meet, unless the record says: the exact decision is slow for
+    /// large scenes
     #[arg(long)]
     no_truth: bool,
     /// Leave out T: its prices are calibrated on this machine
@@ -67,10 +58,11 @@ pub struct Args {
     machine: MachineArgs,
 }
 
-/// Runs the command. A broken record makes a page that says so, with the frames before the flaw, and is an error too.
+/// Runs the command. A broken record makes a page that says so, with the frames before the flaw,
+/// and is an error too.
 ///
 /// # Errors
-/// A bad scene or record, settings that it can't have, a page that can't be written, no browser for a PNG.
+/// A bad scene or record, settings that it can't have, a page that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let tier = args.machine.tier();
     let (page, name, broken) =
@@ -98,7 +90,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         };
     let written = write(args, &page, &name)?;
     match broken {
-        Some(error) => Err(Report::from(error))
+        Some(error) => Err(error)
+            .or_report()
             .wrap_err_with(|| format!("the page {} shows what can be read", written.display())),
         None => Ok(Outcome::Passed),
     }
@@ -116,7 +109,7 @@ fn culled(args: &Args, show: &Show) -> miette::Result<Vec<Culled>> {
                 strategy,
                 ..show.header.cull.clone().unwrap_or_default()
             };
-            show.cull(&settings, args.machine.tier())?
+            show.cull(&settings, args.machine.tier()).or_report()?
         }
         Err(unknown) if !Path::new(beside).exists() => {
             return Err(miette!(
@@ -125,9 +118,9 @@ fn culled(args: &Args, show: &Show) -> miette::Result<Vec<Culled>> {
             ));
         }
         Err(_) => {
-            let (other, broken) = Show::record(Path::new(beside), None)?;
+            let (other, broken) = Show::record(Path::new(beside), None).or_report()?;
             if let Some(error) = broken {
-                return Err(error.into());
+                return Err(error).or_report();
             }
             show.culled_by(&other).map_err(|why| {
                 miette!(
@@ -141,48 +134,16 @@ fn culled(args: &Args, show: &Show) -> miette::Result<Vec<Culled>> {
     Ok(culled)
 }
 
-/// Writes page and picture, as asked for; returns what can be opened.
+/// Writes the page, and opens it if asked to; returns where it is.
 fn write(args: &Args, page: &Page, name: &str) -> miette::Result<PathBuf> {
-    let only_png = args.png.is_some() && args.out.as_deref().is_some_and(still::is_png);
-    let temporary;
-    let path = if only_png {
-        temporary = still::scratch()?;
-        temporary.path().join("page.html")
-    } else {
-        args.out
-            .clone()
-            .unwrap_or_else(|| format!("{}.html", safe(name)).into())
-    };
+    let own = || format!("{}.html", safe(name)).into();
+    let path = args.out.clone().unwrap_or_else(own);
     let bytes = write_page(page, &path)?;
-    if !only_png {
-        print(&format!("{}: {:.1} MB", path.display(), bytes as f64 / 1e6))?;
-    }
-    let mut written = path.clone();
-    if let Some(frame) = args.png {
-        let picture = match &args.out {
-            Some(out) if only_png => out.clone(),
-            _ => path.with_file_name(format!(
-                "{}-{frame}.png",
-                path.file_stem().unwrap_or_default().to_string_lossy()
-            )),
-        };
-        let browser = still::browser(args.browser.as_deref())?;
-        still::draw(
-            &browser,
-            &path,
-            &still::address(frame, args.with.as_deref()),
-            args.size,
-            &picture,
-        )?;
-        print(&picture.display().to_string())?;
-        if only_png {
-            written = picture;
-        }
-    }
+    print(&format!("{}: {:.1} MB", path.display(), bytes as f64 / 1e6))?;
     if args.open {
-        open(&written)?;
+        open(&path)?;
     }
-    Ok(written)
+    Ok(path)
 }
 
 /// Has the desktop open a file, and doesn't wait for it.

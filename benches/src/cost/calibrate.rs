@@ -1,9 +1,11 @@
-//! Calibration: Cu, Cv and Co of every volume, from seeded scenes that no prediction is compared with.
+//! Calibration: Cu, Cv and Co of every volume, from seeded scenes that no prediction is compared
+//! with.
 //!
-//! The scenes resample the one that is predicted ([`scenes`]): other numbers of bodies, other boxes, other seeds, none
-//! within a tenth of it, on both sides of it in numbers and in density. They take turns with the frames that they predict
-//! ([`pass`](super::pass)), so that whatever the machine does meanwhile falls on both. [`explain`](mod@super::explain) then
-//! explains each stage's seconds by its counts. Dividing a run's own seconds by its own counts would predict nothing.
+//! The scenes resample the one that is predicted ([`scenes`]): other numbers of bodies, other
+//! boxes, other seeds, none within a tenth of it, on both sides of it in numbers and in density.
+//! They take turns with the frames that they predict ([`pass`](super::pass)), so that whatever the
+//! machine does meanwhile falls on both. [`explain`](mod@super::explain) then explains each stage's
+//! seconds by its counts. Dividing a run's own seconds by its own counts would predict nothing.
 
 use std::time::Instant;
 
@@ -25,12 +27,13 @@ use sdop::simd::Tier;
 use sdop::volume::{Ball, Shape};
 use sdop_judge::contestant::Contestant;
 
-/// Bodies of the calibration scenes, as parts of the scene's number. Near it, though none within a tenth of it: a price isn't
-/// the same at any number of bodies (loops end where the CPU foresees it, or don't), and its curve is straight nearby.
+/// Bodies of the calibration scenes, as parts of the scene's number. Near it, though none within a
+/// tenth of it: a price isn't the same at any number of bodies (loops end where the CPU foresees
+/// it, or don't), and its curve is straight nearby.
 const SIZES: [f64; 4] = [0.82, 0.89, 1.12, 1.2];
-/// Sides of the calibration scenes' boxes, as multiples of the scene's. A vector of lanes that has a hit or none is a
-/// branch, and how often it is foreseen follows a curve in density and in the number of pairs: so both are near the
-/// scene's, on both sides of it.
+/// Sides of the calibration scenes' boxes, as multiples of the scene's. A vector of lanes that has
+/// a hit or none is a branch, and how often it is foreseen follows a curve in density and in the
+/// number of pairs: so both are near the scene's, on both sides of it.
 const SIDES: [f64; 2] = [0.89, 1.13];
 /// Where all calibration draws start; scenes count their seeds from 1.
 const SEED: u64 = 0xca11_b8a7_e000_0000;
@@ -45,7 +48,8 @@ pub const SCENES: usize = SIZES.len() * SIDES.len();
 pub struct Effort {
     /// Turns of each calibration scene in a pass.
     pub turns: usize,
-    /// How often volumes and cullers are built in a pass, to measure Co; calibration builds them in each turn.
+    /// How often volumes and cullers are built in a pass, to measure Co; calibration builds them in
+    /// each turn.
     pub builds: usize,
 }
 
@@ -60,7 +64,8 @@ pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
 
 /// `n` of the scene's bodies placed and set going afresh in a box of `stretch` times its side.
 ///
-/// They keep the scene's order, in which bodies of one shape stand together: such pairs are faster to test than mixed ones.
+/// They keep the scene's order, in which bodies of one shape stand together: such pairs are faster
+/// to test than mixed ones.
 fn resample(scene: &Scene, n: usize, stretch: f32, stream: u64) -> Scene {
     let mut draws = Stream::new(SEED, stream);
     let original = &scene.bodies;
@@ -112,8 +117,8 @@ fn extent(scene: &Scene) -> f32 {
     2.0 * (0..bodies.len()).map(reach).fold(0.0, f32::max)
 }
 
-/// The settings for a calibration scene of another size: the same bodies of interest, and a budget for the same share of
-/// its pairs.
+/// The settings for a calibration scene of another size: the same bodies of interest, and a budget
+/// for the same share of its pairs.
 fn adapted(settings: &CullSettings, of: &Scene, to: &Scene) -> CullSettings {
     let [n, of_n] = [to, of].map(|scene| scene.bodies.len());
     let counterpart = |body: u32| ((body as usize * n / of_n.max(1)) as u32).min(n as u32 - 1);
@@ -151,7 +156,8 @@ struct Prepared {
     splits: Vec<Split>,
 }
 
-/// The calibration of some variants for one scene, in the same passes as the frames that it predicts.
+/// The calibration of some variants for one scene, in the same passes as the frames that it
+/// predicts.
 pub struct Calibration {
     prepared: Vec<Prepared>,
     /// Which of them is spheres alone.
@@ -165,8 +171,8 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Prepares the calibration scenes. Spheres alone are calibrated in any case ([`Self::companion`]): what other variants
-    /// pay beyond them has a name.
+    /// Prepares the calibration scenes. Spheres alone are calibrated in any case
+    /// ([`Self::companion`]): what other variants pay beyond them has a name.
     ///
     /// # Errors
     /// Effects that can't be simulated.
@@ -206,8 +212,9 @@ impl Calibration {
         })
     }
 
-    /// Spheres alone, where they aren't among the variants. They take their turns with the predicted frames as well: the
-    /// branches and caches that a culler finds depend on who else ran.
+    /// Spheres alone, where they aren't among the variants. They take their turns with the
+    /// predicted frames as well: the branches and caches that a culler finds depend on who else
+    /// ran.
     #[must_use]
     pub fn companion(&self) -> Option<&Variant> {
         self.companion.as_ref()
@@ -230,7 +237,8 @@ impl Calibration {
     /// # Errors
     /// Settings that can't be carried out, a body that leaves the contract.
     pub fn turn(&mut self, number: usize) -> Result<(), SimulationError> {
-        // Neighbours in time are far apart in size: a drift must not look like a price. Five and eight share no divisor.
+        // Neighbours in time are far apart in size: a drift must not look like a price. Five and
+        // eight share no divisor.
         let subject = number * 5 % SCENES;
         let (scene, trajectory) = &mut self.subjects[subject];
         let poses = next_turn(trajectory, scene.bodies.len(), &mut Vec::new())?;
@@ -245,8 +253,8 @@ impl Calibration {
             };
             cullers.push(variant.culling_of(&prepared.shapes, scene, self.tier)?);
         }
-        // Buffers have grown, and all others have run, before the first frame is timed; on other poses, since what was just
-        // seen would not be cold.
+        // Buffers have grown, and all others have run, before the first frame is timed; on other
+        // poses, since what was just seen would not be cold.
         cullers
             .iter_mut()
             .for_each(|culler| culler.frame(&scene.bodies));
@@ -283,7 +291,8 @@ impl Calibration {
         Ok(())
     }
 
-    /// What the pass shows: prices for warm frames and for cold ones, of each variant. Another pass begins.
+    /// What the pass shows: prices for warm frames and for cold ones, of each variant. Another pass
+    /// begins.
     pub fn prices(&mut self) -> [Vec<Prices>; 2] {
         let all = std::array::from_fn(|regime| {
             let spheres = explain::spheres(&self.prepared[self.spheres].observed[regime]);
@@ -314,7 +323,8 @@ impl Calibration {
     }
 }
 
-/// Builds what a variant's volume needs of one shape beyond what making the culler builds: the work behind Co.
+/// Builds what a variant's volume needs of one shape beyond what making the culler builds: the work
+/// behind Co.
 pub fn construct(volume: Volume, shape: &Shape, axes: Axes) {
     match volume {
         Volume::Sphere => drop(std::hint::black_box(Ball::smallest(&shape.vertices))),
@@ -340,7 +350,8 @@ fn volume_seconds(variant: &Variant, shapes: &[Shape]) -> Vec<f64> {
     variant.volumes().into_iter().map(seconds).collect()
 }
 
-/// Builds a variant's volumes of all shapes and its culler, once: the culler, and Co as measured, in seconds.
+/// Builds a variant's volumes of all shapes and its culler, once: the culler, and Co as measured,
+/// in seconds.
 ///
 /// # Errors
 /// Settings that can't be carried out.

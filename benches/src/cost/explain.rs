@@ -1,9 +1,10 @@
 //! Prices from observed turns: each stage's seconds explained by its counts.
 //!
-//! An update stage follows Nu; finding follows frames, bodies, misses and hits; the second test follows its tests. Prices
-//! are therefore marginal: a hit costs what one more hit costs among the misses around it, with the vector of lanes
-//! that it keeps busy. A second test always sees about the same share of hits, so that no choice of scenes could tell the
-//! price of a hit from that of a miss: lists of known shares do ([`Split`]), and the frames themselves set the level.
+//! An update stage follows Nu; finding follows frames, bodies, misses and hits; the second test
+//! follows its tests. Prices are therefore marginal: a hit costs what one more hit costs among the
+//! misses around it, with the vector of lanes that it keeps busy. A second test always sees about
+//! the same share of hits, so that no choice of scenes could tell the price of a hit from that of a
+//! miss: lists of known shares do ([`Split`]), and the frames themselves set the level.
 
 use super::VolumeCosts;
 use super::fit::{self, Measurement};
@@ -51,7 +52,8 @@ impl Observed {
 pub(super) struct Split(f64);
 
 impl Split {
-    /// Times lists of which a quarter and three quarters hit; `None` where there is no second test or too few pairs.
+    /// Times lists of which a quarter and three quarters hit; `None` where there is no second test
+    /// or too few pairs.
     pub fn of(
         variant: &Variant,
         shapes: &[Shape],
@@ -86,7 +88,8 @@ impl Split {
     }
 }
 
-/// A list, in random order, of which so many quarters are among the `kept`, as long as both kinds last.
+/// A list, in random order, of which so many quarters are among the `kept`, as long as both kinds
+/// last.
 fn mixture(listed: &[[u32; 2]], kept: &[[u32; 2]], quarters: usize) -> Option<PairList> {
     let mut kept = kept.to_vec();
     kept.sort_unstable();
@@ -112,8 +115,8 @@ pub(super) fn spheres(turns: &[Observed]) -> VolumeCosts {
     alone(Volume::Sphere, turns)
 }
 
-/// Explains a variant's turns. `built` has the seconds of building each volume of all shapes; `spheres` is what spheres
-/// alone cost on the same scenes.
+/// Explains a variant's turns. `built` has the seconds of building each volume of all shapes;
+/// `spheres` is what spheres alone cost on the same scenes.
 pub(super) fn prices(
     variant: &Variant,
     turns: &[Observed],

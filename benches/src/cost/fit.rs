@@ -1,8 +1,9 @@
 //! Prices from measurements: least squares without negative prices.
 //!
-//! A measured stage took Σ countⱼ·priceⱼ. Each row is divided by its seconds, so that the fit minimises the sum of squared
-//! *relative* residuals: a scene of fifty bodies weighs as much as one of six hundred. Prices can't be negative, and there
-//! are at most four of them: every subset of them is fitted freely, and the best one that came out positive wins.
+//! A measured stage took Σ countⱼ·priceⱼ. Each row is divided by its seconds, so that the fit
+//! minimises the sum of squared *relative* residuals: a scene of fifty bodies weighs as much as one
+//! of six hundred. Prices can't be negative, and there are at most four of them: every subset of
+//! them is fitted freely, and the best one that came out positive wins.
 
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
@@ -21,8 +22,8 @@ pub struct Measurement<const N: usize> {
     pub seconds: f64,
 }
 
-/// The prices ≥ 0 that explain `rows` best; all 0 where nothing was measured. Rows that lie far off (the machine did
-/// something else) are left out of a second fit.
+/// The prices ≥ 0 that explain `rows` best; all 0 where nothing was measured. Rows that lie far off
+/// (the machine did something else) are left out of a second fit.
 #[must_use]
 pub fn prices<const N: usize>(rows: &[Measurement<N>]) -> [f64; N] {
     let rows: Vec<&Measurement<N>> = rows.iter().filter(|row| row.seconds > 0.0).collect();

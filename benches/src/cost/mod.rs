@@ -1,7 +1,7 @@
 //! What culling costs: the paper's formula (equation 1) T = Nu·Cu + Nv·Cv + Co.
 //!
-//! Nu and Nv are [counted](crate::measure::counts); Cu, Cv and Co are [calibrated](calibrate) in the same
-//! [`pass`](mod@pass) as the frames that they predict, on other scenes.
+//! Nu and Nv are [counted](crate::measure::counts); Cu, Cv and Co are [calibrated](calibrate) in
+//! the same [`pass`](mod@pass) as the frames that they predict, on other scenes.
 
 pub mod calibrate;
 mod explain;
@@ -26,10 +26,11 @@ pub struct VolumeCosts {
     pub construct_body: f64,
     /// Per frame, whatever the number of bodies.
     pub frame: f64,
-    /// Pair finding, per body and frame: arranging it for the finder and running over its candidates.
+    /// Pair finding, per body and frame: arranging it for the finder and running over its
+    /// candidates.
     pub body: f64,
-    /// Pair finding, per pair that the first of two tests lets through: listing it for the second, and with an object of
-    /// interest selecting and merging it.
+    /// Pair finding, per pair that the first of two tests lets through: listing it for the second,
+    /// and with an object of interest selecting and merging it.
     pub handle: f64,
     /// Cv of a pair that survives.
     pub hit: f64,

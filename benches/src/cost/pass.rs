@@ -1,5 +1,6 @@
-//! A pass: one run of a scene, whose frames take turns with those of its calibration, so that a drift of the machine falls
-//! on the prices and on what they predict alike. Passes lie apart in time, and each is one observation.
+//! A pass: one run of a scene, whose frames take turns with those of its calibration, so that a
+//! drift of the machine falls on the prices and on what they predict alike. Passes lie apart in
+//! time, and each is one observation.
 
 use super::calibrate::{Calibration, build};
 use super::predict::Prices;
@@ -96,8 +97,9 @@ impl Frames for Simulated {
 
 /// Sees what cullers report, outside of the timing.
 pub trait Observer {
-    /// A variant's number, the frame and the culler, right behind it. The next frame finds what this leaves in caches and branch
-    /// predictors (hashing the pairs here made warm frames take up to a fifth more): copy, and work between turns.
+    /// A variant's number, the frame and the culler, right behind it. The next frame finds what
+    /// this leaves in caches and branch predictors (hashing the pairs here made warm frames take up
+    /// to a fifth more): copy, and work between turns.
     fn frame(&mut self, number: usize, frame: u32, culling: &Culling);
 
     /// All variants have taken their turn.

@@ -2,9 +2,9 @@
 //!
 //! > T = Co + Nu·Cu + F + Nv·Cv, summed over a variant's volumes
 //!
-//! is the paper's equation 1 with F, pair finding, as a stage of its own: a price per frame, one per body and frame, and one
-//! per pair that goes on to a second test: it is listed, and with an object of interest selected and merged. Cv is two
-//! prices, for hits and for misses.
+//! is the paper's equation 1 with F, pair finding, as a stage of its own: a price per frame, one
+//! per body and frame, and one per pair that goes on to a second test: it is listed, and with an
+//! object of interest selected and merged. Cv is two prices, for hits and for misses.
 
 use serde::{Deserialize, Serialize};
 
@@ -32,7 +32,8 @@ pub struct Prices {
     pub volumes: Vec<Price>,
 }
 
-/// The terms of the formula for one volume: seconds per frame, but for `construct`, which is paid once.
+/// The terms of the formula for one volume: seconds per frame, but for `construct`, which is paid
+/// once.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Terms {
     /// The volume.
@@ -54,7 +55,8 @@ pub struct Terms {
     pub test: f64,
 }
 
-/// Half-widths of the intervals over passes of one volume's [`Terms`], in the same units; infinite for one pass.
+/// Half-widths of the intervals over passes of one volume's [`Terms`], in the same units; infinite
+/// for one pass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TermWidths {
     /// The volume.
@@ -138,7 +140,8 @@ impl Terms {
 }
 
 impl Prices {
-    /// Predicts a run of `frames` frames of `bodies` bodies from what it counted: the terms of each volume.
+    /// Predicts a run of `frames` frames of `bodies` bodies from what it counted: the terms of each
+    /// volume.
     #[must_use]
     pub fn predict(&self, counts: &Counts, frames: u32, bodies: usize) -> Vec<Terms> {
         let (frames, bodies) = (f64::from(frames), bodies as f64);
@@ -183,7 +186,8 @@ mod tests {
             finding: 0.0,
             test: 5.0,
         };
-        // Student's quantile for one degree of freedom is 12.706; the standard error of 1 and 3 is 1.
+        // Student's quantile for one degree of freedom is 12.706; the standard error of 1 and 3 is
+        // 1.
         let widths = TermWidths::of(&[pass(1.0), pass(3.0)]).map(|w| [w.update, w.test]);
         let [update, test] = widths.unwrap_or_default();
         assert!((update - 12.706).abs() < 1e-3 && test == 0.0, "{widths:?}");

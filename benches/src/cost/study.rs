@@ -1,4 +1,5 @@
-//! What each strategy costs on one scene: passes over seeds, each with its calibration, and what follows from them.
+//! What each strategy costs on one scene: passes over seeds, each with its calibration, and what
+//! follows from them.
 
 use miette::Diagnostic;
 use serde::Serialize;

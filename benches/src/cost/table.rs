@@ -1,4 +1,5 @@
-//! T of each variant in each regime: the formula's terms, predicted from prices of other scenes, beside what runs took.
+//! T of each variant in each regime: the formula's terms, predicted from prices of other scenes,
+//! beside what runs took.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +19,8 @@ pub struct Compared {
     pub predicted: Estimate,
     /// By the clock.
     pub measured: Estimate,
-    /// Measured over predicted, less one, pass by pass: its interval holds the calibration's uncertainty as well.
+    /// Measured over predicted, less one, pass by pass: its interval holds the calibration's
+    /// uncertainty as well.
     pub residual: Estimate,
 }
 
@@ -80,8 +82,8 @@ impl Cost {
     }
 }
 
-/// The cost of variant number `at` from passes over one scene in the order of time; `None` where the
-/// formula has no term for it, or nothing was measured.
+/// The cost of variant number `at` from passes over one scene in the order of time; `None` where
+/// the formula has no term for it, or nothing was measured.
 #[must_use]
 pub fn cost(
     (scene, bodies): (&str, usize),

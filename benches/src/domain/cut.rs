@@ -1,15 +1,18 @@
 //! Recursive bisection: which rank owns which part of space.
 //!
-//! Ranks are halved again and again, and space with them: each plane has as many of its part's ball centres below as its lower
-//! ranks have a share in, across the axis along which these centres reach farthest. A plane is an f32 that is one of
-//! the coordinates, found digit by digit from counts that are summed over ranks (a radix selection), so no rank ever sees
-//! another's bodies, and the planes depend on the set of centres alone, not on who holds which. A centre below a plane
-//! is owned below, one on it or beyond above: a comparison of two f32, which every rank decides alike.
+//! Ranks are halved again and again, and space with them: each plane has as many of its part's ball
+//! centres below as its lower ranks have a share in, across the axis along which these centres
+//! reach farthest. A plane is an f32 that is one of the coordinates, found digit by digit from
+//! counts that are summed over ranks (a radix selection), so no rank ever sees another's bodies,
+//! and the planes depend on the set of centres alone, not on who holds which. A centre below a
+//! plane is owned below, one on it or beyond above: a comparison of two f32, which every rank
+//! decides alike.
 //!
-//! Partitioners that are kept (coupe, the METIS family) work on a mesh or points in one memory; MPI ones are C and another
-//! installation. Selection over ranks is shorter than what would bind them.
+//! Partitioners that are kept (coupe, the METIS family) work on a mesh or points in one memory; MPI
+//! ones are C and another installation. Selection over ranks is shorter than what would bind them.
 
-use super::network::{Network, key, of_key};
+use super::float_key::{key, of_key};
+use crate::network::Network;
 
 /// Where space is cut, and who owns what.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,7 +146,8 @@ impl Cuts {
         }
     }
 
-    /// Calls `visit` for every rank whose cell is within `far` of a centre in each coordinate, and its distance so measured.
+    /// Calls `visit` for every rank whose cell is within `far` of a centre in each coordinate, and
+    /// its distance so measured.
     pub fn near(&self, centre: [f32; 3], far: f64, visit: &mut impl FnMut(usize, f64)) {
         self.walk(0, centre, [0.0; 3], far, visit);
     }
@@ -165,7 +169,8 @@ impl Cuts {
                 below,
                 above,
             } => {
-                // The sign of a difference is that of the comparison, so that the own side is at distance 0.
+                // The sign of a difference is that of the comparison, so that the own side is at
+                // distance 0.
                 let beyond = f64::from(centre[axis]) - f64::from(at);
                 for (side, away) in [(below, beyond), (above, -beyond)] {
                     let mut gap = gap;
@@ -288,7 +293,7 @@ fn select(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::local::on_ranks;
+    use crate::network::on_ranks;
 
     /// Points of a lattice with many equal coordinates, and some far away.
     fn points() -> Vec<[f32; 3]> {

@@ -3,7 +3,7 @@
 use miette::Diagnostic;
 use thiserror::Error;
 
-use super::network::{Network, tell_all};
+use crate::network::{Network, tell_all};
 use crate::simulate::SimulationError;
 
 /// Why a scene can't be run, or run on, on many ranks.
@@ -34,8 +34,8 @@ pub enum DomainError {
     },
 }
 
-/// The outcome on which all ranks agree: an error of one is an error of all. Collective; returns the largest `number` of all
-/// ranks besides.
+/// The outcome on which all ranks agree: an error of one is an error of all. Collective; returns
+/// the largest `number` of all ranks besides.
 pub(super) fn agree<T>(
     network: &impl Network,
     outcome: Result<T, DomainError>,

@@ -2,13 +2,14 @@
 
 use super::cut::Cuts;
 use super::held::{Held, Record, read_poses, write_pose};
-use super::network::Network;
+use crate::network::Network;
 use sdop::rounding::border::may_meet;
 
 /// A body's ball centre and its reach, by place.
 pub(super) type Balls = [([f32; 3], f32)];
 
-/// Which bodies travel between this rank and each other one, by their places here, in the order of their poses in a message.
+/// Which bodies travel between this rank and each other one, by their places here, in the order of
+/// their poses in a message.
 #[derive(Debug)]
 pub(super) struct Plan {
     send: Vec<Vec<u32>>,
@@ -33,7 +34,8 @@ impl Plan {
         Self { send, receive }
     }
 
-    /// Finds the ghosts that others need of `held`, all owned, sends them, and adds those received. Collective.
+    /// Finds the ghosts that others need of `held`, all owned, sends them, and adds those received.
+    /// Collective.
     pub fn make(
         network: &impl Network,
         cuts: &Cuts,

@@ -1,5 +1,6 @@
-//! The bodies that a rank holds: those that it owns and its ghosts, copies of what others own, in the order of their numbers
-//! in the scene. That order is what makes a pair's test the same on every rank: the lower number is always the first.
+//! The bodies that a rank holds: those that it owns and its ghosts, copies of what others own, in
+//! the order of their numbers in the scene. That order is what makes a pair's test the same on
+//! every rank: the lower number is always the first.
 
 use crate::effects::Velocities;
 use sdop::bodies::Bodies;
@@ -145,7 +146,8 @@ impl Held {
         self.numbers.binary_search(&number).ok()
     }
 
-    /// Keeps the bodies for which `stays`, and adds others: with velocities as owned ones, without as ghosts.
+    /// Keeps the bodies for which `stays`, and adds others: with velocities as owned ones, without
+    /// as ghosts.
     pub fn change(&mut self, stays: impl Fn(usize) -> bool, mut incoming: Vec<Record>) {
         incoming.sort_unstable_by_key(|record| record.number);
         let old = std::mem::take(self);

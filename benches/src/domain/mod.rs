@@ -1,13 +1,17 @@
-//! One world on many ranks, each a process that holds a part of the bodies: what outgrows one machine.
+//! One world on many ranks, each a process that holds a part of the bodies: what outgrows one
+//! machine.
 //!
-//! Space is cut into a cell a rank (`cut`); a rank owns the bodies whose ball's centre lies in its cell, knows the ghosts that
-//! its own may meet (`ghosts`, by the reach of [`rounding::border`](sdop::rounding::border)), and culls both with the
-//! library's [`Culler`](sdop::Culler). A pair is reported by the owner of the body that reaches less far, of two alike by
-//! that of the lower number: numbers that both ranks have to the bit. Every verdict is a function of the two bodies
-//! alone, the lower number first, so all ranks together report the pairs of one process, whatever their number.
+//! Space is cut into a cell a rank (`cut`); a rank owns the bodies whose ball's centre lies in its
+//! cell, knows the ghosts that its own may meet (`ghosts`, by the reach of
+//! [`rounding::border`](sdop::rounding::border)), and culls both with the library's
+//! [`Culler`](sdop::Culler). A pair is reported by the owner of the body that reaches less far, of
+//! two alike by that of the lower number: numbers that both ranks have to the bit. Every verdict is
+//! a function of the two bodies alone, the lower number first, so all ranks together report the
+//! pairs of one process, whatever their number.
 //!
-//! Owners, ghosts and the culler's set of bodies stay while no body has drifted by more than a skin; in between, only ghosts'
-//! poses travel. Then bodies migrate to their new owners, and where their numbers have grown too unequal, space is cut anew.
+//! Owners, ghosts and the culler's set of bodies stay while no body has drifted by more than a
+//! skin; in between, only ghosts' poses travel. Then bodies migrate to their new owners, and where
+//! their numbers have grown too unequal, space is cut anew.
 //!
 //! ```text
 //!  step ──▶ drift? ──▶ poses of ghosts ──────────────▶ cull ──▶ own pairs
@@ -15,24 +19,19 @@
 //!              ╰─▶ cut where unequal ─▶ migrate ─▶ ghosts ╯
 //! ```
 //!
-//! Ranks reach one another by a [`Network`]: MPI, or threads of one process, which tests use.
+//! Ranks reach one another by a [`Network`](crate::network::Network): MPI, or threads of one
+//! process, which tests use.
 
 mod cut;
 mod error;
+mod float_key;
 mod ghosts;
 mod held;
-pub mod local;
-#[cfg(feature = "mpi")]
-mod mpi;
-mod network;
 mod rank;
 mod renew;
 mod run;
 
 pub use cut::Cuts;
 pub use error::DomainError;
-#[cfg(feature = "mpi")]
-pub use mpi::MpiNetwork;
-pub use network::Network;
 pub use rank::{Rank, RankFrame};
 pub use run::{BorderSeconds, DomainSummary, RankLine, RankSeconds, run};

@@ -6,9 +6,9 @@ use super::cut::Cuts;
 use super::error::{DomainError, agree};
 use super::ghosts::{Balls, Plan};
 use super::held::Held;
-use super::network::Network;
 use super::run::BorderSeconds;
 use crate::effects::Effects;
+use crate::network::Network;
 use crate::scene::Scene;
 use crate::simulate::SimulationError;
 use sdop::bodies::Bodies;
@@ -59,18 +59,20 @@ pub(super) struct Work {
 pub struct RankFrame<'a> {
     /// Counted from 0.
     pub number: u32,
-    /// The pairs that this rank reports, by the bodies' numbers in the scene, in the finder's order.
+    /// The pairs that this rank reports, by the bodies' numbers in the scene, in the finder's
+    /// order.
     pub pairs: &'a [[u32; 2]],
     /// What this rank's culling of it took; without effects and borders.
     pub seconds: Seconds,
 }
 
 impl<'a, N: Network> Rank<'a, N> {
-    /// Prepares a rank for its share of the scene, as [`SceneFile::build_share`](crate::scene::SceneFile::build_share)
-    /// has made it. Collective.
+    /// Prepares a rank for its share of the scene, as
+    /// [`SceneFile::build_share`](crate::scene::SceneFile::build_share) has made it. Collective.
     ///
     /// # Errors
-    /// What depends on the order of all pairs: a budget, and the response to contacts. Settings that can't be carried out.
+    /// What depends on the order of all pairs: a budget, and the response to contacts. Settings
+    /// that can't be carried out.
     pub fn new(
         network: &'a N,
         mut scene: Scene,
@@ -115,7 +117,8 @@ impl<'a, N: Network> Rank<'a, N> {
         })
     }
 
-    /// Goes to the next frame (the first needs no step) and culls it; `None` after the last. Collective.
+    /// Goes to the next frame (the first needs no step) and culls it; `None` after the last.
+    /// Collective.
     ///
     /// # Errors
     /// A body that left the contract, on any rank.
@@ -127,8 +130,8 @@ impl<'a, N: Network> Rank<'a, N> {
         self.frame(stepped).map(Some)
     }
 
-    /// Goes to the next frame with poses from elsewhere, one for each body of the scene, in place of a step, and culls it.
-    /// Static bodies stay where they are. Collective.
+    /// Goes to the next frame with poses from elsewhere, one for each body of the scene, in place
+    /// of a step, and culls it. Static bodies stay where they are. Collective.
     ///
     /// # Errors
     /// A pose outside of the contract.
@@ -198,7 +201,7 @@ impl<'a, N: Network> Rank<'a, N> {
     fn contract_error(&self, error: ContractError) -> DomainError {
         let (frame, body) = (self.next, self.held.numbers[error.body] as usize);
         let error = ContractError { body, ..error };
-        SimulationError::Contract { frame, error }.into()
+        SimulationError::contract(frame, error).into()
     }
 
     /// The ball of the body in a place now.
@@ -265,7 +268,8 @@ impl<'a, N: Network> Rank<'a, N> {
     }
 }
 
-/// The place of the body whose owner reports a pair of places: the one that reaches less far, of two alike the lower.
+/// The place of the body whose owner reports a pair of places: the one that reaches less far, of
+/// two alike the lower.
 fn decider(balls: &Balls, [i, j]: [u32; 2]) -> usize {
     let [i, j] = [i as usize, j as usize];
     if balls[j].1 < balls[i].1 { j } else { i }
@@ -275,6 +279,10 @@ fn decider(balls: &Balls, [i, j]: [u32; 2]) -> usize {
 fn supported(scene: &Scene, ranks: usize) -> Result<(), DomainError> {
     let refuse = |what: String, hint| Err(DomainError::Unsupported { what, ranks, hint });
     let strategy = scene.cull.strategy;
+    if !scene.fine.is_empty() {
+        let hint = "ranks exchange f32 poses: take one process, or round the translations to f32";
+        return refuse("translations that f32 doesn't hold".to_owned(), hint);
+    }
     if ranks > 1 && strategy.scheme().has_budget() {
         let hint =
             "a budget is spent in one order over all pairs: take another strategy, or one process";

@@ -1,21 +1,24 @@
-//! Owners and ghosts found anew: bodies migrate, and space is cut where their numbers have grown unequal.
+//! Owners and ghosts found anew: bodies migrate, and space is cut where their numbers have grown
+//! unequal.
 
 use std::time::Instant;
 
 use super::cut::Cuts;
 use super::ghosts::{Border, Plan};
 use super::held::Record;
-use super::network::Network;
 use super::rank::Rank;
 use crate::effects::runs;
+use crate::network::Network;
 use sdop::rounding::border;
 use sdop::settings::{Interest, ViewCone};
 
-/// A skin of this share of the mean reach: a renewal costs a rank what some frames of all its bodies do, and a wider skin adds
-/// ghosts at its borders alone. Wider still pays in worlds of millions a rank, and not in small or crowded ones.
+/// A skin of this share of the mean reach: a renewal costs a rank what some frames of all its
+/// bodies do, and a wider skin adds ghosts at its borders alone. Wider still pays in worlds of
+/// millions a rank, and not in small or crowded ones.
 const SKIN: f64 = 0.5;
 
-/// Space is cut anew when a rank owns this much more than its equal share, and more than a few bodies.
+/// Space is cut anew when a rank owns this much more than its equal share, and more than a few
+/// bodies.
 const UNEQUAL: f64 = 1.1;
 const A_FEW: f64 = 16.0;
 
@@ -47,7 +50,8 @@ impl<N: Network> Rank<'_, N> {
         (0..self.held.len()).map(|place| self.ball(place)).collect()
     }
 
-    /// Drops the ghosts and moves bodies to their owners; cuts space where these are not there yet, or too unequal.
+    /// Drops the ghosts and moves bodies to their owners; cuts space where these are not there yet,
+    /// or too unequal.
     fn migrate(&mut self) {
         let (network, ranks) = (self.network, self.network.size());
         if ranks == 1 {

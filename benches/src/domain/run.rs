@@ -3,17 +3,17 @@
 use serde::Serialize;
 
 use super::error::DomainError;
-use super::network::{Network, tell_first};
 use super::rank::Rank;
 use crate::effects::EffectReport;
 use crate::hash::{PairsDigest, PairsHash, volumes_sha256};
+use crate::network::{Network, tell_first};
 use crate::percentiles::Percentiles;
 use crate::simulate::Summary;
 use sdop::counters::{Counters, Seconds};
 use sdop::settings::{TestedVolume, Updates};
 
-/// Up to so many bodies, rank 0 gathers all pairs for `pairs_sha256`, which needs them sorted; beyond, there is the digest
-/// alone.
+/// Up to so many bodies, rank 0 gathers all pairs for `pairs_sha256`, which needs them sorted;
+/// beyond, there is the digest alone.
 const GATHERED: usize = 1 << 20;
 
 /// Wall time that borders add to [`Seconds`]. Sums over frames.
@@ -36,7 +36,8 @@ pub struct RankLine {
     pub bodies: u64,
     /// Ghosts held, summed over frames.
     pub ghosts: u64,
-    /// Volumes updated of ghosts, besides those in the counters; with lazy updates those of the first test alone.
+    /// Volumes updated of ghosts, besides those in the counters; with lazy updates those of the
+    /// first test alone.
     pub ghost_updates: u64,
     /// Pairs found here and reported by another rank.
     pub others_pairs: u64,
@@ -68,12 +69,14 @@ pub struct RankSeconds {
     pub border: BorderSeconds,
 }
 
-/// What a finished run says of itself, the same on every rank but for the hash of all pairs, which rank 0 alone has.
+/// What a finished run says of itself, the same on every rank but for the hash of all pairs, which
+/// rank 0 alone has.
 #[derive(Clone, Debug)]
 pub struct DomainSummary {
-    /// As of one process. Counters are sums over ranks: updates are those of owned bodies, tests and hits count what every rank
-    /// tested, so a pair of ghosts more than once; `reported` counts each pair once. Seconds are the largest of
-    /// any rank, term by term, those of single frames too. The finder is rank 0's.
+    /// As of one process. Counters are sums over ranks: updates are those of owned bodies, tests
+    /// and hits count what every rank tested, so a pair of ghosts more than once; `reported` counts
+    /// each pair once. Seconds are the largest of any rank, term by term, those of single frames
+    /// too. The finder is rank 0's.
     pub whole: Summary,
     /// What borders cost, the largest of any rank, term by term.
     pub border: BorderSeconds,
@@ -81,7 +84,8 @@ pub struct DomainSummary {
     pub ranks: Vec<RankLine>,
 }
 
-/// Runs a scene's share on this rank to the last frame. `observe` sees each frame's number, after its culling. Collective.
+/// Runs a scene's share on this rank to the last frame. `observe` sees each frame's number, after
+/// its culling. Collective.
 ///
 /// # Errors
 /// As [`Rank::next_frame`].
@@ -224,7 +228,8 @@ fn combine_effects(network: &impl Network, effects: &mut [EffectReport]) {
 
 /// Makes each the largest of any rank; none is negative. Collective.
 fn take_largest<const N: usize>(network: &impl Network, mut seconds: [&mut f64; N]) {
-    // The bits of numbers that are not negative have their order. Sums of differences may end a little below 0.
+    // The bits of numbers that are not negative have their order. Sums of differences may end a
+    // little below 0.
     let mut bits = seconds.each_ref().map(|x| x.max(0.0).to_bits());
     network.max(&mut bits);
     for (x, largest) in seconds.iter_mut().zip(bits) {

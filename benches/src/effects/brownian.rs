@@ -1,5 +1,5 @@
-//! Brownian kicks: each step a share of the dynamic bodies, drawn with replacement, gets a new velocity
-//! (Broadmark's brownian scene kicks about N/100, Serpa & Rodrigues 2019).
+//! Brownian kicks: each step a share of the dynamic bodies, drawn with replacement, gets a new
+//! velocity (Broadmark's brownian scene kicks about N/100, Serpa & Rodrigues 2019).
 
 use std::ops::Range;
 
@@ -28,7 +28,8 @@ struct Brownian {
     draws: Stream,
     speed: Interval,
     kicks_a_step: f64,
-    /// Where each run of the scene's dynamic bodies begins and ends, and how many dynamic bodies precede it.
+    /// Where each run of the scene's dynamic bodies begins and ends, and how many dynamic bodies
+    /// precede it.
     runs: Vec<(Range<usize>, usize)>,
     dynamic: u32,
     /// The numbers in the scene of the bodies at hand, if they are not all.

@@ -1,5 +1,6 @@
-//! Gravity: v ← v + dt·a, the same for all bodies. With a period the acceleration turns about an axis, which keeps
-//! a box of bodies stirred (Broadmark's rotating-gravity scene, Serpa & Rodrigues 2019).
+//! Gravity: v ← v + dt·a, the same for all bodies. With a period the acceleration turns about an
+//! axis, which keeps a box of bodies stirred (Broadmark's rotating-gravity scene, Serpa & Rodrigues
+//! 2019).
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -13,8 +14,8 @@ use super::{Effect, Made, Velocities};
 use crate::number::{Positive, Real, vector};
 use sdop::bodies::Bodies;
 
-/// `gravity = [0, 0, -9.81]`, or `gravity = { acceleration = [0, 0, -9.81] }`, for a turning one with `period` in seconds and
-/// an `axis`.
+/// `gravity = [0, 0, -9.81]`, or `gravity = { acceleration = [0, 0, -9.81] }`, for a turning one
+/// with `period` in seconds and an `axis`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Acceleration at the start, world frame.

@@ -1,9 +1,10 @@
-//! What moves the bodies between two frames. A scene lists the effects that it calls for; nothing else runs, so
-//! nothing else costs. The paper's scenes need motion and walls alone.
+//! What moves the bodies between two frames. A scene lists the effects that it calls for; nothing
+//! else runs, so nothing else costs. The paper's scenes need motion and walls alone.
 //!
-//! A new effect is a file with its `Settings` (how a scene file writes it) and `new`, and its name below.
-//! Trajectories must be equal to the bit on every platform: f32 state, plain operations in one written order
-//! without FMA, square roots and trigonometry through `libm` alone. Intermediate f64 keeps to the same rules.
+//! A new effect is a file with its `Settings` (how a scene file writes it) and `new`, and its name
+//! below. Trajectories must be equal to the bit on every platform: f32 state, plain operations in
+//! one written order without FMA, square roots and trigonometry through `libm` alone. Intermediate
+//! f64 keeps to the same rules.
 
 pub mod brownian;
 pub mod gravity;
@@ -46,7 +47,8 @@ pub struct Start<'a> {
     pub velocities: &'a Velocities,
 }
 
-/// The world position of a body-frame point, computed in f64 and rounded once; t itself for the body origin.
+/// The world position of a body-frame point, computed in f64 and rounded once; t itself for the
+/// body origin.
 pub(crate) fn world_centre(point: [f32; 3], q: &[f32; 4], t: &[f32; 3]) -> [f32; 3] {
     if point == [0.0; 3] {
         return *t;
@@ -56,8 +58,8 @@ pub(crate) fn world_centre(point: [f32; 3], q: &[f32; 4], t: &[f32; 3]) -> [f32;
 
 /// One way in which bodies change from frame to frame.
 pub trait Effect: Send {
-    /// Advances the bodies by one step and returns how many it changed. `dynamic` are the runs of bodies that may move;
-    /// all others stay as they are.
+    /// Advances the bodies by one step and returns how many it changed. `dynamic` are the runs of
+    /// bodies that may move; all others stay as they are.
     fn step(
         &mut self,
         bodies: &mut Bodies,
@@ -65,8 +67,8 @@ pub trait Effect: Send {
         dynamic: &[Range<usize>],
     ) -> u64;
 
-    /// From now on the bodies are these of the scene, by their numbers in ascending order: an effect that draws bodies from
-    /// the whole scene needs to know them.
+    /// From now on the bodies are these of the scene, by their numbers in ascending order: an
+    /// effect that draws bodies from the whole scene needs to know them.
     fn renumber(&mut self, _numbers: &[u32]) {}
 }
 
@@ -88,7 +90,8 @@ pub struct EffectError {
 /// What `new` of an effect returns: the effect, or a problem and a hint.
 type Made = Result<Box<dyn Effect>, (String, &'static str)>;
 
-/// Declares the effects in the order in which a step applies them; the names are the keys of `[effects]`.
+/// Declares the effects in the order in which a step applies them; the names are the keys of
+/// `[effects]`.
 macro_rules! effects {
     ($($name:ident,)+) => {
         /// The `[effects]` table of a scene: what it calls for.
@@ -127,8 +130,8 @@ macro_rules! effects {
     };
 }
 
-// Velocities first, then poses from the new velocities (semi-implicit Euler), and the walls last, so that
-// every frame's spheres lie inside of them.
+// Velocities first, then poses from the new velocities (semi-implicit Euler), and the walls last,
+// so that every frame's spheres lie inside of them.
 effects! {
     gravity,
     brownian,
@@ -190,7 +193,8 @@ impl Effects {
         })
     }
 
-    /// Advances the bodies from one frame to the next and checks the contract where bodies may have moved.
+    /// Advances the bodies from one frame to the next and checks the contract where bodies may have
+    /// moved.
     ///
     /// # Errors
     /// A body that left the contract, by its index.
@@ -213,8 +217,9 @@ impl Effects {
             .try_for_each(|run| check_poses(bodies, run.clone()))
     }
 
-    /// Replaces the set of bodies: their `numbers` in the scene in ascending order, their velocities, and the runs among
-    /// them that this process moves. How far each effect has come stays.
+    /// Replaces the set of bodies: their `numbers` in the scene in ascending order, their
+    /// velocities, and the runs among them that this process moves. How far each effect has come
+    /// stays.
     pub fn replace(&mut self, numbers: &[u32], velocities: Velocities, moving: Vec<Range<usize>>) {
         for (_, effect) in &mut self.running {
             effect.renumber(numbers);

@@ -1,10 +1,12 @@
-//! Elastic response: two bodies whose bounding spheres touch and approach exchange momentum along the line of
-//! centres, as smooth balls of equal density (mass ∝ r³) do; a static body has infinite mass.
+//! Elastic response: two bodies whose bounding spheres touch and approach exchange momentum along
+//! the line of centres, as smooth balls of equal density (mass ∝ r³) do; a static body has infinite
+//! mass.
 //!
-//! With n = cj − ci, the relative approach a = (vi − vj)·n / |n|² > 0 changes vi by −2mj/(mi + mj)·a·n and vj by
-//! 2mi/(mi + mj)·a·n: momentum and kinetic energy stay. The paper's bodies pass through one another; this is for
-//! scenes that shouldn't. Contacts are those of the spheres in f64, found here and charged to this effect, so that
-//! trajectories never depend on the culling under test. Pairs are treated in index order.
+//! With n = cj − ci, the relative approach a = (vi − vj)·n / |n|² > 0 changes vi by −2mj/(mi +
+//! mj)·a·n and vj by 2mi/(mi + mj)·a·n: momentum and kinetic energy stay. The paper's bodies pass
+//! through one another; this is for scenes that shouldn't. Contacts are those of the spheres in
+//! f64, found here and charged to this effect, so that trajectories never depend on the culling
+//! under test. Pairs are treated in index order.
 
 use std::ops::Range;
 
@@ -39,7 +41,7 @@ pub(super) fn new(Settings::Elastic: &Settings, start: &Start<'_>) -> Made {
     let balls = start
         .shapes
         .iter()
-        .map(|s| (s.ball.centre.to_array(), s.ball.radius))
+        .map(|s| (s.ball.centre, s.ball.radius))
         .collect();
     Ok(Box::new(Elastic {
         balls,
@@ -112,7 +114,8 @@ fn exchange(
     let n = difference(&spheres[i], &spheres[j]);
     let (vi, vj) = (velocity[i].map(f64::from), velocity[j].map(f64::from));
     let approach = dot([0, 1, 2].map(|axis| vi[axis] - vj[axis]), n);
-    // Coincident centres have no line between them: their approach is 0, and dividing by n·n would make NaN.
+    // Coincident centres have no line between them: their approach is 0, and dividing by n·n would
+    // make NaN.
     if approach <= 0.0 {
         return 0;
     }
@@ -137,7 +140,8 @@ fn shares(bodies: &Bodies, spheres: &[Sphere], i: usize, j: usize) -> (f64, f64)
     (2.0 * mj / (mi + mj), 2.0 * mi / (mi + mj))
 }
 
-/// Uniform cells over the bodies' extent, each at least as wide as the largest sphere, bodies sorted by cell.
+/// Uniform cells over the bodies' extent, each at least as wide as the largest sphere, bodies
+/// sorted by cell.
 #[derive(Default)]
 struct Grid {
     low: [f64; 3],
@@ -161,7 +165,8 @@ impl Grid {
         for cell in 0..cells {
             self.starts[cell + 1] += self.starts[cell];
         }
-        // Filling moves each start to its cell's end, so the ends are shifted back by one cell afterwards.
+        // Filling moves each start to its cell's end, so the ends are shifted back by one cell
+        // afterwards.
         self.order.resize(spheres.len(), 0);
         for (body, sphere) in spheres.iter().enumerate() {
             let cell = self.index(self.cell(sphere));
@@ -173,8 +178,8 @@ impl Grid {
         self.starts[0] = 0;
     }
 
-    /// Chooses the cells: wide enough that touching spheres lie in neighbouring ones also after rounding, and no
-    /// more than about one a body.
+    /// Chooses the cells: wide enough that touching spheres lie in neighbouring ones also after
+    /// rounding, and no more than about one a body.
     fn fit(&mut self, spheres: &[Sphere]) {
         let along = |axis: usize| spheres.iter().map(move |sphere| sphere.centre[axis]);
         let widest = spheres

@@ -1,5 +1,6 @@
-//! Free rotation about a fixed world axis: q ← normalise(q + ½dt·ωq), with ω a pure quaternion (first order, then
-//! back to unit length). The scene draws each dynamic body's ω: any direction, a rate in radians a second.
+//! Free rotation about a fixed world axis: q ← normalise(q + ½dt·ωq), with ω a pure quaternion
+//! (first order, then back to unit length). The scene draws each dynamic body's ω: any direction, a
+//! rate in radians a second.
 
 use std::ops::Range;
 
@@ -47,7 +48,8 @@ impl Effect for Spin {
     }
 }
 
-/// normalise(q + hq) for the pure quaternion h. The norm is taken in f64, where no f32's square leaves the range.
+/// normalise(q + hq) for the pure quaternion h. The norm is taken in f64, where no f32's square
+/// leaves the range.
 fn turned([x, y, z, w]: [f32; 4], h: [f32; 3]) -> [f32; 4] {
     let q = [
         x + (h[0] * w + h[1] * z - h[2] * y),

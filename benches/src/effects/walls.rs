@@ -1,8 +1,8 @@
 //! Elastic walls of the box: a body whose bounding sphere reaches beyond a wall is mirrored back,
 //! w ← 2(wall − r) − w for its centre w, and turned round (paper, section 5).
 //!
-//! `specular` reverses the velocity component across the wall. `reverse` is the paper's equation 3, v' = −v, read
-//! literally: the whole velocity turns. Both keep the speed.
+//! `specular` reverses the velocity component across the wall. `reverse` is the paper's equation 3,
+//! v' = −v, read literally: the whole velocity turns. Both keep the speed.
 
 use std::ops::Range;
 
@@ -27,7 +27,8 @@ const ROUNDING: f32 = 1.0 / (1 << 22) as f32;
 
 struct Walls {
     kind: Settings,
-    /// By shape: the ball's centre in the body frame, and how far it may get from the box's middle along an axis.
+    /// By shape: the ball's centre in the body frame, and how far it may get from the box's middle
+    /// along an axis.
     shapes: Vec<([f32; 3], f32)>,
 }
 
@@ -42,7 +43,7 @@ pub(super) fn new(kind: &Settings, start: &Start<'_>) -> Made {
     let shapes = start
         .shapes
         .iter()
-        .map(|s| (s.ball.centre.to_array(), half - s.ball.radius));
+        .map(|s| (s.ball.centre, half - s.ball.radius));
     let walls = Walls {
         kind: *kind,
         shapes: shapes.collect(),
@@ -100,7 +101,8 @@ impl Effect for Walls {
     }
 }
 
-/// `w` mirrored at the limit that it passed. A step longer than the box would pass the opposite limit as well: it ends there.
+/// `w` mirrored at the limit that it passed. A step longer than the box would pass the opposite
+/// limit as well: it ends there.
 fn mirror(w: f32, limit: f32) -> f32 {
     (2.0 * limit.copysign(w) - w).clamp(-limit, limit)
 }

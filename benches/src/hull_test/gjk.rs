@@ -1,9 +1,11 @@
-//! Convex hulls: the tightest convex volume, by GJK (Gilbert, Johnson & Keerthi 1988) with certified rejection.
+//! Convex hulls: the tightest convex volume, by GJK (Gilbert, Johnson & Keerthi 1988) with
+//! certified rejection.
 //!
-//! Hulls A and B meet iff their difference A ⊖ B contains the origin. GJK walks towards the origin over simplices of that
-//! set. A pair is culled only on a direction d along which *every* vertex of A lies below every vertex of B by more than the
-//! rounding, so that the hull keeps the culler's promise; a walk that ends undecided reports. No kept crate certifies: their
-//! f32 tolerances cull touching pairs. Supports climb over the hull's edges from the last vertex found; rounding can
+//! Hulls A and B meet iff their difference A ⊖ B contains the origin. GJK walks towards the origin
+//! over simplices of that set. A pair is culled only on a direction d along which *every* vertex of
+//! A lies below every vertex of B by more than the rounding, so that the hull keeps the culler's
+//! promise; a walk that ends undecided reports. No kept crate certifies: their f32 tolerances cull
+//! touching pairs. Supports climb over the hull's edges from the last vertex found; rounding can
 //! strand a climb, so the certificate scans all vertices.
 
 use glam::{DMat3, DVec3};
@@ -12,7 +14,8 @@ use sdop::bodies::Bodies;
 use sdop::rounding::pose::rotation;
 use sdop::volume::{Hull, Shape};
 
-/// Margin of the certificate relative to the sizes involved: some hundred times what the f64 steps can err by.
+/// Margin of the certificate relative to the sizes involved: some hundred times what the f64 steps
+/// can err by.
 const MARGIN: f64 = 1.0 / (1_u64 << 42) as f64;
 /// Walks that take longer are undecided; ten steps are usual.
 const STEPS: usize = 64;
@@ -46,7 +49,10 @@ impl HullGraph {
         Self {
             starts: (0..=points.len()).map(start).collect(),
             links: edges.iter().map(|&[_, to]| to).collect(),
-            points: points.iter().map(|p| p.as_dvec3()).collect(),
+            points: points
+                .iter()
+                .map(|p| DVec3::from_array(p.map(f64::from)))
+                .collect(),
             reach: f64::from(shape.reach),
         }
     }
@@ -184,8 +190,9 @@ impl Simplex {
         self.len = N;
     }
 
-    /// Keeps the face nearest the origin and returns the direction from there to it; `None` when the origin is inside.
-    /// The newest point a is beyond the origin in the last direction, so only faces with a can be nearest.
+    /// Keeps the face nearest the origin and returns the direction from there to it; `None` when
+    /// the origin is inside. The newest point a is beyond the origin in the last direction, so only
+    /// faces with a can be nearest.
     fn approach(&mut self) -> Option<DVec3> {
         let [p, q, r, s] = self.points;
         match self.len {

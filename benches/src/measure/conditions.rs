@@ -6,13 +6,15 @@ use super::estimate::Estimate;
 
 /// Intervals wider than this share of their mean, to either side, are a disturbance.
 const WIDE: f64 = 0.1;
-/// Processes beside ours that want to run, on average, from which on the machine counts as disturbed.
+/// Processes beside ours that want to run, on average, from which on the machine counts as
+/// disturbed.
 const BUSY: f64 = 0.5;
 
 /// What the machine was like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
-    /// Processes that wanted to run beside ours, before and after, where the system tells: one-minute means.
+    /// Processes that wanted to run beside ours, before and after, where the system tells:
+    /// one-minute means.
     pub others: [Option<f64>; 2],
     /// How many of the quoted times have an interval of more than ± 10 %.
     pub wide: usize,

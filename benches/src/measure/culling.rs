@@ -1,4 +1,5 @@
-//! A culler of this library as a contestant: with its stage clock, and behind it the convex hulls where they are wanted.
+//! A culler of this library as a contestant: with its stage clock, and behind it the convex hulls
+//! where they are wanted.
 
 use std::time::Instant;
 
@@ -33,7 +34,8 @@ impl Stages {
         self.update + self.finding + self.refining + self.hulls
     }
 
-    /// Without some seconds of waiting: taken off the longest stage, where the interruption most likely fell.
+    /// Without some seconds of waiting: taken off the longest stage, where the interruption most
+    /// likely fell.
     #[must_use]
     pub fn without(mut self, waited: f64) -> Self {
         let stages = [
@@ -50,7 +52,8 @@ impl Stages {
     }
 }
 
-/// A culler of this library with its stage clock, and behind it the convex hulls where they are wanted.
+/// A culler of this library with its stage clock, and behind it the convex hulls where they are
+/// wanted.
 #[derive(Debug)]
 pub struct Culling {
     culler: Culler,

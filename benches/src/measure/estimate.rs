@@ -1,7 +1,8 @@
 //! Means with confidence intervals over seeds.
 //!
-//! Frames of one run are correlated: at the paper's speeds a body needs about a hundred frames to travel its own diameter.
-//! So a run counts as one observation, whatever its number of frames, and intervals are Student's over the runs' means.
+//! Frames of one run are correlated: at the paper's speeds a body needs about a hundred frames to
+//! travel its own diameter. So a run counts as one observation, whatever its number of frames, and
+//! intervals are Student's over the runs' means.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use special::{Beta as _, Gamma as _};
@@ -41,8 +42,9 @@ impl Estimate {
         }
     }
 
-    /// From values in the order of time, such as medians of runs apart. Neighbours in time share what the machine did: with
-    /// the correlation ρ of each value with the next, n values tell as much as n(1 − ρ)/(1 + ρ) independent ones.
+    /// From values in the order of time, such as medians of runs apart. Neighbours in time share
+    /// what the machine did: with the correlation ρ of each value with the next, n values tell as
+    /// much as n(1 − ρ)/(1 + ρ) independent ones.
     #[must_use]
     pub fn in_order(values: &[f64]) -> Self {
         let plain = Self::of(values);
@@ -71,7 +73,8 @@ impl Estimate {
         (value - self.mean).abs() <= self.half_width
     }
 
-    /// Probability of a mean at least this far from `truth`, if that were the truth; 1 for one seed.
+    /// Probability of a mean at least this far from `truth`, if that were the truth; 1 for one
+    /// seed.
     #[must_use]
     pub fn p_value(&self, truth: f64) -> f64 {
         if self.seeds < 2 {
@@ -124,7 +127,8 @@ pub fn chi_squared_p(chi_squared: f64, freedom: f64) -> f64 {
     1.0 - (0.5 * chi_squared).inc_gamma(0.5 * freedom)
 }
 
-/// Half-width of a two-sided Student interval in standard errors: t = √(ν(1/x − 1)) with I_x(ν/2, ½) = 1 − confidence.
+/// Half-width of a two-sided Student interval in standard errors: t = √(ν(1/x − 1)) with I_x(ν/2,
+/// ½) = 1 − confidence.
 fn quantile(confidence: f64, freedom: f64) -> f64 {
     let (a, b) = (0.5 * freedom, 0.5_f64);
     let x = (1.0 - confidence).inv_inc_beta(a, b, a.ln_beta(b));

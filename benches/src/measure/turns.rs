@@ -1,13 +1,15 @@
 //! One protocol of timing: contestants take turns on the same frames, on one thread.
 //!
-//! In its turn a contestant takes some consecutive frames, then the next one does. Turns share out what the machine does
-//! meanwhile (other processes, clock changes) among all alike, and their order is drawn anew each time, since whoever
-//! always followed the same one would always find the caches that it leaves. The first frame of a turn is *cold*: others
-//! ran in between. Those behind it are *warm*: a culler's frames follow one another, as in a simulation. Which of the two
-//! a number is stands beside it.
+//! In its turn a contestant takes some consecutive frames, then the next one does. Turns share out
+//! what the machine does meanwhile (other processes, clock changes) among all alike, and their
+//! order is drawn anew each time, since whoever always followed the same one would always find the
+//! caches that it leaves. The first frame of a turn is *cold*: others ran in between. Those behind
+//! it are *warm*: a culler's frames follow one another, as in a simulation. Which of the two a
+//! number is stands beside it.
 //!
-//! A machine that does other work takes the processor away in the midst of a frame, the likelier the longer the frame is:
-//! what a thread waited for a processor is taken off where the system tells it ([`Waiting`]), and counted.
+//! A machine that does other work takes the processor away in the midst of a frame, the likelier
+//! the longer the frame is: what a thread waited for a processor is taken off where the system
+//! tells it ([`Waiting`]), and counted.
 
 use std::time::Instant;
 
@@ -23,10 +25,11 @@ use sdop_judge::contestant::Contestant;
 
 /// Where the draws of the order of turns start.
 const SEED: u64 = 0x5a3e_7100_0000_0000;
-/// Bodies of the frames that are prepared at once: their poses stay in the second-level cache until they are culled.
+/// Bodies of the frames that are prepared at once: their poses stay in the second-level cache until
+/// they are culled.
 const PREPARED_BODIES: usize = 1 << 13;
-/// From this many seconds on, waiting is looked at before and after a frame: looking takes a microsecond or two and leaves
-/// its traces in the caches, and short frames are rarely interrupted.
+/// From this many seconds on, waiting is looked at before and after a frame: looking takes a
+/// microsecond or two and leaves its traces in the caches, and short frames are rarely interrupted.
 const WATCHED: f64 = 100e-6;
 /// The most frames of a turn.
 const MOST_FRAMES: usize = 8;
@@ -72,7 +75,8 @@ impl Turns {
         }
     }
 
-    /// Every contestant takes every frame of the round: all frames in one turn each. `each` sees what was timed.
+    /// Every contestant takes every frame of the round: all frames in one turn each. `each` sees
+    /// what was timed.
     pub fn round<Frame, C: Contestant<Frame>>(
         &mut self,
         contestants: &mut [C],
@@ -122,7 +126,8 @@ impl Turns {
     }
 }
 
-/// How many consecutive frames of a scene with so many bodies make a turn: at least two, of which one is warm.
+/// How many consecutive frames of a scene with so many bodies make a turn: at least two, of which
+/// one is warm.
 #[must_use]
 pub fn turn_frames(bodies: usize) -> usize {
     (PREPARED_BODIES / bodies.max(1)).clamp(2, MOST_FRAMES)
@@ -158,8 +163,8 @@ impl Times {
         }
     }
 
-    /// Medians over frames, stage by stage, such that they add up to the median of whole frames: what the stages'
-    /// medians lack of it, interruptions included, counts as finding.
+    /// Medians over frames, stage by stage, such that they add up to the median of whole frames:
+    /// what the stages' medians lack of it, interruptions included, counts as finding.
     #[must_use]
     pub fn medians(&self, regime: Regime) -> Stages {
         let of = |stage: fn(&Stages) -> f64| median(self.of(regime).iter().map(stage).collect());
@@ -240,7 +245,8 @@ impl Quartiles {
     }
 }
 
-/// The poses of the next turn's frames, none after the last; seconds of the steps are appended to `steps`.
+/// The poses of the next turn's frames, none after the last; seconds of the steps are appended to
+/// `steps`.
 ///
 /// # Errors
 /// A body that leaves the contract.

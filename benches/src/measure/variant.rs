@@ -1,4 +1,5 @@
-//! A way to cull, as a contestant is made from it: culling settings, the shapes that they need, and hulls behind them.
+//! A way to cull, as a contestant is made from it: culling settings, the shapes that they need, and
+//! hulls behind them.
 
 use super::counts::Volume;
 use super::culling::Culling;

@@ -1,6 +1,8 @@
-//! How long this thread was ready and had to wait for a processor: what other processes took of a measured time.
+//! How long this thread was ready and had to wait for a processor: what other processes took of a
+//! measured time.
 //!
-//! Linux counts it for each thread, in nanoseconds. Where the system doesn't tell, nothing is taken off.
+//! Linux counts it for each thread, in nanoseconds. Where the system doesn't tell, nothing is taken
+//! off.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};

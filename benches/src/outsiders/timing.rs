@@ -1,7 +1,8 @@
-//! A program beside ours on the same frames: first both are judged, then they take turns, and each frame has a time.
+//! A program beside ours on the same frames: first both are judged, then they take turns, and each
+//! frame has a time.
 //!
-//! Ours is timed from outside, around its call. A program is believed: what it reports as `ns` is *self-reported*, since time
-//! measured from outside would be that of its pipes and its parser.
+//! Ours is timed from outside, around its call. A program is believed: what it reports as `ns` is
+//! *self-reported*, since time measured from outside would be that of its pipes and its parser.
 
 use std::time::Instant;
 
@@ -49,8 +50,8 @@ pub struct ContestantTiming {
     pub reported: u64,
     /// Who held the clock.
     pub clock: &'static str,
-    /// Median over all frames and rounds but the first frame of each, in nanoseconds; none for answers without a time, and for
-    /// any that are no pass.
+    /// Median over all frames and rounds but the first frame of each, in nanoseconds; none for
+    /// answers without a time, and for any that are no pass.
     pub median_ns: Option<u64>,
 }
 
@@ -170,7 +171,7 @@ impl Timed {
     ) -> Result<(), InvalidInput> {
         let answers = match answers {
             Ok(answers) => answers,
-            Err(Stop::Skipped(why)) => {
+            Err(Stop::Skipped { why, .. }) => {
                 self.outcome = Outcome::Skipped { why };
                 return Ok(());
             }

@@ -93,8 +93,8 @@ pub(super) fn kinds(columns: &[String], a: &Table, b: &Table) -> Vec<Kind> {
     columns.iter().map(kind).collect()
 }
 
-/// The interval of a measured cell, where its table has one: `x_low` and `x_high` beside `x`, or `x.half_width` beside `x.mean`, or
-/// `half_width` beside `value`.
+/// The interval of a measured cell, where its table has one: `x_low` and `x_high` beside `x`, or
+/// `x.half_width` beside `x.mean`, or `half_width` beside `value`.
 pub(super) fn interval(row: &serde_json::Map<String, Value>, column: &str) -> Option<[f64; 2]> {
     let number = |name: String| row.get(&name)?.as_f64();
     if let (Some(low), Some(high)) = (

@@ -144,8 +144,9 @@ fn disturbed(manifest: &Manifest) -> Option<String> {
 }
 
 impl Comparison {
-    /// What an interval tells from 1 first, then what it doesn't, then what has none, and last the control, which culls
-    /// nothing: its nanoseconds change the most and mean the least. The largest first in each.
+    /// What an interval tells from 1 first, then what it doesn't, then what has none, and last the
+    /// control, which culls nothing: its nanoseconds change the most and mean the least. The
+    /// largest first in each.
     fn rank(&mut self) {
         let control = Strategy::None.name();
         let class = |change: &Change| match change.same {
@@ -268,7 +269,8 @@ impl Comparison {
     }
 }
 
-/// Raw samples, a row a seed, as one change each: the geometric mean of their ratios. Other changes stay.
+/// Raw samples, a row a seed, as one change each: the geometric mean of their ratios. Other changes
+/// stay.
 fn over_seeds(changes: Vec<Change>) -> Vec<Change> {
     let mut groups: BTreeMap<(String, String), Vec<Change>> = BTreeMap::new();
     let mut rest = Vec::new();

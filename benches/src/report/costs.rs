@@ -1,4 +1,5 @@
-//! The formula on every scene of the paper's kind: `sdop cost`, on a machine that does nothing else and on one that does.
+//! The formula on every scene of the paper's kind: `sdop cost`, on a machine that does nothing else
+//! and on one that does.
 
 use super::experiment::Step;
 

@@ -1,7 +1,10 @@
-//! Numbers as pages show them, and which recorded number stands where: one number must look the same on every page.
+//! Numbers as pages show them, and which recorded number stands where: one number must look the
+//! same on every page.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
+
+use crate::measure::estimate::Estimate;
 
 /// Where each recorded number stands, and how.
 #[derive(Debug, Default)]
@@ -20,7 +23,8 @@ pub struct Quantity {
 }
 
 impl Quantities {
-    /// Notes that `page` shows `value` as `text`. A round number is no quantity: 64 seeds and 64 bytes are two things.
+    /// Notes that `page` shows `value` as `text`. A round number is no quantity: 64 seeds and 64
+    /// bytes are two things.
     pub fn note(&self, page: &str, value: f64, text: &str) {
         if !value.is_finite() || value.to_string().trim_matches(['-', '0', '.']).len() < 6 {
             return;
@@ -134,6 +138,33 @@ pub(super) fn markdown_table(
     table[2..].iter().map(row).collect()
 }
 
+/// Mean ± half-width: two significant digits of the half-width, but no more than six of the mean.
+#[must_use]
+pub fn interval(estimate: &Estimate) -> String {
+    let Estimate {
+        mean, half_width, ..
+    } = *estimate;
+    if !half_width.is_finite() || half_width <= 1e-6 * mean.abs() {
+        return number(mean);
+    }
+    let digits = places(half_width, 2.0).min(places(mean, 6.0));
+    format!("{mean:.digits$} ± {half_width:.digits$}")
+}
+
+/// Four significant digits.
+#[must_use]
+pub fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    format!("{value:.*}", places(value, 4.0))
+}
+
+/// Decimal places that show so many significant digits.
+fn places(value: f64, significant: f64) -> usize {
+    (significant - 1.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -186,5 +217,25 @@ mod tests {
         );
         assert_eq!(markdown_table(text, 1)[0]["x"].as_f64(), Some(3.0));
         assert!(markdown_table(text, 2).is_empty());
+    }
+
+    #[test]
+    fn intervals_show_meaningful_digits() {
+        let of = |mean, half_width| {
+            interval(&Estimate {
+                mean,
+                half_width,
+                seeds: 3,
+            })
+        };
+        assert_eq!(of(1.01374, 0.0123), "1.014 ± 0.012");
+        assert_eq!(of(1234.5, 56.0), "1234 ± 56");
+        assert_eq!(of(59.877952, 0.00002), "59.88");
+        assert_eq!(of(59.877952, 0.002), "59.8780 ± 0.0020");
+        assert_eq!(of(2.0, f64::INFINITY), "2.000");
+        assert_eq!(
+            [0.0, 12.3456, 123_456.0].map(number),
+            ["0", "12.35", "123456"]
+        );
     }
 }

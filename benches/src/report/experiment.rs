@@ -1,4 +1,5 @@
-//! The experiments that can be recorded: the steps of each, and which of its files every machine must find alike.
+//! The experiments that can be recorded: the steps of each, and which of its files every machine
+//! must find alike.
 
 use super::costs;
 use super::engines::{BULLET, RAPIER_CONTACTS, RAPIER_TIMES};
@@ -11,10 +12,11 @@ pub enum Step {
     Sdop(&'static [&'static str]),
     /// This program, whose output becomes a file.
     SdopPrints(&'static str, &'static [&'static str]),
-    /// The peers' program, with `--out DIR` at the end.
-    Peers(&'static [&'static str]),
-    /// The program of the filter in rapier, whose result becomes a file; its arguments in a line. Margins that are left out must be
-    /// seen.
+    /// The peers' program, with `--out DIR` at the end; its arguments in a line, where a flag's
+    /// value goes up to the next flag.
+    Peers(&'static str),
+    /// The program of the filter in rapier, whose result becomes a file; its arguments in a line.
+    /// Margins that are left out must be seen.
     Rapier(&'static str, &'static str),
     /// The same in Bullet.
     Bullet(&'static str, &'static str),
@@ -161,6 +163,11 @@ const OWN: &[Experiment] = &[
         "kernels/motion",
         "the finders that auto chooses between, by motion: p50, p99 and the worst frame",
         &[Step::Bench("motion.md", "motion")],
+    ),
+    kernels(
+        "kernels/far",
+        "pairs and time by distance from the origin: f32, f64 and many places",
+        &[Step::Bench("far.csv", "far")],
     ),
     kernels(
         "kernels/roofline",

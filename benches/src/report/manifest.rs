@@ -53,7 +53,8 @@ pub struct Manifest {
     pub deterministic: Vec<String>,
     /// Digest of every file of the record but this one.
     pub files: BTreeMap<String, String>,
-    /// Digest of this manifest without this line: the record's identifier is its first twelve digits.
+    /// Digest of this manifest without this line: the record's identifier is its first twelve
+    /// digits.
     #[serde(default)]
     pub digest: String,
 }
@@ -253,8 +254,8 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
     hex(&Sha256::digest(bytes))
 }
 
-/// The digest of every file in `directory` and in its directories, the manifest excepted. A directory with a manifest of its own is
-/// another record.
+/// The digest of every file in `directory` and in its directories, the manifest excepted. A
+/// directory with a manifest of its own is another record.
 fn digests(directory: &Path) -> Result<BTreeMap<String, String>, ManifestError> {
     let mut digests = BTreeMap::new();
     add_digests(directory, "", &mut digests)?;

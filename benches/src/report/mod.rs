@@ -1,15 +1,15 @@
-//! Measurements that can be cited: what a record says of itself, how two records compare, and pages that take every number
-//! from a record.
+//! Measurements that can be cited: what a record says of itself, how two records compare, and pages
+//! that take every number from a record.
 //!
-//! A record is a directory `data/record/<machine>/<experiment>` of tables and one [`Manifest`], which holds the command,
-//! the commit, the machine and a digest of every file. A page quotes a record through markers ([`pages`]); rendering again
-//! must change nothing.
+//! A record is a directory `data/record/<machine>/<experiment>` of tables and one [`Manifest`],
+//! which holds the command, the commit, the machine and a digest of every file. A page quotes
+//! records through its template ([`pages`]); rendering again must change nothing.
 
 mod clock;
 mod columns;
 mod compare;
 mod costs;
-mod digits;
+pub mod digits;
 mod engines;
 mod experiment;
 mod manifest;

@@ -1,13 +1,10 @@
-//! Pages whose numbers come from records: text between markers is rendered, the rest is the author's.
+//! Pages whose numbers come from records.
 //!
-//! A marker is a comment, so that a page reads the same with and without it: `<!--= EXPRESSION -->3.14<!--/-->` in Markdown,
-//! `/*= EXPRESSION */3.14/**/` in Typst. What stands in the first comment is an expression, or a template with `{{ … }}` and `{% … %}`
-//! (the syntax is Jinja's), and what stands behind it up to the closing one is what it gives. `{% set … %}` of one marker is not seen by
-//! the next: `<!--: NAME = EXPRESSION -->` names a value for the rest of the page. Macros that pages share are in one file, `q` in
-//! expressions.
-//!
-//! A page that people read as source carries whole blocks instead, between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a
-//! line of its own. What stands between them is what the template `paper/templates/NAME.md` gives.
+//! A page that is mostly tables is what a template below `paper/templates/pages/` gives:
+//! `pages/benches/README.md` gives `benches/README.md`. A page that people write carries whole
+//! blocks between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a line of its own, from
+//! the template `paper/templates/NAME.md`. Templates are Jinja's; macros that they share are in one
+//! file, `q` in expressions.
 //!
 //! | function or filter | gives |
 //! |---|---|
@@ -17,8 +14,11 @@
 //! | `record("experiment")`, `records(…)` | the manifest, with `id` and `place`; every machine's |
 //! | `rows \| where(column=value, …)`, `rows \| one(column=value, …)` | the rows with these cells; the only one, or an error |
 //! | `x \| fixed(2)`, `x \| sig(3)`, `n \| thousands`, `x \| percent(1)` | digits behind the point; digits that count; 12,345; 12.3 |
+//! | `e \| interval(1e6)`, `x \| number`, `x \| signed(1)` | an estimate times 10⁶ as mean ± half-width; four digits that count; +1.2 |
+//! | `values \| in_order`, `x \| shortest` | an estimate from values in the order of time; the shortest text that reads back |
 //!
-//! `experiment` is that of the machine that `data/record/quoted.toml` names, `machine/experiment` that of any.
+//! `experiment` is that of the machine that `data/record/quoted.toml` names, `machine/experiment`
+//! that of any.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -26,32 +26,15 @@ use std::sync::Arc;
 use miette::Diagnostic;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Kwargs, Serde};
-use minijinja::{Environment, Error, ErrorKind, Value, context};
+use minijinja::{Environment, Error, ErrorKind, Output, State, Value, context, escape_formatter};
 use serde_json::Value as Json;
 
-use super::digits::{Quantities, markdown_table, significant, thousands};
+use super::digits::{self, Quantities, markdown_table, significant, thousands};
 use super::store::Store;
+use crate::measure::estimate::Estimate;
 
-/// The comments of a kind of page.
-struct Markers {
-    open: &'static str,
-    name: &'static str,
-    shut: &'static str,
-    end: &'static str,
-}
-
-const MARKDOWN: Markers = Markers {
-    open: "<!--=",
-    name: "<!--:",
-    shut: "-->",
-    end: "<!--/-->",
-};
-const TYPST: Markers = Markers {
-    open: "/*=",
-    name: "/*:",
-    shut: "*/",
-    end: "/**/",
-};
+/// Where templates of whole pages are, below the directory of templates.
+pub const WHOLE: &str = "pages";
 
 /// What every page of a repository is rendered from.
 #[derive(Clone, Debug)]
@@ -69,84 +52,34 @@ pub struct Sources {
 /// A page that can't be rendered.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[error("{page}:{line}: {problem}")]
-#[diagnostic(help(
-    "a marker is <!--= EXPRESSION -->text<!--/-->; `sdop report --help` lists what an expression may use"
-))]
+#[diagnostic(help("`sdop report --help` says what a template may use"))]
 pub struct PageError {
     page: String,
     line: usize,
     problem: String,
 }
 
-/// A page as its records have it. Nothing outside of markers changes.
+/// A page as its records have it, from its own template.
 ///
 /// # Errors
-/// A marker without an end, an expression that has no value, a record that was changed.
-pub fn render(page: &str, text: &str, sources: &Sources) -> Result<String, PageError> {
-    let typst = std::path::Path::new(page)
-        .extension()
-        .is_some_and(|ending| ending == "typ");
-    let markers = if typst { TYPST } else { MARKDOWN };
-    let mut environment = environment(page, sources).map_err(|error| PageError {
-        page: "macros".to_owned(),
+/// An expression that has no value, a record that was changed.
+pub fn whole(page: &str, template: &str, sources: &Sources) -> Result<String, PageError> {
+    let environment = environment(page, sources)?;
+    evaluate(&environment, template).map_err(|error| PageError {
+        page: format!("{WHOLE}/{page}"),
         line: error.line().unwrap_or(0),
         problem: said(&error),
-    })?;
-    let text = &blocks(page, text, &environment, &sources.templates)?;
-    let mut out = String::with_capacity(text.len());
-    let mut rest = text.as_str();
-    while let Some((start, marker)) = markers.next(rest) {
-        let line = 1 + text[..text.len() - rest.len() + start]
-            .matches('\n')
-            .count();
-        let failed = |problem: String| PageError {
-            page: page.to_owned(),
-            line,
-            problem,
-        };
-        let from = start + marker.len();
-        let Markers {
-            open, shut, end, ..
-        } = markers;
-        let length = rest[from..]
-            .find(shut)
-            .ok_or_else(|| failed(format!("`{marker}` without `{shut}`")))?;
-        let (source, behind) = (&rest[from..from + length], from + length + shut.len());
-        out.push_str(&rest[..behind]);
-        rest = &rest[behind..];
-        if marker == markers.name {
-            set(&mut environment, source).map_err(|error| failed(said(&error)))?;
-            continue;
-        }
-        let last = rest
-            .find(end)
-            .ok_or_else(|| failed(format!("`{open}` without `{end}`")))?;
-        if markers.next(&rest[..last]).is_some() {
-            return Err(failed(format!("`{open}` without `{end}` before the next")));
-        }
-        let value = evaluate(&environment, source).map_err(|error| failed(said(&error)))?;
-        let begins_line = out[..out.len() - marker.len() - length - shut.len()].ends_with('\n');
-        if !typst && begins_line && !value.starts_with('\n') {
-            return Err(failed(
-                "a comment that begins a line ends the paragraph above: begin the line with a word"
-                    .to_owned(),
-            ));
-        }
-        out.push_str(&value);
-        out.push_str(end);
-        rest = &rest[last + end.len()..];
-    }
-    out.push_str(rest);
-    Ok(out)
+    })
 }
 
-/// The page with its blocks rendered.
-fn blocks(
-    page: &str,
-    text: &str,
-    environment: &Environment<'_>,
-    templates: &BTreeMap<String, String>,
-) -> Result<String, PageError> {
+/// A page that people write, with its blocks as its records have them. Nothing outside of blocks
+/// changes.
+///
+/// # Errors
+/// A block without an end or a template, an expression that has no value, a record that was
+/// changed.
+pub fn blocks(page: &str, text: &str, sources: &Sources) -> Result<String, PageError> {
+    let environment = environment(page, sources)?;
     let mut out = String::with_capacity(text.len());
     let mut lines = text.split_inclusive('\n').enumerate();
     while let Some((index, line)) = lines.next() {
@@ -159,10 +92,11 @@ fn blocks(
             line: index + 1,
             problem,
         };
-        let template = templates
+        let template = sources
+            .templates
             .get(name)
             .ok_or_else(|| failed(format!("no template `paper/templates/{name}.md`")))?;
-        let value = evaluate(environment, template).map_err(|error| failed(said(&error)))?;
+        let value = evaluate(&environment, template).map_err(|error| failed(said(&error)))?;
         out.push_str(value.trim_matches('\n'));
         out.push('\n');
         let (_, end) = lines
@@ -180,45 +114,11 @@ fn marked<'l>(line: &'l str, word: &str) -> Option<&'l str> {
     inside.strip_prefix(word)?.strip_prefix(' ')
 }
 
-impl Markers {
-    /// The next marker and which one it is.
-    fn next(&self, text: &str) -> Option<(usize, &'static str)> {
-        [self.open, self.name]
-            .into_iter()
-            .filter_map(|marker| Some((text.find(marker)?, marker)))
-            .min()
-    }
-}
-
-fn set(environment: &mut Environment<'_>, source: &str) -> Result<(), Error> {
-    let wrong = || Error::new(ErrorKind::SyntaxError, "expected NAME = EXPRESSION");
-    let (name, expression) = source.split_once('=').ok_or_else(wrong)?;
-    let value = environment
-        .compile_expression(expression.trim())?
-        .eval(context! {})?;
-    environment.add_global(name.trim().to_owned(), value);
-    Ok(())
-}
-
-/// What an expression or a template gives, with the shared macros as `q`.
-fn evaluate(environment: &Environment<'_>, source: &str) -> Result<String, Error> {
-    // What a template begins with isn't the import's own line end.
+/// What a template gives, with the shared macros as `q`.
+fn evaluate(environment: &Environment<'_>, template: &str) -> Result<String, Error> {
+    // The import takes no line of its own, so that errors have the template's lines.
     const IMPORT: &str = "{% import 'macros' as q %}{{ '' }}";
-    if source.contains("{%") || source.contains("{{") {
-        return environment.render_str(&format!("{IMPORT}{source}"), context! {});
-    }
-    let (source, none) = (source.trim(), "\u{0}");
-    let text = environment.render_str(
-        &format!("{IMPORT}{{% set x = {source} %}}{{{{ '{none}' if x is none else x }}}}"),
-        context! {},
-    )?;
-    if text == none {
-        return Err(Error::new(
-            ErrorKind::UndefinedError,
-            format!("`{source}` has no value"),
-        ));
-    }
-    Ok(text)
+    environment.render_str(&format!("{IMPORT}{template}"), context! {})
 }
 
 /// An error with its causes.
@@ -233,7 +133,7 @@ fn said(error: &Error) -> String {
     text
 }
 
-fn environment<'s>(page: &str, sources: &'s Sources) -> Result<Environment<'s>, Error> {
+fn environment<'s>(page: &str, sources: &'s Sources) -> Result<Environment<'s>, PageError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
     // A block's tag takes no line of its own.
@@ -263,8 +163,28 @@ fn environment<'s>(page: &str, sources: &'s Sources) -> Result<Environment<'s>, 
         "percent",
         format(page, |x, digits| format!("{:.digits$}", 100.0 * x)),
     );
-    environment.add_template("macros", &sources.macros)?;
+    environment.add_filter("interval", interval);
+    environment.add_filter("in_order", in_order);
+    environment.add_filter("number", digits::number);
+    environment.add_filter("signed", |x: f64, digits: usize| format!("{x:+.digits$}"));
+    environment.add_filter("shortest", |x: f64| x.to_string());
+    let added = environment.add_template("macros", &sources.macros);
+    added.map_err(|error| PageError {
+        page: "macros".to_owned(),
+        line: error.line().unwrap_or(0),
+        problem: said(&error),
+    })?;
+    environment.set_formatter(formatted);
     Ok(environment)
+}
+
+/// Writes a value into a page. A cell that a record leaves empty must be given a text by the
+/// template.
+fn formatted(out: &mut Output, state: &mut State, value: &Value) -> Result<(), Error> {
+    if value.is_none() {
+        return Err(lost("an expression has no value"));
+    }
+    escape_formatter(out, state, value)
 }
 
 fn add_readers(environment: &mut Environment<'_>, store: &Arc<Store>) {
@@ -326,6 +246,35 @@ fn nested(row: serde_json::Map<String, Json>) -> Json {
 
 fn lost(error: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::InvalidOperation, error.to_string())
+}
+
+/// An estimate from values in the order of time. As in JSON, one value alone has no half-width.
+#[allow(
+    clippy::needless_pass_by_value,
+    reason = "the signature is minijinja's"
+)]
+fn in_order(values: Vec<f64>) -> Result<Value, Error> {
+    let estimate = serde_json::to_value(Estimate::in_order(&values)).map_err(lost)?;
+    Ok(Value::from(Serde(estimate)))
+}
+
+/// An estimate, scaled; one without a half-width is its mean alone.
+#[allow(
+    clippy::needless_pass_by_value,
+    reason = "the signature is minijinja's"
+)]
+fn interval(estimate: Value, scale: Option<f64>) -> Result<String, Error> {
+    let scale = scale.unwrap_or(1.0);
+    let half_width = estimate.get_attr("half_width")?;
+    Ok(digits::interval(&Estimate {
+        mean: scale * f64::try_from(estimate.get_attr("mean")?)?,
+        half_width: if half_width.is_none() {
+            f64::INFINITY
+        } else {
+            scale * f64::try_from(half_width)?
+        },
+        seeds: 0,
+    }))
 }
 
 /// Rows whose cells equal all that are named.
@@ -392,22 +341,13 @@ mod tests {
     }
 
     #[test]
-    fn a_marker_gives_what_its_record_holds_and_the_rest_stays() {
+    fn templates_give_pages() {
         let (_root, sources) = sources();
-        let page = "a 1\n<!--: t = csv(\"box/kernels/t.csv\") -->\n\
-                    It is <!--= (t | one(tier=\"avx2\")).us.mean | fixed(1) -->99.9<!--/--> µs, 2\n";
-        let rendered = render("page.md", page, &sources).unwrap();
-        assert_eq!(rendered, page.replace("99.9", "62.1"));
-        assert_eq!(render("page.md", &rendered, &sources).unwrap(), rendered);
+        let template = "a 1\n{% set t = csv(\"box/kernels/t.csv\") %}\n\
+                        It is {{ (t | one(tier=\"avx2\")).us.mean | fixed(1) }} µs, {{ q.us(t[0]) }}\n";
+        let page = whole("page.md", template, &sources).unwrap();
+        assert_eq!(page, "a 1\nIt is 62.1 µs, 300.9 µs\n");
         assert_eq!(sources.store.used().len(), 1);
-    }
-
-    #[test]
-    fn typst_has_markers_of_its_own_and_macros_are_shared() {
-        let (_root, sources) = sources();
-        let page = "/*: t = csv(\"box/kernels/t.csv\") */\n= Time\n/*= q.us(t | one(tier=\"avx2\")) */0 µs/**/ a frame\n";
-        let rendered = render("page.typ", page, &sources).unwrap();
-        assert_eq!(rendered, page.replace("0 µs", "62.1 µs"));
     }
 
     #[test]
@@ -415,26 +355,19 @@ mod tests {
         let (_root, sources) = sources();
         let number = "(csv(\"box/kernels/t.csv\") | one(tier=\"scalar\")).us.mean / 7";
         for (page, digits) in [("a.md", 1), ("b.md", 2)] {
-            render(
-                page,
-                &format!("x <!--= ({number}) | fixed({digits}) --><!--/-->"),
-                &sources,
-            )
-            .unwrap();
+            let template = format!("x {{{{ ({number}) | fixed({digits}) }}}}");
+            whole(page, &template, &sources).unwrap();
         }
         assert_eq!(sources.quantities.given_differently().len(), 1);
     }
 
     #[test]
-    fn a_template_makes_a_table() {
+    fn templates_make_tables() {
         let (_root, sources) = sources();
-        let page = "<!--=\n{% for row in csv(\"box/kernels/t.csv\") %}\n| {{ row.tier }} | {{ row.us.mean | sig(3) }} |\n\
-                    {% endfor %}\n--><!--/-->";
-        let rendered = render("page.md", page, &sources).unwrap();
-        assert!(
-            rendered.ends_with("| scalar | 301 |\n| avx2 | 62.1 |\n<!--/-->"),
-            "{rendered}"
-        );
+        let template = "{% for row in csv(\"box/kernels/t.csv\") %}\n\
+                        | {{ row.tier }} | {{ row.us.mean | sig(3) }} |\n{% endfor %}\n";
+        let page = whole("page.typ", template, &sources).unwrap();
+        assert_eq!(page, "| scalar | 301 |\n| avx2 | 62.1 |\n");
     }
 
     #[test]
@@ -444,7 +377,7 @@ mod tests {
             |between: &str| format!("a\n<!-- BEGIN times -->\n{between}<!-- END times -->\nb\n");
         let whole = page("- 300.9 µs\n- 62.1 µs\n");
         for between in ["", "old\n\nlines\n", "- 300.9 µs\n- 62.1 µs\n"] {
-            assert_eq!(render("page.md", &page(between), &sources).unwrap(), whole);
+            assert_eq!(blocks("page.md", &page(between), &sources).unwrap(), whole);
         }
         for (text, problem) in [
             (
@@ -457,7 +390,7 @@ mod tests {
                 "without `END times`",
             ),
         ] {
-            let error = render("page.md", text, &sources).unwrap_err().to_string();
+            let error = blocks("page.md", text, &sources).unwrap_err().to_string();
             assert!(
                 error.starts_with("page.md:2: ") && error.contains(problem),
                 "{error}"
@@ -466,24 +399,23 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_value_is_an_error_with_its_line() {
+    fn a_missing_value_names_its_line() {
         let (_root, sources) = sources();
-        for (marker, said) in [
+        for (expression, problem) in [
             (
-                "<!--= (csv(\"box/kernels/t.csv\") | one(tier=\"neon\")).k -->1<!--/-->",
+                "(csv(\"box/kernels/t.csv\") | one(tier=\"neon\")).k",
                 "no row",
             ),
-            ("<!--= csv(\"box/none/t.csv\") -->1<!--/-->", "record.json"),
-            ("<!--= 1 -->1", "without `<!--/-->`"),
-            ("<!--= 1", "without `-->`"),
-            ("<!--= nothing -->1<!--/-->", "undefined"),
-            ("<!--= 1 -->1<!--/-->", "ends the paragraph"),
+            ("csv(\"box/none/t.csv\")", "record.json"),
+            ("nothing", "undefined"),
+            ("none", "no value"),
         ] {
-            let error = render("page.md", &format!("x\n\n{marker}"), &sources)
+            let template = format!("x\n\n{{{{ {expression} }}}}");
+            let error = whole("page.md", &template, &sources)
                 .unwrap_err()
                 .to_string();
             assert!(
-                error.starts_with("page.md:3: ") && error.contains(said),
+                error.starts_with("pages/page.md:3: ") && error.contains(problem),
                 "{error}"
             );
         }

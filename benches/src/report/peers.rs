@@ -4,187 +4,55 @@ use super::experiment::{Experiment, PAPER_500, Step};
 
 const MILLION: &[&str] = &["data/scenes/uniform-1m.toml"];
 
-/// Engines side by side.
-const fn peers(name: &'static str, about: &'static str, steps: &'static [Step]) -> Experiment {
-    Experiment {
-        name,
-        about,
-        steps,
-        deterministic: &[],
-        scenes: &[],
-    }
+/// A line per experiment: its name, the program's arguments, and what it measures. Then all others.
+macro_rules! peers {
+    ({ $($name:literal $arguments:literal, $about:literal;)+ } $($other:expr),+ $(,)?) => {
+        /// Engines side by side, what they are compared on, and what the machine gave.
+        pub(super) const PEERS: &[Experiment] = &[
+            $(Experiment {
+                name: concat!("peers/", $name),
+                about: $about,
+                steps: &[Step::Peers($arguments)],
+                deterministic: &[],
+                scenes: &[],
+            },)+
+            $($other),+
+        ];
+    };
 }
 
-/// Engines side by side, what they are compared on, and what the machine gave.
-pub(super) const PEERS: &[Experiment] = &[
-    peers(
-        "peers/verdicts",
-        "every engine judged by the cases of its claim",
-        &[Step::Peers(&["verdicts"])],
-    ),
-    peers(
-        "peers/uniform",
-        "every engine on uniform boxes, to ten thousand",
-        &[Step::Peers(&[
-            "--sizes",
-            "500,1000,10000",
-            "--scenes",
-            "uniform",
-        ])],
-    ),
-    peers(
-        "peers/mixed",
-        "every engine where radii differ 1 : 16",
-        &[Step::Peers(&[
-            "--sizes",
-            "500,1000,10000",
-            "--scenes",
-            "mixed",
-            "--threads",
-            "1",
-        ])],
-    ),
-    peers(
-        "peers/clustered",
-        "every engine where bodies cluster",
-        &[Step::Peers(&[
-            "--sizes",
-            "500,1000,10000",
-            "--scenes",
-            "clustered",
-            "--threads",
-            "1",
-        ])],
-    ),
-    peers(
-        "peers/long",
-        "every engine for boxes on boxes with sides 1 : 8 : 64",
-        &[Step::Peers(&[
-            "--sizes",
-            "500,1000,10000",
-            "--scenes",
-            "long",
-            "--threads",
-            "1",
-        ])],
-    ),
-    peers(
-        "peers/uniform-100k",
-        "a hundred thousand boxes, engines within 300 ms",
-        &[Step::Peers(&[
-            "--sizes",
-            "100000",
-            "--scenes",
-            "uniform",
-            "--order",
-            "random",
-            "--limit-ms",
-            "300",
-        ])],
-    ),
-    peers(
-        "peers/sorted-100k",
-        "the same in sorted order, engines within 80 ms",
-        &[Step::Peers(&[
-            "--sizes",
-            "100000",
-            "--scenes",
-            "uniform",
-            "--order",
-            "sorted",
-            "--threads",
-            "1",
-            "--limit-ms",
-            "80",
-        ])],
-    ),
-    peers(
-        "peers/spreads-100k",
-        "a hundred thousand of mixed radii and in clusters, engines within 40 ms",
-        &[Step::Peers(&[
-            "--sizes",
-            "100000",
-            "--scenes",
-            "mixed,clustered",
-            "--threads",
-            "1",
-            "--limit-ms",
-            "40",
-        ])],
-    ),
-    peers(
-        "peers/uniform-1m",
-        "a million boxes, the fastest engines",
-        &[Step::Peers(&[
-            "--sizes",
-            "1000000",
-            "--scenes",
-            "uniform",
-            "--order",
-            "random",
-            "--limit-ms",
-            "1200",
-            "--peers",
-            "sdop,parry3d,rapier3d,PhysX ABP,Embree",
-        ])],
-    ),
-    peers(
-        "peers/slow-1m",
-        "a million boxes, the other engines within 4 s",
-        &[Step::Peers(&[
-            "--sizes",
-            "1000000",
-            "--scenes",
-            "uniform",
-            "--order",
-            "random",
-            "--threads",
-            "1",
-            "--timed",
-            "4",
-            "--limit-ms",
-            "4000",
-            "--peers",
-            "rapier3d,obvhs,bvh,broccoli,rstar,CGAL",
-        ])],
-    ),
-    peers(
-        "peers/sorted-1m",
-        "a million boxes in sorted order",
-        &[Step::Peers(&[
-            "--sizes",
-            "1000000",
-            "--scenes",
-            "uniform",
-            "--order",
-            "sorted",
-            "--threads",
-            "1",
-            "--peers",
-            "sdop,parry3d refit,Embree",
-        ])],
-    ),
-    peers(
-        "peers/spreads-1m",
-        "a million of mixed radii and in clusters",
-        &[Step::Peers(&[
-            "--sizes",
-            "1000000",
-            "--scenes",
-            "mixed,clustered",
-            "--order",
-            "random",
-            "--threads",
-            "1",
-            "--peers",
-            "sdop,parry3d refit,Embree",
-        ])],
-    ),
+peers! {
+    {
+        "verdicts"     "verdicts",
+            "every engine judged by the cases of its claim";
+        "uniform"      "--sizes 500,1000,10000 --scenes uniform",
+            "every engine on uniform boxes, to ten thousand";
+        "mixed"        "--sizes 500,1000,10000 --scenes mixed --threads 1",
+            "every engine where radii differ 1 : 16";
+        "clustered"    "--sizes 500,1000,10000 --scenes clustered --threads 1",
+            "every engine where bodies cluster";
+        "long"         "--sizes 500,1000,10000 --scenes long --threads 1",
+            "every engine for boxes on boxes with sides 1 : 8 : 64";
+        "uniform-100k" "--sizes 100000 --scenes uniform --order random --limit-ms 300",
+            "a hundred thousand boxes, engines within 300 ms";
+        "sorted-100k"  "--sizes 100000 --scenes uniform --order sorted --threads 1 --limit-ms 80",
+            "the same in sorted order, engines within 80 ms";
+        "spreads-100k" "--sizes 100000 --scenes mixed,clustered --threads 1 --limit-ms 40",
+            "a hundred thousand of mixed radii and in clusters, engines within 40 ms";
+        "uniform-1m"   "--sizes 1000000 --scenes uniform --order random --limit-ms 1200 --peers sdop,parry3d,rapier3d,PhysX ABP,Embree",
+            "a million boxes, the fastest engines";
+        "slow-1m"      "--sizes 1000000 --scenes uniform --order random --threads 1 --timed 4 --limit-ms 4000 --peers rapier3d,broccoli",
+            "a million boxes, the other engines within 4 s";
+        "sorted-1m"    "--sizes 1000000 --scenes uniform --order sorted --threads 1 --peers sdop,parry3d refit,Embree",
+            "a million boxes in sorted order";
+        "spreads-1m"   "--sizes 1000000 --scenes mixed,clustered --order random --threads 1 --peers sdop,parry3d refit,Embree",
+            "a million of mixed radii and in clusters";
+    }
     Experiment {
         name: "peers/control",
         about: "what a second thread is worth, and a million bodies by stage",
         steps: &[
-            Step::Peers(&["control"]),
+            Step::Peers("control"),
             Step::SdopPrints("stages-grid-1.json", &stages("grid", "1")),
             Step::SdopPrints("stages-grid-2.json", &stages("grid", "2")),
             Step::SdopPrints("stages-auto-1.json", &stages("auto", "1")),
@@ -196,16 +64,11 @@ pub(super) const PEERS: &[Experiment] = &[
     Experiment {
         name: "peers/narrow",
         about: "what a narrow phase costs a pair",
-        steps: &[Step::Peers(&[
-            "narrow",
-            "data/scenes/paper-500.toml",
-            "--frames",
-            "5",
-        ])],
+        steps: &[Step::Peers("narrow data/scenes/paper-500.toml --frames 5")],
         deterministic: &[],
         scenes: PAPER_500,
     },
-];
+}
 
 /// A million bodies by stage.
 const fn stages(finder: &'static str, threads: &'static str) -> [&'static str; 12] {

@@ -1,7 +1,7 @@
 //! All records of the repository, read and checked once each.
 //!
-//! A path is `machine/experiment/file`, or `experiment/file`: then it is the machine's that `quoted.toml` names, so that every page quotes
-//! the same record of an experiment.
+//! A path is `machine/experiment/file`, or `experiment/file`: then it is the machine's that
+//! `quoted.toml` names, so that every page quotes the same record of an experiment.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -81,7 +81,8 @@ impl Store {
         })
     }
 
-    /// The full path of a record or of its file: with the machine that is quoted, where `path` names none.
+    /// The full path of a record or of its file: with the machine that is quoted, where `path`
+    /// names none.
     #[must_use]
     pub fn place(&self, path: &str) -> String {
         let first = path.split('/').next().unwrap_or(path);

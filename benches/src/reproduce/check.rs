@@ -100,8 +100,9 @@ impl Check {
         Self::between(quantity, value, [bound, f64::INFINITY])
     }
 
-    /// Claimed to be `truth`, as one of `family` such claims: contradicted when the family as a whole has less than one
-    /// chance in twenty of a value so far off (Bonferroni), supported when the value's own interval covers it.
+    /// Claimed to be `truth`, as one of `family` such claims: contradicted when the family as a
+    /// whole has less than one chance in twenty of a value so far off (Bonferroni), supported when
+    /// the value's own interval covers it.
     #[must_use]
     pub fn equal(quantity: String, value: Estimate, truth: f64, family: usize) -> Self {
         let verdict = if family as f64 * value.p_value(truth) < 0.05 {

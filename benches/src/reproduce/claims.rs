@@ -1,6 +1,7 @@
 //! Each sentence of the paper's sections 6 and 7 that claims something, with our numbers.
 //!
-//! Frame rates are compared as ratios, seed by seed, for its 500 objects in the small and in the usual box and for both F.
+//! Frame rates are compared as ratios, seed by seed, for its 500 objects in the small and in the
+//! usual box and for both F.
 
 use super::check::{Check, Claim};
 use super::experiment::{PaperScene, Results, STRATEGIES};
@@ -176,7 +177,8 @@ fn conclusion(results: &Results) -> Vec<Claim> {
     ]
 }
 
-/// What S-DOP gains over homogeneous volumes in some scenes: frame rates, and the pairs that it passes on.
+/// What S-DOP gains over homogeneous volumes in some scenes: frame rates, and the pairs that it
+/// passes on.
 fn advantage(results: &Results, scenes: &[PaperScene]) -> Vec<Check> {
     let faster = |pair| rate_checks_in(results, scenes, pair, [1.0, f64::INFINITY]);
     let pairs = [[Seq, OrDop], [All, OrDop], [Seq, Sphere]];

@@ -36,7 +36,8 @@ pub const STRATEGIES: [Strategy; 6] = [
 ];
 
 choices! {
-    /// The paper's scenes: its numbers of objects (350 in the text, 300 in Table 1) in one box, and 500 in a small box.
+    /// The paper's scenes: its numbers of objects (350 in the text, 300 in Table 1) in one box, and
+    /// 500 in a small box.
     PaperScene, "scene of the paper", {
         /// 50 objects.
         Paper50 = "paper-50",
@@ -102,8 +103,8 @@ pub struct Run {
     pub strategy: Strategy,
     /// Sums over frames.
     pub counters: Counters,
-    /// Medians over warm frames, such that the stages add up to the total; `construct` is Co of the strategy's volumes and
-    /// its culler, built once for this run.
+    /// Medians over warm frames, such that the stages add up to the total; `construct` is Co of the
+    /// strategy's volumes and its culler, built once for this run.
     pub seconds: Seconds,
     /// Median seconds of a cold frame.
     pub cold: f64,
@@ -169,7 +170,8 @@ impl Plan {
         (self.names.len() + 1) * self.seeds.len()
     }
 
-    /// Runs everything but the interpretations, here. `done` is called as often as [`Plan::steps`] says.
+    /// Runs everything but the interpretations, here. `done` is called as often as [`Plan::steps`]
+    /// says.
     ///
     /// # Errors
     /// Scene files that can't be read or don't suit the strategies.
@@ -320,7 +322,8 @@ impl Results {
         passes.map(|(_, pass)| pass).collect()
     }
 
-    /// The cost of every strategy in every scene; the control costs nothing that the formula has a term for.
+    /// The cost of every strategy in every scene; the control costs nothing that the formula has a
+    /// term for.
     #[must_use]
     pub fn costs(&self, regime: Regime) -> Vec<Cost> {
         let mut costs = Vec::new();

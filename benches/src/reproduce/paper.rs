@@ -37,8 +37,9 @@ pub fn pairs() -> [f64; 4] {
     TABLE_1_BODIES.map(|n| (n * (n - 1) / 2) as f64)
 }
 
-/// A row taken as counts of one frame: is it one percentage in all columns? χ² on three degrees of freedom, its
-/// probability, and the pooled percentage. `tests` are the tests a frame in each column.
+/// A row taken as counts of one frame: is it one percentage in all columns? χ² on three degrees of
+/// freedom, its probability, and the pooled percentage. `tests` are the tests a frame in each
+/// column.
 #[must_use]
 pub fn constant_row(row: &[f64; 4], tests: &[f64; 4]) -> (f64, f64, f64) {
     let hits: Vec<f64> = row
@@ -55,8 +56,9 @@ pub fn constant_row(row: &[f64; 4], tests: &[f64; 4]) -> (f64, f64, f64) {
     (chi_squared, chi_squared_p(chi_squared, 3.0), 100.0 * pooled)
 }
 
-/// Tests a frame, as multiples of N, that the ALL row has beyond tests and list entries, if sphere and sequential rows
-/// hold: hits/ALL − 2·tests with hits = pairs × sphere × sequential and tests = pairs × sphere.
+/// Tests a frame, as multiples of N, that the ALL row has beyond tests and list entries, if sphere
+/// and sequential rows hold: hits/ALL − 2·tests with hits = pairs × sphere × sequential and tests =
+/// pairs × sphere.
 #[must_use]
 pub fn extra_tests_of_all() -> Option<[f64; 4]> {
     let (sphere, sequential, all) = (

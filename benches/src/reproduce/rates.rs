@@ -1,7 +1,8 @@
-//! Frame rates (Figs 12 and 13): fps = 1/(F + t) with t the culling of a frame and F all else that a frame costs.
+//! Frame rates (Figs 12 and 13): fps = 1/(F + t) with t the culling of a frame and F all else that
+//! a frame costs.
 //!
-//! The paper's frames included rendering at an unknown price, so rates are shown for stated F: none, and a whole
-//! frame of 60 Hz, which hides all but the slowest culling.
+//! The paper's frames included rendering at an unknown price, so rates are shown for stated F:
+//! none, and a whole frame of 60 Hz, which hides all but the slowest culling.
 
 use serde::Serialize;
 
@@ -62,7 +63,8 @@ fn rate(results: &Results, scene: &str, strategy: Strategy, elsewhere: f64) -> R
     }
 }
 
-/// Frame rate of the first strategy over that of the second, seed by seed: what both share of a seed cancels.
+/// Frame rate of the first strategy over that of the second, seed by seed: what both share of a
+/// seed cancels.
 #[must_use]
 pub fn ratio(results: &Results, scene: &str, of: [Strategy; 2], elsewhere: f64) -> Estimate {
     let [one, other] = of.map(|strategy| results.by_seed(scene, strategy, |run| run.seconds.total));
@@ -74,8 +76,9 @@ pub fn ratio(results: &Results, scene: &str, of: [Strategy; 2], elsewhere: f64) 
     Estimate::of(&ratios)
 }
 
-/// The F at which the frame rate of the first strategy becomes `share` of the second's: (F + t₂)/(F + t₁) = share. Above
-/// it everything else hides the difference. `None` where it is so without anything else.
+/// The F at which the frame rate of the first strategy becomes `share` of the second's:
+/// (F + t₂)/(F + t₁) = share. Above it everything else hides the difference. `None` where it is so
+/// without anything else.
 #[must_use]
 pub fn hides(results: &Results, scene: &str, of: [Strategy; 2], share: f64) -> Option<Estimate> {
     let [one, other] = of.map(|strategy| results.by_seed(scene, strategy, |run| run.seconds.total));

@@ -1,9 +1,11 @@
-//! What the paper doesn't state, swept: where bodies start, what a wall does, how many frames are counted, and which or-DOP is
-//! meant. Each combination is an interpretation of Table 1; its likelihood says how well it explains the table.
+//! What the paper doesn't state, swept: where bodies start, what a wall does, how many frames are
+//! counted, and which or-DOP is meant. Each combination is an interpretation of Table 1; its
+//! likelihood says how well it explains the table.
 //!
-//! A cell's error is taken as normal in the logarithm of ours over the paper's, with one width for all sixteen cells that fits
-//! best: ln L = −(n/2)(ln 2πσ² + 1), σ² the mean square. Interpretations that differ by less than about 2 in ln L can't be
-//! told apart. The or-DOP row is taken as sphere × sequential, which the runs support to a percent.
+//! A cell's error is taken as normal in the logarithm of ours over the paper's, with one width for
+//! all sixteen cells that fits best: ln L = −(n/2)(ln 2πσ² + 1), σ² the mean square.
+//! Interpretations that differ by less than about 2 in ln L can't be told apart. The or-DOP row is
+//! taken as sphere × sequential, which the runs support to a percent.
 
 use std::num::NonZeroU32;
 

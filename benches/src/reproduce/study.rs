@@ -93,7 +93,8 @@ fn paper_reach() -> Vec<Check> {
     columns.map(check).collect()
 }
 
-/// The difference between the most and the fewest objects, and the chance of the paper's row in a fixed box.
+/// The difference between the most and the fewest objects, and the chance of the paper's row in a
+/// fixed box.
 fn no_trend(results: &Results) -> Vec<Check> {
     let scenes: Vec<&str> = results.paper_scenes().collect();
     let mut checks = Vec::new();

@@ -8,7 +8,8 @@ use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
 use sdop_judge::contestant::Contestant as _;
 
-/// The share of sphere hits that an or-DOP test lets through, in the first frames of the calibrated scene.
+/// The share of sphere hits that an or-DOP test lets through, in the first frames of the calibrated
+/// scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survival {
     /// The or-DOP.

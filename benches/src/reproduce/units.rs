@@ -1,5 +1,6 @@
-//! The experiments cut into units: a scene with one seed, a seed's survivors, a way to read what the paper leaves open. Joined in
-//! their order they are the results of one process: counts to the bit, times as whoever measured them found them.
+//! The experiments cut into units: a scene with one seed, a seed's survivors, a way to read what
+//! the paper leaves open. Joined in their order they are the results of one process: counts to the
+//! bit, times as whoever measured them found them.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -27,7 +28,8 @@ pub const NAME: &str = "reproduce";
 /// The input that says what the compared scene's volumes are.
 const VOLUMES: &str = "volumes";
 
-/// What the experiments are asked for, and on what kind of machine: times of different ones don't go together.
+/// What the experiments are asked for, and on what kind of machine: times of different ones don't
+/// go together.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -94,7 +96,8 @@ pub enum Found {
 }
 
 impl Experiments {
-    /// Reads and builds the plan's scenes. With `interpretations`, what the paper doesn't state is swept too.
+    /// Reads and builds the plan's scenes. With `interpretations`, what the paper doesn't state is
+    /// swept too.
     ///
     /// # Errors
     /// Scene files that can't be read or built.

@@ -1,4 +1,5 @@
-//! From a scene file to a scene: each group is checked, its shapes are made, its bodies are placed by the seed.
+//! From a scene file to a scene: each group is checked, its shapes are made, its bodies are placed
+//! by the seed.
 
 use std::ops::Range;
 
@@ -7,6 +8,7 @@ use toml::Spanned;
 use super::density::PowerSums;
 use super::error::SceneError;
 use super::file::{Placement, SceneFile};
+use super::fine::FineTranslations;
 use super::group::{Draws, Group, Purpose};
 use super::library::{Form, Library};
 use super::placement::Placer;
@@ -17,27 +19,51 @@ use sdop::bodies::Bodies;
 use sdop::bodies::contract::{ContractError, check_bodies};
 
 impl SceneFile {
-    /// Builds the scene: reads meshes, builds shapes, places bodies.
+    /// Builds the scene to be studied in f32: as [`Self::build_exact`], with translations rounded
+    /// to f32.
     ///
     /// # Errors
-    /// Everything that a value can't show alone: exclusive keys, missing or broken meshes, a box too small, bodies
-    /// outside of the contract, effects or culling that the scene can't have.
+    /// As [`Self::build_exact`]; translations so far out that rounding would move a body by more
+    /// than 2⁻¹⁰ of its radius.
     pub fn build(&self) -> Result<Scene, SceneError> {
+        let mut scene = self.build_exact()?;
+        if let Some((body, moved)) = scene.fine.coarse(&scene.bodies, &scene.shapes) {
+            let span = self.span_of(&self.groups(1)?, body, false);
+            let message =
+                format!("body {body}: rounding its translation to f32 moves it by {moved}");
+            let hint = "`sdop run` culls f64 translations; other commands study f32 ones: place the scene near the origin for them";
+            return Err(self.wrong(span, &message, hint));
+        }
+        scene.fine = FineTranslations::default();
+        Ok(scene)
+    }
+
+    /// Builds the scene: reads meshes, builds shapes, places bodies. Translations of `poses` that
+    /// f32 doesn't hold are kept.
+    ///
+    /// # Errors
+    /// Everything that a value can't show alone: exclusive keys, missing or broken meshes, a box
+    /// too small, bodies outside of the contract, effects or culling that the scene can't have.
+    pub fn build_exact(&self) -> Result<Scene, SceneError> {
         self.build_share(0, 1)
     }
 
-    /// Builds the share of rank `rank` of `ranks`: the same scene with a part of its bodies, each as in the whole.
+    /// Builds the share of rank `rank` of `ranks`: the same scene with a part of its bodies, each
+    /// as in the whole.
     ///
     /// Shapes are made for all bodies, so that all ranks number them alike. With
-    /// [`Seeding::ByBody`](super::file::Seeding::ByBody) a rank draws poses and velocities of its own bodies alone.
+    /// [`Seeding::ByBody`](super::file::Seeding::ByBody) a rank draws poses and velocities of its
+    /// own bodies alone.
     ///
     /// # Errors
-    /// As [`Self::build`]; what is wrong with a body alone, only the rank that holds it finds.
+    /// As [`Self::build_exact`]; what is wrong with a body alone, only the rank that holds it
+    /// finds.
     pub fn build_share(&self, rank: usize, ranks: usize) -> Result<Scene, SceneError> {
         let groups = self.groups(ranks)?;
         let share = share_of(&groups, rank, ranks);
         let mut library = Library::default();
         let (mut bodies, mut velocities) = (Bodies::default(), Velocities::default());
+        let mut fine = FineTranslations::default();
         let mut sizes = Sizes::default();
         for (group, run) in runs(&groups) {
             let held = share.within(&run);
@@ -46,11 +72,19 @@ impl SceneFile {
         let side = self.side(&groups, &sizes)?;
         for ((group, run), widest) in runs(&groups).zip(&sizes.widest) {
             let held = share.within(&run);
-            self.add_poses(group, held.clone(), (side, *widest), &library, &mut bodies)?;
+            match &group.spec.poses {
+                Some(poses) => {
+                    for pose in &poses.get_ref()[held.clone()] {
+                        add_pose(*pose.get_ref(), &mut bodies, &mut fine);
+                    }
+                }
+                None => self.place(group, held.clone(), (side, *widest), &library, &mut bodies)?,
+            }
             self.add_velocities(group, held, &mut velocities);
         }
         let (shapes, construct_seconds) = library.into_shapes();
         check_bodies(&bodies, &shapes)
+            .and_then(|()| fine.check(&bodies))
             .and_then(|()| velocities.check(bodies.len()))
             .map_err(|error| self.contract_error(&groups, &error.numbered(share.held.start)))?;
         self.spec.cull.check(share.all)?;
@@ -62,6 +96,7 @@ impl SceneFile {
             side,
             shapes,
             bodies,
+            fine,
             share: (ranks > 1).then_some(share),
             velocities,
             effects: self.spec.effects.clone(),
@@ -74,7 +109,8 @@ impl SceneFile {
         }
     }
 
-    /// Draws the radii of all the group's bodies, makes their shapes, and adds one shape and dynamic entry a body held.
+    /// Draws the radii of all the group's bodies, makes their shapes, and adds one shape and
+    /// dynamic entry a body held.
     fn add_shapes(
         &self,
         group: &Group<'_>,
@@ -83,7 +119,7 @@ impl SceneFile {
         bodies: &mut Bodies,
         sizes: &mut Sizes,
     ) -> Result<(), SceneError> {
-        let mesh = library.mesh(self, group.form)?;
+        let mesh = library.mesh(self, group)?;
         let mut draws = group.draws(Purpose::Radius);
         let range = group.spec.radius.as_ref().map(|range| *range.get_ref());
         let uniform = group.is_uniform();
@@ -170,26 +206,8 @@ impl SceneFile {
         )
     }
 
-    /// Adds the poses of the bodies held; the second pair is the box's side and the radius of the group's largest ball.
-    fn add_poses(
-        &self,
-        group: &Group<'_>,
-        held: Range<usize>,
-        (side, widest): (Option<f32>, f32),
-        library: &Library,
-        bodies: &mut Bodies,
-    ) -> Result<(), SceneError> {
-        let Some(poses) = &group.spec.poses else {
-            return self.place(group, held, (side, widest), library, bodies);
-        };
-        for pose in &poses.get_ref()[held] {
-            let [qx, qy, qz, qw, tx, ty, tz] = *pose.get_ref();
-            bodies.rotation.push([qx, qy, qz, qw]);
-            bodies.translation.push([tx, ty, tz]);
-        }
-        Ok(())
-    }
-
+    /// Places the bodies held by the seed; the pair is the box's side and the radius of the group's
+    /// largest ball.
     fn place(
         &self,
         group: &Group<'_>,
@@ -236,8 +254,9 @@ impl SceneFile {
             let shape = bodies.shape[first + index - held.start];
             let ball = library.get(shape).ball;
             let centre = placer.centre(ball.radius, centres);
-            // The ball's centre is placed: t is what brings it there, the ball's centre itself for origin = "ball".
-            let offset = world_centre(ball.centre.to_array(), &rotation, &[0.0; 3]);
+            // The ball's centre is placed: t is what brings it there, the ball's centre itself for
+            // origin = "ball".
+            let offset = world_centre(ball.centre, &rotation, &[0.0; 3]);
             bodies.rotation.push(rotation);
             bodies
                 .translation
@@ -246,7 +265,8 @@ impl SceneFile {
         Ok(())
     }
 
-    /// Draws or copies velocities, and the angular velocities of dynamic bodies where the scene lists `spin`.
+    /// Draws or copies velocities, and the angular velocities of dynamic bodies where the scene
+    /// lists `spin`.
     fn add_velocities(&self, group: &Group<'_>, held: Range<usize>, velocities: &mut Velocities) {
         let (spec, all) = (group.spec, velocities.linear.len() + held.len());
         let (linear, angular) = (&mut velocities.linear, &mut velocities.angular);
@@ -269,32 +289,34 @@ impl SceneFile {
 
     /// Points at what the file says of the body: its velocity, its pose, or its group.
     fn contract_error(&self, groups: &[Group<'_>], error: &ContractError) -> SceneError {
-        let mut first = 0;
-        let mut span = 0..0;
-        for (group, table) in groups.iter().zip(&self.spec.bodies) {
-            if (first..first + group.bodies).contains(&error.body) {
-                let at = error.body - first;
-                let pose = group
-                    .spec
-                    .poses
-                    .as_ref()
-                    .map(|poses| poses.get_ref()[at].span());
-                let velocity = group
-                    .spec
-                    .velocities
-                    .as_ref()
-                    .map(|list| list.get_ref()[at].span());
-                let narrow = if error.quantity == "velocity" {
-                    velocity
-                } else {
-                    pose
-                };
-                span = narrow.unwrap_or(table.span());
-            }
-            first += group.bodies;
-        }
+        let span = self.span_of(groups, error.body, error.quantity == "velocity");
         self.wrong(span, &error.to_string(), error.hint)
     }
+
+    /// Where the file has a body's pose or velocity, or its group.
+    fn span_of(&self, groups: &[Group<'_>], body: usize, velocity: bool) -> Range<usize> {
+        let mut of_body = runs(groups).zip(&self.spec.bodies);
+        let Some(((group, run), table)) = of_body.find(|((_, run), _)| run.contains(&body)) else {
+            return 0..0;
+        };
+        let (spec, at) = (group.spec, body - run.start);
+        let narrow = if velocity {
+            let velocities = spec.velocities.as_ref();
+            velocities.map(|list| list.get_ref()[at].span())
+        } else {
+            let poses = spec.poses.as_ref();
+            poses.map(|list| list.get_ref()[at].span())
+        };
+        narrow.unwrap_or(table.span())
+    }
+}
+
+/// Adds a pose as the file has it.
+fn add_pose(pose: [f64; 7], bodies: &mut Bodies, fine: &mut FineTranslations) {
+    let [qx, qy, qz, qw, tx, ty, tz] = pose;
+    let body = bodies.translation.len();
+    bodies.rotation.push([qx, qy, qz, qw].map(|x| x as f32));
+    bodies.translation.push(fine.add(body, [tx, ty, tz]));
 }
 
 /// What is known of radii once all shapes are made.

@@ -1,9 +1,10 @@
 //! The box side that a wished density needs.
 //!
-//! Spheres of radii r, uniform in a volume V, edges ignored: body i overlaps Σ_{j≠i} (4/3)π(rᵢ + rⱼ)³/V others in the
-//! mean. The mean over bodies is `partners`, so
-//! V = (4/3)π/(N·partners)·Σ_{i≠j}(rᵢ + rⱼ)³, and by power sums Sₖ = Σ rᵢᵏ the double sum is 2N·S₃ + 6·S₁S₂ − 8·S₃.
-//! In a finite box fewer overlap near the walls, but centres keep r off them: the two nearly cancel.
+//! Spheres of radii r, uniform in a volume V, edges ignored: body i overlaps Σ_{j≠i} (4/3)π(rᵢ +
+//! rⱼ)³/V others in the mean. The mean over bodies is `partners`, so V =
+//! (4/3)π/(N·partners)·Σ_{i≠j}(rᵢ + rⱼ)³, and by power sums Sₖ = Σ rᵢᵏ the double sum is 2N·S₃ +
+//! 6·S₁S₂ − 8·S₃. In a finite box fewer overlap near the walls, but centres keep r off them: the
+//! two nearly cancel.
 
 use std::f64::consts::PI;
 
@@ -26,7 +27,8 @@ impl PowerSums {
         self.s3 += r * r * r;
     }
 
-    /// The side of the cube in which spheres of these radii have `partners` overlaps each, in the mean.
+    /// The side of the cube in which spheres of these radii have `partners` overlaps each, in the
+    /// mean.
     pub(super) fn side(&self, partners: f32) -> f32 {
         let Self { n, s1, s2, s3 } = *self;
         let cubes = 2.0 * n * s3 + 6.0 * s1 * s2 - 8.0 * s3;

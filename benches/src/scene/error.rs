@@ -41,11 +41,11 @@ pub enum SceneError {
     Text(Box<TextError>),
     /// Culling settings that can't be carried out.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Settings(#[from] SettingsError),
     /// A body outside of the contract.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Contract(#[from] ContractError),
 }
 
@@ -127,7 +127,8 @@ impl Source {
     }
 }
 
-/// serde names what is missing, or lists the names that it expected after the one that it found, all in backticks.
+/// serde names what is missing, or lists the names that it expected after the one that it found,
+/// all in backticks.
 fn hint_of(message: &str) -> Option<String> {
     let names = |text: &str| -> Vec<String> {
         text.split('`')

@@ -1,4 +1,5 @@
-//! A scene file as written: TOML into plain structures, every value checked as far as it stands alone.
+//! A scene file as written: TOML into plain structures, every value checked as far as it stands
+//! alone.
 
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
@@ -10,13 +11,14 @@ use toml::de::{DeTable, DeValue, Deserializer};
 
 use super::error::{SceneError, Source};
 use crate::effects::EffectsSpec;
-use crate::number::{Interval, Positive, Real};
+use crate::number::{Factors, Interval, Positive, Real};
 use sdop::choice::choices;
 use sdop::files;
 use sdop::settings::CullSettings;
 use sdop::volume::Origin;
 
-/// A scene file, read but not yet built. Seed, frames and culling may be changed before [`SceneFile::build`].
+/// A scene file, read but not yet built. Seed, frames and culling may be changed before
+/// [`SceneFile::build`].
 #[derive(Clone, Debug)]
 pub struct SceneFile {
     pub(super) source: Source,
@@ -78,11 +80,14 @@ pub struct GroupSpec {
     /// The procedural shape's sizes, where they differ from its defaults.
     #[serde(default)]
     pub sizes: BTreeMap<Spanned<String>, Spanned<Real>>,
+    /// Factors of the mesh's coordinates, before anything else; negative ones mirror.
+    pub scale: Option<Spanned<Factors>>,
     /// How many bodies, placed by the seed.
     pub count: Option<Spanned<NonZeroU32>>,
-    /// Explicit poses instead: q (x, y, z, w), then t.
-    pub poses: Option<Spanned<Vec<Spanned<[f32; 7]>>>>,
-    /// Radius of the bounding ball, or the ends of a log-uniform range; absent: the mesh's own size.
+    /// Explicit poses instead: q (x, y, z, w), which are f32, then t, which are f64.
+    pub poses: Option<Spanned<Vec<Spanned<[f64; 7]>>>>,
+    /// Radius of the bounding ball, or the ends of a log-uniform range; absent: the mesh's own
+    /// size.
     pub radius: Option<Spanned<Interval>>,
     /// What the body frame's origin is.
     pub origin: Option<Spanned<Origin>>,
@@ -122,7 +127,8 @@ choices! {
     Seeding, "seeding", {
         /// Bodies of a group draw one after the other: whoever wants the last draws for all.
         ByGroup = "by-group",
-        /// Each body has streams of its own, so that any share of a scene can be made without the rest.
+        /// Each body has streams of its own, so that any share of a scene can be made without the
+        /// rest.
         ByBody = "by-body",
     }
 }
@@ -143,8 +149,8 @@ impl SceneFile {
     /// Reads a scene file.
     ///
     /// # Errors
-    /// An unreadable file; text that is no TOML; unknown keys, wrong types and impossible values, each with
-    /// line, column and a hint.
+    /// An unreadable file; text that is no TOML; unknown keys, wrong types and impossible values,
+    /// each with line, column and a hint.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         Self::read_within(path, files::MAX_BYTES)
     }
@@ -159,7 +165,8 @@ impl SceneFile {
         Ok(Self { max_bytes, ..file })
     }
 
-    /// Reads a scene from text; `file` is what errors call it, mesh paths are relative to `directory`.
+    /// Reads a scene from text; `file` is what errors call it, mesh paths are relative to
+    /// `directory`.
     ///
     /// # Errors
     /// As [`SceneFile::read`].
@@ -197,9 +204,9 @@ fn read_spec(text: &str) -> Result<SceneSpec, toml::de::Error> {
     SceneSpec::deserialize(Deserializer::from(table))
 }
 
-/// Finds the floats that, read as f64 and then rounded, would not become the f32 nearest to their *text*: a decimal just
-/// beside the midpoint of two f32 becomes the midpoint in f64, and its tie may go to the other side. Collects the
-/// nearest f32 as text, by the float's place.
+/// Finds the floats that, read as f64 and then rounded, would not become the f32 nearest to their
+/// *text*: a decimal just beside the midpoint of two f32 becomes the midpoint in f64, and its tie
+/// may go to the other side. Collects the nearest f32 as text, by the float's place.
 fn find_double_roundings(value: &Spanned<DeValue<'_>>, nearest: &mut BTreeMap<usize, String>) {
     match value.get_ref() {
         DeValue::Float(float) => {
@@ -214,10 +221,25 @@ fn find_double_roundings(value: &Spanned<DeValue<'_>>, nearest: &mut BTreeMap<us
         DeValue::Array(list) => list
             .iter()
             .for_each(|item| find_double_roundings(item, nearest)),
-        DeValue::Table(table) => table
-            .values()
-            .for_each(|item| find_double_roundings(item, nearest)),
+        DeValue::Table(table) => {
+            for (key, item) in table {
+                match (key.get_ref().as_ref(), item.get_ref()) {
+                    ("poses", DeValue::Array(poses)) => find_in_rotations(poses, nearest),
+                    _ => find_double_roundings(item, nearest),
+                }
+            }
+        }
         _ => {}
+    }
+}
+
+/// The same for poses, whose translations stay f64.
+fn find_in_rotations(poses: &[Spanned<DeValue<'_>>], nearest: &mut BTreeMap<usize, String>) {
+    for pose in poses {
+        if let DeValue::Array(numbers) = pose.get_ref() {
+            let rotation = numbers.iter().take(4);
+            rotation.for_each(|number| find_double_roundings(number, nearest));
+        }
     }
 }
 

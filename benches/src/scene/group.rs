@@ -10,7 +10,8 @@ use super::library::Form;
 use crate::random::Stream;
 use sdop::volume::Origin;
 
-/// The most bodies that a process holds of a scene: a hundred bytes each, in several copies, fit into memory.
+/// The most bodies that a process holds of a scene: a hundred bytes each, in several copies, fit
+/// into memory.
 const MOST_BODIES: usize = 1 << 24;
 
 /// The most that a u32 numbers, with a bit to spare.
@@ -38,7 +39,8 @@ pub(super) struct Group<'a> {
 }
 
 impl Group<'_> {
-    /// The group's stream of draws for one purpose: what one purpose draws leaves the others as they are.
+    /// The group's stream of draws for one purpose: what one purpose draws leaves the others as
+    /// they are.
     pub(super) fn stream(&self, purpose: Purpose) -> Stream {
         Stream::new(self.seed, self.number * 8 + purpose as u64)
     }
@@ -72,7 +74,8 @@ pub(super) struct Draws {
 }
 
 impl Draws {
-    /// The bodies of the group that must draw, in order, so that those in `wanted` have what is theirs.
+    /// The bodies of the group that must draw, in order, so that those in `wanted` have what is
+    /// theirs.
     pub(super) fn visited(&self, wanted: &Range<usize>) -> Range<usize> {
         match self.seeding {
             Seeding::ByGroup => 0..wanted.end,
@@ -159,7 +162,7 @@ impl SceneFile {
                 Some((size, _)) => Err(self.wrong(
                     size.span(),
                     "`sizes` belong to a `shape`",
-                    "scale a mesh by its `radius`",
+                    "scale a mesh by `scale` or `radius`",
                 )),
             },
             (None, Some(shape)) => Ok(Form::Procedural(shape, &spec.sizes)),

@@ -4,14 +4,14 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use miette::Diagnostic;
 use toml::Spanned;
 
 use super::error::{SceneError, Source};
 use super::file::SceneFile;
-use crate::number::Real;
+use super::group::Group;
+use crate::number::{Factors, Real};
 use sdop::choice::suggest;
-use sdop::mesh::{ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError};
+use sdop::mesh::{MeshError, ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError};
 use sdop::settings::CullSettings;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 
@@ -31,8 +31,9 @@ pub(super) enum Form<'a> {
 #[derive(Default)]
 pub(super) struct Library {
     meshes: Vec<TriangleMesh>,
-    files: HashMap<PathBuf, usize>,
-    procedural: Vec<(ProceduralShape, usize)>,
+    /// By path and scale.
+    files: HashMap<(PathBuf, Option<[u64; 3]>), usize>,
+    procedural: Vec<(ProceduralShape, Option<[u64; 3]>, usize)>,
     shapes: Vec<Shape>,
     /// By mesh, origin and radius (its bits).
     built: HashMap<(usize, Origin, Option<u32>), u32>,
@@ -40,39 +41,47 @@ pub(super) struct Library {
 }
 
 impl Library {
-    /// The number of a mesh, read or made when it is the first of its kind.
-    pub(super) fn mesh(&mut self, file: &SceneFile, form: Form<'_>) -> Result<usize, SceneError> {
+    /// The number of a group's mesh, read or made when it is the first of its kind and scale.
+    pub(super) fn mesh(
+        &mut self,
+        file: &SceneFile,
+        group: &Group<'_>,
+    ) -> Result<usize, SceneError> {
         let number = self.meshes.len();
-        match form {
+        let scale = group.spec.scale.as_ref();
+        let bits = scale.map(|scale| scale.get_ref().0.map(f64::to_bits));
+        let mesh = match group.form {
             Form::File(name) => {
-                let path = file.directory.join(name.get_ref());
-                if let Some(&known) = self.files.get(&path) {
+                let key = (file.directory.join(name.get_ref()), bits);
+                if let Some(&known) = self.files.get(&key) {
                     return Ok(known);
                 }
-                let options = ReadOptions {
-                    max_bytes: file.max_bytes,
-                    ..ReadOptions::default()
-                };
-                self.meshes.push(read(&path, &options).map_err(|error| {
-                    let hint = if path.exists() {
-                        help(&error)
-                    } else {
-                        nearest_file(&path)
-                    };
-                    file.source.error(name.span(), error.to_string(), hint)
-                })?);
-                self.files.insert(path, number);
+                let mesh = read_mesh(file, name, &key.0)?;
+                self.files.insert(key, number);
+                mesh
             }
             Form::Procedural(name, sizes) => {
                 let (shape, mesh) = procedural(&file.source, name, sizes)?;
-                if let Some((_, known)) = self.procedural.iter().find(|(known, _)| *known == shape)
-                {
+                let known =
+                    |known: &&(ProceduralShape, _, usize)| known.0 == shape && known.1 == bits;
+                if let Some((_, _, known)) = self.procedural.iter().find(known) {
                     return Ok(*known);
                 }
-                self.procedural.push((shape, number));
-                self.meshes.push(mesh);
+                self.procedural.push((shape, bits, number));
+                mesh
             }
-        }
+        };
+        self.meshes.push(match scale {
+            None => mesh,
+            Some(scale) => {
+                let Factors(factors) = *scale.get_ref();
+                let wrong = |error: MeshError| {
+                    file.source
+                        .error(scale.span(), error.to_string(), Some(error.help()))
+                };
+                mesh.scaled(factors).map_err(wrong)?
+            }
+        });
         Ok(number)
     }
 
@@ -99,7 +108,7 @@ impl Library {
         };
         let start = Instant::now();
         let shape = Shape::build(&self.meshes[mesh], &spec)
-            .map_err(|error| (error.to_string(), help(&error)))?;
+            .map_err(|error| (error.to_string(), Some(error.help().to_owned())))?;
         self.seconds += start.elapsed().as_secs_f64();
         // Fewer shapes than bodies, which a u32 counts.
         let number = self.shapes.len() as u32;
@@ -117,6 +126,25 @@ impl Library {
     pub(super) fn into_shapes(self) -> (Vec<Shape>, f64) {
         (self.shapes, self.seconds)
     }
+}
+
+fn read_mesh(
+    file: &SceneFile,
+    name: &Spanned<String>,
+    path: &Path,
+) -> Result<TriangleMesh, SceneError> {
+    let options = ReadOptions {
+        max_bytes: file.max_bytes,
+        ..ReadOptions::default()
+    };
+    read(path, &options).map_err(|error| {
+        let hint = if path.exists() {
+            Some(error.help())
+        } else {
+            nearest_file(path)
+        };
+        file.source.error(name.span(), error.to_string(), hint)
+    })
 }
 
 fn procedural(
@@ -154,14 +182,9 @@ fn procedural(
         source.error(
             blamed.unwrap_or(name.span()),
             error.to_string(),
-            help(&error),
+            error.help(),
         )
     })
-}
-
-/// The help text of an error of another room.
-pub(super) fn help(error: &dyn Diagnostic) -> Option<String> {
-    error.help().map(|text| text.to_string())
 }
 
 /// What stands beside a file that doesn't exist.

@@ -1,13 +1,14 @@
 //! Scenes: bodies as columns, their shapes, what is simulated and how it is culled.
 //!
-//! A scene file (TOML) is read into a [`SceneFile`], in which a caller may still change seed, frames or culling, and
-//! built into a [`Scene`]: meshes become shapes, and bodies are placed by the seed. The same file and seed give the
-//! same bodies on every platform.
+//! A scene file (TOML) is read into a [`SceneFile`], in which a caller may still change seed,
+//! frames or culling, and built into a [`Scene`]: meshes become shapes, and bodies are placed by
+//! the seed. The same file and seed give the same bodies on every platform.
 
 mod build;
 mod density;
 pub mod error;
 pub mod file;
+mod fine;
 mod group;
 mod library;
 mod placement;
@@ -15,6 +16,7 @@ mod share;
 
 pub use error::SceneError;
 pub use file::SceneFile;
+pub use fine::FineTranslations;
 pub use share::Share;
 
 use crate::effects::{EffectError, Effects, EffectsSpec, Start, Velocities};
@@ -39,6 +41,8 @@ pub struct Scene {
     pub shapes: Vec<Shape>,
     /// The initial poses.
     pub bodies: Bodies,
+    /// The initial translations that f32 doesn't hold.
+    pub fine: FineTranslations,
     /// Which bodies of the scene these are, if not all.
     pub share: Option<Share>,
     /// The initial velocities.

@@ -12,7 +12,8 @@ pub(super) struct Placer {
 }
 
 impl Placer {
-    /// A placer for `count` spheres of radius up to `widest` in the box with walls at ±`half`; `draws` are the group's own.
+    /// A placer for `count` spheres of radius up to `widest` in the box with walls at ±`half`;
+    /// `draws` are the group's own.
     ///
     /// # Errors
     /// Clusters or a slice that don't fit: the problem and what would fit.

@@ -88,8 +88,8 @@ impl Header {
         serde_json::from_value(Value::Object(self.settings.clone()))
     }
 
-    /// The first thing in which the work differs from another, in words: what it is here, and what there. Parts of one work
-    /// don't differ.
+    /// The first thing in which the work differs from another, in words: what it is here, and what
+    /// there. Parts of one work don't differ.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Option<String> {
         let words = |what: &str, here: &str, there: &str| {

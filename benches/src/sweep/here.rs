@@ -4,33 +4,26 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
 
-use super::{Event, Sweep, attempt};
+use super::{OnEnd, Sweep, attempt};
 
-/// Does these units; `on` is called for each when it ends. Those that need all threads come last, one at a time. When one fails,
-/// those under way are still finished and told.
+/// Does these units; `on` is called for each when it ends. Those that need all threads come last,
+/// one at a time. When one fails, those under way are still finished and told.
 ///
 /// # Errors
 /// A unit that fails, the first that is seen; what `on` says.
-pub fn here(
-    work: &dyn Sweep,
-    units: &[usize],
-    on: &mut dyn FnMut(Event) -> miette::Result<()>,
-) -> miette::Result<()> {
+pub fn here(work: &dyn Sweep, units: &[usize], on: OnEnd) -> miette::Result<()> {
     let (alone, beside): (Vec<usize>, Vec<usize>) =
         units.iter().partition(|&&unit| work.alone(unit));
     side_by_side(work, &beside, on)?;
     for unit in alone {
-        on(one(work, unit)?)?;
+        on(unit, one(work, unit)?)?;
     }
     Ok(())
 }
 
-/// On threads of its own: a worker of the pool that waits within a unit would take up another unit on top of it.
-fn side_by_side(
-    work: &dyn Sweep,
-    units: &[usize],
-    on: &mut dyn FnMut(Event) -> miette::Result<()>,
-) -> miette::Result<()> {
+/// On threads of its own: a worker of the pool that waits within a unit would take up another unit
+/// on top of it.
+fn side_by_side(work: &dyn Sweep, units: &[usize], on: OnEnd) -> miette::Result<()> {
     let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
     thread::scope(|scope| {
         let (send, receive) = mpsc::channel();
@@ -42,14 +35,14 @@ fn side_by_side(
                         return;
                     }
                     // Nobody listens once `on` has failed.
-                    let _ = send.send(one(work, unit));
+                    let _ = send.send((unit, one(work, unit)));
                 }
             });
         }
         drop(send);
         let mut ended = Ok(());
-        for event in receive {
-            let told = event.and_then(&mut *on);
+        for (unit, result) in receive {
+            let told = result.and_then(|result| on(unit, result));
             if told.is_err() {
                 stopped.store(true, Ordering::Relaxed);
             }
@@ -59,11 +52,9 @@ fn side_by_side(
     })
 }
 
-fn one(work: &dyn Sweep, unit: usize) -> miette::Result<Event> {
-    if !work.starts(unit) {
-        return Ok(Event::Left { unit });
-    }
-    attempt(work, unit).map(|result| Event::Done { unit, result })
+fn one(work: &dyn Sweep, unit: usize) -> miette::Result<Option<String>> {
+    let starts = work.starts(unit);
+    starts.then(|| attempt(work, unit)).transpose()
 }
 
 #[cfg(test)]
@@ -110,21 +101,19 @@ mod tests {
         }
     }
 
-    fn run(units: &[usize], timed: bool) -> (miette::Result<()>, Vec<Event>) {
+    fn run(units: &[usize], timed: bool) -> (miette::Result<()>, Vec<(usize, Option<String>)>) {
         let work = Squares {
             units: 10,
             timed,
             running: AtomicUsize::new(0),
         };
         let mut told = Vec::new();
-        let mut on = |event| {
-            told.push(event);
+        let mut on = |unit, result| {
+            told.push((unit, result));
             Ok(())
         };
         let ended = here(&work, units, &mut on);
-        told.sort_by_key(|event| match event {
-            Event::Started { unit, .. } | Event::Done { unit, .. } | Event::Left { unit } => *unit,
-        });
+        told.sort();
         (ended, told)
     }
 
@@ -133,11 +122,8 @@ mod tests {
         for timed in [false, true] {
             let (ended, told) = run(&[0, 2, 3, 4], timed);
             ended.unwrap();
-            let done = |unit: usize| Event::Done {
-                unit,
-                result: (unit * unit).to_string(),
-            };
-            assert_eq!(told, [done(0), done(2), Event::Left { unit: 3 }, done(4)]);
+            let done = |unit: usize| (unit, Some((unit * unit).to_string()));
+            assert_eq!(told, [done(0), done(2), (3, None), done(4)]);
         }
     }
 

@@ -24,9 +24,9 @@ pub enum MergeError {
     /// No file.
     #[error("there is no shard to merge")]
     None,
-    /// A journal, or a file that was cut off.
+    /// A file that was cut off.
     #[error("{} is no finished shard", path.display())]
-    #[diagnostic(help("run it to its end: the same command with --resume"))]
+    #[diagnostic(help("run this shard again"))]
     Unfinished {
         /// The file.
         path: PathBuf,

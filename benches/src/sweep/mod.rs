@@ -1,27 +1,26 @@
-//! Work cut into units, so that many processes and machines can share it: each unit has its place in one order and a result
-//! of its own, and results are taken in that order. What comes out doesn't depend on who did what, or when.
+//! Work cut into units, so that many processes and machines can share it: each unit has its place
+//! in one order and a result of its own, and results are taken in that order. What comes out
+//! doesn't depend on who did what, or when.
 //!
-//! > [`Sweep`] → [`here()`] or, under `mpirun`, `coordinate` → [`Event`]s → [`InOrder`] → the result
+//! > [`Sweep`] → [`here()`] → [`InOrder`] → the result; or in shards, by files and [`merge()`], or by ranks and [`on_ranks`]
 //!
-//! A [`Journal`] keeps what is done while a run goes on; a shard's file keeps a part of the units for a merge. Both begin with
-//! the [`Header`] that says of which work they are, and are refused for any other.
+//! A shard's file has a part of the units. It begins with the [`Header`] that says of which work
+//! they are, and is refused for any other.
 
 mod file;
 mod header;
 mod here;
 mod merge;
 mod order;
-#[cfg(any(test, feature = "mpi"))]
-mod queue;
-#[cfg(feature = "mpi")]
-pub mod ranks;
+mod ranks;
 mod shard;
 
-pub use file::{Journal, Units, UnitsError, write_shard};
+pub use file::{Units, UnitsError, write_shard};
 pub use header::{Header, code, digest};
 pub use here::here;
 pub use merge::{MergeError, Merged, merge};
 pub use order::InOrder;
+pub use ranks::on_ranks;
 pub use shard::{Shard, ShardError};
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -50,7 +49,8 @@ pub trait Sweep: Sync {
         false
     }
 
-    /// Whether a unit uses all threads of a process itself, or must have them: such units are done one after the other.
+    /// Whether a unit uses all threads of a process itself, or must have them: such units are done
+    /// one after the other.
     fn alone(&self, unit: usize) -> bool {
         self.timed(unit)
     }
@@ -61,29 +61,8 @@ pub trait Sweep: Sync {
     }
 }
 
-/// What happens to a unit.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Event {
-    /// A rank begins it.
-    Started {
-        /// The unit.
-        unit: usize,
-        /// The rank; 0 without MPI.
-        rank: usize,
-    },
-    /// It is done.
-    Done {
-        /// The unit.
-        unit: usize,
-        /// Its result, a line.
-        result: String,
-    },
-    /// It was too late to start it.
-    Left {
-        /// The unit.
-        unit: usize,
-    },
-}
+/// Called when a unit ends, with its result, or without one when it was too late to start it.
+pub type OnEnd<'a> = &'a mut dyn FnMut(usize, Option<String>) -> miette::Result<()>;
 
 /// Does a unit; what goes wrong names it, a panic included.
 fn attempt(work: &dyn Sweep, unit: usize) -> miette::Result<String> {

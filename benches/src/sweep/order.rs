@@ -42,12 +42,6 @@ impl<'a> InOrder<'a> {
         }
         Ok(())
     }
-
-    /// The first unit whose result is still awaited.
-    #[must_use]
-    pub fn awaited(&self) -> Option<usize> {
-        self.next
-    }
 }
 
 #[cfg(test)]
@@ -67,9 +61,7 @@ mod tests {
         for unit in [7, 1, 10] {
             order.put(unit, Some(format!("r{unit}"))).unwrap();
         }
-        assert_eq!(order.awaited(), Some(4));
         order.put(4, None).unwrap();
-        assert_eq!(order.awaited(), None);
         let expected = [1, 7, 10].map(|unit| (unit, format!("r{unit}")));
         assert_eq!(taken, expected);
     }

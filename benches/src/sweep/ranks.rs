@@ -1,206 +1,227 @@
-//! Units handed out by rank 0 to whoever is free. Messages are few and small, so all ranks look for them now and then and
-//! sleep between: a rank that waits takes no core from one that works.
+//! Ranks of `mpirun` as shards: rank i of n does part i + 1 of n, and rank 0 receives all results.
 //!
-//! ```text
-//!  rank 0   GO ──▶        ◀── HELLO header, node     UNIT n ──▶     ◀── DONE n, result        STOP ──▶
-//! ```
+//! Units that are only counted are done by all ranks at once. Then the ranks of one machine time
+//! their units one rank after the other, while those that wait sleep.
 
-use std::time::Duration;
+use std::collections::BTreeMap;
 
 use miette::{IntoDiagnostic as _, miette};
-use mpi::Tag;
-use mpi::point_to_point::{Destination as _, MatchedReceiveVec as _, Source as _};
-use mpi::topology::Communicator as _;
 use rayon::ThreadPoolBuilder;
 
-use super::queue::{Move, Queue};
-use super::{Event, Header, Sweep, attempt};
-use crate::mpi::Ranks;
+use super::{Header, Shard, Sweep, attempt};
+use crate::network::{Network, tell_all, tell_first};
 
-/// Rank 0 has its work ready: begin.
-const GO: Tag = 1;
-/// What a rank has to do by its own reading, and on which node.
-const HELLO: Tag = 2;
-/// Do this unit.
-const UNIT: Tag = 3;
-/// A unit's result.
-const DONE: Tag = 4;
-/// Why a unit has none.
-const FAILED: Tag = 5;
-/// There is nothing left to do.
-const STOP: Tag = 6;
-
-/// How long a rank that waits sleeps between two looks.
-const NAP: Duration = Duration::from_micros(500);
-
-/// A message: who sent it, what it is, what it says.
-struct Letter {
-    from: usize,
-    tag: Tag,
-    text: String,
-}
-
-impl Ranks {
-    fn post(self, to: usize, tag: Tag, text: &str) {
-        let world = self.world();
-        // A rank's number is one of MPI's own.
-        let to = world.process_at_rank(to as mpi::Rank);
-        to.send_with_tag(text.as_bytes(), tag);
-    }
-
-    fn wait(self) -> miette::Result<Letter> {
-        let world = self.world();
-        loop {
-            if let Some(found) = world.any_process().immediate_matched_probe() {
-                let (bytes, status) = found.matched_receive_vec::<u8>();
-                return Ok(Letter {
-                    from: status.source_rank().unsigned_abs() as usize,
-                    tag: status.tag(),
-                    text: String::from_utf8(bytes).into_diagnostic()?,
-                });
-            }
-            std::thread::sleep(NAP);
+/// Does this rank's part of the work; `ended` is called after each of its units. Rank 0 gets the
+/// results of all ranks, the others none. With `share_cores`, ranks of one machine time side by
+/// side. Collective.
+///
+/// # Errors
+/// A unit that fails, on the rank that has it; ranks with different work, on rank 0. Other ranks
+/// may wait for this one then: the caller ends them.
+pub fn on_ranks(
+    network: &impl Network,
+    work: &dyn Sweep,
+    share_cores: bool,
+    ended: &mut dyn FnMut(usize),
+) -> miette::Result<BTreeMap<usize, String>> {
+    let header = work.header()?;
+    let headers = tell_first(network, serde_json::to_vec(&header).into_diagnostic()?);
+    same_work(&header, &headers, network.rank())?;
+    let shard = Shard {
+        index: network.rank() + 1,
+        of: network.size(),
+    };
+    let units = shard.units(header.units).into_iter();
+    let (timed, counted): (Vec<usize>, Vec<usize>) = units.partition(|&unit| work.timed(unit));
+    let mut done = BTreeMap::new();
+    let mut run = |unit: usize, attempt: &dyn Fn(usize) -> miette::Result<String>| {
+        if work.starts(unit) {
+            done.insert(
+                unit,
+                attempt(unit).map_err(|error| of_rank(network, &error))?,
+            );
         }
-    }
-}
-
-/// Waits until rank 0 has its work ready. A mistake in the arguments is then said by rank 0, once.
-///
-/// # Errors
-/// A message that isn't text.
-pub fn await_go(ranks: Ranks) -> miette::Result<()> {
-    ranks.wait().map(drop)
-}
-
-/// Does the units that rank 0 hands out, until there are none left.
-///
-/// # Errors
-/// A header that JSON has no form for, threads that the system refuses.
-pub fn serve(ranks: Ranks, work: &dyn Sweep) -> miette::Result<()> {
-    let node = mpi::environment::processor_name().into_diagnostic()?;
-    let header = serde_json::to_string(&work.header()?).into_diagnostic()?;
-    ranks.post(0, HELLO, &format!("{node}\n{header}"));
-    // Ranks are what works side by side here, so each has one thread; what is timed has all that there are.
+        ended(unit);
+        Ok::<_, miette::Report>(())
+    };
+    // Ranks are what works side by side here, so each has one thread; what is timed has all that
+    // there are.
     let one = ThreadPoolBuilder::new().num_threads(1).build();
     let one = one.into_diagnostic()?;
-    let run = |unit| {
-        if work.timed(unit) {
-            attempt(work, unit)
-        } else {
-            one.install(|| attempt(work, unit))
-        }
+    for unit in counted {
+        run(unit, &|unit| one.install(|| attempt(work, unit)))?;
+    }
+    let mut timed = || {
+        timed
+            .iter()
+            .try_for_each(|&unit| run(unit, &|unit| attempt(work, unit)))
     };
-    loop {
-        let letter = ranks.wait()?;
-        if letter.tag == STOP {
-            return Ok(());
-        }
-        let unit = letter.text.parse().into_diagnostic()?;
-        match run(unit) {
-            Ok(result) => ranks.post(0, DONE, &format!("{unit} {result}")),
-            Err(error) => {
-                let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
-                ranks.post(0, FAILED, &causes.join(": "));
+    if share_cores {
+        timed()?;
+    } else {
+        let machines = tell_all(network, network.machine().as_bytes());
+        let own = turn(&machines, network.rank());
+        let last = (0..network.size()).map(|rank| turn(&machines, rank)).max();
+        for now in 0..=last.unwrap_or(0) {
+            network.wait();
+            if now == own {
+                timed()?;
             }
         }
     }
+    network.wait();
+    let mine = serde_json::to_vec(&done).into_diagnostic()?;
+    let mut all = BTreeMap::new();
+    for part in tell_first(network, mine)
+        .iter()
+        .filter(|part| !part.is_empty())
+    {
+        let part: BTreeMap<usize, String> = serde_json::from_slice(part).into_diagnostic()?;
+        all.extend(part);
+    }
+    Ok(all)
 }
 
-/// Has these units done by the other ranks; `on` is called for each when it begins and when it ends. A unit that is timed has its
-/// node to itself, unless ranks are to share their cores. When one fails, those under way are still
-/// finished and told. The ranks wait for more until [`dismiss`].
-///
-/// # Errors
-/// A unit that fails, a rank that has other work, what `on` says.
-pub fn coordinate(
-    ranks: Ranks,
-    work: &dyn Sweep,
-    units: &[usize],
-    share_cores: bool,
-    on: &mut dyn FnMut(Event) -> miette::Result<()>,
-) -> miette::Result<()> {
-    let mut office = Office {
-        ranks,
-        header: work.header()?,
-        queue: Queue::new(work, units, share_cores),
-        failed: None,
-    };
-    for rank in 1..ranks.size {
-        ranks.post(rank, GO, "");
-    }
-    let mut expected = ranks.size - 1;
-    while expected > 0 || office.queue.under_way() {
-        let letter = ranks.wait()?;
-        if letter.tag == HELLO {
-            expected -= 1;
+/// How many ranks of a rank's machine time before it.
+fn turn(machines: &[Vec<u8>], rank: usize) -> usize {
+    let before = machines[..rank].iter();
+    before.filter(|other| **other == machines[rank]).count()
+}
+
+/// On rank 0, which has the headers of all ranks, that they are of one work.
+fn same_work(header: &Header, headers: &[Vec<u8>], rank: usize) -> miette::Result<()> {
+    for (other, text) in headers.iter().enumerate().filter(|_| rank == 0) {
+        let other_header: Header = serde_json::from_slice(text).into_diagnostic()?;
+        if let Some(difference) = header.difference(&other_header) {
+            return Err(miette!(
+                help = "all ranks must have the same program, scenes and kind of CPU; `here` is rank 0",
+                "rank {other} has other work: {difference}"
+            ));
         }
-        office.read(letter, on)?;
     }
-    match office.failed {
-        Some(error) => Err(error),
-        None => Ok(()),
-    }
+    Ok(())
 }
 
-/// Lets the other ranks end. Until then they sleep: rank 0 may have work left that needs a quiet machine.
-pub fn dismiss(ranks: Ranks) {
-    for rank in 1..ranks.size {
-        ranks.post(rank, STOP, "");
+/// An error with its causes in one line that names the rank: lines of many ranks arrive in any
+/// order.
+fn of_rank(network: &impl Network, error: &miette::Report) -> miette::Report {
+    let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
+    miette!("rank {}: {}", network.rank(), causes.join(": "))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+
+    /// Ten squares. Odd units are timed, unit 6 comes too late, `fails` has no result.
+    struct Squares {
+        fails: usize,
+        running: AtomicUsize,
+        met: AtomicUsize,
     }
-}
 
-/// What rank 0 knows.
-struct Office<'a> {
-    ranks: Ranks,
-    header: Header,
-    queue: Queue<'a>,
-    failed: Option<miette::Report>,
-}
-
-impl Office<'_> {
-    fn read(
-        &mut self,
-        letter: Letter,
-        on: &mut dyn FnMut(Event) -> miette::Result<()>,
-    ) -> miette::Result<()> {
-        let Letter { from, tag, text } = letter;
-        if tag == HELLO {
-            let (node, header) = text.split_once('\n').unwrap_or_default();
-            let header: Header = serde_json::from_str(header).into_diagnostic()?;
-            if let Some(difference) = self.header.difference(&header) {
-                return Err(miette!(
-                    help = "all ranks must have the same program, scenes and kind of CPU; `here` is rank 0",
-                    "rank {from} on {node} has other work: {difference}"
-                ));
+    impl Sweep for Squares {
+        fn header(&self) -> miette::Result<Header> {
+            let settings = BTreeMap::<String, u8>::new();
+            Header::new("squares", &settings, BTreeMap::new(), 10).into_diagnostic()
+        }
+        fn name(&self, unit: usize) -> String {
+            format!("square of {unit}")
+        }
+        fn run(&self, unit: usize) -> miette::Result<String> {
+            miette::ensure!(unit != self.fails, "planted");
+            let beside = self.running.fetch_add(1, Ordering::SeqCst);
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            if beside > 0 && self.timed(unit) {
+                self.met.fetch_add(1, Ordering::SeqCst);
             }
-            self.queue.arrives(from, node);
-            return self.hand_out(on);
+            self.running.fetch_sub(1, Ordering::SeqCst);
+            Ok(format!("{{\"square\": {}}}", unit * unit))
         }
-        self.queue.ended(from);
-        if tag == FAILED {
-            let failed = miette!("rank {from}: {text}");
-            self.failed.get_or_insert(failed);
-            return Ok(());
+        fn timed(&self, unit: usize) -> bool {
+            unit % 2 == 1
         }
-        let (unit, result) = text.split_once(' ').unwrap_or_default();
-        let (unit, result) = (unit.parse().into_diagnostic()?, result.to_owned());
-        on(Event::Done { unit, result })?;
-        self.hand_out(on)
+        fn starts(&self, unit: usize) -> bool {
+            unit != 6
+        }
     }
 
-    /// Begins what can be begun, unless something has failed.
-    fn hand_out(&mut self, on: &mut dyn FnMut(Event) -> miette::Result<()>) -> miette::Result<()> {
-        while self.failed.is_none()
-            && let Some(next) = self.queue.next()
-        {
-            match next {
-                Move::Start { unit, rank } => {
-                    on(Event::Started { unit, rank })?;
-                    self.ranks.post(rank, UNIT, &unit.to_string());
-                }
-                Move::Leave { unit } => on(Event::Left { unit })?,
-            }
+    /// What each rank gets, and how many timed units ran beside others.
+    fn run(ranks: usize, share_cores: bool) -> (Vec<BTreeMap<usize, String>>, usize) {
+        let work = Squares {
+            fails: usize::MAX,
+            running: AtomicUsize::new(0),
+            met: AtomicUsize::new(0),
+        };
+        let each = crate::network::on_ranks(ranks, |net| {
+            on_ranks(net, &work, share_cores, &mut |_| {}).unwrap()
+        });
+        (each, work.met.into_inner())
+    }
+
+    #[test]
+    fn rank_0_has_every_result() {
+        let done = (0..10).filter(|unit| *unit != 6);
+        let expected: BTreeMap<usize, String> = done
+            .map(|unit| (unit, format!("{{\"square\": {}}}", unit * unit)))
+            .collect();
+        for ranks in [1, 2, 3, 12] {
+            let (each, _) = run(ranks, false);
+            assert_eq!(each[0], expected, "{ranks} ranks");
+            assert!(each[1..].iter().all(BTreeMap::is_empty));
         }
-        Ok(())
+    }
+
+    #[test]
+    fn timed_units_run_alone() {
+        assert_eq!(run(3, false).1, 0);
+        // Three ranks that sleep in five units, all at once.
+        assert!(run(3, true).1 > 0);
+    }
+
+    #[test]
+    fn turns_count_within_a_machine() {
+        let machines = ["a", "b", "a", "c", "a", "b"].map(|name| name.as_bytes().to_vec());
+        let turns: Vec<usize> = (0..6).map(|rank| turn(&machines, rank)).collect();
+        assert_eq!(turns, [0, 0, 1, 0, 2, 1]);
+    }
+
+    #[test]
+    fn a_failure_names_its_rank() {
+        let work = Squares {
+            fails: 5,
+            running: AtomicUsize::new(0),
+            met: AtomicUsize::new(0),
+        };
+        let errors = crate::network::on_ranks(1, |net| {
+            on_ranks(net, &work, false, &mut |_| {})
+                .unwrap_err()
+                .to_string()
+        });
+        assert_eq!(errors, ["rank 0: unit 5, square of 5, failed: planted"]);
+    }
+
+    #[test]
+    fn other_work_is_refused() {
+        let header = |units| {
+            Header::new(
+                "squares",
+                &BTreeMap::<String, u8>::new(),
+                BTreeMap::new(),
+                units,
+            )
+        };
+        let texts = [9, 8].map(|units| serde_json::to_vec(&header(units).unwrap()).unwrap());
+        let error = same_work(&header(9).unwrap(), &texts, 0)
+            .unwrap_err()
+            .to_string();
+        assert_eq!(
+            error,
+            "rank 1 has other work: the number of units is 9 here and 8 there"
+        );
     }
 }

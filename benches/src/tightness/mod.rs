@@ -29,7 +29,7 @@ impl Size {
         let hull_volume = hull.volume(&shape.vertices);
         let size = |name: String, volume: f64| Self {
             name,
-            volume,
+            volume: volume + 0.0, // no −0
             over_hull: (hull_volume > 0.0).then(|| volume / hull_volume),
         };
         let corners: Vec<_> = hull

@@ -1,10 +1,11 @@
 //! How large a volume is: the numbers behind "volume over hull volume" tables.
 //!
-//! In the coordinates u_j = column_j·x a k-DOP is lo ≤ c·u ≤ hi with integer normals c, and ‖column‖³ times as large. Its
-//! volume is the sum over its faces of area·distance/3 from any one point (divergence theorem); a face is a large square in
-//! the face's plane, clipped by all other half-spaces. A half-space that touches nowhere leaves no polygon.
+//! In the coordinates u_j = column_j·x a k-DOP is lo ≤ c·u ≤ hi with integer normals c, and
+//! ‖column‖³ times as large. Its volume is the sum over its faces of area·distance/3 from any one
+//! point (divergence theorem); a face is a large square in the face's plane, clipped by all other
+//! half-spaces. A half-space that touches nowhere leaves no polygon.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use rand_chacha::{
     ChaCha8Rng,
     rand_core::{Rng, SeedableRng},
@@ -98,12 +99,17 @@ fn area(polygon: &[DVec3]) -> f64 {
     polygon.windows(2).map(cross).sum::<DVec3>().length() / 2.0
 }
 
-/// The mean volume of a world-aligned k-DOP, re-fitted after each of `turns` uniformly random rotations of its body.
+/// The mean volume of a world-aligned k-DOP, re-fitted after each of `turns` uniformly random
+/// rotations of its body.
 ///
-/// Turning the body one way is turning the directions the other way, so each turn is an or-DOP on a random basis. Hull
-/// vertices suffice. The rotations are the same in every call.
+/// Turning the body one way is turning the directions the other way, so each turn is an or-DOP on a
+/// random basis. Hull vertices suffice. The rotations are the same in every call.
 #[must_use]
-pub fn mean_world_aligned_volume(vertices: &[Vec3], directions: DirectionSet, turns: u32) -> f64 {
+pub fn mean_world_aligned_volume(
+    vertices: &[impl Into<[f32; 3]> + Copy],
+    directions: DirectionSet,
+    turns: u32,
+) -> f64 {
     let mut random = ChaCha8Rng::seed_from_u64(0);
     let volume = |_| OrDop::build(vertices, random_basis(&mut random), directions).volume();
     (0..turns).map(volume).sum::<f64>() / f64::from(turns)

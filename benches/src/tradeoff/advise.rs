@@ -1,7 +1,9 @@
-//! Which volume, axes and finder to use for one scene: every candidate timed and counted on it, without an exact truth.
+//! Which volume, axes and finder to use for one scene: every candidate timed and counted on it,
+//! without an exact truth.
 //!
-//! All variants report every pair that meets, so fewer reported pairs are fewer false ones: T + Np·Cp needs no truth. The
-//! finder is chosen first, since it takes the same part in every variant; `auto` is kept where nothing is surely faster.
+//! All variants report every pair that meets, so fewer reported pairs are fewer false ones: T +
+//! Np·Cp needs no truth. The finder is chosen first, since it takes the same part in every variant;
+//! `auto` is kept where nothing is surely faster.
 
 use serde::Serialize;
 
@@ -16,7 +18,8 @@ use crate::scene::{Scene, SceneFile};
 use sdop::settings::{Axes, CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
 
-/// The most frames of the scene that are looked at: enough to see its pairs, few enough for a minute.
+/// The most frames of the scene that are looked at: enough to see its pairs, few enough for a
+/// minute.
 pub const FRAMES: u32 = 200;
 /// The fewest: a scene with fewer is simulated further, since the first frame of a run is cold.
 const FEWEST: u32 = 24;
@@ -150,7 +153,8 @@ fn finders(scene: &Scene, only: Option<Finder>) -> Vec<Variant> {
     all.map(variant).collect()
 }
 
-/// The fastest finder, or `auto` where that can't be told from it, and those that can't be told from it either.
+/// The fastest finder, or `auto` where that can't be told from it, and those that can't be told
+/// from it either.
 fn chosen_finder(lines: &[Line]) -> Option<(Finder, Vec<String>)> {
     let Choice { best, mut tied, .. } = choose_measured(lines, 0.0)?;
     let auto = Finder::Auto.name();

@@ -1,8 +1,8 @@
 //! Time-critical culling: precision against the budget, for each order of refinement.
 //!
-//! A budget of tests gives reproducible counts; one of microseconds shows by how much the clock is overrun. A pair that
-//! spheres report and the budget doesn't reach is starved: its age counts the frames since it was last refined, or
-//! since its spheres first met.
+//! A budget of tests gives reproducible counts; one of microseconds shows by how much the clock is
+//! overrun. A pair that spheres report and the budget doesn't reach is starved: its age counts the
+//! frames since it was last refined, or since its spheres first met.
 
 use std::collections::HashMap;
 
@@ -97,7 +97,8 @@ pub fn by_tests(
 
 fn settings(scene: &Scene, budget: Budget, order: Order) -> CullSettings {
     let own = &scene.cull;
-    // A tenth of the bodies: with one alone, a few pairs of a thousand would come first, and no row would show it.
+    // A tenth of the bodies: with one alone, a few pairs of a thousand would come first, and no row
+    // would show it.
     let bodies = scene.bodies.len();
     CullSettings {
         strategy: Strategy::SDopTimeCritical,
@@ -190,8 +191,9 @@ impl Starvation {
     }
 }
 
-/// Clock budgets: shares of the median seconds that culling without a budget takes after its updates. All budgets take
-/// turns on the scene's first `frames` frames. No rows where a run is too short for a warm frame.
+/// Clock budgets: shares of the median seconds that culling without a budget takes after its
+/// updates. All budgets take turns on the scene's first `frames` frames. No rows where a run is too
+/// short for a warm frame.
 ///
 /// # Errors
 /// Settings that can't be carried out.

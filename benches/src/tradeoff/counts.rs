@@ -1,4 +1,5 @@
-//! Counts against the truth: precision, reported per true, recall. The same to the bit on every machine.
+//! Counts against the truth: precision, reported per true, recall. The same to the bit on every
+//! machine.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,10 @@
 //! Which variant to use: by density, class of shapes and price of a narrow-phase check.
 //!
-//! T of a variant is measured at each density on the scene's own shapes. How many pairs it leaves to the narrow phase is the
-//! number of sphere hits times the share that survives its or-DOP, which depends on the shape: the means over each class
-//! are taken. The cheapest total T + Np·Cp is recommended; variants whose difference from it has an interval that
-//! covers zero are tied with it.
+//! T of a variant is measured at each density on the scene's own shapes. How many pairs it leaves
+//! to the narrow phase is the number of sphere hits times the share that survives its or-DOP, which
+//! depends on the shape: the means over each class are taken. The cheapest total T + Np·Cp is
+//! recommended; variants whose difference from it has an interval that covers zero are tied with
+//! it.
 
 use serde::{Deserialize, Serialize};
 
@@ -116,7 +117,8 @@ pub struct Choice {
     pub tied: Vec<String>,
 }
 
-/// Chooses among variants by the pairs that each left where it was timed, when a check takes `check` seconds.
+/// Chooses among variants by the pairs that each left where it was timed, when a check takes
+/// `check` seconds.
 #[must_use]
 pub fn choose_measured(lines: &[Line], check: f64) -> Option<Choice> {
     let own: Vec<(Line, f64)> = lines
@@ -146,7 +148,8 @@ fn choose(lines: &[(Line, f64)], check: f64) -> Option<Choice> {
     })
 }
 
-/// Pairs that a variant leaves, per sphere hit: the mean over some shapes; `None` where that wasn't measured.
+/// Pairs that a variant leaves, per sphere hit: the mean over some shapes; `None` where that wasn't
+/// measured.
 fn survivors(line: &Line, shapes: &[&ShapeSurvival]) -> Option<f64> {
     let of = |shape: &&ShapeSurvival| match (line.decides?, line.ordop) {
         (Volume::Sphere, _) => Some(1.0),

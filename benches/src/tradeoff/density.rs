@@ -1,7 +1,8 @@
 //! The same scene in other boxes: how the break-even of S-DOP moves with density.
 //!
-//! Crowding raises Np in proportion while finding pairs stays what it is, so an or-DOP test pays the sooner the denser a
-//! scene. Only counts of reported pairs and times are needed here, no truth.
+//! Crowding raises Np in proportion while finding pairs stays what it is, so an or-DOP test pays
+//! the sooner the denser a scene. Only counts of reported pairs and times are needed here, no
+//! truth.
 
 use serde::{Deserialize, Serialize};
 
@@ -36,7 +37,8 @@ pub struct Density {
     pub lines: Vec<Line>,
     /// The cheapest variant as Cp grows.
     pub cheapest: Vec<Stretch>,
-    /// For each S-DOP that takes part: the Cp, in seconds, above which it is cheaper than spheres alone.
+    /// For each S-DOP that takes part: the Cp, in seconds, above which it is cheaper than spheres
+    /// alone.
     pub break_even: Vec<BreakEven>,
 }
 
@@ -49,7 +51,8 @@ pub struct BreakEven {
     pub cp: f64,
 }
 
-/// Runs the scene at a multiple of its density; `None` where its box has no room for that, or it has no box.
+/// Runs the scene at a multiple of its density; `None` where its box has no room for that, or it
+/// has no box.
 ///
 /// # Errors
 /// What running a scene may meet.
@@ -67,7 +70,8 @@ pub fn at(
     Ok(Some(density(factor, scene.bodies.len(), lines)))
 }
 
-/// The scene of a file whose values were changed; `None` where it can't have them, such as spheres larger than its box.
+/// The scene of a file whose values were changed; `None` where it can't have them, such as spheres
+/// larger than its box.
 ///
 /// # Errors
 /// Whatever else is wrong with it: files that can't be read, bodies outside of the contract.
@@ -99,8 +103,8 @@ pub fn lines(
     )
 }
 
-/// The same on frames that follow one another from the scene's first on, by the mean of warm ones: a finder may do more in
-/// some of them than in others.
+/// The same on frames that follow one another from the scene's first on, by the mean of warm ones:
+/// a finder may do more in some of them than in others.
 ///
 /// # Errors
 /// Settings that can't be carried out, a body that leaves the contract.

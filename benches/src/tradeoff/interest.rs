@@ -82,7 +82,8 @@ pub fn counts(
     sizes(scene).into_iter().map(counted).collect()
 }
 
-/// Median seconds of a warm frame with every size: all or-DOP poses updated, and those that a pair needs.
+/// Median seconds of a warm frame with every size: all or-DOP poses updated, and those that a pair
+/// needs.
 ///
 /// # Errors
 /// Settings that can't be carried out.
@@ -112,7 +113,8 @@ pub(super) fn rows(counts: &[Counted], times: &[[Estimate; 2]]) -> Vec<InterestR
     counts.iter().zip(times).map(row).collect()
 }
 
-/// `size` of `n` bodies, evenly spread over their numbers, so that every group of bodies has its part.
+/// `size` of `n` bodies, evenly spread over their numbers, so that every group of bodies has its
+/// part.
 pub(super) fn spread(n: usize, size: usize) -> Vec<u32> {
     (0..size).map(|i| (i * n / size) as u32).collect()
 }

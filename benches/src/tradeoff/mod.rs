@@ -2,15 +2,15 @@
 //!
 //! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`], [`decide`] (when does it pay?)
 //!
-//! Done in [`units`]. Counts come first and reproduce to the bit; time is measured afterwards and never decides a count.
-//! Every variant must report every true pair: a recall below 1 is a failed check.
+//! Done in [`units`]. Counts come first and reproduce to the bit; time is measured afterwards and
+//! never decides a count. Every variant must report every true pair: a recall below 1 is a failed
+//! check.
 
 pub mod advise;
 pub mod budget;
 pub mod counts;
 pub mod decide;
 pub mod density;
-pub mod figure_4;
 pub mod interest;
 pub mod pays;
 mod result;
@@ -49,18 +49,18 @@ pub enum TradeoffError {
     Simulation(#[from] SimulationError),
     /// A culler that can't be made, or bodies that it refuses.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Cull(#[from] CullError),
     /// A number that the exact reference refuses to judge.
     #[error("the exact reference refuses the scene: {0}")]
     Refused(#[from] sdop_reference::InvalidInput),
     /// A shape can't be made.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Form(#[from] sdop::mesh::shapes::ShapeError),
     /// A shape can't be bounded.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Volume(#[from] sdop::volume::VolumeError),
     /// The truth can't be kept.
     #[error("cannot write {}", file.display())]

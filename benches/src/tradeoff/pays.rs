@@ -1,8 +1,10 @@
-//! When a cull pays: the full cost T + Np·Cp (Gottschalk, Lin & Manocha 1996), Np the pairs handed to a narrow phase.
+//! When a cull pays: the full cost T + Np·Cp (Gottschalk, Lin & Manocha 1996), Np the pairs handed
+//! to a narrow phase.
 //!
-//! In Cp each variant's cost is a line with the intercept T and the slope Np, so the cheapest variant as Cp grows is their
-//! lower envelope. All break-evens lie between neighbours on it. The pairs by which two variants differ are false ones:
-//! the Cp that counts is that of a pair that doesn't meet.
+//! In Cp each variant's cost is a line with the intercept T and the slope Np, so the cheapest
+//! variant as Cp grows is their lower envelope. All break-evens lie between neighbours on it. The
+//! pairs by which two variants differ are false ones: the Cp that counts is that of a pair that
+//! doesn't meet.
 
 use serde::{Deserialize, Serialize};
 
@@ -61,8 +63,9 @@ impl Line {
         self.times.iter().sum::<f64>() / self.times.len() as f64
     }
 
-    /// By how much this one takes longer than the other in a frame when a narrow-phase check takes `cp` seconds, each
-    /// having `pairs` pairs checked: pass by pass, so that what both share cancels.
+    /// By how much this one takes longer than the other in a frame when a narrow-phase check takes
+    /// `cp` seconds, each having `pairs` pairs checked: pass by pass, so that what both share
+    /// cancels.
     #[must_use]
     pub fn beyond(&self, other: &Self, cp: f64, pairs: [f64; 2]) -> Estimate {
         let checks = cp * (pairs[0] - pairs[1]);

@@ -1,8 +1,10 @@
-//! The price of safety: margins on against off, f32 against f64, tier by tier: time and extra pairs side by side.
+//! The price of safety: margins on against off, f32 against f64, tier by tier: time and extra pairs
+//! side by side.
 //!
-//! Margins live in the volumes, not in the tests. "Off" is therefore the same culler on volumes shrunk by what it will add,
-//! so that it tests the true ones to the last bit or two; nobody can ask for that from outside of this measurement,
-//! since it loses touching pairs. f64 is the reference's plain scalar loops: the same predicate, uninflated.
+//! Margins live in the volumes, not in the tests. "Off" is therefore the same culler on volumes
+//! shrunk by what it will add, so that it tests the true ones to the last bit or two; nobody can
+//! ask for that from outside of this measurement, since it loses touching pairs. f64 is the
+//! reference's plain scalar loops: the same predicate, uninflated.
 
 use sdop_reference as reference;
 use serde::{Deserialize, Serialize};
@@ -54,12 +56,12 @@ pub struct SafetyRow {
     pub seconds: Quartiles,
 }
 
-/// The strategies whose price is asked: those of the volumes that [`without_margins`] shrinks, first one alone, then both. Volumes
-/// that are refitted each frame get their margins there.
+/// The strategies whose price is asked: those of the volumes that [`without_margins`] shrinks,
+/// first one alone, then both. Volumes that are refitted each frame get their margins there.
 pub const STRATEGIES: [Strategy; 2] = [Strategy::Sphere, Strategy::SDopSequential];
 
-/// The [`STRATEGIES`] with the scene's or-DOPs, in every tier that this CPU has, in turns on `count` sample frames
-/// and those that follow them.
+/// The [`STRATEGIES`] with the scene's or-DOPs, in every tier that this CPU has, in turns on
+/// `count` sample frames and those that follow them.
 ///
 /// # Errors
 /// Settings that can't be carried out, numbers that the reference refuses.
@@ -188,11 +190,11 @@ pub fn without_margins(shape: &Shape) -> Shape {
     while *radius > 0.0 && inflate_radius(*radius) > shape.ball.radius {
         *radius = radius.next_down();
     }
-    let reach = f64::from(shape.reach) + norm(shape.ball.centre.to_array());
+    let reach = f64::from(shape.reach) + norm(shape.ball.centre);
     let ordop = &mut bare.ordop;
     let coefficients = ordop.directions.coefficients().iter();
     for ((lo, hi), &c) in ordop.lo.iter_mut().zip(&mut ordop.hi).zip(coefficients) {
-        let direction = ordop.basis.direction(c).to_array();
+        let direction = ordop.basis.direction(c);
         let margin = norm(direction) * (SLAB_MARGIN * reach + SLAB_FLOOR);
         *lo = (f64::from(*lo) + margin) as f32;
         *hi = (f64::from(*hi) - margin) as f32;

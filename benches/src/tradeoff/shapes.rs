@@ -1,8 +1,10 @@
-//! P(or-DOP hit | sphere hit): what each volume lets through when two bodies' spheres overlap, by Monte Carlo.
+//! P(or-DOP hit | sphere hit): what each volume lets through when two bodies' spheres overlap, by
+//! Monte Carlo.
 //!
-//! Two copies of a shape are turned at random, the second's ball centre is uniform in the ball of twice the radius around
-//! the first's: exactly the sphere hits of a uniform scene. For convex bodies the share that meets is the mean
-//! Minkowski volume (2V + SM/2π, M the mean width integral) over that of two balls, 32πR³/3, which makes known answers.
+//! Two copies of a shape are turned at random, the second's ball centre is uniform in the ball of
+//! twice the radius around the first's: exactly the sphere hits of a uniform scene. For convex
+//! bodies the share that meets is the mean Minkowski volume (2V + SM/2π, M the mean width integral)
+//! over that of two balls, 32πR³/3, which makes known answers.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +25,8 @@ use sdop::volume::{Hull, OrDop, Origin, Shape, ShapeSpec};
 
 /// Where the draws start; scenes count their seeds from 1.
 const SEED: u64 = 0x5a3e_7000_0000_0000;
-/// How far apart pairs whose spheres don't overlap are drawn, in sums of radii: an 18-DOP of a ball reaches 1.23 radii.
+/// How far apart pairs whose spheres don't overlap are drawn, in sums of radii: an 18-DOP of a ball
+/// reaches 1.23 radii.
 const FAR: f32 = 1.3;
 /// Batches of pairs, each an observation of the intervals.
 const BATCHES: usize = 8;
@@ -50,7 +53,8 @@ pub struct ShapeSurvival {
     pub sizes: Vec<Size>,
     /// Every k, axes and overlap test.
     pub ordops: Vec<Survival>,
-    /// Pairs of 18-DOPs (principal axes, `full`) that overlap although their spheres don't, per pair whose spheres do too.
+    /// Pairs of 18-DOPs (principal axes, `full`) that overlap although their spheres don't, per
+    /// pair whose spheres do too.
     pub outside: f64,
     /// Convex hulls that meet, per sphere hit.
     pub hull: Estimate,
@@ -66,8 +70,9 @@ pub struct Crowd {
 }
 
 impl Crowd {
-    /// `pairs` pairs of shapes drawn from `shapes`. The second's ball centre is uniform in the ball of `stretch` times
-    /// both radii about the first's: at 1 these are exactly the pairs whose spheres overlap.
+    /// `pairs` pairs of shapes drawn from `shapes`. The second's ball centre is uniform in the ball
+    /// of `stretch` times both radii about the first's: at 1 these are exactly the pairs whose
+    /// spheres overlap.
     #[must_use]
     pub fn new(shapes: &[Shape], stretch: f32, pairs: u32, stream: u64) -> Self {
         let mut draws = Stream::new(SEED, stream);
@@ -78,7 +83,7 @@ impl Crowd {
             let centre = draws.ball(stretch * reach);
             for (shape, centre) in [(a, [0.0; 3]), (b, centre)] {
                 let q = draws.rotation();
-                let ball = shapes[shape as usize].ball.centre.to_array();
+                let ball = shapes[shape as usize].ball.centre;
                 // The ball's centre is put where it is drawn, whatever the body's origin.
                 let offset = rotate(&rotation(q), ball);
                 let t = [0, 1, 2].map(|axis| (f64::from(centre[axis]) - offset[axis]) as f32);
@@ -195,14 +200,15 @@ pub fn survival(shape: &Shape, pairs: u32, tier: Tier) -> Result<ShapeSurvival, 
     })
 }
 
-/// 18-DOP hits outside of the spheres' hits, per hit inside, of `pairs` pairs up to [`FAR`] times as far apart.
+/// 18-DOP hits outside of the spheres' hits, per hit inside, of `pairs` pairs up to [`FAR`] times
+/// as far apart.
 #[must_use]
 pub fn outside(shape: &[Shape], pairs: u32, tier: Tier) -> f64 {
     let ordop = [shape[0].ordop_along(Axes::Principal, DirectionSet::K18)];
     let reach = 2.0 * f64::from(shape[0].ball.radius);
     let crowd = Crowd::new(shape, FAR, pairs, BATCHES as u64);
     let centre = |body: u32| {
-        let ball = shape[0].ball.centre.to_array();
+        let ball = shape[0].ball.centre;
         let body = body as usize;
         let offset = rotate(&rotation(crowd.bodies.rotation[body]), ball);
         [0, 1, 2].map(|axis| f64::from(crowd.bodies.translation[body][axis]) + offset[axis])

@@ -76,7 +76,8 @@ impl Findings {
         }
     }
 
-    /// The comparison; `None` where units are missing or are those of another. `before` is what the machine was like.
+    /// The comparison; `None` where units are missing or are those of another. `before` is what the
+    /// machine was like.
     #[must_use]
     pub fn finish(self, settings: &Settings, before: Conditions) -> Option<Tradeoff> {
         let Compared {

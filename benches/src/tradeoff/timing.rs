@@ -1,7 +1,8 @@
-//! Time: the formula's prices for each variant, and its seconds per frame measured beside all others.
+//! Time: the formula's prices for each variant, and its seconds per frame measured beside all
+//! others.
 //!
-//! Each sample frame with those that follow it is a turn. Turns of the judged scene take turns with those of its
-//! calibration ([`pass`](crate::cost::pass)): the same protocol as everywhere.
+//! Each sample frame with those that follow it is a turn. Turns of the judged scene take turns with
+//! those of its calibration ([`pass`](crate::cost::pass)): the same protocol as everywhere.
 
 use super::truth::windows;
 use crate::cost::pass::{Frames, Pass, pass};

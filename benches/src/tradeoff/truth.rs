@@ -1,8 +1,9 @@
 //! The truth: which pairs' meshes meet, decided by the exact reference on sample frames of a run.
 //!
-//! A precision needs a denominator that no culler had a hand in. Candidates are therefore all pairs whose bodies' reaches
-//! overlap, found here in f64 from the poses alone, and [`sdop_reference::exact::meeting`] decides each. That takes a
-//! thousand times as long as culling, so answers are kept in a file named by the hash of everything that they depend on.
+//! A precision needs a denominator that no culler had a hand in. Candidates are therefore all pairs
+//! whose bodies' reaches overlap, found here in f64 from the poses alone, and
+//! [`sdop_reference::exact::meeting`] decides each. That takes a thousand times as long as culling,
+//! so answers are kept in a file named by the hash of everything that they depend on.
 
 use std::fs;
 use std::io;
@@ -53,8 +54,8 @@ pub fn samples(scene: &Scene, count: u32) -> Result<Vec<Sample>, SimulationError
     Ok(windows.filter_map(sample).collect())
 }
 
-/// The frames that [`samples`] keeps, by number, each with those that follow it: `length` frames, as far as the scene has
-/// so many.
+/// The frames that [`samples`] keeps, by number, each with those that follow it: `length` frames,
+/// as far as the scene has so many.
 ///
 /// # Errors
 /// As [`samples`].
@@ -98,7 +99,7 @@ impl Judge {
         let mut key = Sha256::new_with_prefix(HEADER);
         let mut meshes = Vec::new();
         for shape in shapes {
-            let vertices: Vec<_> = shape.vertices.iter().map(|v| v.to_array()).collect();
+            let vertices = shape.vertices.clone();
             key.update((vertices.len() as u64).to_le_bytes());
             key.update((shape.triangles.len() as u64).to_le_bytes());
             vertices
@@ -148,8 +149,9 @@ impl Judge {
         Ok(pairs)
     }
 
-    /// The pairs i < j, sorted, that [`Self::near`] can't exclude and that aren't both static. Bodies are swept in the order of
-    /// their x, so that ten thousand of them don't make fifty million pairs.
+    /// The pairs i < j, sorted, that [`Self::near`] can't exclude and that aren't both static.
+    /// Bodies are swept in the order of their x, so that ten thousand of them don't make fifty
+    /// million pairs.
     fn candidates(&self, bodies: &Bodies) -> Vec<[u32; 2]> {
         let x = |body: usize| f64::from(bodies.translation[body][0]);
         let reach = |body: usize| self.reaches[bodies.shape[body] as usize];
@@ -185,8 +187,8 @@ impl Judge {
         Ok(pairs.filter(meet).count())
     }
 
-    /// Mean seconds of an exact narrow phase, for pairs that meet and for pairs that don't: Cp. At most `most` pairs are
-    /// timed, one after the other.
+    /// Mean seconds of an exact narrow phase, for pairs that meet and for pairs that don't: Cp. At
+    /// most `most` pairs are timed, one after the other.
     ///
     /// # Errors
     /// A pose that the reference refuses.
@@ -233,7 +235,8 @@ impl Judge {
         meeting::meet(posed(i), posed(j)).meets
     }
 
-    /// Both meshes lie within their reaches of the body origins; the slack is far above f64's rounding.
+    /// Both meshes lie within their reaches of the body origins; the slack is far above f64's
+    /// rounding.
     fn near(&self, bodies: &Bodies, i: usize, j: usize) -> bool {
         let [a, b] = [i, j].map(|body| bodies.translation[body].map(f64::from));
         let squared: f64 = a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum();
@@ -286,7 +289,8 @@ fn poses(bodies: &Bodies) -> Result<Vec<Pose>, InvalidInput> {
         .collect()
 }
 
-/// Header, a line of numbers a sample, the hash of all pairs. Anything else in the file counts as no file.
+/// Header, a line of numbers a sample, the hash of all pairs. Anything else in the file counts as
+/// no file.
 fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
     let text = files::read_text(file, files::MAX_BYTES).ok()?;
     let mut lines = text.lines();

@@ -1,6 +1,6 @@
-//! A comparison cut into units: what depends on the scene alone, and can be counted anywhere; and what is timed, which has a
-//! machine to itself. Joined in their order they are the results of one process: counts to the bit, times as whoever
-//! measured them found them.
+//! A comparison cut into units: what depends on the scene alone, and can be counted anywhere; and
+//! what is timed, which has a machine to itself. Joined in their order they are the results of one
+//! process: counts to the bit, times as whoever measured them found them.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -40,7 +40,8 @@ const EFFORT: Effort = Effort {
     builds: 5,
 };
 
-/// What is compared and how thoroughly, and on what kind of machine: times of different ones don't go together.
+/// What is compared and how thoroughly, and on what kind of machine: times of different ones don't
+/// go together.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {

@@ -1,7 +1,6 @@
 //! What is compared: every volume and strategy, as culling settings with the shapes that they need.
 
 use crate::tightness::PolytopeVolume as _;
-use glam::Vec3;
 
 use crate::measure::counts::Volume;
 pub use crate::measure::variant::Variant;
@@ -15,8 +14,8 @@ use sdop::volume::{Hull, Shape};
 /// Random rotations over which a world-aligned volume is averaged.
 const TURNS: u32 = 64;
 
-/// Mean volume over hull volume of the scene's bodies; world-aligned volumes are averaged over rotations. `None` when a
-/// hull is flat, or nothing is tested.
+/// Mean volume over hull volume of the scene's bodies; world-aligned volumes are averaged over
+/// rotations. `None` when a hull is flat, or nothing is tested.
 #[must_use]
 pub fn tightness(variant: &Variant, scene: &Scene) -> Option<f64> {
     let shapes = variant.shapes(scene);
@@ -32,7 +31,7 @@ fn shape_tightness(variant: &Variant, shape: &Shape) -> Option<f64> {
     let hull = Hull::of(&shape.vertices);
     let inner = hull.volume(&shape.vertices);
     let aligned = |k| {
-        let points: Vec<Vec3> = hull.points(&shape.vertices);
+        let points = hull.points(&shape.vertices);
         mean_world_aligned_volume(&points, k, TURNS)
     };
     let volume = match variant.decides()? {
@@ -46,8 +45,8 @@ fn shape_tightness(variant: &Variant, shape: &Shape) -> Option<f64> {
     (inner > 0.0).then_some(volume / inner)
 }
 
-/// Every variant for a scene: its own settings give what is not varied. `hits` is the mean number of sphere hits a
-/// frame; half of it is time-critical culling's budget here.
+/// Every variant for a scene: its own settings give what is not varied. `hits` is the mean number
+/// of sphere hits a frame; half of it is time-critical culling's budget here.
 #[must_use]
 pub fn all(scene: &Scene, hits: u64) -> Vec<Variant> {
     let own = &scene.cull;

@@ -1,8 +1,10 @@
-//! The same scene with one thing changed: how many bodies, of how many triangles, how far they move, which shapes they have.
+//! The same scene with one thing changed: how many bodies, of how many triangles, how far they
+//! move, which shapes they have.
 //!
-//! [Density](super::density) has a sweep of its own, since the decision table stands on it. Bodies and motion are judged
-//! through the finder `auto`, whose choice they move, on frames that follow one another over a run; and by the mean of its
-//! warm frames, since a finder that keeps lists makes them anew in some frames and not in most.
+//! [Density](super::density) has a sweep of its own, since the decision table stands on it. Bodies
+//! and motion are judged through the finder `auto`, whose choice they move, on frames that follow
+//! one another over a run; and by the mean of its warm frames, since a finder that keeps lists
+//! makes them anew in some frames and not in most.
 
 use std::fmt;
 use std::num::NonZeroU32;
@@ -112,7 +114,8 @@ pub struct Variation {
     pub bodies: usize,
     /// Mean triangles of a body's mesh.
     pub triangles: f64,
-    /// How far a moving body's centre comes in a frame, in radii of its ball; the mean of the first frame.
+    /// How far a moving body's centre comes in a frame, in radii of its ball; the mean of the first
+    /// frame.
     pub motion: f64,
     /// Mean sphere overlaps a body.
     pub partners: f64,
@@ -226,7 +229,8 @@ fn motion(scene: &Scene) -> Result<f64, TradeoffError> {
     Ok(ways.iter().sum::<f64>() / ways.len().max(1) as f64)
 }
 
-/// The scene with a change; `None` where it can't have it: bodies at given places, spheres larger than the box.
+/// The scene with a change; `None` where it can't have it: bodies at given places, spheres larger
+/// than the box.
 fn changed(file: &SceneFile, change: Change) -> Result<Option<Scene>, TradeoffError> {
     let mut file = file.clone();
     let mut possible = true;

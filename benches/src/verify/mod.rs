@@ -1,4 +1,5 @@
-//! The optimised culler against the exact reference ([`sdop_judge::ours`]), on scenes and shared among many.
+//! The optimised culler against the exact reference ([`sdop_judge::ours`]), on scenes and shared
+//! among many.
 //!
 //! When a pair is missed, [`shrink`] makes the smallest scene that shows it.
 

@@ -1,4 +1,5 @@
-//! A scene's run judged frame by frame, end to end: every mesh pair that meets exactly must be in every strategy's list.
+//! A scene's run judged frame by frame, end to end: every mesh pair that meets exactly must be in
+//! every strategy's list.
 
 use std::ops::Range;
 
@@ -14,8 +15,8 @@ use sdop_judge::ours::judged::Shapes;
 use sdop_judge::ours::rounds::{Ledger, RoundError, Run};
 use sdop_judge::ours::ways::{Rotation, rows};
 
-/// Frames that are judged at once, to bound memory. A culler lives for one block, and each block is a turn of the rotation:
-/// a hundred frames show every way in twenty modes.
+/// Frames that are judged at once, to bound memory. A culler lives for one block, and each block is
+/// a turn of the rotation: a hundred frames show every way in twenty modes.
 const BLOCK: usize = 5;
 
 /// How many blocks so many frames have.
@@ -42,8 +43,9 @@ pub enum JudgeError {
     Simulation(#[from] SimulationError),
 }
 
-/// Runs a scene of `frames` frames up to the end of a block, judges every pair of the block by every predicate, meshes
-/// included, and culls its frames in every way, in the modes whose turn it is.
+/// Runs a scene of `frames` frames up to the end of a block, judges every pair of the block by
+/// every predicate, meshes included, and culls its frames in every way, in the modes whose turn it
+/// is.
 ///
 /// # Errors
 /// A scene that can't be run or judged.

@@ -16,6 +16,7 @@ use sdop_judge::ours::compare::{compare, culler, difference, found};
 use sdop_judge::ours::judged::Shapes;
 use sdop_judge::ours::rounds::Failure;
 use sdop_judge::ours::ways::Mode;
+use sdop_judge::report::pose_in_text;
 
 /// A scene of a few bodies that shows a missed pair.
 #[derive(Clone, Debug)]
@@ -31,8 +32,9 @@ pub struct Smallest {
 }
 
 impl Smallest {
-    /// Leaves bodies out, half of the rest at a time, for as long as some pair is missed or found by one finder alone. `None` when the last frame alone
-    /// shows nothing: it depends on the frames before.
+    /// Leaves bodies out, half of the rest at a time, for as long as some pair is missed or found
+    /// by one finder alone. `None` when the last frame alone shows nothing: it depends on the
+    /// frames before.
     #[must_use]
     pub fn of(failure: &Failure) -> Option<Self> {
         let mut smallest = Self {
@@ -92,8 +94,8 @@ impl Smallest {
         wrong(&self.shapes, &self.bodies, &self.settings, self.mode).unwrap_or(false)
     }
 
-    /// Writes the scene and its meshes into `directory`. Returns the scene's path and whether the file, read back, still
-    /// misses a pair.
+    /// Writes the scene and its meshes into `directory`. Returns the scene's path and whether the
+    /// file, read back, still misses a pair.
     ///
     /// # Errors
     /// A file that can't be written.
@@ -122,17 +124,11 @@ impl Smallest {
                 ..TriangleMesh::default()
             };
             mesh::write(&mesh, directory.join(&file)).map_err(io::Error::other)?;
-            let pose = [&self.bodies.rotation[i][..], &self.bodies.translation[i]].concat();
-            // Exact: the shortest text of an f32 is another number to a reader of doubles.
-            let numbers: Vec<String> = pose
-                .iter()
-                .map(|x| format!("{:?}", f64::from(*x)))
-                .collect();
+            let numbers = pose_in_text(self.bodies.rotation[i], self.bodies.translation[i]);
             let _ = write!(
                 text,
                 "\n[[bodies]] # {i}\nmesh = \"{file}\"\norigin = \"{origin}\"\nposes = [[{}]]\nstatic = {}\n",
-                numbers.join(", "),
-                !self.bodies.dynamic[i]
+                numbers, !self.bodies.dynamic[i]
             );
         }
         let cull = std::collections::BTreeMap::from([("cull", &self.settings)]);
@@ -149,7 +145,8 @@ impl Smallest {
     }
 }
 
-/// Whether a culler misses a pair of the frame, or finds others than all-pairs does on the same tier.
+/// Whether a culler misses a pair of the frame, or finds others than all-pairs does on the same
+/// tier.
 fn wrong(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings, mode: Mode) -> Option<bool> {
     let judged = Shapes::new(shapes.to_vec()).ok()?;
     let answers = Answers::judge(&judged, bodies, settings.k, &Predicate::ALL).ok()?;

@@ -1,5 +1,6 @@
-//! A verification run cut into units: a group of hard cases for one or-DOP, a seed's rounds for one or-DOP, a block of a
-//! scene's frames. Ledgers travel as text, without the frames that failed: a unit that has some can be done again.
+//! A verification run cut into units: a group of hard cases for one or-DOP, a seed's rounds for one
+//! or-DOP, a block of a scene's frames. Ledgers travel as text, without the frames that failed: a
+//! unit that has some can be done again.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -121,7 +122,8 @@ impl Verification {
         })
     }
 
-    /// With the scenes that the settings name, so that units can be done, and a time after which no round is started.
+    /// With the scenes that the settings name, so that units can be done, and a time after which no
+    /// round is started.
     #[must_use]
     pub fn with_scenes(self, scenes: Vec<Scene>, deadline: Option<Instant>) -> Self {
         Self {
@@ -323,7 +325,8 @@ impl Sweep for Verification {
         serde_json::to_string(&texts.collect::<Vec<_>>()).into_diagnostic()
     }
 
-    /// A block's frames are judged on all threads, since the answers of several blocks are too many to hold.
+    /// A block's frames are judged on all threads, since the answers of several blocks are too many
+    /// to hold.
     fn alone(&self, unit: usize) -> bool {
         matches!(self.unit(unit), Unit::Frames(..))
     }

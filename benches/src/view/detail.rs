@@ -3,7 +3,8 @@
 use sdop::mesh::{TriangleMesh, decimate::decimate};
 use sdop::volume::{Hull, Shape};
 
-/// Triangles of the levels, at most. A software renderer draws about 60,000 triangles in the time of a frame.
+/// Triangles of the levels, at most. A software renderer draws about 60,000 triangles in the time
+/// of a frame.
 const LEVELS: [usize; 4] = [3000, 500, 120, 40];
 
 /// One shape, ready to be drawn.
@@ -16,7 +17,8 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// Decimates a shape's mesh. Only the picture is coarser: numbers and truth are those of the whole mesh.
+    /// Decimates a shape's mesh. Only the picture is coarser: numbers and truth are those of the
+    /// whole mesh.
     pub fn of(shape: &Shape) -> Self {
         let whole = TriangleMesh {
             name: shape.name.clone(),
@@ -34,9 +36,6 @@ impl Drawn {
             }
         }
         let hull = Hull::of(&shape.vertices).points(&shape.vertices);
-        Self {
-            levels,
-            hull: hull.iter().map(|v| v.to_array()).collect(),
-        }
+        Self { levels, hull }
     }
 }

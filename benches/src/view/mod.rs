@@ -2,8 +2,9 @@
 //!
 //! > record, scene or hard case → [`Show`] → pairs with their flags ([`pairs`]), meshes to draw ([`detail`]), T ([`terms`]) → [`Page`]
 //!
-//! The page is `web/dist/page.html`, made from the TypeScript in `web/` and committed, with a run's data at its mark: a JSON
-//! header and blocks of little-endian numbers in base64 ([`page`]). Poses are the record's f32 to the bit.
+//! The page is `web/dist/page.html`, made from the TypeScript in `web/` and committed, with a run's
+//! data at its mark: a JSON header and blocks of little-endian numbers in base64 ([`page`]). Poses
+//! are the record's f32 to the bit.
 
 mod detail;
 mod header;
@@ -22,8 +23,9 @@ use crate::tradeoff::truth::Judge;
 use sdop::bodies::Bodies;
 use sdop_judge::record::FrameLine;
 
-/// Has every frame know which meshes meet, in exact arithmetic; frames that know it already stay as they are. `done` is called
-/// once per frame, from any thread.
+/// Has every frame know which meshes meet, in exact arithmetic; frames that know it already stay as
+/// they are, and so do those with translations that f32 doesn't hold, which the exact reference
+/// doesn't read. `done` is called once per frame, from any thread.
 ///
 /// # Errors
 /// Numbers that the exact reference refuses; none that a reader of records let through.
@@ -31,7 +33,7 @@ pub fn decide_truth(show: &mut Show, done: impl Fn() + Sync) -> Result<(), Trade
     let judge = Judge::new(&show.shapes)?;
     let bodies = &show.bodies;
     let decide = |frame: &mut FrameLine| -> Result<(), TradeoffError> {
-        if frame.meets.is_none() {
+        if frame.meets.is_none() && frame.translations.is_none() {
             let mut posed: Bodies = bodies.clone();
             frame.pose(&mut posed);
             frame.meets = Some(judge.meetings(&posed)?);

@@ -1,4 +1,5 @@
-//! The page's data: a JSON header and blocks of little-endian numbers in base64, read by `web/src/data.ts`.
+//! The page's data: a JSON header and blocks of little-endian numbers in base64, read by
+//! `web/src/data.ts`.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -50,7 +51,7 @@ pub enum PageError {
     },
     /// Culling settings that can't be carried out.
     #[error(transparent)]
-    #[diagnostic(transparent)]
+    #[diagnostic(help("{}", .0.help()))]
     Cull(#[from] CullError),
     /// Prices that can't be calibrated.
     #[error(transparent)]
@@ -65,7 +66,8 @@ struct Block {
 }
 
 impl Page {
-    /// Makes the page of a run as culled by one strategy or two. With a `tier`, prices are calibrated in it, and T is shown.
+    /// Makes the page of a run as culled by one strategy or two. With a `tier`, prices are
+    /// calibrated in it, and T is shown.
     ///
     /// # Errors
     /// A run that is too large for a browser.
@@ -114,7 +116,8 @@ impl Page {
             .split_once(MARK)
             .ok_or_else(|| io::Error::other("the page has no mark"))?;
         out.write_all(before.as_bytes())?;
-        // Nothing in the header may end its element: "<" is written as the escape that JSON has for it.
+        // Nothing in the header may end its element: "<" is written as the escape that JSON has for
+        // it.
         let header = serde_json::to_string(&self.header)?.replace('<', "\\u003c");
         writeln!(
             out,
@@ -214,7 +217,7 @@ impl Page {
                     vertices: [vertices.len(), mesh.vertices.len()],
                     triangles: [triangles.len(), mesh.triangles.len()],
                 };
-                vertices.extend(mesh.vertices.iter().map(|v| v.to_array()));
+                vertices.extend(&mesh.vertices);
                 triangles.extend_from_slice(&mesh.triangles);
                 level
             });

@@ -1,9 +1,8 @@
-//! What is to be shown, whatever it comes from: shapes, bodies, frames, and who reported which pairs.
+//! What is to be shown, whatever it comes from: shapes, bodies, frames, and who reported which
+//! pairs.
 
 use std::ops::Range;
 use std::path::Path;
-
-use miette::Diagnostic as _;
 
 use crate::measure::counts::Volume;
 use crate::record;
@@ -68,8 +67,8 @@ pub struct Culled {
 }
 
 impl Show {
-    /// Reads a record, or as many of its frames. With a record that is broken somewhere, the frames before that are shown, the
-    /// page says so, and the error is returned too.
+    /// Reads a record, or as many of its frames. With a record that is broken somewhere, the frames
+    /// before that are shown, the page says so, and the error is returned too.
     ///
     /// # Errors
     /// A first line that can't be read.
@@ -100,6 +99,11 @@ impl Show {
             focus: None,
             messages: Vec::new(),
         };
+        if show.frames.iter().any(|frame| frame.translations.is_some()) {
+            let words =
+                "The record has translations that f32 doesn't hold. They are drawn rounded to f32.";
+            show.messages.push(words.to_owned());
+        }
         if let Some(error) = &broken {
             show.messages.push(match show.frames.len() {
                 0 => in_words(error),
@@ -181,8 +185,9 @@ impl Show {
         Ok(show)
     }
 
-    /// A case of the judge, and the pairs that a program reported of each frame, sorted; none where it wasn't asked. A pair meets
-    /// when the claim holds of it. Of a case whose set of bodies changes, the frames with one set: that of the first miss.
+    /// A case of the judge, and the pairs that a program reported of each frame, sorted; none where
+    /// it wasn't asked. A pair meets when the claim holds of it. Of a case whose set of bodies
+    /// changes, the frames with one set: that of the first miss.
     ///
     /// # Errors
     /// In words: no frames, numbers that the exact reference refuses.
@@ -214,6 +219,7 @@ impl Show {
             frames.push(FrameLine {
                 frame: number as u32,
                 poses: FrameLine::poses(&frame.bodies),
+                translations: None,
                 pairs,
                 counters: None,
                 meets: Some(meets),
@@ -314,7 +320,8 @@ impl Show {
         })
     }
 
-    /// The same frames as culled by another: its record must have the same bodies in the same poses.
+    /// The same frames as culled by another: its record must have the same bodies in the same
+    /// poses.
     ///
     /// # Errors
     /// The first difference, in words.
@@ -334,7 +341,9 @@ impl Show {
                         same.frame, frame.frame
                     ));
                 }
-                Some(same) if same.poses != frame.poses => {
+                Some(same)
+                    if same.poses != frame.poses || same.translations != frame.translations =>
+                {
                     return Err(format!("frame {} has other poses", frame.frame));
                 }
                 Some(_) => {}

@@ -6,7 +6,7 @@ use crate::cost::predict::Prices;
 use crate::effects::{EffectsSpec, Velocities};
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::variant::Variant;
-use crate::scene::Scene;
+use crate::scene::{FineTranslations, Scene};
 use crate::simulate::SimulationError;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
@@ -27,7 +27,8 @@ pub struct TermCourse {
     pub frames: Vec<[f64; 3]>,
 }
 
-/// Calibrates the prices of what `culled` tested, on this machine, for frames whose data are in the caches.
+/// Calibrates the prices of what `culled` tested, on this machine, for frames whose data are in the
+/// caches.
 ///
 /// # Errors
 /// Settings that can't be carried out.
@@ -54,6 +55,7 @@ pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>
             angular: at_rest,
         },
         bodies,
+        fine: FineTranslations::default(),
         share: None,
         effects: EffectsSpec::default(),
         cull,

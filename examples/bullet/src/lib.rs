@@ -1,4 +1,5 @@
-//! S-DOP culling between Bullet's broad phase and its narrow phase, and the proof by running: contacts judged, steps timed.
+//! S-DOP culling between Bullet's broad phase and its narrow phase, and the proof by running:
+//! contacts judged, steps timed.
 #![cfg(feature = "debian")]
 
 #[path = "../../rapier/src/forms.rs"]

@@ -1,4 +1,5 @@
-//! Runs the proof: `sdop-bullet --scene pile --kind hull --bodies 500`. A dropped pair is a failure (exit code 1).
+//! Runs the proof: `sdop-bullet --scene pile --kind hull --bodies 500`. A dropped pair is a failure
+//! (exit code 1).
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -13,7 +14,8 @@ use sdop_bullet::study::{Study, study};
 use sdop_bullet::whole;
 use serde::Serialize;
 
-/// S-DOP culling in Bullet: every pair's verdict compared with Bullet's contacts, steps timed in turns.
+/// S-DOP culling in Bullet: every pair's verdict compared with Bullet's contacts, steps timed in
+/// turns.
 #[derive(Parser)]
 struct Cli {
     /// What happens.

@@ -123,10 +123,11 @@ impl Scene {
         unsafe { scene_wall(self.scene, &raw const normal, d, restitution) }
     }
 
-    /// A shape, whose pairs are filtered if it is a hull or a mesh. Its margin is taken times `share`: 1, but for a planted bug.
+    /// A shape, whose pairs are filtered if it is a hull or a mesh. Its margin is taken times
+    /// `share`: 1, but for a planted bug.
     pub fn shape(&mut self, kind: Kind, mesh: &TriangleMesh, share: f32) -> ShapeId {
-        let vertices = mesh.vertices.iter().map(|v| v.to_array()).collect();
-        self.meshes.push((vertices, mesh.triangles.clone()));
+        self.meshes
+            .push((mesh.vertices.clone(), mesh.triangles.clone()));
         let (vertices, triangles) = &self.meshes[self.meshes.len() - 1];
         let (v, n, t, m) = (
             vertices.as_ptr(),
@@ -134,10 +135,12 @@ impl Scene {
             triangles.as_ptr(),
             triangles.len(),
         );
-        // SAFETY: as many as said; the vectors' buffers stay where they are until the scene has ended.
+        // SAFETY: as many as said; the vectors' buffers stay where they are until the scene has
+        // ended.
         let shape = unsafe { scene_shape(self.scene, kind as u32, v, n, t, m) };
         let model = match kind {
-            // SAFETY: a shape of this scene; arrays as above, read during the call; the scene isn't stepping.
+            // SAFETY: a shape of this scene; arrays as above, read during the call; the scene isn't
+            // stepping.
             Kind::Hull | Kind::Mesh => unsafe {
                 let margin = scene_margin(self.scene, shape) * share;
                 sdop_test_add(self.test, v, n, t, m, margin)

@@ -46,7 +46,8 @@ pub enum Mode {
     Plain,
     /// With the filter.
     Filtered,
-    /// Without, but each pair is put to the filter too and its verdict compared with what Bullet then finds.
+    /// Without, but each pair is put to the filter too and its verdict compared with what Bullet
+    /// then finds.
     Judged,
 }
 

@@ -23,8 +23,8 @@ unsafe extern "C" fn sdop_test_free(test: *mut PairTest) {
 }
 
 /// # Safety
-/// `test` comes from [`sdop_test_new`] and nothing else uses it now; three floats a vertex and three indices a triangle follow the
-/// pointers.
+/// `test` comes from [`sdop_test_new`] and nothing else uses it now; three floats a vertex and
+/// three indices a triangle follow the pointers.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn sdop_test_add(
     test: *mut PairTest,
@@ -53,15 +53,17 @@ pub fn add(
     triangles: &[[u32; 3]],
     margin: f32,
 ) -> Option<u32> {
-    let vertices = vertices.iter().map(|&v| v.into()).collect();
-    let mesh = TriangleMesh::new("body", vertices, triangles.to_vec()).ok()?;
+    let mesh = TriangleMesh::from_f32(vertices, triangles)
+        .ok()?
+        .named("body");
     let shape = Shape::build(&mesh, &ShapeSpec::default()).ok()?;
     let number = test.add(&shape).ok()?;
     test.grown(number, margin).ok().map(|_| number)
 }
 
 /// # Safety
-/// `test` comes from [`sdop_test_new`]; four floats of a quaternion and three of a translation follow the pointers.
+/// `test` comes from [`sdop_test_new`]; four floats of a quaternion and three of a translation
+/// follow the pointers.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn sdop_test_may_touch(
     test: *const PairTest,

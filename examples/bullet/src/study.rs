@@ -32,7 +32,8 @@ pub struct Timed {
     pub predicted: f64,
 }
 
-/// Steps the scene without the filter and puts each pair to it, with all margins taken times `share`.
+/// Steps the scene without the filter and puts each pair to it, with all margins taken times
+/// `share`.
 #[must_use]
 pub fn judge(plan: Plan, forms: &[TriangleMesh], steps: usize, share: f32) -> Counts {
     let mut stage = Stage::new(plan, forms, Mode::Judged, share);
@@ -42,7 +43,8 @@ pub fn judge(plan: Plan, forms: &[TriangleMesh], steps: usize, share: f32) -> Co
     stage.counts()
 }
 
-/// Judges the scene, then steps it with and without the filter in turns unless margins are left out.
+/// Judges the scene, then steps it with and without the filter in turns unless margins are left
+/// out.
 #[must_use]
 pub fn study(plan: Plan, forms: &[TriangleMesh], steps: usize, without_margin: bool) -> Study {
     let share = if without_margin { 0.0 } else { 1.0 };

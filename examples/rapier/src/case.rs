@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use miette::{IntoDiagnostic, Result};
 use sdop::mesh::{self, TriangleMesh};
 use sdop::volume::Shape;
+use sdop_bench::remedy::OrReport as _;
 
 /// One collider of the pair.
 pub struct CaseBody {
@@ -19,7 +20,8 @@ pub struct CaseBody {
     pub translation: [f32; 3],
 }
 
-/// Writes the scene and a mesh file per body into `directory`; `comment` says what happened. Returns the scene's path.
+/// Writes the scene and a mesh file per body into `directory`; `comment` says what happened.
+/// Returns the scene's path.
 ///
 /// # Errors
 /// A file that can't be written.
@@ -34,9 +36,11 @@ pub fn write(directory: &Path, bodies: &[CaseBody], comment: &str) -> Result<Pat
             triangles: body.shape.triangles.clone(),
             ..TriangleMesh::default()
         };
-        mesh::write(&mesh, directory.join(&file))?;
+        mesh::write(&mesh, directory.join(&file)).or_report()?;
         let pose = [&body.rotation[..], &body.translation].concat();
-        let numbers: Vec<String> = pose.iter().map(|x| format!("{x:?}")).collect();
+        // As f64, which scene files have for translations: each reads back to this number.
+        let numbers = pose.iter().map(|&x| format!("{:?}", f64::from(x)));
+        let numbers: Vec<String> = numbers.collect();
         // Formatting into a String cannot fail.
         let _ = write!(
             text,

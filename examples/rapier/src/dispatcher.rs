@@ -1,7 +1,9 @@
-//! The filter in rapier's query dispatcher: rapier calls it where its narrow phase begins, with two shapes, their relative
-//! pose and the distance up to which it wants contacts, so nothing has to be mirrored and nothing can be stale.
+//! The filter in rapier's query dispatcher: rapier calls it where its narrow phase begins, with two
+//! shapes, their relative pose and the distance up to which it wants contacts, so nothing has to be
+//! mirrored and nothing can be stale.
 //!
-//! Unlike a hook it leaves rapier's contact recycling on, and it isn't asked by continuous collision detection at all.
+//! Unlike a hook it leaves rapier's contact recycling on, and it isn't asked by continuous
+//! collision detection at all.
 
 use std::sync::{Arc, RwLock};
 
@@ -20,8 +22,9 @@ use super::rapier::parry::query::{
 use super::rapier::parry::shape::Shape;
 use super::volumes::{rounding, volume};
 
-/// Answers for pairs of known shapes that can't touch, and leaves all others to the next dispatcher:
-/// `NarrowPhase::with_query_dispatcher(culling.clone().chain(DefaultQueryDispatcher))`. Clones know the same shapes.
+/// Answers for pairs of known shapes that can't touch, and leaves all others to the next
+/// dispatcher: `NarrowPhase::with_query_dispatcher(culling.clone().chain(DefaultQueryDispatcher))`.
+/// Clones know the same shapes.
 #[derive(Clone)]
 pub struct CullingDispatcher(Arc<RwLock<Known>>);
 
@@ -50,7 +53,8 @@ impl Default for CullingDispatcher {
 }
 
 impl CullingDispatcher {
-    /// Makes a collider's shape known. Says whether its pairs can be filtered (see [`volume`]); if not, they pass.
+    /// Makes a collider's shape known. Says whether its pairs can be filtered (see [`volume`]); if
+    /// not, they pass.
     pub fn add(&self, shape: &SharedShape) -> bool {
         let Ok(mut known) = self.0.write() else {
             return false;
@@ -113,7 +117,8 @@ impl CullingDispatcher {
     }
 }
 
-/// A new margin is as much larger than the one that called for it, and serves those down to it divided by its square.
+/// A new margin is as much larger than the one that called for it, and serves those down to it
+/// divided by its square.
 const WIDER: f32 = 1.125;
 
 impl Known {

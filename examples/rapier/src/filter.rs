@@ -1,9 +1,10 @@
 //! The filter in rapier's hook: pairs that can't touch in this step don't reach the narrow phase.
 //!
-//! Every collider that has a [`volume`] is a body of an sdop [`World`]; the rest passes unfiltered. A pair is rejected when
-//! the world's cull doesn't report it, and when both colliders still have the pose, shape, groups and margin that were
-//! culled. Otherwise all colliders are mirrored and culled again, then and there: so no teleport, no substep and no call
-//! that somebody forgot between hook and step can make a verdict stale.
+//! Every collider that has a [`volume`] is a body of an sdop [`World`]; the rest passes unfiltered.
+//! A pair is rejected when the world's cull doesn't report it, and when both colliders still have
+//! the pose, shape, groups and margin that were culled. Otherwise all colliders are mirrored and
+//! culled again, then and there: so no teleport, no substep and no call that somebody forgot
+//! between hook and step can make a verdict stale.
 
 use std::collections::hash_map::Entry;
 use std::sync::{Arc, RwLock};
@@ -17,11 +18,13 @@ use super::rapier::prelude::*;
 use super::volumes::{Step, volume};
 use sdop::volume::Shape as Volume;
 
-/// What a collider must ask rapier for, so that its pairs are filtered. One of a pair's two is enough.
+/// What a collider must ask rapier for, so that its pairs are filtered. One of a pair's two is
+/// enough.
 pub const HOOKS: ActiveHooks =
     ActiveHooks::FILTER_CONTACT_PAIRS.union(ActiveHooks::FILTER_INTERSECTION_PAIR);
 
-/// The filter, to be handed to each step as its hooks. With hooks of your own, ask [`Filter::may_touch`] in them.
+/// The filter, to be handed to each step as its hooks. With hooks of your own, ask
+/// [`Filter::may_touch`] in them.
 #[derive(Default)]
 pub struct Filter {
     step: Step,
@@ -35,11 +38,13 @@ impl Filter {
         self
     }
 
-    /// False only if rapier's narrow phase would find no contact for this pair in this step, or no overlap of a sensor.
+    /// False only if rapier's narrow phase would find no contact for this pair in this step, or no
+    /// overlap of a sensor.
     pub fn may_touch(&self, pair: &PairFilterContext) -> bool {
         let body = |handle: Option<_>| handle.and_then(|handle| pair.bodies.get(handle));
         let bodies = [body(pair.rigid_body1), body(pair.rigid_body2)];
-        // Continuous collision detection asks the same hook, about motions that are longer than any margin.
+        // Continuous collision detection asks the same hook, about motions that are longer than any
+        // margin.
         if bodies.iter().flatten().any(|body| body.is_ccd_active()) {
             return true;
         }
@@ -228,7 +233,8 @@ impl Mirror {
             return;
         }
         let old = seat.take();
-        // A slower body keeps its margin for a while: another margin is another model for the culler.
+        // A slower body keeps its margin for a while: another margin is another model for the
+        // culler.
         let margin = match &old {
             Some(old) if needed <= old.margin && old.margin <= 2.0 * needed => old.margin as f32,
             _ => (1.25 * needed) as f32,

@@ -2,18 +2,20 @@
 
 use std::path::Path;
 
-use miette::{IntoDiagnostic, Result};
+use miette::Result;
 use sdop::mesh::decimate::decimate;
 use sdop::mesh::{ProceduralShape, ReadOptions, TriangleMesh, read};
+use sdop_bench::remedy::OrReport as _;
 
 use crate::plan::Detail;
 
-/// A cow, a ring, an L, a rod, a gear and a knot, all closed: of 16 to 480 triangles, or finely cut of up to 7,680.
+/// A cow, a ring, an L, a rod, a gear and a knot, all closed: of 16 to 480 triangles, or finely cut
+/// of up to 7,680.
 ///
 /// # Errors
 /// `meshes` isn't the repository's folder of meshes.
 pub fn forms(meshes: &Path, detail: Detail) -> Result<Vec<TriangleMesh>> {
-    let cow = read(meshes.join("spot.tri"), &ReadOptions::default())?;
+    let cow = read(meshes.join("spot.tri"), &ReadOptions::default()).or_report()?;
     let (cow, n) = match detail {
         Detail::Coarse => (decimate(&cow, 300), 1),
         Detail::Fine => (cow, 4),
@@ -51,26 +53,31 @@ pub fn forms(meshes: &Path, detail: Detail) -> Result<Vec<TriangleMesh>> {
             sides: 6 * n,
         },
     ] {
-        forms.push(shape.build().into_diagnostic()?);
+        forms.push(shape.build().or_report()?);
     }
     Ok(forms.iter().map(sized).collect())
 }
 
 /// Centred on its box, and scaled into the ball of radius ½.
 fn sized(mesh: &TriangleMesh) -> TriangleMesh {
-    let first = mesh.vertices[0];
-    let (lo, hi) = mesh
-        .vertices
-        .iter()
-        .fold((first, first), |(lo, hi), &v| (lo.min(v), hi.max(v)));
-    let middle = (lo + hi) * 0.5;
+    let (mut lo, mut hi) = (mesh.vertices[0], mesh.vertices[0]);
+    for vertex in &mesh.vertices {
+        for axis in 0..3 {
+            lo[axis] = lo[axis].min(vertex[axis]);
+            hi[axis] = hi[axis].max(vertex[axis]);
+        }
+    }
+    let centred = |vertex: &[f32; 3]| -> [f32; 3] {
+        std::array::from_fn(|axis| vertex[axis] - (lo[axis] + hi[axis]) * 0.5)
+    };
+    let length = |[x, y, z]: [f32; 3]| (x * x + y * y + z * z).sqrt();
     let reach = mesh
         .vertices
         .iter()
-        .fold(0.0, |r: f32, v| r.max((*v - middle).length()));
+        .fold(0.0, |r: f32, vertex| r.max(length(centred(vertex))));
     let mut sized = mesh.clone();
     for vertex in &mut sized.vertices {
-        *vertex = (*vertex - middle) * (0.5 / reach);
+        *vertex = centred(vertex).map(|x| x * (0.5 / reach));
     }
     sized
 }

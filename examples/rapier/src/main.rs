@@ -21,7 +21,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Takes every step with and without the filter from the same state. A dropped pair is a failure (exit code 1).
+    /// Takes every step with and without the filter from the same state. A dropped pair is a
+    /// failure (exit code 1).
     Check {
         #[command(flatten)]
         run: Run,

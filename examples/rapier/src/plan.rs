@@ -48,11 +48,13 @@ names! {
         Pile = "pile",
         /// A closed box that turns about a horizontal axis (a kinematic body).
         Tumbler = "tumbler",
-        /// A moving belt between two walls: what falls off its end is removed, and a new body is dropped at its start.
+        /// A moving belt between two walls: what falls off its end is removed, and a new body is
+        /// dropped at its start.
         Conveyor = "conveyor",
         /// Bodies flying about in a closed box, without gravity.
         Cloud = "cloud",
-        /// Bodies of every kind that are disturbed from outside: teleported, put to sleep, exchanged, made sensors, regrouped.
+        /// Bodies of every kind that are disturbed from outside: teleported, put to sleep,
+        /// exchanged, made sensors, regrouped.
         Zoo = "zoo",
     }
 }
@@ -80,7 +82,8 @@ names! {
     Mode {
         /// Rapier as it comes: no hook, contacts recycled.
         Plain = "plain",
-        /// No hook, contacts never recycled: what a hook makes of rapier before it rejects any pair.
+        /// No hook, contacts never recycled: what a hook makes of rapier before it rejects any
+        /// pair.
         Full = "full",
         /// The filter in the hook.
         Hook = "hook",

@@ -12,8 +12,9 @@ pub struct Check {
     pub touching: u64,
     /// Pairs of a sensor and what overlaps it in the unfiltered steps.
     pub overlapping: u64,
-    /// Of those with points, pairs that the filtered step lacks because rapier would not have found them either: farther apart
-    /// than it looks, with points left over from a shape that was replaced since.
+    /// Of those with points, pairs that the filtered step lacks because rapier would not have found
+    /// them either: farther apart than it looks, with points left over from a shape that was
+    /// replaced since.
     #[serde(default)]
     pub leftovers: u64,
     /// Of all of them, others that the filtered step lacks. Must be zero.
@@ -49,7 +50,8 @@ pub struct Share {
     pub checks: f64,
     /// Of them with contact points afterwards.
     pub hits: f64,
-    /// Pairs that the filter rejected, per step. For a hook: those that its partner checked and it didn't.
+    /// Pairs that the filter rejected, per step. For a hook: those that its partner checked and it
+    /// didn't.
     pub rejected: f64,
     /// Pairs that the filter in the dispatcher tested or passed, per step.
     pub asked: f64,
@@ -57,7 +59,8 @@ pub struct Share {
     pub mirror_ms: f64,
     /// A hook's culling.
     pub cull_ms: f64,
-    /// Steps in which all contacts were equal to the bit to those of the same mode without the filter, from the first on.
+    /// Steps in which all contacts were equal to the bit to those of the same mode without the
+    /// filter, from the first on.
     pub equal_steps: usize,
 }
 

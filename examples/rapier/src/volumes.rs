@@ -7,18 +7,17 @@ use super::rapier::math::{Real, Vector};
 use super::rapier::parry::shape::{Shape, TriMeshFlags, TypedShape};
 use super::rapier::prelude::{Collider, IntegrationParameters, RigidBody};
 
-/// The volumes of a convex hull, a triangle mesh, or a compound of them, about the collider's own origin.
+/// The volumes of a convex hull, a triangle mesh, or a compound of them, about the collider's own
+/// origin.
 ///
-/// `None` for all others. Balls, capsules, boxes, cylinders, cones and half-spaces have a narrow phase of their own that is
-/// hardly dearer than a cull; rapier tests boxes by separating axes, which can find a contact farther away than the
-/// prediction distance. A deformable mesh changes between steps.
+/// `None` for all others. Balls, capsules, boxes, cylinders, cones and half-spaces have a narrow
+/// phase of their own that is hardly dearer than a cull; rapier tests boxes by separating axes,
+/// which can find a contact farther away than the prediction distance. A deformable mesh changes
+/// between steps.
 #[must_use]
 pub fn volume(shape: &dyn Shape) -> Option<Volume> {
     let (vertices, triangles) = triangles_of(shape)?;
-    let vertices = vertices
-        .iter()
-        .map(|v| v.to_array().map(|x| x as f32).into())
-        .collect();
+    let vertices = vertices.iter().map(|v| v.to_array().map(|x| x as f32));
     let mesh = TriangleMesh::new("collider", vertices, triangles).ok()?;
     Volume::build(&mesh, &ShapeSpec::default()).ok()
 }
@@ -60,14 +59,15 @@ impl Step {
         }
     }
 
-    /// The margin that a collider of size `reach` needs, so that two colliders whose volumes stay apart with their margins
-    /// get no contact in this step:
+    /// The margin that a collider of size `reach` needs, so that two colliders whose volumes stay
+    /// apart with their margins get no contact in this step:
     ///
     /// > ½·prediction + skin + dt·(|v| + |ω|·arm), and 1 % for parry's GJK, which stops within 0.1 % of a distance; and what
     /// > rounding moves: rapier's own arithmetic and, where it is f64, that of vertices and rotations to f32.
     ///
-    /// Soft CCD looks as far as the velocities reach, at most. The velocities also cover points that parry keeps from
-    /// earlier steps: rapier solves those that would be within the prediction distance at the end of this step.
+    /// Soft CCD looks as far as the velocities reach, at most. The velocities also cover points
+    /// that parry keeps from earlier steps: rapier solves those that would be within the prediction
+    /// distance at the end of this step.
     #[must_use]
     pub fn margin(&self, collider: &Collider, body: Option<&RigidBody>, reach: f64) -> f64 {
         let moved = body.map_or(0.0, |body| {
@@ -80,7 +80,8 @@ impl Step {
     }
 }
 
-/// What rounding moves, in numbers of this size: rapier's own arithmetic, and that of poses and vertices to f32.
+/// What rounding moves, in numbers of this size: rapier's own arithmetic, and that of poses and
+/// vertices to f32.
 pub fn rounding(size: f64) -> f64 {
     (64.0 * Real::EPSILON as f64 + 2f64.powi(-20)) * size
 }

@@ -1,4 +1,5 @@
-//! Contacts stay what they were: small runs of every scene, kind and seam, in both of rapier's crates.
+//! Contacts stay what they were: small runs of every scene, kind and seam, in both of rapier's
+//! crates.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -138,8 +138,13 @@ impl std::fmt::Display for Seconds {
 /// Why a culler gave no answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// It says that it can't do this case, and why.
-    Skipped(String),
+    /// It says that it can't do this case, and why, after some answers.
+    Skipped {
+        /// The reason that it gives.
+        why: String,
+        /// What it has answered before.
+        answered: Vec<Answer>,
+    },
     /// It failed.
     Trouble(Trouble),
 }

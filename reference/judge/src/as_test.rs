@@ -1,5 +1,5 @@
-//! A counter-example as a unit test for the suite of the culler that misses the pair. It names one function that its user
-//! supplies, `your_culler`, and needs nothing else.
+//! A counter-example as a unit test for the suite of the culler that misses the pair. It names one
+//! function that its user supplies, `your_culler`, and needs nothing else.
 
 use std::fmt::Write as _;
 
@@ -177,7 +177,7 @@ fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
             meaning: "of each shape, in the body frame: centre x, y, z and radius",
             types: ["Vec<[f32; 4]>", "std::vector<std::array<float, 4>>"],
             data: list(&|shape| {
-                let [x, y, z] = shape.ball.centre.to_array();
+                let [x, y, z] = shape.ball.centre;
                 Data::Row(vec![x, y, z, shape.ball.radius])
             }),
         }],
@@ -187,7 +187,7 @@ fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
                 meaning: "of each shape: the or-DOP's three basis vectors, one after the other",
                 types: ["Vec<[f32; 9]>", "std::vector<std::array<float, 9>>"],
                 data: list(&|shape| {
-                    let columns = shape.ordop.basis.columns.map(|column| column.to_array());
+                    let columns = shape.ordop.basis.columns;
                     Data::Row(columns.as_flattened().to_vec())
                 }),
             },
@@ -219,7 +219,7 @@ fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
                         "std::vector<std::vector<std::array<float, 3>>>",
                     ],
                     data: list(&|shape| {
-                        let vertex = |v: &glam::Vec3| Data::Row(v.to_array().to_vec());
+                        let vertex = |v: &[f32; 3]| Data::Row(v.to_vec());
                         Data::List(shape.vertices.iter().map(vertex).collect())
                     }),
                 },

@@ -1,7 +1,8 @@
 //! Broadmark's recordings, `.aabbs`: boxes frame by frame, for the claim about given boxes.
 //!
-//! Little endian. A head of 304 bytes: two names in 128 bytes each, i32 bodies, i32 frames, two i32 of zero, the world's box
-//! in 2 × 4 f32. Then 1 + frames times the bodies' boxes in 2 × 4 f32 each, the fourth of no meaning.
+//! Little endian. A head of 304 bytes: two names in 128 bytes each, i32 bodies, i32 frames, two i32
+//! of zero, the world's box in 2 × 4 f32. Then 1 + frames times the bodies' boxes in 2 × 4 f32
+//! each, the fourth of no meaning.
 
 use super::case::{Case, Frame};
 use super::catalogue::{CatalogueError, of_boxes};

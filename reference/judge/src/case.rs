@@ -14,7 +14,8 @@ pub struct Frame {
     pub bodies: Bodies,
     /// A box for each of them.
     pub boxes: Vec<WorldBox>,
-    /// When the set of bodies is another than in the frame before: each one's former number, `None` for a new body.
+    /// When the set of bodies is another than in the frame before: each one's former number, `None`
+    /// for a new body.
     pub was: Option<Vec<Option<u32>>>,
 }
 
@@ -37,12 +38,12 @@ fn fit(bodies: &Bodies, shapes: &[Shape], i: usize) -> WorldBox {
     let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for vertex in &shapes[bodies.shape[i] as usize].vertices {
         let size = vertex
-            .abs()
-            .max_element()
-            .max(t.iter().fold(0.0, |m: f32, x| m.max(x.abs())));
+            .iter()
+            .chain(&t)
+            .fold(0.0, |m: f32, x| m.max(x.abs()));
         // Above the bound by its half, for the addition's own rounding.
         let error = 1.5 * COORDINATE_ERROR * f64::from(size);
-        for (axis, x) in transform(&r, vertex.to_array(), t).into_iter().enumerate() {
+        for (axis, x) in transform(&r, *vertex, t).into_iter().enumerate() {
             lo[axis] = lo[axis].min(x - error);
             hi[axis] = hi[axis].max(x + error);
         }
@@ -91,7 +92,8 @@ impl Case {
     }
 }
 
-/// Whether a name matches a pattern in which `*` stands for any text, `/` included, and `?` for one character.
+/// Whether a name matches a pattern in which `*` stands for any text, `/` included, and `?` for one
+/// character.
 #[must_use]
 pub fn matches(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) =

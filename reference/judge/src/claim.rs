@@ -3,7 +3,8 @@
 use sdop::choice::choices;
 
 choices! {
-    /// One predicate each, decided exactly: a pair of which it holds, at least one body dynamic, has to be reported.
+    /// One predicate each, decided exactly: a pair of which it holds, at least one body dynamic,
+    /// has to be reported.
     Claim, "claim", {
         /// The bounding balls, posed exactly, share a point.
         Sphere = "sphere",

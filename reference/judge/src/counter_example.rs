@@ -82,7 +82,8 @@ fn corners(ends: &WorldBox) -> String {
     format!("({}) to ({})", corner(0), corner(3))
 }
 
-/// How far two boxes overlap along an axis, in real arithmetic rounded once, and which of them ends there.
+/// How far two boxes overlap along an axis, in real arithmetic rounded once, and which of them ends
+/// there.
 struct Along {
     axis: usize,
     depth: f64,

@@ -1,7 +1,9 @@
-//! JSON in which a number means the same to every reader: an f32 is written as the shortest text of the f64 that equals it.
+//! JSON in which a number means the same to every reader: an f32 is written as the shortest text of
+//! the f64 that equals it.
 //!
-//! The shortest text that reads back to the same f32 would be shorter, but readers that use doubles, such as Python and
-//! JavaScript, would then compute with another number, up to half an f32 ulp away. Our readers accept both.
+//! The shortest text that reads back to the same f32 would be shorter, but readers that use
+//! doubles, such as Python and JavaScript, would then compute with another number, up to half an
+//! f32 ulp away. Our readers accept both.
 
 use std::io;
 

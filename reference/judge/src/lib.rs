@@ -1,8 +1,9 @@
 //! Any culler, in any language, against the exact reference.
 //!
-//! A culler states a [`Claim`]: what it never misses. The [`catalogue`] has the cases for it; a [`subject`] answers them, be it
-//! a Rust type ([`judge`]) or a program ([`process`], over a [`wire`]); a case's answers are held against the exact [`truth`],
-//! and a missed pair becomes the smallest scene that shows it ([`shrink`]), with a certificate ([`witness`]).
+//! A culler states a [`Claim`]: what it never misses. The [`catalogue`] has the cases for it; a
+//! [`subject`] answers them, be it a Rust type ([`judge`]) or a program ([`process`], over a
+//! [`wire`]); a case's answers are held against the exact [`truth`], and a missed pair becomes the
+//! smallest scene that shows it ([`shrink`]), with a certificate ([`witness`]).
 //!
 //! ```
 //! use sdop::bodies::Bodies;
@@ -57,4 +58,4 @@ pub use claim::Claim;
 pub use run::{Judge, JudgeError, Options, examine, judge, judge_pair_test};
 pub use score::{Count, Miss, Outcome};
 pub use subject::{PairTest, Scene, Subject};
-pub use verdict::Verdict;
+pub use verdict::{Conclusion, Verdict};

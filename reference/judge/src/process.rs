@@ -1,5 +1,5 @@
-//! A program under judgement: one process a case, fed on standard input, read from standard output, never waited for longer
-//! than it may take and never read further than any right answer goes.
+//! A program under judgement: one process a case, fed on standard input, read from standard output,
+//! never waited for longer than it may take and never read further than any right answer goes.
 
 use std::io::{Read, Write};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -115,7 +115,10 @@ impl Running {
             }
             match wire.decode(answers.len(), &line)? {
                 Said::Answer(answer) => answers.push(answer),
-                Said::Skipped(why) => return Err(Stop::Skipped(why)),
+                Said::Skipped(why) => {
+                    let answered = answers;
+                    return Err(Stop::Skipped { why, answered });
+                }
             }
         }
         let answered = answers.len();
@@ -197,7 +200,8 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // The group first: the shell's children are in it. It is this process's own, so it can't be another's.
+        // The group first: the shell's children are in it. It is this process's own, so it can't be
+        // another's.
         #[cfg(unix)]
         if let Some(group) = rustix::process::Pid::from_raw(self.child.id() as i32) {
             let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);

@@ -1,4 +1,5 @@
-//! A verdict as files: the smallest scene of a miss, and JUnit's XML for programs that collect test results.
+//! A verdict as files: the smallest scene of a miss, and JUnit's XML for programs that collect test
+//! results.
 
 use std::fmt::Write as _;
 
@@ -15,8 +16,9 @@ use sdop::volume::{Axes, Origin, Shape, ShapeSpec};
 /// A file's name and what is in it.
 pub type Named = (String, Vec<u8>);
 
-/// A counter-example as a case file (`.ndjson`, with the pairs that were reported, for `sdop view` and `sdop check`) and,
-/// where a scene can state it, as one that `sdop run` takes (`.toml`, and its meshes).
+/// A counter-example as a case file (`.ndjson`, with the pairs that were reported, for `sdop view`
+/// and `sdop check`) and, where a scene can state it, as one that `sdop run` takes (`.toml`, and
+/// its meshes).
 ///
 /// # Errors
 /// A mesh that can't be written: none that was read.
@@ -38,8 +40,9 @@ pub fn counter_example(smallest: &Smallest, claim: Claim) -> std::io::Result<Vec
     Ok(files)
 }
 
-/// The axes with which a scene has the case's volumes; `None` where no scene can state the miss: one about given boxes, one
-/// that takes a history, or one about volumes that aren't those of the meshes.
+/// The axes with which a scene has the case's volumes; `None` where no scene can state the miss:
+/// one about given boxes, one that takes a history, or one about volumes that aren't those of the
+/// meshes.
 fn axes_of_scene(smallest: &Smallest) -> Option<Axes> {
     let case = &smallest.case;
     if smallest.claim == Claim::Aabb || case.frames.len() != 1 {
@@ -82,17 +85,12 @@ fn scene(bodies: &Bodies, shapes: &[Shape], axes: Axes) -> String {
     let mut text = format!("name = \"{STEM}\"\nframes = 1\n");
     for i in 0..bodies.len() {
         let shape = bodies.shape[i] as usize;
-        let pose = [&bodies.rotation[i][..], &bodies.translation[i]].concat();
-        // Exact, as in JSON: the shortest text of an f32 is another number to a reader of doubles.
-        let numbers: Vec<String> = pose
-            .iter()
-            .map(|x| format!("{:?}", f64::from(*x)))
-            .collect();
+        let numbers = pose_in_text(bodies.rotation[i], bodies.translation[i]);
         let _ = write!(
             text,
             "\n[[bodies]] # {i}: {}\nmesh = \"{STEM}-{shape}.obj\"\norigin = \"file\"\nposes = [[{}]]\nstatic = {}\n",
             shapes[shape].name.escape_default(),
-            numbers.join(", "),
+            numbers,
             !bodies.dynamic[i]
         );
     }
@@ -102,6 +100,15 @@ fn scene(bodies: &Bodies, shapes: &[Shape], axes: Axes) -> String {
         "\n[cull]\nstrategy = \"s-dop-sequential\"\nk = {k}\naxes = \"{axes}\"\n"
     );
     text
+}
+
+/// A pose's seven numbers as a scene file has them: written as f64, so that the translation is this
+/// one and no other f64.
+#[must_use]
+pub fn pose_in_text(rotation: [f32; 4], translation: [f32; 3]) -> String {
+    let pose = rotation.into_iter().chain(translation);
+    let numbers: Vec<String> = pose.map(|x| format!("{:?}", f64::from(x))).collect();
+    numbers.join(", ")
 }
 
 /// JUnit's XML: a suite for each group, a test for each case.
@@ -145,6 +152,13 @@ pub fn junit(verdict: &Verdict) -> String {
             };
         }
         text.push_str("  </testsuite>\n");
+    }
+    if verdict.not_run > 0 {
+        let n = verdict.not_run;
+        let _ = writeln!(
+            text,
+            "  <testsuite name=\"not run\" tests=\"{n}\" failures=\"0\" errors=\"0\" skipped=\"{n}\"/>"
+        );
     }
     text.push_str("</testsuites>\n");
     text

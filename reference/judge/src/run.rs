@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
+use sdop::choice::nearest;
 
-use super::case::{Case, matches};
+use super::case::Case;
 use super::catalogue::{CatalogueError, Group, select};
 use super::claim::Claim;
 use super::score::{Judged, Outcome, judge_case};
@@ -32,6 +33,16 @@ pub enum JudgeError {
         claim: Claim,
         /// The pattern.
         pattern: String,
+    },
+    /// A known failure that isn't the name of a case.
+    #[error("the known failure `{name}` is no case of the claim {claim}{hint}")]
+    Known {
+        /// The claim.
+        claim: Claim,
+        /// The name.
+        name: String,
+        /// A case of a similar name, if there is one.
+        hint: String,
     },
 }
 
@@ -138,7 +149,9 @@ impl<S: Subject> Judge<S> {
         examine(&self.subject, &self.options, |_, _| {})
     }
 
-    /// As [`Judge::assert`], but content when the claim has no such case, or the culler skips all of them.
+    /// As [`Judge::assert`], but content when the claim has no such case, or when the culler skips
+    /// all of them because its set of bodies can't change; the verdict is then printed as
+    /// incomplete.
     ///
     /// # Panics
     /// When the verdict is no pass.
@@ -146,7 +159,7 @@ impl<S: Subject> Judge<S> {
         match self.run() {
             Err(JudgeError::NoCase { .. }) => {}
             Err(error) => panic!("{error}"),
-            Ok(verdict) if verdict.cases.iter().all(is_skipped) => {}
+            Ok(verdict) if verdict.cases.iter().all(is_skipped) => eprint!("{verdict}"),
             Ok(verdict) => verdict.assert_passed(),
         }
     }
@@ -188,6 +201,7 @@ pub fn examine(
         let pattern = pattern.clone();
         return Err(JudgeError::NoCase { claim, pattern });
     }
+    check_known(claim, &options.known)?;
     let deadline = options
         .time
         .and_then(|time| Instant::now().checked_add(time));
@@ -256,7 +270,7 @@ fn conclude(
     Verdict {
         claim: options.claim,
         seed: options.seed,
-        stale: stale(options, &cases, not_run),
+        stale: stale(options, &cases),
         cases,
         not_run,
         extra_limit: options.extra_limit,
@@ -279,11 +293,36 @@ fn is_skipped(case: &CaseVerdict) -> bool {
     matches!(case.outcome, Outcome::Skipped { .. })
 }
 
-/// Known failures that pass, and those within the pattern that were to be run and are no case.
-fn stale(options: &Options, cases: &[CaseVerdict], not_run: usize) -> Vec<String> {
-    let is_stale = |name: &&String| match cases.iter().find(|case| case.name == **name) {
-        Some(case) => case.outcome == Outcome::Pass,
-        None => not_run == 0 && matches(&options.pattern, name),
+/// Checks that each known failure is a case of the claim, with a seed or without.
+fn check_known(claim: Claim, known: &BTreeSet<String>) -> Result<(), JudgeError> {
+    if known.is_empty() {
+        return Ok(());
+    }
+    let groups = select(claim, "*", None)?;
+    let names: BTreeSet<String> = groups
+        .iter()
+        .map(|(group, number)| group.case_name(*number, None))
+        .collect();
+    let published = |name: &str| match name.rsplit_once('@') {
+        Some((case, seed)) if seed.parse::<u64>().is_ok() => case.to_owned(),
+        _ => name.to_owned(),
     };
-    options.known.iter().filter(is_stale).cloned().collect()
+    let Some(name) = known.iter().find(|name| !names.contains(&published(name))) else {
+        return Ok(());
+    };
+    let near = nearest(name, names.iter().map(String::as_str));
+    Err(JudgeError::Known {
+        claim,
+        name: name.clone(),
+        hint: near.map_or_else(String::new, |near| format!(": did you mean `{near}`?")),
+    })
+}
+
+/// Known failures that pass.
+fn stale(options: &Options, cases: &[CaseVerdict]) -> Vec<String> {
+    let passes = |name: &&String| {
+        let mut cases = cases.iter().filter(|case| case.name == **name);
+        cases.any(|case| case.outcome == Outcome::Pass)
+    };
+    options.known.iter().filter(passes).cloned().collect()
 }

@@ -21,9 +21,11 @@ pub struct Count {
     pub missed: u64,
     /// Reported although the claim doesn't hold, in all.
     pub extra: u64,
-    /// Of those: it would hold if the bodies were nearer by 2⁻¹⁸ of their size and distance. The price of rounding.
+    /// Of those: it would hold if the bodies were nearer by 2⁻¹⁸ of their size and distance. The
+    /// price of rounding.
     pub by_rounding: u64,
-    /// Of the others: their bounding balls meet (with given boxes: the boxes grown by half of their size). A looser volume.
+    /// Of the others: their bounding balls meet (with given boxes: the boxes grown by half of their
+    /// size). A looser volume.
     pub by_looseness: u64,
     /// Of the others: both bodies are static.
     pub both_static: u64,
@@ -104,7 +106,8 @@ impl Judged {
     }
 }
 
-/// Lets a subject answer a case and judges the answers. With `twice` it answers again, and has to say the same.
+/// Lets a subject answer a case and judges the answers. With `twice` it answers again, and has to
+/// say the same.
 ///
 /// # Errors
 /// A case that the reference refuses.
@@ -116,13 +119,13 @@ pub fn judge_case(
 ) -> Result<Judged, InvalidInput> {
     let answers = match subject.answer(case, claim) {
         Ok(answers) => answers,
-        Err(stop) => return Ok(stopped(stop)),
+        Err(stop) => return stopped(case, claim, stop),
     };
     let mut judged = judge_answers(case, claim, &answers)?;
     if twice && judged.outcome == Outcome::Pass {
         let again = match subject.answer(case, claim) {
             Ok(answers) => judge_answers(case, claim, &answers)?,
-            Err(stop) => stopped(stop),
+            Err(stop) => stopped(case, claim, stop)?,
         };
         if again.outcome != Outcome::Pass {
             return Ok(again);
@@ -135,10 +138,21 @@ pub fn judge_case(
     Ok(judged)
 }
 
-fn stopped(stop: Stop) -> Judged {
-    Judged::without_answers(match stop {
-        Stop::Skipped(why) => Outcome::Skipped { why },
-        Stop::Trouble(trouble) => Outcome::Error { trouble },
+/// What a case without all answers is. A wrong answer counts, also if the rest of the case is
+/// skipped.
+fn stopped(case: &Case, claim: Claim, stop: Stop) -> Result<Judged, InvalidInput> {
+    let (why, answered) = match stop {
+        Stop::Skipped { why, answered } => (why, answered),
+        Stop::Trouble(trouble) => return Ok(Judged::without_answers(Outcome::Error { trouble })),
+    };
+    let mut begun = case.clone();
+    begun.frames.truncate(answered.len());
+    let judged = judge_answers(&begun, claim, &answered)?;
+    Ok(match judged.outcome {
+        Outcome::Fail { .. } | Outcome::Error { .. } => judged,
+        Outcome::Pass | Outcome::Skipped { .. } => {
+            Judged::without_answers(Outcome::Skipped { why })
+        }
     })
 }
 
@@ -250,7 +264,8 @@ fn grown(ends: &WorldBox) -> WorldBox {
     grown
 }
 
-/// The frame with the second body moved toward the first by 2⁻¹⁸ of their size and distance from the origin, on each axis.
+/// The frame with the second body moved toward the first by 2⁻¹⁸ of their size and distance from
+/// the origin, on each axis.
 fn nearer(frame: &Frame, [i, j]: [u32; 2]) -> Frame {
     let mut nearer = frame.clone();
     let (i, j) = (i as usize, j as usize);
@@ -265,4 +280,117 @@ fn nearer(frame: &Frame, [i, j]: [u32; 2]) -> Frame {
         nearer.boxes[j][axis + 3] += step;
     }
     nearer
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use sdop::bodies::Bodies;
+    use sdop::mesh::shapes::ProceduralShape;
+    use sdop::volume::{Shape, ShapeSpec};
+
+    use super::*;
+
+    /// Five unit cubes on a line, at these places along x in each frame; the last two are static.
+    fn cubes(frames: &[[f32; 5]]) -> Case {
+        let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
+        let frame = |places: &[f32; 5]| {
+            let mut bodies = Bodies::default();
+            for (number, &x) in places.iter().enumerate() {
+                bodies.push(0, number < 3, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]);
+            }
+            let boxes = places.map(|x| [x, 0.0, 0.0, x + 1.0, 1.0, 1.0]).to_vec();
+            let was = None;
+            Frame { bodies, boxes, was }
+        };
+        Case {
+            name: "own/cubes/0000".to_owned(),
+            flag: String::new(),
+            source: String::new(),
+            claims: vec![Claim::Aabb],
+            shapes: vec![Shape::build(&mesh, &ShapeSpec::default()).unwrap()],
+            frames: frames.iter().map(frame).collect(),
+        }
+    }
+
+    fn answers(pairs: &[&[[u32; 2]]]) -> Vec<Answer> {
+        let answer = |pairs: &&[[u32; 2]]| Answer {
+            pairs: pairs.to_vec(),
+            ns: None,
+        };
+        pairs.iter().map(answer).collect()
+    }
+
+    /// Pairs that are required: 01 and 12 (touching); all but 34 of the first four; none, 01 by
+    /// 2⁻²⁰.
+    const PLACES: [[f32; 5]; 3] = [
+        [0.0, 0.5, 1.5, 10.0, 20.0],
+        [0.0, 0.0, 0.0, 0.0, 20.0],
+        [0.0, 1.0 + 1.0 / (1 << 20) as f32, 100.0, 200.0, 300.0],
+    ];
+
+    #[test]
+    fn every_pair_is_counted_by_its_cause() {
+        let case = cubes(&PLACES);
+        // Extra: 02 by its volume, 34 static, 04 for no reason; then 01 by rounding.
+        let first: &[[u32; 2]] = &[[0, 1], [0, 2], [0, 4], [3, 4]];
+        let given = answers(&[first, &[[0, 3]], &[[0, 1]]]);
+        let judged = judge_answers(&case, Claim::Aabb, &given).unwrap();
+        let count = Count {
+            judged: 3 * 9,
+            required: 2 + 6,
+            missed: 1 + 5,
+            extra: 4,
+            by_rounding: 1,
+            by_looseness: 1,
+            both_static: 1,
+        };
+        assert_eq!((judged.count, judged.count.unexplained()), (count, 1));
+        let (frame, pair) = (0, [1, 2]);
+        assert_eq!(judged.miss, Some(Miss { frame, pair }));
+        let why = "misses 6 of 8 pairs, first bodies 1 and 2 in frame 0".to_owned();
+        assert_eq!(judged.outcome, Outcome::Fail { why });
+        let mut twice = count;
+        twice.add(&count);
+        assert_eq!([twice.judged, twice.required, twice.missed], [54, 16, 12]);
+        let causes = [twice.by_rounding, twice.by_looseness, twice.both_static];
+        assert_eq!((twice.extra, causes), (8, [2; 3]));
+    }
+
+    #[test]
+    fn exact_answers_pass() {
+        let case = cubes(&PLACES);
+        let all: &[[u32; 2]] = &[[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+        let given = answers(&[&[[0, 1], [1, 2]], all, &[]]);
+        let judged = judge_answers(&case, Claim::Aabb, &given).unwrap();
+        assert_eq!((judged.outcome, judged.miss), (Outcome::Pass, None));
+        assert_eq!((judged.count.required, judged.count.extra), (8, 0));
+    }
+
+    /// Answers some frames, and skips the rest.
+    struct Skips(Vec<Answer>);
+
+    impl Subject for Skips {
+        fn answer(&self, _: &Case, _: Claim) -> Result<Vec<Answer>, Stop> {
+            let (why, answered) = ("enough".to_owned(), self.0.clone());
+            Err(Stop::Skipped { why, answered })
+        }
+    }
+
+    #[test]
+    fn misses_before_a_skip_count() {
+        let case = cubes(&PLACES);
+        let judge = |given: &[&[[u32; 2]]]| {
+            judge_case(&Skips(answers(given)), &case, Claim::Aabb, false).unwrap()
+        };
+        for right in [&[][..], &[&[[0, 1], [1, 2]][..]]] {
+            let judged = judge(right);
+            assert!(matches!(judged.outcome, Outcome::Skipped { why } if why == "enough"));
+            assert_eq!(judged.count, Count::default());
+        }
+        let judged = judge(&[&[[0, 1], [1, 2]], &[]]);
+        assert!(matches!(judged.outcome, Outcome::Fail { .. }));
+        assert_eq!((judged.count.missed, judged.count.judged), (6, 18));
+    }
 }

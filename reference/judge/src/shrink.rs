@@ -1,9 +1,7 @@
-//! The smallest case that a culler still fails: frames, bodies, triangles and digits are removed for as long as it misses a
-//! pair.
+//! The smallest case that a culler still fails: frames, bodies, triangles and digits are removed
+//! for as long as it misses a pair.
 
 use std::time::{Duration, Instant};
-
-use glam::Vec3;
 
 use super::case::{Case, Frame};
 use super::catalogue::picked;
@@ -67,7 +65,8 @@ pub fn shrink(
         miss,
         ..
     } = search;
-    // Other bodies than in the case of that name; a replayed counter-example has its own name already.
+    // Other bodies than in the case of that name; a replayed counter-example has its own name
+    // already.
     if !from.starts_with(STEM) {
         case.name = format!("{STEM}/{from}");
     }
@@ -198,7 +197,8 @@ impl Search<'_> {
         }
     }
 
-    /// Without triangles, one at a time, for claims about meshes. Volumes are built anew around what is left.
+    /// Without triangles, one at a time, for claims about meshes. Volumes are built anew around
+    /// what is left.
     fn fewer_triangles(&mut self) {
         if !matches!(self.claim, Claim::Hull | Claim::Mesh) {
             return;
@@ -307,7 +307,7 @@ fn without_triangle(case: &Case, shape: usize, triangle: usize) -> Option<Case> 
         return None;
     }
     triangles.remove(triangle);
-    let mut vertices: Vec<Vec3> = Vec::new();
+    let mut vertices: Vec<[f32; 3]> = Vec::new();
     let mut number = vec![None; old.vertices.len()];
     for corner in triangles.iter_mut().flatten() {
         let vertex = *corner as usize;

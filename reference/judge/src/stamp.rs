@@ -1,7 +1,7 @@
 //! A suite of named tests for a culler, one for each group of cases.
 
-/// Stamps a test for each group of cases: `judge_tests!(Claim::Mesh, |scene| Mine::new(scene));` in a module of its own.
-/// Groups that have no case of the claim have a test with nothing in it.
+/// Stamps a test for each group of cases: `judge_tests!(Claim::Mesh, |scene| Mine::new(scene));` in
+/// a module of its own. Groups that have no case of the claim have a test with nothing in it.
 #[macro_export]
 macro_rules! judge_tests {
     ($claim:expr, $make:expr) => {

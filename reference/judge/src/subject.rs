@@ -77,7 +77,9 @@ where
             if let Some(was) = &frame.was
                 && !culler.change(&frame.bodies, was)
             {
-                return Err(Stop::Skipped("its set of bodies can't change".to_owned()));
+                let why = "its set of bodies can't change".to_owned();
+                let answered = std::mem::take(answers);
+                return Err(Stop::Skipped { why, answered });
             }
             culler.boxes(&frame.boxes);
             culler.frame(&frame.bodies);

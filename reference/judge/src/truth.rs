@@ -96,18 +96,19 @@ pub fn boxes_meet(a: &WorldBox, b: &WorldBox) -> bool {
     (0..3).all(|axis| a[axis] <= b[axis + 3] && b[axis] <= a[axis + 3])
 }
 
-/// Can two meshes meet at all? Not when their origins are further apart than both reaches on some axis; √3 and the ulps are
-/// in the factor 2.
+/// Can two meshes meet at all? Not when their origins are further apart than both reaches on some
+/// axis; √3 and the ulps are in the factor 2.
 fn near(a: &reference::Body<'_>, b: &reference::Body<'_>) -> bool {
     let (ta, tb) = (a.pose.translation(), b.pose.translation());
     let reach = 2.0 * (a.shape.mesh().reach + b.shape.mesh().reach);
     (0..3).all(|axis| (ta[axis] - tb[axis]).abs() <= reach)
 }
 
-/// The numbers that a claim is about; or-DOPs are expensive to prepare and left trivial for the others.
+/// The numbers that a claim is about; or-DOPs are expensive to prepare and left trivial for the
+/// others.
 fn judged(claim: Claim, shape: &Shape) -> Result<reference::Shape, InvalidInput> {
     let ball = reference::Ball {
-        centre: shape.ball.centre.to_array(),
+        centre: shape.ball.centre,
         radius: shape.ball.radius,
     };
     let slabs = match claim {
@@ -123,12 +124,12 @@ fn judged(claim: Claim, shape: &Shape) -> Result<reference::Shape, InvalidInput>
         Claim::Hull => hull_triangles(shape),
         _ => shape.triangles.clone(),
     };
-    let vertices = shape.vertices.iter().map(|v| v.to_array()).collect();
+    let vertices = shape.vertices.clone();
     reference::Shape::new(ball, slabs, vertices, triangles)
 }
 
-/// A closed surface around the hull. Coplanar vertices have a hull without an inside: every point of it is in a triangle
-/// with the first vertex (Carathéodory).
+/// A closed surface around the hull. Coplanar vertices have a hull without an inside: every point
+/// of it is in a triangle with the first vertex (Carathéodory).
 fn hull_triangles(shape: &Shape) -> Vec<[u32; 3]> {
     let hull = Hull::of(&shape.vertices);
     if !hull.facets.is_empty() {

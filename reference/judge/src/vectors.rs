@@ -1,4 +1,5 @@
-//! Small cases as data: two bodies each, with the exact answer to every claim, for test suites that don't run this program.
+//! Small cases as data: two bodies each, with the exact answer to every claim, for test suites that
+//! don't run this program.
 //!
 //! `data/vectors/schema.json` describes the files, `sdop cases --vectors data/vectors` makes them.
 

@@ -48,6 +48,19 @@ impl CaseVerdict {
     }
 }
 
+/// The name and what is wrong, if anything is.
+impl fmt::Display for CaseVerdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = &self.name;
+        match &self.outcome {
+            Outcome::Pass => write!(f, "{name} passed"),
+            Outcome::Fail { why } => write!(f, "{name} {why} [{}]", self.flag),
+            Outcome::Error { trouble } => write!(f, "{name} {trouble}"),
+            Outcome::Skipped { why } => write!(f, "{name} ({why})"),
+        }
+    }
+}
+
 /// A group's line.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct GroupVerdict {
@@ -65,6 +78,28 @@ pub struct GroupVerdict {
     pub pairs: Count,
 }
 
+/// What a run shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Conclusion {
+    /// All that was asked for was judged, and nothing speaks against the claim.
+    Pass,
+    /// Nothing speaks against the claim, but some cases were skipped or not run.
+    Incomplete,
+    /// Something speaks against the claim, or no case passes.
+    NotPassed,
+}
+
+impl fmt::Display for Conclusion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Pass => "PASS",
+            Self::Incomplete => "INCOMPLETE",
+            Self::NotPassed => "NOT PASSED",
+        })
+    }
+}
+
 /// The result of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
@@ -76,7 +111,7 @@ pub struct Verdict {
     pub cases: Vec<CaseVerdict>,
     /// Cases that time or an earlier failure left no room for.
     pub not_run: usize,
-    /// Known failures that pass, or that are no case of this run: the list is stale.
+    /// Known failures that pass: the list is stale.
     pub stale: Vec<String>,
     /// The most extra pairs for each required one that the culler allows itself.
     pub extra_limit: Option<f64>,
@@ -86,13 +121,74 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Whether nothing speaks against the claim: some cases passed, and all others are skipped or known.
+    /// What the run shows.
+    #[must_use]
+    pub fn conclusion(&self) -> Conclusion {
+        let is_refuted = !self.stale.is_empty()
+            || self.is_beyond_limit()
+            || self.cases.iter().any(|case| self.counts_against(case));
+        if is_refuted {
+            Conclusion::NotPassed
+        } else if self.judged() < self.asked() {
+            Conclusion::Incomplete
+        } else if self.cases.iter().any(|case| case.outcome == Outcome::Pass) {
+            Conclusion::Pass
+        } else {
+            Conclusion::NotPassed // known failures alone show nothing to be right
+        }
+    }
+
+    /// Whether all that was asked for was judged and nothing speaks against the claim: some cases
+    /// passed, and all others are known to fail.
     #[must_use]
     pub fn passed(&self) -> bool {
-        self.stale.is_empty()
-            && !self.is_beyond_limit()
-            && self.cases.iter().any(|case| case.outcome == Outcome::Pass)
-            && !self.cases.iter().any(|case| self.counts_against(case))
+        self.conclusion() == Conclusion::Pass
+    }
+
+    /// Why the conclusion is not [`Conclusion::Pass`], on one line.
+    #[must_use]
+    pub fn why(&self) -> Option<String> {
+        let is_skipped = |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. });
+        match self.conclusion() {
+            Conclusion::Pass => None,
+            Conclusion::Incomplete => Some(format!(
+                "{} of {} cases were judged: {} skipped, {} not run",
+                self.judged(),
+                self.asked(),
+                self.cases.iter().filter(is_skipped).count(),
+                self.not_run
+            )),
+            Conclusion::NotPassed => Some(self.refutation()),
+        }
+    }
+
+    /// What speaks against the claim first.
+    fn refutation(&self) -> String {
+        let mut against = self.cases.iter().filter(|case| self.counts_against(case));
+        if let Some(first) = against.next() {
+            let count = 1 + against.count();
+            return format!("{count} of {} cases failed, first {first}", self.asked());
+        }
+        if let Some(name) = self.stale.first() {
+            return format!("the known failure {name} passes: take it off the list");
+        }
+        match self.extra_limit.filter(|_| self.is_beyond_limit()) {
+            Some(limit) => format!("more extra pairs than {limit} for each required one"),
+            None => "no case passed: all are known failures".to_owned(),
+        }
+    }
+
+    /// Cases that were asked for.
+    #[must_use]
+    pub fn asked(&self) -> usize {
+        self.cases.len() + self.not_run
+    }
+
+    /// Cases that were judged: run, and not skipped.
+    #[must_use]
+    pub fn judged(&self) -> usize {
+        let is_skipped = |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. });
+        self.cases.len() - self.cases.iter().filter(is_skipped).count()
     }
 
     /// A case that failed or erred, and isn't known to.
@@ -142,51 +238,6 @@ impl Verdict {
         groups
     }
 
-    /// What speaks against the claim, in one line; `None` of a pass.
-    #[must_use]
-    pub fn why(&self) -> Option<String> {
-        if self.passed() {
-            return None;
-        }
-        let mut against = self.cases.iter().filter(|case| self.counts_against(case));
-        if let Some(first) = against.next() {
-            let what = match &first.outcome {
-                Outcome::Error { trouble } => trouble.to_string(),
-                Outcome::Fail { why } => why.clone(),
-                Outcome::Pass | Outcome::Skipped { .. } => String::new(),
-            };
-            let (failed, of) = (1 + against.count(), self.cases.len());
-            let name = &first.name;
-            return Some(format!("{failed} of {of} cases fail, first {name}: {what}"));
-        }
-        if let (true, Some(limit)) = (self.is_beyond_limit(), self.extra_limit) {
-            let Count {
-                extra, required, ..
-            } = self.pairs();
-            return Some(format!(
-                "{extra} extra pairs to {required} required ones, more than the limit of {limit} for each"
-            ));
-        }
-        if let Some(name) = self.stale.first() {
-            let count = self.stale.len();
-            return Some(format!(
-                "{count} of the known failures are stale, first {name}"
-            ));
-        }
-        let count = |is: fn(&Outcome) -> bool| {
-            let cases = self.cases.iter().filter(|case| is(&case.outcome));
-            cases.count()
-        };
-        let skipped = count(|outcome| matches!(outcome, Outcome::Skipped { .. }));
-        let (without, of) = (skipped + self.not_run, self.cases.len() + self.not_run);
-        Some(match count(|outcome| *outcome == Outcome::Pass) {
-            0 => format!(
-                "no case passes: {without} of {of} were not judged, all others are known to fail"
-            ),
-            _ => format!("{without} of {of} cases were not judged"),
-        })
-    }
-
     /// Panics with the summary unless the verdict is a pass: what a test calls.
     ///
     /// # Panics
@@ -207,9 +258,11 @@ impl fmt::Display for Verdict {
         });
         writeln!(
             f,
-            "claim {}: {}",
+            "claim {}: {}, {} of {} cases judged",
             self.claim,
-            if self.passed() { "PASS" } else { "NOT PASSED" }
+            self.conclusion(),
+            self.judged(),
+            self.asked()
         )?;
         writeln!(
             f,
@@ -240,10 +293,7 @@ impl fmt::Display for Verdict {
             )?;
         }
         for name in self.stale.iter().take(3) {
-            writeln!(
-                f,
-                "known failure {name} passes or is no case of this run: take it off the list"
-            )?;
+            writeln!(f, "known failure {name} passes: take it off the list")?;
         }
         for case in self
             .cases
@@ -251,24 +301,20 @@ impl fmt::Display for Verdict {
             .filter(|case| self.counts_against(case))
             .take(3)
         {
-            match &case.outcome {
-                Outcome::Fail { why } => {
-                    writeln!(f, "{} {why}\n  case aims at: {}", case.name, case.flag)?;
-                }
-                Outcome::Error { trouble } => writeln!(f, "{} {trouble}", case.name)?,
-                _ => {}
-            }
+            writeln!(f, "{case}")?;
         }
-        if let Some(case) = self
+        let mut skipped = self
             .cases
             .iter()
-            .find(|case| matches!(case.outcome, Outcome::Skipped { .. }))
-            && let Outcome::Skipped { why } = &case.outcome
-        {
-            writeln!(f, "skipped, for one: {} ({why})", case.name)?;
+            .filter(|case| matches!(case.outcome, Outcome::Skipped { .. }));
+        if let Some(case) = skipped.next() {
+            writeln!(f, "skipped, for one: {case}")?;
         }
         self.smallest
             .as_ref()
             .map_or(Ok(()), |smallest| smallest.fmt(f))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,4 +1,5 @@
-//! What shows a person that a pair really meets: a common point as exact fractions, and how deep the bodies are in one another.
+//! What shows a person that a pair really meets: a common point as exact fractions, and how deep
+//! the bodies are in one another.
 
 use serde::Serialize;
 
@@ -14,7 +15,8 @@ pub struct Witness {
     pub point: [String; 3],
     /// The same, rounded to f64.
     pub decimals: [f64; 3],
-    /// The least shift of the second body, of those tried, that parts the two, in the scene's unit of length.
+    /// The least shift of the second body, of those tried, that parts the two, in the scene's unit
+    /// of length.
     pub depth: Option<f64>,
     /// The same in units of `ulp`.
     pub depth_ulps: Option<u64>,
@@ -71,8 +73,8 @@ fn directions(frame: &Frame, [i, j]: [u32; 2]) -> Vec<[f64; 3]> {
     all
 }
 
-/// The least number of ulps below `least` by which a shift along a direction parts the pair: doubled until it does, then
-/// halved down to it.
+/// The least number of ulps below `least` by which a shift along a direction parts the pair:
+/// doubled until it does, then halved down to it.
 fn depth(
     truth: &Truth,
     frame: &Frame,

@@ -1,8 +1,8 @@
 //! Does an axis separate two posed polytopes, exactly? Supports are those of the corners.
 //!
-//! In A's slab coordinates, B's corners are M ξ + w and A's are s ξ ([`Relative::over`]). The axis a separates when
-//! s max a·A < min a·B or the other way round. An axis may be any vector: the normals of a body, or a guess of the
-//! linear program in [`super::ordop`].
+//! In A's slab coordinates, B's corners are M ξ + w and A's are s ξ ([`Relative::over`]). The axis
+//! a separates when s max a·A < min a·B or the other way round. An axis may be any vector: the
+//! normals of a body, or a guess of the linear program in [`super::ordop`].
 
 use std::cmp::Ordering;
 
@@ -103,7 +103,8 @@ fn extent<N: Number>(axis: &Vector<N>, points: &[Vector<N>]) -> Option<[N; 2]> {
 
 /// The filter's corners: A's rounded ξ, B's mapped to A's coordinates.
 ///
-/// A corner of A is off by 2u|ξ|, one of B by [`Approximate::error`]; a height adds 3u|a|₁|ξ|∞ at most.
+/// A corner of A is off by 2u|ξ|, one of B by [`Approximate::error`]; a height adds 3u|a|₁|ξ|∞ at
+/// most.
 pub struct Rounded<'a> {
     a: &'a [Vector<f64>],
     b: Vec<Vector<f64>>,

@@ -1,8 +1,10 @@
-//! A point that two posed bodies share, as exact fractions in world coordinates: a certificate that a person can check.
+//! A point that two posed bodies share, as exact fractions in world coordinates: a certificate that
+//! a person can check.
 //!
-//! Balls share the point that divides the line of their centres as rA : rB; or-DOPs the point that their linear program
-//! ends with; meshes a corner of one triangle in another, the crossing of an edge with a plane or of two edges, or a
-//! vertex of a body inside of the other. Candidates are computed in rationals, and one that lies in both is returned.
+//! Balls share the point that divides the line of their centres as rA : rB; or-DOPs the point that
+//! their linear program ends with; meshes a corner of one triangle in another, the crossing of an
+//! edge with a plane or of two edges, or a vertex of a body inside of the other. Candidates are
+//! computed in rationals, and one that lies in both is returned.
 
 use std::cmp::Ordering;
 use std::fmt;

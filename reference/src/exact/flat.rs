@@ -1,7 +1,7 @@
 //! Triangles whose planes do not tell: coplanar ones, segments, points. Integers only.
 //!
-//! Two such convex sets meet iff an edge of one pierces the other's interior, or two edges share a point, or one
-//! contains the other in its plane, which any one corner shows.
+//! Two such convex sets meet iff an edge of one pierces the other's interior, or two edges share a
+//! point, or one contains the other in its plane, which any one corner shows.
 
 use std::cmp::Ordering;
 
@@ -60,8 +60,8 @@ fn segments_meet([p, q]: [&Point; 2], [a, b]: [&Point; 2]) -> bool {
             || on_segment([p, q], a)
             || on_segment([p, q], b);
     }
-    // In the plane that both span, each has its ends on either side of the other's line, or one of them on it; both
-    // are not, as the lines are not parallel.
+    // In the plane that both span, each has its ends on either side of the other's line, or one of
+    // them on it; both are not, as the lines are not parallel.
     let turn = |from: &Point, to: &Point, x: &Point| {
         dot(&across, &cross(&sub(to, from), &sub(x, from))).cmp(&IBig::ZERO)
     };
@@ -74,7 +74,8 @@ fn on_segment([a, b]: [&Point; 2], x: &Point) -> bool {
     is_zero(&normal([a, b, x])) && (0..3).all(between)
 }
 
-/// Is x in the proper triangle `t`, in its plane? No degenerate triangle contains more than its edges do.
+/// Is x in the proper triangle `t`, in its plane? No degenerate triangle contains more than its
+/// edges do.
 fn contains(t: &Triangle<Point>, x: &Point) -> bool {
     let normal = normal(t.each_ref());
     if is_zero(&normal) || side(t.each_ref(), x) != Ordering::Equal {

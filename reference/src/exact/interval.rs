@@ -1,7 +1,8 @@
 //! Intervals of f64 with outward rounding: the middle of the cascade.
 //!
-//! Each bound is one rounded operation moved to the next float outward, so the true result lies between them whatever
-//! the rounding, underflow or overflow did. Where a bound would be NaN the interval is the whole line, which has no sign.
+//! Each bound is one rounded operation moved to the next float outward, so the true result lies
+//! between them whatever the rounding, underflow or overflow did. Where a bound would be NaN the
+//! interval is the whole line, which has no sign.
 
 use std::cmp::Ordering;
 
@@ -92,7 +93,8 @@ impl Number for Interval {
             self.hi * other.lo,
             self.hi * other.hi,
         ];
-        // 0·∞ is a NaN, which min and max drop: the products that remain hold its 0, or none does and all is unknown.
+        // 0·∞ is a NaN, which min and max drop: the products that remain hold its 0, or none does
+        // and all is unknown.
         Self::outward(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
     }
 

@@ -87,7 +87,8 @@ impl Judge for Exact<'_> {
     }
 }
 
-/// The pairs i < j, not both static, whose meshes intersect, sorted; with the meetings that were looked at closely.
+/// The pairs i < j, not both static, whose meshes intersect, sorted; with the meetings that were
+/// looked at closely.
 pub fn meeting_pairs(bodies: &[Body]) -> (Vec<(u32, u32)>, MeetingTally) {
     let dynamic: Vec<bool> = bodies.iter().map(|body| body.dynamic).collect();
     let mut tally = MeetingTally::default();
@@ -115,8 +116,8 @@ impl MeetingTally {
     }
 }
 
-/// Can the meshes meet at all? Not when the origins are further apart, on some axis, than both reaches; the factor 2
-/// over √3 and the ulps leaves no doubt.
+/// Can the meshes meet at all? Not when the origins are further apart, on some axis, than both
+/// reaches; the factor 2 over √3 and the ulps leaves no doubt.
 fn near(a: &Body, b: &Body) -> bool {
     let reach = a.shape.mesh().reach + b.shape.mesh().reach;
     largest(&separation(&a.pose, &b.pose)) <= 2.0 * reach

@@ -1,9 +1,10 @@
-//! Do two posed meshes intersect? The design's definition, exactly: their surfaces meet, or a component of one lies
-//! inside a closed component of the other.
+//! Do two posed meshes intersect? The design's definition, exactly: their surfaces meet, or a
+//! component of one lies inside a closed component of the other.
 //!
-//! Two trees are descended together in A's frame; a pair of boxes is dropped when one of six face normals separates it
-//! in f64 by more than the rounding. When no triangles meet, every component is wholly inside or wholly outside of
-//! each closed one, so one vertex decides ([`super::parity`]).
+//! Two trees are descended together in A's frame; a pair of boxes is dropped when one of six face
+//! normals separates it in f64 by more than the rounding. When no triangles meet, every component
+//! is wholly inside or wholly outside of each closed one, so one vertex decides
+//! ([`super::parity`]).
 
 use super::parity::inside_closed;
 use super::tree::{Content, Node};
@@ -105,8 +106,9 @@ fn leaves_meet(view: &View, a: &[u32], b: &[u32], record: &mut Record) -> bool {
 
 /// Separates boxes of A from boxes of B.
 ///
-/// With δ the error of a mapped point and u = 2⁻⁵³: a centre is off by δ along A's axes, √3δ + 170u·size along B's,
-/// and the half sizes' sums by as much again; 4δ and 256u of A's reach cover it, as δ is 256u of B's reach and distance.
+/// With δ the error of a mapped point and u = 2⁻⁵³: a centre is off by δ along A's axes, √3δ +
+/// 170u·size along B's, and the half sizes' sums by as much again; 4δ and 256u of A's reach cover
+/// it, as δ is 256u of B's reach and distance.
 struct Boxes<'a> {
     view: &'a View<'a>,
     back: [Vector<f64>; 3],

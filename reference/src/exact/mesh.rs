@@ -1,7 +1,8 @@
 //! A mesh prepared for exact judgement: its tree, its components and which of them are closed.
 //!
-//! A component is what shared vertex indices join. It is closed when each edge of its faces is shared by exactly two of
-//! them; triangles that name a vertex twice are surface, but no faces. Only closed components have an inside.
+//! A component is what shared vertex indices join. It is closed when each edge of its faces is
+//! shared by exactly two of them; triangles that name a vertex twice are surface, but no faces.
+//! Only closed components have an inside.
 
 use dashu_int::IBig;
 
@@ -84,7 +85,8 @@ impl Mesh {
         }
     }
 
-    /// Whether a triangle's corners lie on one line, exactly: nearly all have an area that f64 sees.
+    /// Whether a triangle's corners lie on one line, exactly: nearly all have an area that f64
+    /// sees.
     pub fn has_no_area(&self, t: u32) -> bool {
         let [a, b, c] = &self.triangles[t as usize];
         let normal = cross(&sub(b, a), &sub(c, a));

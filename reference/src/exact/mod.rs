@@ -1,12 +1,15 @@
 //! The same predicates decided in exact real arithmetic.
 //!
-//! Each decision is the sign of polynomials in the f32 input and runs down a cascade until the sign is certain:
+//! Each decision is the sign of polynomials in the f32 input and runs down a cascade until the sign
+//! is certain:
 //!
-//! 1. **filter**: f64 with a bound on the rounding error from the magnitudes at hand (Shewchuk 1997),
+//! 1. **filter**: f64 with a bound on the rounding error from the magnitudes at hand (Shewchuk
+//!    1997),
 //! 2. **interval**: the generic formula in outward-rounded intervals,
 //! 3. **exact**: the same generic formula in big integers.
 //!
-//! [`Path`] says which stage it was. A stage that cannot tell stays silent, so overflow, underflow and NaN fall through.
+//! [`Path`] says which stage it was. A stage that cannot tell stays silent, so overflow, underflow
+//! and NaN fall through.
 
 pub mod axes;
 pub mod common;

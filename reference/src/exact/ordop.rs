@@ -1,10 +1,11 @@
-//! or-DOP against or-DOP, exactly, with a certificate either way: a common point or a separating axis.
+//! or-DOP against or-DOP, exactly, with a certificate either way: a common point or a separating
+//! axis.
 //!
-//! Both are convex polytopes given by slabs, so "all axes fail to separate" is "they have a common point": the full
-//! test, the oriented boxes' 15 axes included. A linear program in f64 guesses the point or the axis
-//! ([`super::simplex`]), and the cascade only has to verify it: the point against the slabs, the axis against the
-//! corners. When neither f64 with an error bound nor intervals can, the program is solved again in integers from
-//! where f64 ended.
+//! Both are convex polytopes given by slabs, so "all axes fail to separate" is "they have a common
+//! point": the full test, the oriented boxes' 15 axes included. A linear program in f64 guesses the
+//! point or the axis ([`super::simplex`]), and the cascade only has to verify it: the point against
+//! the slabs, the axis against the corners. When neither f64 with an error bound nor intervals can,
+//! the program is solved again in integers from where f64 ended.
 
 use std::cmp::Ordering;
 
@@ -47,7 +48,8 @@ pub enum Certificate {
         /// Their power of two.
         unit: i32,
     },
-    /// All of A lies strictly on one side of all of B along this axis. Zero when one of them is empty.
+    /// All of A lies strictly on one side of all of B along this axis. Zero when one of them is
+    /// empty.
     Separated(Vector<IBig>),
 }
 
@@ -210,7 +212,8 @@ fn within<N: Number>(
     Some(true)
 }
 
-/// Is the point certainly in both? A height c·ξ is off by 3δ from B's mapped coordinates and 2u|ξ|₁ from its sum.
+/// Is the point certainly in both? A height c·ξ is off by 3δ from B's mapped coordinates and 2u|ξ|₁
+/// from its sum.
 fn inside_rounded(a: Posed, b: Posed, point: &Vector<f64>) -> bool {
     let map = Approximate::over(b, a);
     let within = |(_, polytope): Posed, xi: &Vector<f64>, error: f64| {

@@ -1,7 +1,9 @@
-//! On which side of a plane does a point lie? The one predicate that triangles, segments and rays are decided by.
+//! On which side of a plane does a point lie? The one predicate that triangles, segments and rays
+//! are decided by.
 //!
-//! orient3d(a, b, c, d) = (d − a)·((b − a) × (c − a)), degree 3 in the coordinates. [`Side`] is its sign at one stage
-//! of the cascade; what is built on it ([`super::triangle`], [`super::parity`]) is written once for all stages.
+//! orient3d(a, b, c, d) = (d − a)·((b − a) × (c − a)), degree 3 in the coordinates. [`Side`] is its
+//! sign at one stage of the cascade; what is built on it ([`super::triangle`], [`super::parity`])
+//! is written once for all stages.
 
 use std::cmp::Ordering;
 use std::marker::PhantomData;
@@ -42,9 +44,10 @@ impl<N: Number> Side for Known<N> {
 
 /// f64 with one error bound for all planes and points of a small group.
 ///
-/// Let every coordinate be off by at most δ and lie within m of the group's origin, m' = m + 2δ, u = 2⁻⁵³. A
-/// difference is at most 2m' and off by η = 2δ + 2um'. The determinant's six products then move by less than
-/// 18η(2m')² = 144δm'² + 144um'³, and its own rounding is below 28u(2m')³ = 224um'³. The bound takes 160 and 512.
+/// Let every coordinate be off by at most δ and lie within m of the group's origin, m' = m + 2δ, u
+/// = 2⁻⁵³. A difference is at most 2m' and off by η = 2δ + 2um'. The determinant's six products
+/// then move by less than 18η(2m')² = 144δm'² + 144um'³, and its own rounding is below 28u(2m')³ =
+/// 224um'³. The bound takes 160 and 512.
 pub struct Bounded {
     bound: f64,
 }

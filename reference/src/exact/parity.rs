@@ -1,9 +1,10 @@
-//! Is a point inside a closed component? Odd parity of the crossings of a segment that ends outside.
+//! Is a point inside a closed component? Odd parity of the crossings of a segment that ends
+//! outside.
 //!
-//! A mesh in which every edge has two faces is a cycle modulo 2, so the parity is the same for every segment that
-//! misses all edges and corners. One that does not is thrown away for the next of a fixed sequence. A face of no area
-//! would touch every segment in its plane; as a chain it is zero and is left out, and where a segment runs through it,
-//! its neighbours' edges show that.
+//! A mesh in which every edge has two faces is a cycle modulo 2, so the parity is the same for
+//! every segment that misses all edges and corners. One that does not is thrown away for the next
+//! of a fixed sequence. A face of no area would touch every segment in its plane; as a chain it is
+//! zero and is left out, and where a segment runs through it, its neighbours' edges show that.
 
 use super::Record;
 use super::mesh::Mesh;
@@ -18,7 +19,8 @@ const SEGMENTS: u64 = 1000;
 const RAY_BITS: i32 = 20;
 
 impl Mesh {
-    /// The unit that the outer points are multiples of: they lie beyond four times the mesh's reach.
+    /// The unit that the outer points are multiples of: they lie beyond four times the mesh's
+    /// reach.
     pub fn ray_unit(&self) -> i32 {
         let (mantissa, exponent) = dyadic(self.reach);
         let bits = 64 - mantissa.leading_zeros() as i32;
@@ -54,13 +56,15 @@ pub fn inside_closed(view: &View, point: &Vector<f64>, record: &mut Record) -> b
     }
     let mut parities = (0..SEGMENTS)
         .filter_map(|n| odd_component(view, point, &mapped, &view.a.outside(n), record));
-    // A segment fails when it meets one of finitely many edges or starts on the surface, which the caller excludes.
+    // A segment fails when it meets one of finitely many edges or starts on the surface, which the
+    // caller excludes.
     parities
         .next()
         .unwrap_or_else(|| unreachable!("{SEGMENTS} segments from {point:?} all touch an edge"))
 }
 
-/// Whether a closed component is crossed an odd number of times; `None` when the segment touches an edge.
+/// Whether a closed component is crossed an odd number of times; `None` when the segment touches an
+/// edge.
 fn odd_component(
     view: &View,
     point: &Vector<f64>,

@@ -1,10 +1,11 @@
 //! The polytope that a k-DOP's slabs bound: its exact corners and edge directions.
 //!
-//! With an orthogonal basis b_j of one norm, ξ_j = b_j·x are Cartesian coordinates up to a scale, and every slab reads
-//! lo_i ≤ c_i·ξ ≤ hi_i with the integer coefficients c_i. A corner solves three of these with equality; the determinant
-//! of three coefficient rows is 0 to ±4, so 12ξ is an integer combination of the slab ends. Enumerating all triples
-//! and keeping the feasible ones is slow, plain and done once per shape. Supports from these corners are the or-DOP's
-//! true supports; slabs that bound nothing (lo > hi) have no corner and overlap nothing.
+//! With an orthogonal basis b_j of one norm, ξ_j = b_j·x are Cartesian coordinates up to a scale,
+//! and every slab reads lo_i ≤ c_i·ξ ≤ hi_i with the integer coefficients c_i. A corner solves
+//! three of these with equality; the determinant of three coefficient rows is 0 to ±4, so 12ξ is an
+//! integer combination of the slab ends. Enumerating all triples and keeping the feasible ones is
+//! slow, plain and done once per shape. Supports from these corners are the or-DOP's true supports;
+//! slabs that bound nothing (lo > hi) have no corner and overlap nothing.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +16,8 @@ use crate::linear::{Matrix, Vector, apply, dot, integers, transpose};
 use crate::number::{Number, power_of_two, unit_of};
 use crate::volume::Slabs;
 
-/// Corners are stored as multiples of 1/12: the least common multiple of the determinants 1, 2, 3, 4.
+/// Corners are stored as multiples of 1/12: the least common multiple of the determinants 1, 2, 3,
+/// 4.
 pub const DENOMINATOR: i32 = 12;
 
 /// Corners, normals and edge directions of the slabs' polytope.
@@ -45,7 +47,8 @@ impl Polytope {
     /// The polytope of the slabs.
     ///
     /// # Errors
-    /// When a number is not finite, the slabs are not k/2 or the basis is not exactly orthogonal with one norm.
+    /// When a number is not finite, the slabs are not k/2 or the basis is not exactly orthogonal
+    /// with one norm.
     pub fn new(slabs: &Slabs) -> Result<Self, InvalidInput> {
         let normals = slabs.directions.coefficients();
         let (lo, hi) = (slabs.lo.len(), slabs.hi.len());
@@ -90,7 +93,8 @@ impl Polytope {
         dot(&self.basis[0], &self.basis[0])
     }
 
-    /// Slab ends are lengths times the basis: a length that is a multiple of this makes them multiples of `unit`.
+    /// Slab ends are lengths times the basis: a length that is a multiple of this makes them
+    /// multiples of `unit`.
     pub fn length_unit(&self) -> i32 {
         self.unit - self.basis_unit
     }
@@ -249,7 +253,8 @@ fn cross_product(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-/// The shortest integer vector on the line of `v`, first non-zero component positive; none for zero.
+/// The shortest integer vector on the line of `v`, first non-zero component positive; none for
+/// zero.
 fn primitive(v: [i32; 3]) -> Option<[i32; 3]> {
     let divisor = v.iter().fold(0, |g, x| gcd(g, x.abs()));
     let lead = v.iter().find(|x| **x != 0)?;

@@ -1,9 +1,10 @@
 //! The pose of one body in the frame of another, free of divisions.
 //!
-//! In A's frame, scaled by s = |qA|²|qB|², a point y of B's frame is M y + w with M = R(p), p = conj(qA)·qB and
-//! w = |qB|² R(qA)ᵀ(tB − tA); a point x of A's frame is s x. Everything is a polynomial, so dyadic input gives
-//! integers, and A's own points carry no rounding at all. Over slab bases (rows bA, bB of squared norm βA, βB), the
-//! same holds of the coordinates ξ = b·x with bA M bBᵀ, βB bA w and βB s for M, w and s.
+//! In A's frame, scaled by s = |qA|²|qB|², a point y of B's frame is M y + w with M = R(p), p =
+//! conj(qA)·qB and w = |qB|² R(qA)ᵀ(tB − tA); a point x of A's frame is s x. Everything is a
+//! polynomial, so dyadic input gives integers, and A's own points carry no rounding at all. Over
+//! slab bases (rows bA, bB of squared norm βA, βB), the same holds of the coordinates ξ = b·x with
+//! bA M bBᵀ, βB bA w and βB s for M, w and s.
 
 use super::polytope::Polytope;
 use crate::linear::{
@@ -37,8 +38,8 @@ impl<N: Number> Relative<N> {
         }
     }
 
-    /// The same map between coordinates ξ over the bases of two polytopes. Slab ends are then lifted by the length
-    /// unit plus the unit of their own basis.
+    /// The same map between coordinates ξ over the bases of two polytopes. Slab ends are then
+    /// lifted by the length unit plus the unit of their own basis.
     pub fn over(&self, a: &Polytope, b: &Polytope) -> Self {
         let [rows_a, rows_b] =
             [a, b].map(|p| p.basis.map(|row| row.map(|x| N::lift(x, p.basis_unit))));
@@ -66,7 +67,8 @@ impl<N: Number> Relative<N> {
     }
 }
 
-/// The quaternion, scaled by powers of two: the rotation does not notice, and f64 neither overflows nor underflows.
+/// The quaternion, scaled by powers of two: the rotation does not notice, and f64 neither overflows
+/// nor underflows.
 pub(crate) fn quaternion<N: Number>(pose: &Pose) -> [N; 4] {
     let q = pose.quaternion();
     let largest = q.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -79,10 +81,10 @@ pub(crate) fn quaternion<N: Number>(pose: &Pose) -> [N; 4] {
 
 /// [`Relative`] divided by its scale in f64, with a bound on what rounding did.
 ///
-/// With u = 2⁻⁵³, exact products of f32 pairs and Cauchy–Schwarz on every sum of products, the hand count is: p within
-/// 2.1u|p|, M's entries (norm 1) within 20.3u, w within 42u‖t‖, M y + w within 68u|y| + 44u|t|; and over bases
-/// 180uκ|y| + 92u|bA||t| with κ = |bA|/|bB|. The bound takes 256u of all: 2⁻⁴⁵. f32 inputs leave f64's range only in
-/// sums whose other terms are 2⁵⁰⁰ times larger.
+/// With u = 2⁻⁵³, exact products of f32 pairs and Cauchy–Schwarz on every sum of products, the hand
+/// count is: p within 2.1u|p|, M's entries (norm 1) within 20.3u, w within 42u‖t‖, M y + w within
+/// 68u|y| + 44u|t|; and over bases 180uκ|y| + 92u|bA||t| with κ = |bA|/|bB|. The bound takes 256u
+/// of all: 2⁻⁴⁵. f32 inputs leave f64's range only in sums whose other terms are 2⁵⁰⁰ times larger.
 #[derive(Clone, Debug)]
 pub struct Approximate {
     /// M/s
@@ -127,7 +129,8 @@ impl Approximate {
         add(&apply(&self.matrix, y), &self.offset)
     }
 
-    /// Bound on the rounding error of a mapped coordinate for |y|∞ ≤ reach; NaN when f64's range might not suffice.
+    /// Bound on the rounding error of a mapped coordinate for |y|∞ ≤ reach; NaN when f64's range
+    /// might not suffice.
     pub fn error(&self, reach: f64) -> f64 {
         let size = self.stretch * reach + self.distance;
         if size <= LARGEST {

@@ -1,9 +1,11 @@
-//! How deep can a point lie inside a set of half-spaces? A linear program in four variables, over any [`Number`].
+//! How deep can a point lie inside a set of half-spaces? A linear program in four variables, over
+//! any [`Number`].
 //!
-//! Maximise t subject to n_i·z + ω_i t ≤ h_i with weights ω_i > 0. The half-spaces have a common point iff the maximum
-//! is not negative. The dual simplex method keeps a basis of four rows with multipliers λ ≥ 0, Σλn = 0: when t < 0
-//! they show that no point exists (Farkas), otherwise z is one. All steps are signs of determinants (Cramer's rule),
-//! so the same code guesses in f64 and decides in integers. Bland's rule after a few steepest pivots ends cycles.
+//! Maximise t subject to n_i·z + ω_i t ≤ h_i with weights ω_i > 0. The half-spaces have a common
+//! point iff the maximum is not negative. The dual simplex method keeps a basis of four rows with
+//! multipliers λ ≥ 0, Σλn = 0: when t < 0 they show that no point exists (Farkas), otherwise z is
+//! one. All steps are signs of determinants (Cramer's rule), so the same code guesses in f64 and
+//! decides in integers. Bland's rule after a few steepest pivots ends cycles.
 
 use std::cmp::Ordering;
 
@@ -103,14 +105,16 @@ fn entering<N: Number>(
     Some(worst.map(|(i, _)| i))
 }
 
-/// The inverse of the basis rows times the determinant, by columns, signed so that the determinant is positive.
+/// The inverse of the basis rows times the determinant, by columns, signed so that the determinant
+/// is positive.
 struct Inverse<N> {
     columns: [[N; 4]; 4],
     determinant: N,
 }
 
 impl<N: Number> Inverse<N> {
-    /// A column is perpendicular to the three other rows: their four-dimensional cross product, signs alternating.
+    /// A column is perpendicular to the three other rows: their four-dimensional cross product,
+    /// signs alternating.
     fn of(rows: &[Row<N>], basis: [usize; 4]) -> Option<Self> {
         let [a, b, c, d] = basis.map(|i| &rows[i].normal);
         let columns = [
@@ -152,8 +156,9 @@ impl<N: Number> Inverse<N> {
         self.columns.each_ref().map(|column| column[3].clone())
     }
 
-    /// Which basis row the entering one replaces so that all multipliers stay ≥ 0: the least λ_j/μ_j with μ_j > 0,
-    /// where the entering row is Σ μ_j row_j. Ties go to the lowest row number (Bland).
+    /// Which basis row the entering one replaces so that all multipliers stay ≥ 0: the least
+    /// λ_j/μ_j with μ_j > 0, where the entering row is Σ μ_j row_j. Ties go to the lowest row
+    /// number (Bland).
     fn leaving(&self, entering: &Row<N>, basis: [usize; 4]) -> Option<usize> {
         let multipliers = self.multipliers();
         let mut least: Option<(usize, N)> = None;

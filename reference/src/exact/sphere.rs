@@ -64,9 +64,9 @@ pub(crate) fn filter(a: (&Ball, &Pose), b: (&Ball, &Pose)) -> Option<bool> {
     )
 }
 
-/// ‖d‖ ≤ reach? in f64. d̂² − r̂² is off by less than 6δ|d|∞ + 3δ² from the coordinates and 4u(d² + r²) from its own
-/// operations, where δ bounds the error of d before the last subtraction and that subtraction's, and the reach is
-/// the rounded sum or difference of two f32.
+/// ‖d‖ ≤ reach? in f64. d̂² − r̂² is off by less than 6δ|d|∞ + 3δ² from the coordinates and 4u(d² +
+/// r²) from its own operations, where δ bounds the error of d before the last subtraction and that
+/// subtraction's, and the reach is the rounded sum or difference of two f32.
 pub(crate) fn compare(d: &Vector<f64>, error: f64, reach: f64) -> Option<bool> {
     let (distance, reach) = (dot(d, d), reach * reach);
     let error = error + f64::EPSILON * largest(d);

@@ -1,8 +1,8 @@
 //! Do two triangles share a point? Closed, and as degenerate as they like: a segment, a point.
 //!
-//! Two triangles in different planes meet iff an edge of one pierces the other (Guigue & Devillers 2003 order the same
-//! signs). With all three corners of A on B's plane the two are coplanar or B is degenerate; that is left
-//! to [`super::flat`], in integers, as no rounded number can tell it.
+//! Two triangles in different planes meet iff an edge of one pierces the other (Guigue & Devillers
+//! 2003 order the same signs). With all three corners of A on B's plane the two are coplanar or B
+//! is degenerate; that is left to [`super::flat`], in integers, as no rounded number can tell it.
 
 use std::cmp::Ordering;
 
@@ -16,8 +16,8 @@ use crate::linear::Vector;
 /// Corners of a triangle.
 pub type Triangle<P> = [P; 3];
 
-/// Whether two triangles meet: `rounded` ones whose second is off by at most `error` in each coordinate (the first is
-/// exact), and the same two in intervals and integers.
+/// Whether two triangles meet: `rounded` ones whose second is off by at most `error` in each
+/// coordinate (the first is exact), and the same two in intervals and integers.
 pub fn meet(
     rounded: [&Triangle<Vector<f64>>; 2],
     error: f64,
@@ -111,8 +111,8 @@ fn known(signs: [Option<Ordering>; 3]) -> Option<[Ordering; 3]> {
     Some([signs[0]?, signs[1]?, signs[2]?])
 }
 
-/// Does the line pq, which crosses the triangle's plane in one point, cross it inside? It does when it passes all
-/// three edges on the same side, touching included.
+/// Does the line pq, which crosses the triangle's plane in one point, cross it inside? It does when
+/// it passes all three edges on the same side, touching included.
 pub fn pierces<S: Side>(sides: &S, [p, q]: [&S::Point; 2], t: &Triangle<S::Point>) -> Option<bool> {
     let signs = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| sides.side([p, q, &t[i]], &t[j]));
     let any = |side: Ordering| signs.contains(&Some(side));
@@ -122,8 +122,8 @@ pub fn pierces<S: Side>(sides: &S, [p, q]: [&S::Point; 2], t: &Triangle<S::Point
     known(signs).map(|_| true)
 }
 
-/// Does the segment pq cross the triangle's interior? The inner `None` means that it touches the border or runs in
-/// the plane; the outer one that the stage cannot tell.
+/// Does the segment pq cross the triangle's interior? The inner `None` means that it touches the
+/// border or runs in the plane; the outer one that the stage cannot tell.
 pub fn crossing<S: Side>(
     sides: &S,
     [p, q]: [&S::Point; 2],

@@ -82,8 +82,9 @@ impl<'a> View<'a> {
         ]
     }
 
-    /// Whether the segment from a point of B's frame, mapped to `mapped`, to a point of A's frame crosses triangle
-    /// `t` of A. `None` when it touches an edge or a corner or lies in the plane: another segment may tell.
+    /// Whether the segment from a point of B's frame, mapped to `mapped`, to a point of A's frame
+    /// crosses triangle `t` of A. `None` when it touches an edge or a corner or lies in the plane:
+    /// another segment may tell.
     pub fn crosses(
         &self,
         from: &Vector<f64>,

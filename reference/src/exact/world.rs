@@ -19,7 +19,8 @@ use crate::pose::{Pose, separation};
 use crate::shape::Body;
 use crate::volume::DirectionSet;
 
-/// Relative error of a height: 90u by hand for a rotation (8u an entry), a product and a sum over three axes; 256u.
+/// Relative error of a height: 90u by hand for a rotation (8u an entry), a product and a sum over
+/// three axes; 256u.
 const HEIGHT_ERROR: f64 = 128.0 * f64::EPSILON;
 
 /// A body's extents along each direction about its own origin, in f64.

@@ -1,7 +1,7 @@
 //! Do the volumes of two posed bodies overlap? Plain f64, one file per volume; touching is overlap.
 //!
-//! Convex volumes are compared by the separating axis theorem: along an axis a, the sets A and B are apart iff
-//! max a·A < min a·B or the other way round.
+//! Convex volumes are compared by the separating axis theorem: along an axis a, the sets A and B
+//! are apart iff max a·A < min a·B or the other way round.
 
 pub mod obb;
 pub mod ordop;

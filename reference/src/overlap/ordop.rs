@@ -1,8 +1,9 @@
-//! or-DOP against or-DOP: slabs fixed in each body, compared along the normals of one or both and, in full, along
-//! every edge × edge axis (design, section 2).
+//! or-DOP against or-DOP: slabs fixed in each body, compared along the normals of one or both and,
+//! in full, along every edge × edge axis (design, section 2).
 //!
-//! The paper's "interval pairs in local space" is [`Overlap::OneSided`]: B's extent along A's normals. The extent is
-//! that of B's corners. B's own interval with the same index would be along another direction once B is turned.
+//! The paper's "interval pairs in local space" is [`Overlap::OneSided`]: B's extent along A's
+//! normals. The extent is that of B's corners. B's own interval with the same index would be along
+//! another direction once B is turned.
 
 use super::separated;
 use crate::exact::polytope::Polytope;

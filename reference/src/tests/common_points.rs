@@ -1,4 +1,5 @@
-//! Common points against the second formulation: they lie in both bodies, and there is one whenever the bodies meet.
+//! Common points against the second formulation: they lie in both bodies, and there is one whenever
+//! the bodies meet.
 
 use dashu_ratio::RBig;
 
@@ -32,7 +33,8 @@ fn in_slabs(body: &Body, point: &Point) -> bool {
         })
 }
 
-/// Whether the point is within the box that a mesh's vertices span in the body frame: exact for a cuboid.
+/// Whether the point is within the box that a mesh's vertices span in the body frame: exact for a
+/// cuboid.
 fn in_cuboid(body: &Body, half: [f32; 3], point: &Point) -> bool {
     let x = unposed(&body.pose, &point.0);
     (0..3).all(|i| {

@@ -1,4 +1,5 @@
-//! Containment: what fits to the bit is inside, one float less is not, in the body frame and under poses.
+//! Containment: what fits to the bit is inside, one float less is not, in the body frame and under
+//! poses.
 
 use proptest::prelude::*;
 
@@ -109,7 +110,8 @@ proptest! {
         let vertices: Vec<[f32; 3]> = (0..4).map(|_| draws.vector(1.0)).collect();
         let world: Vec<_> = vertices.iter().map(|v| posed(&pose, &rational3(*v))).collect();
         let rounded: Vec<[f32; 3]> = world.iter().map(|p| p.each_ref().map(|x| x.to_f32().value())).collect();
-        // Slabs about the rounded posed vertices: whether the exact ones are inside is a matter of last bits.
+        // Slabs about the rounded posed vertices: whether the exact ones are inside is a matter of
+        // last bits.
         let fitted = slabs(DirectionSet::K6, exact_basis([0, 0, 0, 1]), &rounded);
         for tighten in [false, true] {
             let mut fitted = fitted.clone();

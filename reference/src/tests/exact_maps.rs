@@ -1,4 +1,5 @@
-//! The f64 maps of the filter against rationals: how much of the error bound do the worst cases use?
+//! The f64 maps of the filter against rationals: how much of the error bound do the worst cases
+//! use?
 
 use super::rational::{Rational3, posed, rational, rational3, unposed};
 use super::shapes::{Draws, exact_basis, slabs};
@@ -53,7 +54,8 @@ fn mapped_points_stay_within_the_bound() {
         assert!(used <= 1.0, "{a:?} {b:?} {xi:?}");
         worst_over = worst_over.max(used);
     }
-    // 256u are taken, 72u and 180u derived; a bound that nothing comes near would hide a map that never runs.
+    // 256u are taken, 72u and 180u derived; a bound that nothing comes near would hide a map that
+    // never runs.
     assert!(
         worst > 1.0 / 256.0 && worst_over > 1.0 / 256.0,
         "{worst} {worst_over}"

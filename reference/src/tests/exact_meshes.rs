@@ -208,8 +208,8 @@ fn inside_needs_a_closed_component() {
 
 #[test]
 fn collapsed_faces_do_not_confuse_the_parity() {
-    // A box whose faces carry zero-area slivers, and about it a closed pair of faces that are one point;
-    // queried from many points inside and out.
+    // A box whose faces carry zero-area slivers, and about it a closed pair of faces that are one
+    // point; queried from many points inside and out.
     let (mut vertices, mut triangles) = cuboid([1.0; 3]);
     let middle = vertices.len() as u32;
     vertices.extend([[0.0, -1.0, -1.0], [0.0, -1.0, -1.0]]);
@@ -223,7 +223,8 @@ fn collapsed_faces_do_not_confuse_the_parity() {
         .find(|t| t[0] + t[1] == 1)
         .unwrap();
     let [a, b, c] = rotated;
-    // The edge's new middle, twice: a sliver (a, middle, b) closes the gap to the other face, a point face the rest.
+    // The edge's new middle, twice: a sliver (a, middle, b) closes the gap to the other face, a
+    // point face the rest.
     triangles.extend([
         [a, middle, c],
         [middle, b, c],

@@ -14,7 +14,8 @@ use crate::linear::integers;
 use crate::number::power_of_two;
 use crate::{Ball, DirectionSet, Pose, Slabs};
 
-/// A radius with which B comes as close to touching A as f32 can say, one float more or one float less.
+/// A radius with which B comes as close to touching A as f32 can say, one float more or one float
+/// less.
 fn touching_radius(draws: &mut Draws, a: (&Ball, &Pose), b: (&Ball, &Pose)) -> f32 {
     let centre = |(ball, pose): (&Ball, &Pose)| posed(pose, &rational::rational3(ball.centre));
     let d = rational::sub(&centre(b), &centre(a)).map(|x| x.to_f64().value());
@@ -74,8 +75,8 @@ fn spheres_agree_with_rationals_and_between_stages() {
     );
 }
 
-/// Balls, turned so that f64 rounds every centre, whose centres are as far apart as the radii reach, give or take
-/// next to nothing.
+/// Balls, turned so that f64 rounds every centre, whose centres are as far apart as the radii
+/// reach, give or take next to nothing.
 #[test]
 fn turned_spheres_that_touch() {
     let mut draws = Draws(31);
@@ -287,8 +288,8 @@ fn certificates_that_do_not_hold_are_refused() {
     assert!(!miss.value.verify((&origin, &small), (&touching, &large)));
 }
 
-/// Two k-DOPs on either side of a plane, turned so that f64 rounds every corner; A ends on the plane or next to
-/// nothing before or behind it.
+/// Two k-DOPs on either side of a plane, turned so that f64 rounds every corner; A ends on the
+/// plane or next to nothing before or behind it.
 #[test]
 fn turned_faces_that_touch() {
     let mut draws = Draws(29);

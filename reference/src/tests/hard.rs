@@ -1,5 +1,5 @@
-//! Pairs of poses that a rounding test gets wrong: seeded draws from families with exact contacts, tiny and huge
-//! sizes, far translations, quaternions of any norm.
+//! Pairs of poses that a rounding test gets wrong: seeded draws from families with exact contacts,
+//! tiny and huge sizes, far translations, quaternions of any norm.
 
 use super::shapes::Draws;
 use crate::Pose;
@@ -78,7 +78,8 @@ impl Draws {
             0 => self.translation(power(59)),
             // Far from the origin, where f32 has few digits left for the body's size.
             1 | 2 => self.translation(power(size + 20)),
-            // Off by far less than an f32 of the size could say: contact misses or holds by 2⁻²⁰ to 2⁻⁶⁰.
+            // Off by far less than an f32 of the size could say: contact misses or holds by 2⁻²⁰ to
+            // 2⁻⁶⁰.
             3 | 4 => {
                 let tiny = power(size - 20 - self.below(40) as i32);
                 self.translation(tiny)
@@ -107,8 +108,8 @@ impl Draws {
     }
 }
 
-/// Exact contacts that no float sees: B is turned against A by g = (1, 2, 3, 5), whose matrix is integers over 39.
-/// The A-frame point 39v is the B-frame point [`turned_back`] v.
+/// Exact contacts that no float sees: B is turned against A by g = (1, 2, 3, 5), whose matrix is
+/// integers over 39. The A-frame point 39v is the B-frame point [`turned_back`] v.
 pub const TURN: f32 = 39.0;
 
 /// R(g)ᵀv without the division: integers for integers.

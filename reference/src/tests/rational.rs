@@ -1,5 +1,6 @@
-//! A second formulation of every decision, in rationals and world coordinates, sharing nothing with the cascade but
-//! the input: poses by the quaternion sandwich q x q̄/|q|², and brute force in place of frames, trees and programs.
+//! A second formulation of every decision, in rationals and world coordinates, sharing nothing with
+//! the cascade but the input: poses by the quaternion sandwich q x q̄/|q|², and brute force in
+//! place of frames, trees and programs.
 
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
@@ -107,9 +108,9 @@ pub fn separates(axis: &Rational3, a: &[Rational3], b: &[Rational3]) -> bool {
     }
 }
 
-/// Whether two triangles of any kind share a point: no axis of a set that is complete for points, segments and
-/// triangles separates them. Edges give normals (edge × edge), in-plane normals (normal × edge) and lines (edges,
-/// differences of corners).
+/// Whether two triangles of any kind share a point: no axis of a set that is complete for points,
+/// segments and triangles separates them. Edges give normals (edge × edge), in-plane normals
+/// (normal × edge) and lines (edges, differences of corners).
 pub fn triangles_meet(a: &[Rational3; 3], b: &[Rational3; 3]) -> bool {
     let lines: Vec<Rational3> = [a, b]
         .iter()
@@ -132,7 +133,8 @@ pub fn triangles_meet(a: &[Rational3; 3], b: &[Rational3; 3]) -> bool {
     if normals.iter().any(&apart) {
         return false;
     }
-    // Perpendicular to a line and as near as may be to a difference: what tells a segment from a point beside it.
+    // Perpendicular to a line and as near as may be to a difference: what tells a segment from a
+    // point beside it.
     let beside: Vec<Rational3> = lines
         .iter()
         .flat_map(|l| between.iter().map(|d| cross(&cross(l, d), l)))
@@ -175,7 +177,8 @@ fn some_inside(triangles: &[[Rational3; 3]], mesh: &Mesh, others: &[[Rational3; 
     })
 }
 
-/// Ray parity by solving point + s·direction = a + u(b − a) + v(c − a); the next direction when a ray meets a border.
+/// Ray parity by solving point + s·direction = a + u(b − a) + v(c − a); the next direction when a
+/// ray meets a border.
 fn odd_crossings(shell: &[[Rational3; 3]], point: &Rational3) -> bool {
     let directions = (1..).map(|n: i32| {
         [

@@ -1,4 +1,5 @@
-//! Whole scenes: the exact judge against the plain one, the promise, and world-aligned volumes against rationals.
+//! Whole scenes: the exact judge against the plain one, the promise, and world-aligned volumes
+//! against rationals.
 
 use super::rational::{self, posed, rational3};
 use super::shapes::{Draws, cuboid, exact_basis, shape, torus, wedge};

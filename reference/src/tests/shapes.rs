@@ -27,7 +27,8 @@ pub fn cuboid(half: [f32; 3]) -> Mesh {
     )
 }
 
-/// A closed tetrahedron with legs 1 : 2 : 3 about no centre of symmetry: what a mirrored formula would show on.
+/// A closed tetrahedron with legs 1 : 2 : 3 about no centre of symmetry: what a mirrored formula
+/// would show on.
 pub fn wedge(size: f32) -> Mesh {
     let vertices = [
         [0.0, 0.0, 0.0],
@@ -66,7 +67,8 @@ pub fn torus(major: f32, minor: f32, rings: u32, sides: u32) -> Mesh {
     )
 }
 
-/// A basis whose columns have equal norm and are orthogonal in exact arithmetic: R of a small integer quaternion.
+/// A basis whose columns have equal norm and are orthogonal in exact arithmetic: R of a small
+/// integer quaternion.
 pub fn exact_basis(q: [i32; 4]) -> [[f32; 3]; 3] {
     let columns = transpose(&crate::linear::rotation(&q.map(f64::from)));
     columns.map(|column| column.map(|x| x as f32))

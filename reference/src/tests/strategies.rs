@@ -88,7 +88,8 @@ fn counters_follow_the_stages() {
 
 #[test]
 fn unrotated_intervals_are_not_compared() {
-    // A needle along x and one turned to lie along y, crossing at the end: the second's own x-interval is [−1, 1].
+    // A needle along x and one turned to lie along y, crossing at the end: the second's own
+    // x-interval is [−1, 1].
     let shapes = forms();
     let needle = &shapes[2];
     let along_x = Pose::new([0.0, 0.0, 0.0, 1.0], [0.0; 3]).unwrap();
@@ -106,7 +107,8 @@ fn unrotated_intervals_are_not_compared() {
     assert!(!obb::overlap(&body(along_x), &body(along_y(1.05))));
 }
 
-/// Two unit cubes at random orientations, centres uniform where the spheres overlap: analytic P = .505 for exact boxes.
+/// Two unit cubes at random orientations, centres uniform where the spheres overlap: analytic P =
+/// .505 for exact boxes.
 #[test]
 fn cubes_survive_the_sphere_test_as_often_as_the_integral_says() {
     let cube = shape(

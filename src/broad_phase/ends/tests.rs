@@ -27,7 +27,8 @@ fn grown_boxes_hold_their_own_and_are_no_longer_than_they_may_be() {
         for by in [1e-20, 0.3, 0.375, 5.0e3, 1e30, f32::INFINITY] {
             let Aabb { min, max } = grown(Aabb::new([end; 3], [end; 3]), by);
             assert!(min[0] <= end && end <= max[0], "{end}, {by}: {min:?}");
-            // Sums of f64 round to the nearest as well, so that they are no smaller than an f32 below the exact sum.
+            // Sums of f64 round to the nearest as well, so that they are no smaller than an f32
+            // below the exact sum.
             let [end, by] = [end, by].map(f64::from);
             assert!(f64::from(max[0]) <= end + by, "{end}, {by}: {max:?}");
             assert!(f64::from(min[0]) >= end - by, "{end}, {by}: {min:?}");

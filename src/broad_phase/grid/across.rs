@@ -19,10 +19,12 @@ pub enum Search {
     All,
 }
 
-/// Bodies that a look at one row costs as much as testing in a long run (10 cycles, and 0.7 a body).
+/// Bodies that a look at one row costs as much as testing in a long run (10 cycles, and 0.7 a
+/// body).
 const ROW_COST: f64 = 15.0;
 
-/// The cheapest way to the pairs of two levels: which one seeks (true: `a`), and how. By bodies and sizes alone.
+/// The cheapest way to the pairs of two levels: which one seeks (true: `a`), and how. By bodies and
+/// sizes alone.
 pub fn plan(a: &Level, b: &Level) -> (bool, Search) {
     let all = a.range.len() as f64 * b.range.len() as f64;
     let mut best = (a.range.len() < b.range.len(), Search::All, all);
@@ -47,7 +49,8 @@ pub fn plan(a: &Level, b: &Level) -> (bool, Search) {
 }
 
 impl Grid {
-    /// Pairs of a slot in `seekers`, whose balls grow by `grown`, and one in the level `target`, to which they don't belong.
+    /// Pairs of a slot in `seekers`, whose balls grow by `grown`, and one in the level `target`, to
+    /// which they don't belong.
     #[inline(always)]
     pub(super) fn across<L: Lanes>(
         &self,
@@ -178,7 +181,8 @@ mod tests {
         }
     }
 
-    /// So many bodies, the widest of that radius, in cells of at least its size and so many of them each way.
+    /// So many bodies, the widest of that radius, in cells of at least its size and so many of them
+    /// each way.
     fn level(bodies: usize, widest: f32, cells: [u8; 3], layout: Layout) -> Level {
         let mut level = Level::new(0..bodies, layout);
         let hi = cells.map(|count| 2.0 * widest * (f32::from(count) - 1.0));
@@ -193,8 +197,8 @@ mod tests {
         level
     }
 
-    /// A look at a row costs fifteen tests: of n bodies in a box of c cells, s of which a seeker may reach, cells are looked
-    /// through when 15·s_y·s_z < n·(1 − s_x·s_y·s_z/c).
+    /// A look at a row costs fifteen tests: of n bodies in a box of c cells, s of which a seeker
+    /// may reach, cells are looked through when 15·s_y·s_z < n·(1 − s_x·s_y·s_z/c).
     #[test]
     fn cells_are_looked_through_where_their_rows_cost_less_than_all_bodies() {
         for (radius, cells, most) in [

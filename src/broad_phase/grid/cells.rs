@@ -1,15 +1,16 @@
 //! Which cell a ball's centre falls in, and where the cells around it stand in the table.
 //!
-//! A coordinate x falls in cell k = round((x − o)/c), in f64. Centres of balls that the first test can report differ by
-//! less than the cell size c, so by at most one cell a coordinate: with c ≥ 2R(1 + 2⁻¹⁶), R the widest ball
-//! [widened](crate::rounding::widen), quotients differ by less than 1 − 2⁻¹⁷, and below 2³⁰ the three roundings of a
-//! quotient take 2⁻²² each.
+//! A coordinate x falls in cell k = round((x − o)/c), in f64. Centres of balls that the first test
+//! can report differ by less than the cell size c, so by at most one cell a coordinate: with c ≥
+//! 2R(1 + 2⁻¹⁶), R the widest ball [widened](crate::rounding::widen), quotients differ by less than
+//! 1 − 2⁻¹⁷, and below 2³⁰ the three roundings of a quotient take 2⁻²² each.
 //!
-//! Cells stand in the table in rows along x, rows in layers: index = k_x + A·k_y + B·k_z. Where the bodies' box has few
-//! cells, A and B leave one empty cell behind each row and one empty row behind each layer, so that neighbours across the
-//! border exist and are empty. Where the box is mostly void (a diagonal line, clusters far apart), indices are taken
-//! modulo a power of two instead, with A and B spread evenly over it: other cells may share a place in the table, which
-//! costs false candidates and loses nothing.
+//! Cells stand in the table in rows along x, rows in layers: index = k_x + A·k_y + B·k_z. Where the
+//! bodies' box has few cells, A and B leave one empty cell behind each row and one empty row behind
+//! each layer, so that neighbours across the border exist and are empty. Where the box is mostly
+//! void (a diagonal line, clusters far apart), indices are taken modulo a power of two instead,
+//! with A and B spread evenly over it: other cells may share a place in the table, which costs
+//! false candidates and loses nothing.
 
 use crate::broad_phase::{BLOCK_BODIES, Bounds};
 use crate::rounding::widen;
@@ -25,11 +26,13 @@ const MOST_CELLS: f64 = (1u32 << 29) as f64;
 const CELLS_PER_BODY: f64 = 6.0;
 const FEW_CELLS: f64 = 512.0;
 
-/// Rows that a body looks at besides its own: (0, +1, 0) and (0, −1…+1, +1). The other half finds it in turn.
+/// Rows that a body looks at besides its own: (0, +1, 0) and (0, −1…+1, +1). The other half finds
+/// it in turn.
 const FORWARD: [[i32; 2]; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// Cells each way that one look into a wrapped table may span: there all rows lie apart, in every length of table, and rows
-/// of a fourth cell would overlap in short ones and give some bodies twice.
+/// Cells each way that one look into a wrapped table may span: there all rows lie apart, in every
+/// length of table, and rows of a fourth cell would overlap in short ones and give some bodies
+/// twice.
 pub const WRAPPED_SPAN: u32 = 3;
 
 /// How cells find their place in the table.
@@ -41,9 +44,10 @@ pub enum Layout {
     Wrapped,
 }
 
-/// Where the cells of one size lie. The one place that tells the cell of a coordinate: which a body falls in, how many there
-/// are and where a body of another level looks. Each step rounds, but none of them reverses an order: a coordinate between
-/// two others falls in a cell between theirs, whatever the roundings, and none falls beyond the cell of the farthest.
+/// Where the cells of one size lie. The one place that tells the cell of a coordinate: which a body
+/// falls in, how many there are and where a body of another level looks. Each step rounds, but none
+/// of them reverses an order: a coordinate between two others falls in a cell between theirs,
+/// whatever the roundings, and none falls beyond the cell of the farthest.
 #[derive(Clone, Copy, Debug)]
 struct Rule {
     origin: [f64; 3],
@@ -51,8 +55,8 @@ struct Rule {
 }
 
 impl Rule {
-    /// The number of a coordinate's cell along an axis, plus [`TO_INTEGER`]: an exact f64 in order, whose low 32 bits are
-    /// the number.
+    /// The number of a coordinate's cell along an axis, plus [`TO_INTEGER`]: an exact f64 in order,
+    /// whose low 32 bits are the number.
     #[inline(always)]
     fn cell(&self, axis: usize, x: f64) -> f64 {
         (x - self.origin[axis]) * self.inverse + TO_INTEGER
@@ -85,10 +89,11 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Cells for `bodies` balls within the bounds, of the size that the widest needs; in a box, larger ones where the table
-    /// would grow too long.
+    /// Cells for `bodies` balls within the bounds, of the size that the widest needs; in a box,
+    /// larger ones where the table would grow too long.
     pub fn fit(bounds: &Bounds, bodies: usize, layout: Layout) -> Self {
-        // Bounds that aren't finite come of bodies outside the contract. They get some cells, so that nothing here runs on.
+        // Bounds that aren't finite come of bodies outside the contract. They get some cells, so
+        // that nothing here runs on.
         let [lo, hi] = [bounds.lo, bounds.hi].map(|end| end.map(finite));
         let longest = (0..3).map(|i| hi[i] - lo[i]).fold(0.0, f64::max);
         let needed = 2.0 * f64::from(widen(bounds.widest)) * (1.0 + 1.0 / 65536.0);
@@ -254,8 +259,8 @@ impl Cells {
         cells
     }
 
-    /// Lowest and highest cell of each axis that may hold a centre within `reach` of the ball's along that axis; `None` if all
-    /// centres are farther off.
+    /// Lowest and highest cell of each axis that may hold a centre within `reach` of the ball's
+    /// along that axis; `None` if all centres are farther off.
     #[inline(always)]
     pub fn around(&self, ball: &[f32; 4], reach: f64) -> Option<[[u32; 3]; 2]> {
         let (mut lowest, mut highest) = ([0; 3], [0; 3]);

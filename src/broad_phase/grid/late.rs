@@ -1,21 +1,24 @@
-//! Bodies that come and go between two plans: those that stay keep their levels, those that come share one more.
+//! Bodies that come and go between two plans: those that stay keep their levels, those that come
+//! share one more.
 //!
-//! Which body is in which level decides how long a search takes, never what it finds: a level's cells are fitted in every frame to
-//! the widest ball that it has then. So a plan holds as long as late bodies are few.
+//! Which body is in which level decides how long a search takes, never what it finds: a level's
+//! cells are fitted in every frame to the widest ball that it has then. So a plan holds as long as
+//! late bodies are few.
 
 use std::ops::Range;
 
 use super::{Grid, Level, REORDER};
 
-/// Late bodies, whatever their sizes: so many, or this share of all, but never more than so many, since all of them may lie in one
-/// cell.
+/// Late bodies, whatever their sizes: so many, or this share of all, but never more than so many,
+/// since all of them may lie in one cell.
 const FEW: usize = 64;
 const SHARE: usize = 16;
 const MANY: usize = 4096;
 
 impl Grid {
-    /// Takes up another set of bodies in the order that [`Places::replace`](crate::bodies::Places::replace) leaves: `stays` is of
-    /// each former place. False, and levels are to be planned anew, if too many bodies are late.
+    /// Takes up another set of bodies in the order that
+    /// [`Places::replace`](crate::bodies::Places::replace) leaves: `stays` is of each former place.
+    /// False, and levels are to be planned anew, if too many bodies are late.
     pub(in crate::broad_phase) fn replace(
         &mut self,
         stays: &[bool],
@@ -27,7 +30,8 @@ impl Grid {
         self.take_levels(moving_levels, stays, 0..moving);
         self.moving_levels = self.levels.len();
         self.take_levels(static_levels, stays, moving..bodies);
-        // Slots are the former set's: no order of places is taken from them before bodies are sorted again.
+        // Slots are the former set's: no order of places is taken from them before bodies are
+        // sorted again.
         self.age = self.age.next_multiple_of(REORDER).max(REORDER);
         (self.fixed_sorted, self.candidates) = (false, 0);
         let late = self.levels.iter().filter(|level| level.is_late);
@@ -35,7 +39,8 @@ impl Grid {
         late <= FEW.max(MANY.min(bodies / SHARE))
     }
 
-    /// Shares `places` out among the levels whose bodies stay, in their order, and one for the late ones.
+    /// Shares `places` out among the levels whose bodies stay, in their order, and one for the late
+    /// ones.
     fn take_levels(&mut self, former: &[Level], stays: &[bool], places: Range<usize>) {
         let mut start = places.start;
         for level in former.iter().filter(|level| !level.is_late) {

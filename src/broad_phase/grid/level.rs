@@ -1,8 +1,9 @@
 //! One level of the grid: bodies of like size, counting-sorted by cell into their slots.
 //!
-//! Threads share a sort by cells and not by places: each reads every body's cell, which is four bytes in sequence, and counts
-//! and places those of its own range of cells. Tables and slots are then split between them without overlap, no thread needs
-//! another's counts but one sum, and the order within a cell is that of one thread.
+//! Threads share a sort by cells and not by places: each reads every body's cell, which is four
+//! bytes in sequence, and counts and places those of its own range of cells. Tables and slots are
+//! then split between them without overlap, no thread needs another's counts but one sum, and the
+//! order within a cell is that of one thread.
 
 use std::ops::Range;
 
@@ -13,7 +14,8 @@ use crate::rounding::widen;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 use crate::threads::{Executor, Threads};
 
-/// Bodies whose cells have one size. Their slots are a range, and so are their places: sorting stays within it.
+/// Bodies whose cells have one size. Their slots are a range, and so are their places: sorting
+/// stays within it.
 #[derive(Clone, Debug)]
 pub struct Level {
     /// Slots, and places.
@@ -58,8 +60,8 @@ impl Level {
         Self { range, ..self }
     }
 
-    /// Sorts the level's bodies into their slots; within a cell they keep the order of places. `place_cells` and
-    /// `slot_cells` are columns over all places and all slots.
+    /// Sorts the level's bodies into their slots; within a cell they keep the order of places.
+    /// `place_cells` and `slot_cells` are columns over all places and all slots.
     pub fn sort(
         &mut self,
         executor: Executor<'_>,
@@ -83,7 +85,8 @@ impl Level {
         });
         let entries = self.cells.table_len() + 1;
         if entries > self.starts.capacity() {
-            // An eighth to spare, so that a box that breathes allocates nothing and doubles nothing.
+            // An eighth to spare, so that a box that breathes allocates nothing and doubles
+            // nothing.
             let spare = entries + entries / 8 - self.starts.len();
             self.starts.reserve_exact(spare);
         }
@@ -185,8 +188,9 @@ struct Share<'a> {
 }
 
 impl<'a> Share<'a> {
-    /// Sorts all cells, split among the threads: each reads all bodies and takes those of its own cells, so that the order is
-    /// that of one thread. False, and nothing is sorted, if a body's cell isn't in the table.
+    /// Sorts all cells, split among the threads: each reads all bodies and takes those of its own
+    /// cells, so that the order is that of one thread. False, and nothing is sorted, if a body's
+    /// cell isn't in the table.
     fn sort(mut self, pool: &Threads, from: &Columns<'_>) -> bool {
         let threads = pool.threads();
         if threads == 1 || from.cells.len() < WORTH_SHARING {
@@ -239,7 +243,8 @@ impl<'a> Share<'a> {
         true
     }
 
-    /// Puts the counted bodies into their slots. Each cell's entry is its count, then its start, and moves to its end.
+    /// Puts the counted bodies into their slots. Each cell's entry is its count, then its start,
+    /// and moves to its end.
     fn place(&mut self, from: &Columns<'_>) {
         let mut slot = self.first_slot;
         for end in self.ends.iter_mut() {

@@ -1,9 +1,10 @@
 //! The grid: cells of uniform size, counting-sorted slots, contiguous runs of candidates.
 //!
-//! Where radii differ much, bodies are split into levels of like size ([`plan`]), each with its own cells; static bodies
-//! have levels of their own, sorted once, so no two of them ever meet. Every frame sorts the moving levels anew: at ten
-//! cycles a body that is cheaper than keeping a tree in shape. Now and then the places themselves take the order of the
-//! slots, so that the sort reads and writes memory nearly in sequence.
+//! Where radii differ much, bodies are split into levels of like size ([`plan`]), each with its own
+//! cells; static bodies have levels of their own, sorted once, so no two of them ever meet. Every
+//! frame sorts the moving levels anew: at ten cycles a body that is cheaper than keeping a tree in
+//! shape. Now and then the places themselves take the order of the slots, so that the sort reads
+//! and writes memory nearly in sequence.
 
 mod across;
 mod cells;
@@ -23,11 +24,13 @@ use crate::rounding::skin::Reach;
 use crate::simd::Lanes;
 use crate::threads::Executor;
 
-/// Frames after which places take the order of slots. Bodies that move a tenth of their radius a frame are then in their cell
-/// still, or beside it; each frame would spare the sort no more than following the order costs.
+/// Frames after which places take the order of slots. Bodies that move a tenth of their radius a
+/// frame are then in their cell still, or beside it; each frame would spare the sort no more than
+/// following the order costs.
 const REORDER: u32 = 4;
 
-/// Frames between two looks at whether the levels still fit, and the growth of the candidates that calls for new ones.
+/// Frames between two looks at whether the levels still fit, and the growth of the candidates that
+/// calls for new ones.
 const PLAN_PAUSE: u32 = 8;
 const PLAN_GROWTH: u64 = 2;
 
@@ -77,8 +80,8 @@ enum Kind {
 }
 
 impl Grid {
-    /// Looks for a better order of places and writes it as the names that take the places. `balls` and `names` are those of
-    /// the last frame.
+    /// Looks for a better order of places and writes it as the names that take the places. `balls`
+    /// and `names` are those of the last frame.
     pub(super) fn reorder(
         &mut self,
         moving: usize,
@@ -97,7 +100,8 @@ impl Grid {
             return Reorder::All;
         }
         if self.age == 1 {
-            // The first sort after a plan: static bodies take the order of their slots once and for all.
+            // The first sort after a plan: static bodies take the order of their slots once and for
+            // all.
             order.extend_from_slice(&self.slots.names[..balls.len()]);
             self.fixed_sorted = false;
             return Reorder::All;
@@ -119,8 +123,8 @@ impl Grid {
         (self.levels.is_empty() && bodies > 0) || (grown && self.age >= PLAN_PAUSE)
     }
 
-    /// Writes an order of places that is the one of the slots, after a frame in which bodies were arranged, for a time in
-    /// which they aren't.
+    /// Writes an order of places that is the one of the slots, after a frame in which bodies were
+    /// arranged, for a time in which they aren't.
     pub(super) fn follow_slots(
         &mut self,
         moving: usize,
@@ -213,7 +217,8 @@ impl Grid {
                 push_parts(&mut self.parts, across, size);
             }
         }
-        // All levels have their slots in the same order of space: side by side, what one part reads serves the next.
+        // All levels have their slots in the same order of space: side by side, what one part reads
+        // serves the next.
         let levels = &self.levels;
         self.parts.sort_by_key(|part| {
             let all = &levels[part.seeker].range;
@@ -300,7 +305,8 @@ mod tests {
         }
     }
 
-    /// Of one level of that many moving bodies, and one of as many static ones, planned some frames ago.
+    /// Of one level of that many moving bodies, and one of as many static ones, planned some frames
+    /// ago.
     fn planned(each: usize) -> Grid {
         let level = |range| Level::new(range, Layout::Box);
         Grid {

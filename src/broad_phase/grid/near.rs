@@ -1,7 +1,9 @@
-//! Pairs within a level: a body against the rest of its own cell, the next cell, and four rows of three cells.
+//! Pairs within a level: a body against the rest of its own cell, the next cell, and four rows of
+//! three cells.
 //!
-//! These are half of the 27 cells around it; the other half finds the body in turn. Each row of three is one contiguous
-//! run of slots, read off the table by one load of four neighbouring entries.
+//! These are half of the 27 cells around it; the other half finds the body in turn. Each row of
+//! three is one contiguous run of slots, read off the table by one load of four neighbouring
+//! entries.
 
 use std::ops::Range;
 
@@ -39,7 +41,8 @@ impl Grid {
     /// In a box of more than one cell each way. `rows` are the cells' own.
     #[inline(always)]
     fn in_space(&self, level: &Level, bodies: Range<usize>, rows: [u32; 4], mut pen: Pen<'_>) {
-        // The table as seen from each row, all of one length: one comparison of a cell with it serves for all runs.
+        // The table as seen from each row, all of one length: one comparison of a cell with it
+        // serves for all runs.
         let starts = level.starts.as_slice();
         let length = starts.len() - (rows[3] as usize - 1);
         let own = &starts[..length];

@@ -1,8 +1,9 @@
 //! Which bodies share a level: as few levels as keep cells from crowding.
 //!
-//! Balls that overlap little can only crowd a cell by being much smaller than it. So the widest octave gets a level of its
-//! own as long as the cells that it asks for are crowded, and what is left is looked at again, with smaller cells. One size
-//! gives one level, a giant among many small ones two.
+//! Balls that overlap little can only crowd a cell by being much smaller than it. So the widest
+//! octave gets a level of its own as long as the cells that it asks for are crowded, and what is
+//! left is looked at again, with smaller cells. One size gives one level, a giant among many small
+//! ones two.
 
 use std::ops::Range;
 
@@ -11,8 +12,8 @@ use super::level::{Assign, Level};
 use crate::broad_phase::Bounds;
 use crate::simd::{self, dispatch};
 
-/// Bodies that a body may find in its own cell, itself included, in the mean, before wide ones are split off. Uniform
-/// scenes reach it at 13 sphere partners a body.
+/// Bodies that a body may find in its own cell, itself included, in the mean, before wide ones are
+/// split off. Uniform scenes reach it at 13 sphere partners a body.
 const CROWD: u64 = 4;
 
 /// Levels for moving or for static bodies each.
@@ -21,8 +22,8 @@ const MOST_LEVELS: usize = 24;
 /// A wrapped table must promise to halve the candidates: its rows lie scattered.
 const WORTH_WRAPPING: u64 = 2;
 
-/// Splits a range of places into levels, widest balls first. `order` lists the places in the range and is sorted by
-/// level; within a level it stays as it was.
+/// Splits a range of places into levels, widest balls first. `order` lists the places in the range
+/// and is sorted by level; within a level it stays as it was.
 pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec<Level> {
     let mut levels = Vec::new();
     let mut from = 0;
@@ -53,7 +54,8 @@ fn gather(balls: &[[f32; 4]], places: &[u32]) -> Vec<[f32; 4]> {
     places.iter().map(|&p| balls[p as usize]).collect()
 }
 
-/// The better layout for some balls, and how crowded its cells are: the sum over balls of the balls in the same cell.
+/// The better layout for some balls, and how crowded its cells are: the sum over balls of the balls
+/// in the same cell.
 fn fit(balls: &[[f32; 4]]) -> (Layout, u64) {
     let bounds = Bounds::of(simd::Tier::SCALAR, balls);
     let [in_box, wrapped] =

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::Volume;
+use super::effort::{Effort, STEP};
 use super::list::Chunk;
 use crate::broad_phase::{
     Arranged, BLOCK_BODIES, BallTest, Block, FirstTest, MOST_CANDIDATES, SlotTest,
@@ -38,38 +39,59 @@ impl BallTest for Grown<'_> {
     }
 }
 
-/// Takes the grid's candidates, and keeps the neighbours.
+/// Tests the grid's candidates and keeps the neighbours, until there are more of either than a list
+/// may take.
 pub struct Collect<'a, T> {
     test: &'a T,
     chunk: &'a mut Chunk,
-    /// How many are of any use.
-    most: usize,
+    effort: &'a Effort,
+    /// Pairs and candidates that the effort doesn't have yet.
+    pairs: u64,
+    candidates: u64,
     hits: [u32; MOST_CANDIDATES + MAX_WIDTH],
 }
 
 impl<'a, T: SlotTest> Collect<'a, T> {
     #[inline(always)]
-    pub fn new(test: &'a T, chunk: &'a mut Chunk, most: usize) -> Self {
+    pub fn new(test: &'a T, chunk: &'a mut Chunk, effort: &'a Effort) -> Self {
         Self {
             test,
             chunk,
-            most,
+            effort,
+            pairs: 0,
+            candidates: 0,
             hits: [0; MOST_CANDIDATES + MAX_WIDTH],
         }
     }
 
+    /// Whether the rest of the search is of no use.
     #[inline(always)]
-    fn keep(&mut self, found: usize) {
-        if self.chunk.len() <= self.most {
-            self.chunk.append(&self.hits[..found]);
+    fn is_over(&self) -> bool {
+        self.effort.is_over_with(self.pairs, self.candidates)
+    }
+
+    /// Keeps the neighbours that a test of so many candidates has found.
+    #[inline(always)]
+    fn keep(&mut self, found: usize, candidates: usize) {
+        self.chunk.append(&self.hits[..found]);
+        self.pairs += found as u64;
+        self.candidates += candidates as u64;
+        if self.candidates >= STEP {
+            self.finish();
         }
+    }
+
+    /// Adds what has been counted to the effort of all threads.
+    #[inline(always)]
+    pub fn finish(&mut self) {
+        self.effort.add(self.pairs, self.candidates);
+        (self.pairs, self.candidates) = (0, 0);
     }
 }
 
 impl<T: SlotTest> FirstTest for Collect<'_, T> {
     #[inline(always)]
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>) {
-        self.chunk.seen += run.len() as u64;
         let holds = |first: usize| (first..first + BLOCK_BODIES).contains(&i);
         let first = match self.chunk.first().filter(|&first| holds(first)) {
             Some(first) => first,
@@ -80,25 +102,27 @@ impl<T: SlotTest> FirstTest for Collect<'_, T> {
         };
         let lane = (i - first) as u32;
         let mut start = run.start;
-        while start < run.end {
+        while start < run.end && !self.is_over() {
             let end = run.end.min(start + MOST_CANDIDATES);
             let found = self.test.run(l, i, start..end, &mut self.hits);
             for hit in &mut self.hits[..found] {
                 *hit = *hit << 4 | lane;
             }
-            self.keep(found);
+            self.keep(found, end - start);
             start = end;
         }
     }
 
     #[inline(always)]
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>) {
-        self.chunk.seen += block.codes().len() as u64;
+        if self.is_over() {
+            return;
+        }
         if self.chunk.first() != Some(block.first()) {
             self.chunk.open(block.first());
         }
         let found = self.test.block(l, block, &mut self.hits);
-        self.keep(found);
+        self.keep(found, block.codes().len());
     }
 }
 
@@ -118,6 +142,7 @@ mod tests {
             for (i, run) in self.1 {
                 self.0.run(l, *i, run.clone());
             }
+            self.0.finish();
         }
     }
 
@@ -153,7 +178,8 @@ mod tests {
             balls: (0..len + MAX_WIDTH).map(ball).collect(),
             ..Slots::default()
         };
-        // Sixteen slots from the first one on share an entry; another before or behind them opens one.
+        // Sixteen slots from the first one on share an entry; another before or behind them opens
+        // one.
         let runs = [
             (5, 6..len),
             (6, 7..9),
@@ -175,11 +201,9 @@ mod tests {
         };
         for tier in Tier::available() {
             let mut chunk = Chunk::default();
-            dispatch(
-                tier,
-                Runs(Collect::new(&test, &mut chunk, usize::MAX), &runs),
-            );
-            assert_eq!((chunk.len(), chunk.seen), (expected.len(), seen));
+            let effort = Effort::unlimited();
+            dispatch(tier, Runs(Collect::new(&test, &mut chunk, &effort), &runs));
+            assert_eq!((chunk.len(), effort.tested()), (expected.len(), seen));
             let mut read = Read(Vec::new());
             dispatch(tier, Find(&List::of(chunk), &mut read));
             assert!(read.0 == expected, "{tier}");

@@ -1,19 +1,26 @@
-//! The list itself: a chunk for each part of the grid's work, codes as in a [`Block`], sixteen slots an entry.
+//! The list itself: a chunk for each part of the grid's work, codes as in a [`Block`], sixteen
+//! slots an entry.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::Volume;
 use super::collect::{Collect, Grown};
+use super::effort::Effort;
 use crate::broad_phase::{Block, EndSlots, FirstTest, Grid, MOST_CANDIDATES, SlotTest, bytes};
 use crate::rounding::skin::{Reach, Skin};
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch};
 use crate::threads::Executor;
 
-/// Pairs a body that a list with the widest skin may hold, and a few more for small scenes: crowds are bound by what is
-/// reported, and there a list would take more memory than all the rest.
+/// Pairs a body that a list with the widest skin may hold, and a few more for small scenes: crowds
+/// are bound by what is reported, and there a list would take more memory than all the rest.
 const PAIRS_PER_BODY: usize = 8;
-const FEW_PAIRS: usize = 256;
+const FEW_PAIRS: u64 = 256;
+
+/// Candidates that the search for a list may test: this many times those of the grid without a
+/// skin, and some per body. What a skin adds is less ([`policy`](super::policy)), unless its floor
+/// is wider than the bodies.
+const GROWTH_OF_CANDIDATES: u64 = 3;
+const CANDIDATES_PER_BODY: u64 = 48;
 
 /// Room that a list is given, in lengths of its own.
 const ROOM: f64 = 1.5;
@@ -27,12 +34,45 @@ pub enum Near<'a> {
     Ends(&'a EndSlots),
 }
 
+/// What a list may hold, and what its search may test.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Pairs.
+    pub pairs: u64,
+    /// Candidates.
+    pub candidates: u64,
+}
+
+impl Limits {
+    /// For a list of so many bodies, where the widest skin brings `spare` times the pairs and the
+    /// grid without a skin has so many candidates.
+    fn of(bodies: usize, candidates: u64, spare: f64) -> Self {
+        let pairs = (PAIRS_PER_BODY * bodies) as f64 / spare;
+        Self {
+            pairs: pairs as u64 + FEW_PAIRS,
+            candidates: GROWTH_OF_CANDIDATES * candidates + CANDIDATES_PER_BODY * bodies as u64,
+        }
+    }
+}
+
+/// What became of the search for a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// The list is complete.
+    Complete,
+    /// There is no list: it would hold too many pairs, or its search would test too many
+    /// candidates.
+    Abandoned,
+}
+
 /// The list of all parts.
 #[derive(Clone, Debug, Default)]
 pub struct List {
     chunks: Vec<Chunk>,
     parts: usize,
     len: usize,
+    /// Candidates that the search has tested, or its limit if it was abandoned.
+    tested: u64,
 }
 
 /// The neighbours that one part of the grid's work has found.
@@ -43,34 +83,32 @@ pub struct Chunk {
     len: usize,
     /// The slot of lane 0, and where the entry's codes end.
     entries: Vec<(u32, u32)>,
-    /// Candidates that the grid has handed out.
-    pub seen: u64,
     /// By how much more room is made than is needed.
     spare: f64,
 }
 
 impl List {
-    /// Makes the list of a grid that has just been arranged, with room for as many pairs as the widest skin will bring, `spare`
-    /// times those of this one, so that another skin allocates nothing. False, and there is none, if it would be too long.
+    /// Makes the list of a grid that has just been arranged, whose bodies have so many candidates
+    /// without a skin. There is room for as many pairs as the widest skin will bring, `spare` times
+    /// those of this one, so that another skin allocates nothing. The search ends as soon as it
+    /// exceeds its limits; whether it does depends on no thread.
     pub fn make(
         &mut self,
         executor: Executor<'_>,
-        grid: &Grid,
+        (grid, candidates): (&Grid, u64),
         (skin, spare): (Skin, f64),
         near: Near<'_>,
-    ) -> bool {
+    ) -> Outcome {
         self.parts = grid.parts();
         if self.chunks.len() < self.parts {
             self.chunks.resize(self.parts, Chunk::default());
         }
-        let most = ((PAIRS_PER_BODY * grid.bodies()) as f64 / spare) as usize + FEW_PAIRS;
-        let listed = AtomicUsize::new(0);
+        let effort = Effort::new(Limits::of(grid.bodies(), candidates, spare));
         let chunks = &mut self.chunks[..self.parts];
         executor.pool.each(chunks, |part, chunk| {
             chunk.clear();
             chunk.spare = spare;
-            // The sum only grows, so whether it ends above `most` depends on no thread.
-            if listed.load(Ordering::Relaxed) > most {
+            if effort.is_over() {
                 return;
             }
             let make = Make {
@@ -79,13 +117,17 @@ impl List {
                 near,
                 skin,
                 chunk,
-                most,
+                effort: &effort,
             };
             dispatch(executor.tier, make);
-            listed.fetch_add(chunk.len, Ordering::Relaxed);
         });
-        self.len = listed.into_inner();
-        self.len <= most
+        effort.check(executor.pool.threads());
+        self.tested = effort.tested();
+        if effort.is_over() {
+            return Outcome::Abandoned;
+        }
+        self.len = self.chunks[..self.parts].iter().map(Chunk::len).sum();
+        Outcome::Complete
     }
 
     /// Pairs in it.
@@ -93,12 +135,9 @@ impl List {
         self.len
     }
 
-    /// Candidates of the grid that it was made of.
-    pub fn seen(&self) -> u64 {
-        self.chunks[..self.parts]
-            .iter()
-            .map(|chunk| chunk.seen)
-            .sum()
+    /// Candidates that the search for it has tested; the limit, if it was abandoned.
+    pub fn tested(&self) -> u64 {
+        self.tested
     }
 
     pub fn bytes(&self) -> usize {
@@ -129,7 +168,7 @@ impl Chunk {
     fn clear(&mut self) {
         self.codes.clear();
         self.entries.clear();
-        (self.len, self.seen) = (0, 0);
+        self.len = 0;
     }
 
     /// The slot of lane 0 of the entry that is being written, if there is one.
@@ -192,7 +231,8 @@ fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
     }
 }
 
-/// Lists breathe from one to the next: a column that was filled to the brim would be allocated anew by the next one.
+/// Lists breathe from one to the next: a column that was filled to the brim would be allocated anew
+/// by the next one.
 fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
     let [least, room] = [1.0, ROOM].map(|times| (times * spare * column.len() as f64) as usize);
     if column.capacity() < least {
@@ -206,7 +246,7 @@ struct Make<'a> {
     near: Near<'a>,
     skin: Skin,
     chunk: &'a mut Chunk,
-    most: usize,
+    effort: &'a Effort,
 }
 
 impl Kernel for Make<'_> {
@@ -229,8 +269,9 @@ impl Kernel for Make<'_> {
 impl Make<'_> {
     #[inline(always)]
     fn collect<L: Lanes>(self, l: L, test: &impl SlotTest) {
-        let mut collect = Collect::new(test, self.chunk, self.most);
+        let mut collect = Collect::new(test, self.chunk, self.effort);
         self.grid.find(l, self.part..self.part + 1, &mut collect);
+        collect.finish();
         self.chunk.close();
     }
 }
@@ -246,6 +287,7 @@ mod tests {
             Self {
                 parts: 1,
                 len: chunk.len,
+                tested: 0,
                 chunks: vec![chunk],
             }
         }

@@ -1,29 +1,34 @@
-//! Neighbour lists: candidates within reach and a skin, found by the grid once, tested frame after frame.
+//! Neighbour lists: candidates within reach and a skin, found by the grid once, tested frame after
+//! frame.
 //!
-//! Most pairs that are near each other in one frame are so in the next. A list of the pairs whose balls, grown by a skin
-//! each, touch serves until some ball has drifted by its skin ([`drift`]), which is measured in every frame and never
-//! extrapolated; then the grid makes a new one. Meanwhile slots, and places with them, stay as they are: nothing is sorted,
-//! and updates write in the order in which the list reads. A body that jumps has drifted, so that a new list is made; static
-//! bodies have no skin.
+//! Most pairs that are near each other in one frame are so in the next. A list of the pairs whose
+//! balls, grown by a skin each, touch serves until some ball has drifted by its skin ([`drift`]),
+//! which is measured in every frame and never extrapolated; then the grid makes a new one.
+//! Meanwhile slots, and places with them, stay as they are: nothing is sorted, and updates write in
+//! the order in which the list reads. A body that jumps has drifted, so that a new list is made;
+//! static bodies have no skin.
 //!
-//! A skin is a share of each ball's radius, or the same length for all: where small bodies move as fast as wide ones, a share of
-//! theirs is used up by the first step, while pairs are made by the wide.
+//! A skin is a share of each ball's radius, or the same length for all: where small bodies move as
+//! fast as wide ones, a share of theirs is used up by the first step, while pairs are made by the
+//! wide.
 //!
-//! The cubes about long boxes have many neighbours that the boxes don't have. Their lists are made by the boxes themselves, grown by a
-//! length, and serve until an end of a box leaves its grown one ([`EndSlots`]).
+//! The cubes about long boxes have many neighbours that the boxes don't have. Their lists are made
+//! by the boxes themselves, grown by a length, and serve until an end of a box leaves its grown one
+//! ([`EndSlots`]).
 //!
-//! Lists don't pay where bodies move by a good share of their radius a frame, or where each has many neighbours. By counts
-//! alone ([`policy`]) such frames are the grid's.
+//! Lists don't pay where bodies move by a good share of their radius a frame, or where each has
+//! many neighbours. By counts alone ([`policy`]) such frames are the grid's.
 
 mod collect;
 mod drift;
+mod effort;
 mod list;
 mod motion;
 mod policy;
 
 pub(super) use self::list::List;
-use self::list::Near;
-use self::motion::{Motion, Sizes, typical_radius};
+use self::list::{Near, Outcome};
+use self::motion::{Motion, Sizes, are_specks, typical_radius};
 use self::policy::{Ended, Policy};
 use super::{Boxes, EndSlots, Grid, Reorder, Slots};
 use crate::rounding::cube;
@@ -50,6 +55,18 @@ pub struct Neighbours {
     grown: EndSlots,
     state: State,
     policy: Policy,
+    /// Candidates of the grid without a skin.
+    candidates: Known,
+    /// Candidates tested in this frame in the search for a list.
+    list_tests: u64,
+}
+
+/// A number of candidates, and how well it is known.
+#[derive(Clone, Copy, Debug, Default)]
+struct Known {
+    number: u64,
+    /// Whether the grid has counted them in the frame before.
+    is_counted: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,7 +103,8 @@ impl Neighbours {
         self.policy.is_by_boxes() && self.list().is_some()
     }
 
-    /// Looks for a better order of places: that of the slots after a list has been made, or what the grid says.
+    /// Looks for a better order of places: that of the slots after a list has been made, or what
+    /// the grid says.
     pub(super) fn reorder(
         &mut self,
         moving: usize,
@@ -119,7 +137,8 @@ impl Neighbours {
         self.grid.replace(stays, moving, bodies)
     }
 
-    /// Follows the list if it may be, or lets the grid arrange the bodies and makes a new one if it pays.
+    /// Follows the list if it may be, or lets the grid arrange the bodies and makes a new one if it
+    /// pays.
     pub(super) fn arrange(
         &mut self,
         executor: Executor<'_>,
@@ -128,6 +147,7 @@ impl Neighbours {
         names: &[u32],
         boxes: Option<Boxes<'_>>,
     ) {
+        self.list_tests = 0;
         let long = boxes.filter(|boxes| boxes.are_long);
         if matches!(self.state, State::Ordered | State::Followed) {
             let (now, then) = (&balls[..moving], &self.grid.slots().balls[..moving]);
@@ -146,7 +166,7 @@ impl Neighbours {
             let sizes = sizes(balls, names, long);
             self.policy.ended(&Ended {
                 pairs: self.list.len(),
-                candidates: self.list.seen(),
+                candidates: self.list.tested(),
                 bodies: balls.len(),
                 motion: Motion::of(executor, now, then, sizes.typical),
                 sizes,
@@ -156,29 +176,47 @@ impl Neighbours {
         self.policy
             .turn_to(long.is_some(), || sizes(balls, names, long));
         let Some(skin) = self.policy.next() else {
-            self.grid.set_reach(Reach::NONE);
-            self.grid.arrange(executor, balls, names);
-            return;
+            return self.search(executor, balls, names);
         };
+        if are_specks(balls[..moving].iter().map(|ball| ball[3])) {
+            self.policy.overflowed();
+            return self.search(executor, balls, names);
+        }
         self.grid.set_reach(Reach::with_skin(skin));
         self.grid.arrange(executor, balls, names);
-        if !self.make(executor, (skin, moving), long) {
-            self.policy.overflowed();
-            return;
+        let outcome = self.make(executor, (skin, moving), long);
+        self.list_tests = self.list.tested();
+        if outcome == Outcome::Abandoned {
+            // A limit by candidates that were a guess is tried again by those of this frame.
+            if self.candidates.is_counted {
+                self.policy.overflowed();
+            }
+            // What the skin has brought to the cells would be tested in vain.
+            return self.search(executor, balls, names);
         }
         self.state = State::Made;
         // The grid plans by the candidates that it would have handed out without a skin.
-        let seen = self.list.seen() as f64 / self.policy.more_candidates();
-        self.grid.observe(seen as u64);
+        let number = (self.list_tests as f64 / self.policy.more_candidates()) as u64;
+        self.grid.observe(number);
+        self.candidates = Known {
+            number,
+            is_counted: false,
+        };
     }
 
-    /// Makes the list of the grid that has just been arranged. False if it would be too long.
+    /// Lets the grid find the frame's pairs, without a list.
+    fn search(&mut self, executor: Executor<'_>, balls: &[[f32; 4]], names: &[u32]) {
+        self.grid.set_reach(Reach::NONE);
+        self.grid.arrange(executor, balls, names);
+    }
+
+    /// Makes the list of the grid that has just been arranged.
     fn make(
         &mut self,
         executor: Executor<'_>,
         (skin, moving): (Skin, usize),
         long: Option<Boxes<'_>>,
-    ) -> bool {
+    ) -> Outcome {
         let near = match long {
             None => Near::Balls(self.volume),
             Some(Boxes { all, .. }) => {
@@ -189,7 +227,14 @@ impl Neighbours {
             }
         };
         let skin = (skin, self.policy.widest());
-        self.list.make(executor, &self.grid, skin, near)
+        let grid = (&self.grid, self.candidates.number);
+        self.list.make(executor, grid, skin, near)
+    }
+
+    /// Candidates tested in this frame in the search for a list, beyond those that the frame hands
+    /// out.
+    pub(super) fn list_tests(&self) -> u64 {
+        self.list_tests
     }
 
     pub(super) fn bytes(&self) -> usize {
@@ -201,7 +246,8 @@ impl Neighbours {
         self.grid.slots()
     }
 
-    /// Whether the frame follows a list in whose order places are; the slots' balls are then those that the list was made of.
+    /// Whether the frame follows a list in whose order places are; the slots' balls are then those
+    /// that the list was made of.
     pub(super) fn slots_are_places(&self) -> bool {
         self.state == State::Followed
     }
@@ -222,6 +268,10 @@ impl Neighbours {
     pub(super) fn observe(&mut self, candidates: u64) {
         if self.state == State::Searching {
             self.grid.observe(candidates);
+            self.candidates = Known {
+                number: candidates,
+                is_counted: true,
+            };
         }
     }
 }

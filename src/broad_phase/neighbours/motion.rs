@@ -1,10 +1,11 @@
-//! How far balls have drifted by the end of a list, and how wide they are: what the next skin is chosen by. It decides how long
-//! lists last, never what they hold.
+//! How far balls have drifted by the end of a list, and how wide they are: what the next skin is
+//! chosen by. It decides how long lists last, never what they hold.
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use super::drift::{PIECE, padded};
 use crate::broad_phase::BLOCK_BODIES;
+use crate::rounding::skin::{REACH_FLOOR, SKIN_FLOOR};
 use crate::simd::{Kernel, Lanes, dispatch, quads_in_columns};
 use crate::threads::Executor;
 
@@ -15,9 +16,10 @@ const ASKED: usize = 256;
 const MOST_OF_SMALLEST: f64 = 16.0;
 
 /// 2⁻⁶⁰: smaller radii count as this one, whose square is no subnormal.
-const LEAST: f32 = crate::rounding::skin::SKIN_FLOOR as f32;
+const LEAST: f32 = SKIN_FLOOR as f32;
 
-/// The farthest that any ball has drifted: sums of squares of what the centre has moved and the radius has grown.
+/// The farthest that any ball has drifted: sums of squares of what the centre has moved and the
+/// radius has grown.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
     /// In radii of the ball's own.
@@ -47,13 +49,15 @@ impl Motion {
     }
 }
 
-/// The radius r of bodies of one size that would be as hard to find: a skin of σr adds about as many pairs to a list of bodies
-/// of these half sides, all alike, as one of σ radii each. Pairs go by the product, over the axes, of the sums of two half sides
-/// hᵢₖ + hⱼₖ, so that their growth by a length goes by products of two such sums: r = 3ΣΠₖ(hᵢₖ + hⱼₖ) / 2ΣΣₖΠₗ(hᵢₗ + hⱼₗ), l ≠ k,
+/// The radius r of bodies of one size that would be as hard to find: a skin of σr adds about as
+/// many pairs to a list of bodies of these half sides, all alike, as one of σ radii each. Pairs go
+/// by the product, over the axes, of the sums of two half sides hᵢₖ + hⱼₖ, so that their growth by
+/// a length goes by products of two such sums: r = 3ΣΠₖ(hᵢₖ + hⱼₖ) / 2ΣΣₖΠₗ(hᵢₗ + hⱼₗ), l ≠ k,
 /// which is Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)² of balls.
 ///
-/// Zero, so that any drift is infinitely many of it and no skin goes by it, where it is more than [`MOST_OF_SMALLEST`] times the
-/// longest half side of the smallest body: a skin of a giant's size would make all the small ones neighbours.
+/// Zero, so that any drift is infinitely many of it and no skin goes by it, where it is more than
+/// [`MOST_OF_SMALLEST`] times the longest half side of the smallest body: a skin of a giant's size
+/// would make all the small ones neighbours.
 pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> f64 {
     let (mut sums, mut asked, mut smallest) = ([0.0; 7], 0.0, f64::INFINITY);
     for body in (0..bodies).step_by(bodies.div_ceil(ASKED).max(1)) {
@@ -78,12 +82,26 @@ pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> 
     }
 }
 
+/// Whether most balls are so small that the floor of the skin, and of what rounding needs beyond
+/// it, is wider than they are. A list would then hold pairs that have nothing to do with the
+/// bodies' sizes.
+pub fn are_specks(radii: impl ExactSizeIterator<Item = f32>) -> bool {
+    let step = radii.len().div_ceil(ASKED).max(1);
+    let (mut specks, mut asked) = (0, 0);
+    for radius in radii.step_by(step) {
+        specks += usize::from(f64::from(radius) < REACH_FLOOR);
+        asked += 1;
+    }
+    2 * specks > asked
+}
+
 /// What is known of the sizes of bodies of which lists are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sizes {
     /// The typical radius, of boxes where these are listed.
     pub typical: f64,
-    /// The same in typical radii of the balls that the grid searches by: 1 but for boxes that are longer than wide.
+    /// The same in typical radii of the balls that the grid searches by: 1 but for boxes that are
+    /// longer than wide.
     pub of_balls: f64,
 }
 
@@ -144,7 +162,8 @@ fn raise<L: Lanes>(
     }
 }
 
-/// The larger number, and the second one of any with NaN: one instruction, where `f32::max` takes four.
+/// The larger number, and the second one of any with NaN: one instruction, where `f32::max` takes
+/// four.
 #[inline(always)]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
@@ -216,7 +235,8 @@ mod tests {
         assert!(typical(&[0.0]) > 0.0);
     }
 
-    /// What a skin adds to the pairs of boxes, beside what it adds to those of balls of the typical radius.
+    /// What a skin adds to the pairs of boxes, beside what it adds to those of balls of the typical
+    /// radius.
     #[test]
     fn the_typical_radius_of_long_boxes_brings_as_many_pairs() {
         let sides = [

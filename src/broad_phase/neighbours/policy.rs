@@ -1,10 +1,11 @@
-//! When a list pays, and with which skin: by counts of frames and pairs and by how far bodies got, so that no choice depends on
-//! the machine.
+//! When a list pays, and with which skin: by counts of frames and pairs and by how far bodies got,
+//! so that no choice depends on the machine.
 //!
-//! A skin is so many radii σ: of each body's own, or the same length for all, in [typical radii](super::motion). Where the small
-//! move as fast as the wide, their own radii are soon used up, and a length lasts. The body that got farthest by the end of a list
-//! tells how long another list would have lasted: σ/v frames and one more. A wider skin makes fewer lists, each of (1 + σ)³ as
-//! many pairs, from as many more candidates.
+//! A skin is so many radii σ: of each body's own, or the same length for all, in [typical
+//! radii](super::motion). Where the small move as fast as the wide, their own radii are soon used
+//! up, and a length lasts. The body that got farthest by the end of a list tells how long another
+//! list would have lasted: σ/v frames and one more. A wider skin makes fewer lists, each of (1 +
+//! σ)³ as many pairs, from as many more candidates.
 
 use super::motion::{Motion, Sizes};
 use crate::rounding::skin::Skin;
@@ -12,15 +13,16 @@ use crate::rounding::skin::Skin;
 /// Skins to choose from, in radii.
 const SKINS: [f64; 8] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.5, 0.75];
 
-/// How many times the candidates a skin may bring at most, what 0.375 radii bring: beyond, the frame that makes a list takes more than 1.3
-/// of the grid's. The balls about long boxes grow little by what is wide for the boxes.
+/// How many times the candidates a skin may bring at most, what 0.375 radii bring: beyond, the
+/// frame that makes a list takes more than 1.3 of the grid's. The balls about long boxes grow
+/// little by what is wide for the boxes.
 const GREATEST_GROWTH: f64 = 2.6;
 
 /// The first one, before anything is known of the motion.
 const FIRST: usize = 3;
 
-/// Costs in instructions of AVX2, what it takes to name pairs included: lines through the counts of frames of 4,000 uniform spheres
-/// with 2 to 18 candidates each, update excepted.
+/// Costs in instructions of AVX2, what it takes to name pairs included: lines through the counts of
+/// frames of 4,000 uniform spheres with 2 to 18 candidates each, update excepted.
 ///
 /// The grid's frame, a body and a candidate.
 const SORT: f64 = 240.0;
@@ -32,10 +34,12 @@ const COLLECT: f64 = 11.0;
 const FOLLOW: f64 = 35.0;
 const PAIR: f64 = 14.0;
 
-/// A list must promise to take at most this share of the grid's time: where it hardly pays, it may as well cost.
+/// A list must promise to take at most this share of the grid's time: where it hardly pays, it may
+/// as well cost.
 const WORTH: f64 = 0.8;
 
-/// By how much skins by other radii must be cheaper than those at hand: where all bodies have one size both are the same.
+/// By how much skins by other radii must be cheaper than those at hand: where all bodies have one
+/// size both are the same.
 const WORTH_CHANGING: f64 = 0.9;
 
 /// Frames of the grid between two attempts: at first, and at most.
@@ -148,7 +152,8 @@ impl Policy {
         self.skin = self.skin.min(self.widest_skin());
     }
 
-    /// Whether the skin of long boxes is one length for all, which the longest side of each is no measure of.
+    /// Whether the skin of long boxes is one length for all, which the longest side of each is no
+    /// measure of.
     fn knows_a_length(&self) -> bool {
         self.is_by_boxes && self.sizes.typical > 0.0
     }
@@ -217,8 +222,8 @@ impl Policy {
             Radii::Own => (SKINS[self.skin], own),
             Radii::Typical => (SKINS[self.skin], typical),
         };
-        // A body that has just used up its skin is within two of them, if it goes straight on. Beyond, it has jumped, and tells
-        // nothing of the others.
+        // A body that has just used up its skin is within two of them, if it goes straight on.
+        // Beyond, it has jumped, and tells nothing of the others.
         if self.served > 1 && drift > 2.0 * skin {
             let speed = skin / (served - 0.5);
             return match self.radii {

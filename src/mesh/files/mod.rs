@@ -1,7 +1,10 @@
 //! Mesh files: a reader and a writer per format. Feature `readers`.
 
 mod obj;
+mod off;
+mod parts;
 mod ply;
+mod ply_header;
 mod read;
 mod stl;
 mod text;

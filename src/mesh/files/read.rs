@@ -1,9 +1,11 @@
-//! Reading a mesh: the extension names the format, the format's reader makes the parts, validation makes the mesh.
+//! Reading a mesh: the extension names the format, the format's reader makes the parts, validation
+//! makes the mesh.
 
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::{TriFormat, obj, ply, stl, tri};
+use super::parts::Parts;
+use super::{TriFormat, obj, off, ply, stl, tri};
 use crate::files;
 use crate::mesh::{MeshError, Problem, TriangleMesh};
 
@@ -18,6 +20,8 @@ pub enum MeshFormat {
     Stl,
     /// PLY, text or binary.
     Ply,
+    /// OFF, text.
+    Off,
 }
 
 /// What a file cannot say about itself, and how much of it is read.
@@ -46,11 +50,13 @@ impl MeshFormat {
             "obj" => Some(Self::Obj),
             "stl" => Some(Self::Stl),
             "ply" => Some(Self::Ply),
+            "off" => Some(Self::Off),
             _ => None,
         }
     }
 
-    /// The same, or the problem that the extension is; `action` is what was to be done, "read" or "written".
+    /// The same, or the problem that the extension is; `action` is what was to be done, "read" or
+    /// "written".
     pub(super) fn of_path(path: &Path, action: &'static str) -> Result<Self, Problem> {
         Self::from_path(path).ok_or_else(|| Problem::UnknownFormat {
             found: path
@@ -66,7 +72,8 @@ impl MeshFormat {
 /// Reads a mesh file; the mesh is named after the file's stem.
 ///
 /// # Errors
-/// An extension that names no format, a file that cannot be read, or any problem that [`read_bytes`] finds.
+/// An extension that names no format, a file that cannot be read, or any problem that
+/// [`read_bytes`] finds.
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TriangleMesh, MeshError> {
     let path = path.as_ref();
     let file = path.display().to_string();
@@ -89,7 +96,8 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TriangleMes
 /// Reads a mesh from a file's contents; `file` is what messages call it, its stem the mesh's name.
 ///
 /// # Errors
-/// Anything that breaks the format or the mesh contract, with the line in a text file. Never panics, whatever the bytes.
+/// Anything that breaks the format or the mesh contract, with the line in a text file. Never
+/// panics, whatever the bytes.
 pub fn read_bytes(
     file: &str,
     format: MeshFormat,
@@ -101,6 +109,7 @@ pub fn read_bytes(
         MeshFormat::Obj => obj::read(bytes),
         MeshFormat::Stl => stl::read(bytes),
         MeshFormat::Ply => ply::read(bytes),
+        MeshFormat::Off => off::read(bytes),
     };
     let Parts { points, triangles } = parts.map_err(|(line, problem)| problem.at(file, line))?;
     let stem = Path::new(file)
@@ -115,26 +124,4 @@ pub fn read_bytes(
     };
     mesh.map(|mesh| mesh.named(stem))
         .map_err(|problem| problem.at(file, None))
-}
-
-/// What a format's reader finds.
-pub(super) struct Parts {
-    /// Positions in f64, each of which rounds to the f32 nearest to what the file says.
-    pub points: Vec<[f64; 3]>,
-    /// The three vertices of each triangle; `None` where each three points are one.
-    pub triangles: Option<Vec<[u32; 3]>>,
-}
-
-impl Parts {
-    /// Vertices and what triangles name of them.
-    pub fn indexed(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
-        let triangles = Some(triangles);
-        Self { points, triangles }
-    }
-
-    /// Three points a triangle.
-    pub fn soup(points: Vec<[f64; 3]>) -> Self {
-        let triangles = None;
-        Self { points, triangles }
-    }
 }

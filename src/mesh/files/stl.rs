@@ -1,192 +1,219 @@
-//! STL, parsed by `stl_io`; equal corners are welded into shared vertices.
+//! STL, text and binary; equal corners are welded into shared vertices.
 //!
-//! Two habits of real files are settled before `stl_io` sees the bytes. Its test for text is the word `solid`, with which
-//! binary headers start too: here the length decides, since a binary file has exactly 84 + 50·n bytes. And it stops at
-//! the first `endsolid`, while a text file may hold many solids: each is passed to it by itself.
+//! Binary files may start with the word of text files, `solid`, so the length decides first: a
+//! binary file has exactly 84 + 50·n bytes. In a text file the lines `solid` and `endsolid` hold
+//! names, which decide nothing, normals are not read, and a file may hold many solids. A facet is
+//! `facet normal`, `outer loop`, its vertices, `endloop`, `endfacet`, in either case and however
+//! lines are broken. Whatever else stands between facets is an error, except comments.
 
-use std::io::Cursor;
-
-use glam::Vec3;
-use stl_io::Triangle;
-
-use super::read::Parts;
-use super::text::{self, Fault, between_f32};
-use super::write::{put, wide};
-use crate::mesh::{Problem, TriangleMesh, check_vertex};
+use super::parts::Parts;
+use super::text::{self, Fault, Token, put, wide};
+use crate::mesh::{Problem, TriangleMesh, check_vertex, in_f64};
 
 const HEADER_BYTES: usize = 84;
-const TRIANGLE_BYTES: u64 = 50;
+const TRIANGLE_BYTES: usize = 50;
 
 /// Reads a text or binary STL file.
 pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
-    let mut soup = Soup::default();
-    if is_binary(bytes)? {
-        // The header's text means nothing; blanked, it cannot look like a text file.
-        let mut file = bytes.to_vec();
-        file[..80].fill(b' ');
-        for triangle in triangles(&file).map_err(|error| (None, unreadable(&error)))? {
-            let triangle = triangle.map_err(|error| (None, unreadable(&error)))?;
-            let corners = triangle.vertices.map(|corner| corner.0.map(f64::from));
-            soup.add(corners, None)?;
-        }
-    } else {
-        for (first_line, solid) in solids(text::decode(bytes)?) {
-            soup.add_solid(first_line, &solid)?;
-        }
+    if bytes.is_empty() {
+        return Err((None, Problem::NoVertices));
     }
-    Ok(Parts::soup(soup.points))
-}
-
-fn is_binary(bytes: &[u8]) -> Result<bool, Fault> {
     let count = bytes
         .get(80..HEADER_BYTES)
         .and_then(|count| count.try_into().ok())
         .map(u32::from_le_bytes);
-    let expected = count.map(|n| HEADER_BYTES as u64 + TRIANGLE_BYTES * u64::from(n));
-    if expected == Some(bytes.len() as u64) {
-        return Ok(true);
+    let size = count.map(|n| HEADER_BYTES as u64 + TRIANGLE_BYTES as u64 * u64::from(n));
+    if size == Some(bytes.len() as u64) {
+        return binary(&bytes[HEADER_BYTES..]);
     }
-    if bytes.trim_ascii_start().starts_with(b"solid") || bytes.is_empty() {
-        return Ok(false);
-    }
-    let message = match (count, expected) {
-        (Some(n), Some(size)) => {
-            format!(
-                "a binary STL file of {n} triangles has {size} bytes, this one has {}",
-                bytes.len()
-            )
+    // Text has no byte 0 (but in UTF-16), where the count of any file below 800 megabytes has one.
+    if bytes.get(83) != Some(&0) || text::utf16(bytes).is_some() {
+        let text = text::decode(bytes);
+        let tokens = text::tokens(&text);
+        if let Some(facets) = start_of_text(&tokens) {
+            return facets.read();
         }
+    }
+    let message = match (count, size) {
+        (Some(n), Some(size)) => format!(
+            "a binary STL file of {n} triangles has {size} bytes, this one has {}",
+            bytes.len()
+        ),
         _ => "this is neither text STL (no `solid`) nor binary STL (under 84 bytes)".to_owned(),
     };
-    Err((
-        None,
-        Problem::malformed(
-            message,
-            "the file is cut off, has something appended, or is no STL file",
-        ),
-    ))
+    let help = "the file is cut off, has something appended, or is no STL file";
+    Err((None, Problem::malformed(message, help)))
 }
 
-/// The solids of a text file with the line each starts on, its first line made what `stl_io` asks for: `solid` and a blank.
-fn solids(text: &str) -> Vec<(usize, String)> {
-    let mut solids: Vec<(usize, String)> = Vec::new();
-    let mut open = false;
-    for (index, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if open {
-            if let Some((_, solid)) = solids.last_mut() {
-                *solid += line;
-                *solid += "\n";
-            }
-            open = !line.starts_with("endsolid");
-        } else if !line.is_empty() {
-            solids.push((index + 1, format!("{line} \n")));
-            open = true;
+/// Reads the triangles of a binary file: a normal, three corners and two more bytes each.
+fn binary(bytes: &[u8]) -> Result<Parts, Fault> {
+    let mut points = Vec::with_capacity(3 * bytes.len() / TRIANGLE_BYTES);
+    for triangle in bytes.as_chunks::<TRIANGLE_BYTES>().0 {
+        let numbers = triangle.as_chunks::<4>().0;
+        for corner in numbers[3..12].as_chunks::<3>().0 {
+            let position = corner.map(|bytes| f32::from_le_bytes(bytes).into());
+            check_vertex(points.len(), position).map_err(|problem| (None, problem))?;
+            points.push(position);
         }
     }
-    solids
+    Ok(Parts::soup(points))
 }
 
-fn triangles(file: &[u8]) -> std::io::Result<Vec<std::io::Result<Triangle>>> {
-    let mut cursor = Cursor::new(file);
-    let reader = stl_io::create_stl_reader(&mut cursor)?;
-    let mut triangles = Vec::new();
-    // After an error the iterator would go on failing for ever.
-    for triangle in reader {
-        let failed = triangle.is_err();
-        triangles.push(triangle);
-        if failed {
-            break;
-        }
-    }
-    Ok(triangles)
+/// The words of a text file from its first solid or facet on, if those begin it.
+fn start_of_text<'t, 'a>(tokens: &'t [Token<'a>]) -> Option<Facets<'t, 'a>> {
+    let mut facets = Facets {
+        tokens,
+        points: Vec::new(),
+    };
+    while facets.skip_comment() {}
+    let first = facets.tokens.first()?;
+    (first.is("solid") || first.is("facet")).then_some(facets)
 }
 
-fn unreadable(error: &std::io::Error) -> Problem {
-    let help = "text STL has seven lines a facet: facet normal, outer loop, three times vertex, endloop, endfacet";
-    Problem::malformed(format!("this is not STL: {error}"), help)
-}
-
-#[derive(Default)]
-struct Soup {
-    /// Three a triangle.
+/// What is left of a text file, and the corners that were read, three a triangle.
+struct Facets<'t, 'a> {
+    tokens: &'t [Token<'a>],
     points: Vec<[f64; 3]>,
 }
 
-impl Soup {
-    fn add(&mut self, corners: [[f64; 3]; 3], line: Option<usize>) -> Result<(), Fault> {
-        for position in corners {
-            check_vertex(self.points.len(), position).map_err(|problem| (line, problem))?;
-            self.points.push(position);
+impl Facets<'_, '_> {
+    fn read(mut self) -> Result<Parts, Fault> {
+        let (mut open, last) = (false, self.tokens.last().map(|token| token.line));
+        while !self.tokens.is_empty() {
+            if self.skip_comment() {
+                continue;
+            }
+            if self.starts_with(&["endsolid"]) || self.starts_with(&["end", "solid"]) {
+                open = false;
+                self.skip_line();
+            } else if self.starts_with(&["solid"]) {
+                open = true;
+                self.skip_line();
+            } else {
+                self.facet()?;
+            }
         }
-        Ok(())
+        if open {
+            return Err((
+                last,
+                malformed("the file ends before `endsolid`".to_owned()),
+            ));
+        }
+        Ok(Parts::soup(self.points))
     }
 
-    /// Adds the solid that starts on the given line. `stl_io` names no lines, but a facet is seven lines of text.
-    fn add_solid(&mut self, first_line: usize, solid: &str) -> Result<(), Fault> {
-        if !solid.starts_with("solid ") {
-            let message = format!(
-                "a solid should start here, found {}",
-                text::excerpt(solid.trim_end())
-            );
-            let help = "remove what follows the last endsolid, or correct the line";
-            return Err((Some(first_line), Problem::malformed(message, help)));
+    fn starts_with(&self, keywords: &[&str]) -> bool {
+        self.tokens.len() >= keywords.len()
+            && keywords
+                .iter()
+                .zip(self.tokens)
+                .all(|(word, token)| token.is(word))
+    }
+
+    /// Takes one of two spellings of what should come next.
+    fn take(&mut self, keyword: &[&str], other: &[&str]) -> Result<(), Fault> {
+        for words in [keyword, other] {
+            if self.starts_with(words) {
+                self.tokens = &self.tokens[words.len()..];
+                return Ok(());
+            }
         }
-        let filled: Vec<usize> = solid
-            .lines()
-            .enumerate()
-            .filter(|(_, line)| !line.trim().is_empty())
-            .map(|(index, _)| first_line + index)
-            .collect();
-        let facet_line = |facet: usize| filled.get(1 + 7 * facet).or(filled.last()).copied();
-        let triangles =
-            triangles(solid.as_bytes()).map_err(|error| (Some(first_line), unreadable(&error)))?;
-        let mut corners = solid.lines().filter_map(corner);
-        for (facet, triangle) in triangles.into_iter().enumerate() {
-            let line = facet_line(facet);
-            let triangle = triangle.map_err(|error| (line, unreadable(&error)))?;
-            let rounded = triangle.vertices.map(|corner| corner.0.map(f64::from));
-            let corners = rounded.map(|rounded| corners.next().unwrap_or(rounded));
-            self.add(corners, line)?;
+        Err(self.missing(&format!("`{}`", keyword.join(" "))))
+    }
+
+    fn missing(&self, what: &str) -> Fault {
+        match self.tokens.first() {
+            Some(token) => {
+                let message = format!(
+                    "{what} should stand here, found {}",
+                    text::excerpt(token.text)
+                );
+                (Some(token.line), malformed(message))
+            }
+            None => (
+                None,
+                malformed(format!("the file ends where {what} should stand")),
+            ),
+        }
+    }
+
+    /// Skips a comment, which ends with its line; returns whether there was one.
+    fn skip_comment(&mut self) -> bool {
+        let comment = |token: &Token| {
+            ["#", ";", "//"]
+                .iter()
+                .any(|mark| token.text.starts_with(mark))
+        };
+        let found = self.tokens.first().is_some_and(comment);
+        if found {
+            self.skip_line();
+        }
+        found
+    }
+
+    fn skip_line(&mut self) {
+        let line = self.tokens.first().map(|token| token.line);
+        let rest = self
+            .tokens
+            .iter()
+            .position(|token| Some(token.line) != line);
+        self.tokens = &self.tokens[rest.unwrap_or(self.tokens.len())..];
+    }
+
+    fn facet(&mut self) -> Result<(), Fault> {
+        self.take(&["facet"], &["facet"])?;
+        let structure = ["outer", "facet", "vertex", "endfacet", "endsolid"];
+        while self
+            .tokens
+            .first()
+            .is_some_and(|token| !structure.iter().any(|word| token.is(word)))
+        {
+            self.tokens = &self.tokens[1..]; // the word `normal` and what follows it
+        }
+        self.take(&["outer", "loop"], &["outerloop"])?;
+        let mut corners = Vec::new();
+        while self.starts_with(&["vertex"]) {
+            let Some(numbers) = self.tokens.get(1..4) else {
+                self.tokens = &[];
+                return Err(self.missing("three coordinates"));
+            };
+            corners.push(text::position(self.points.len() + corners.len(), numbers)?);
+            self.tokens = &self.tokens[4..];
+        }
+        if corners.len() < 3 {
+            return Err(self.missing("a facet's `vertex x y z`"));
+        }
+        self.take(&["endloop"], &["end", "loop"])?;
+        self.take(&["endfacet"], &["end", "facet"])?;
+        for edge in corners[1..].windows(2) {
+            self.points.extend([corners[0], edge[0], edge[1]]);
         }
         Ok(())
     }
 }
 
-/// The position of a line `vertex x y z`: what `stl_io` has found sound, in f64.
-fn corner(line: &str) -> Option<[f64; 3]> {
-    let mut words = line.split_whitespace();
-    if words.next() != Some("vertex") {
-        return None;
-    }
-    let mut position = [0.0; 3];
-    for coordinate in &mut position {
-        let word = words.next()?;
-        *coordinate = between_f32(word.parse().ok()?, || word.parse::<f32>()).ok()?;
-    }
-    Some(position)
+fn malformed(message: String) -> Problem {
+    let help = "text STL has seven lines a facet: facet normal, outer loop, three times vertex, endloop, endfacet";
+    Problem::malformed(message, help)
 }
 
-/// The mesh as an STL file: binary, or text where it is far from its origin, since binary STL has f32. Sharing of vertices is
-/// lost, and so are unused ones; positions are kept to the bit.
+/// The mesh as an STL file: binary, or text where it is far from its origin, since binary STL has
+/// f32. Sharing of vertices is lost, and so are unused ones; positions are kept to the bit.
 pub(super) fn bytes(mesh: &TriangleMesh) -> Vec<u8> {
     if mesh.is_far() {
         return text(mesh).into_bytes();
     }
-    let facets: Vec<Triangle> = mesh
-        .triangles
-        .iter()
-        .map(|triangle| {
-            let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize]);
-            Triangle {
-                normal: stl_io::Normal::new(normal([a, b, c])),
-                vertices: [a, b, c].map(|corner| stl_io::Vertex::new(corner.to_array())),
-            }
-        })
-        .collect();
-    let mut bytes = Vec::new();
-    // Writing to memory cannot fail.
-    let _ = stl_io::write_stl(&mut bytes, facets.iter());
+    let mut bytes = vec![0; HEADER_BYTES - 4];
+    // At most u32::MAX triangles: the contract of a mesh.
+    bytes.extend((mesh.triangles.len() as u32).to_le_bytes());
+    for triangle in &mesh.triangles {
+        let corners = triangle.map(|i| mesh.vertices[i as usize]);
+        let [a, b, c] = corners;
+        for point in [normal(corners), a, b, c] {
+            bytes.extend(point.iter().flat_map(|x| x.to_le_bytes()));
+        }
+        bytes.extend([0; 2]);
+    }
     bytes
 }
 
@@ -210,8 +237,8 @@ fn text(mesh: &TriangleMesh) -> String {
 }
 
 /// A triangle's unit normal; zero where it has none.
-fn normal(corners: [Vec3; 3]) -> [f32; 3] {
-    let [a, b, c] = corners.map(Vec3::as_dvec3);
+fn normal(corners: [[f32; 3]; 3]) -> [f32; 3] {
+    let [a, b, c] = corners.each_ref().map(in_f64);
     let normal = (b - a).cross(c - a).normalize_or_zero();
     normal.as_vec3().to_array()
 }

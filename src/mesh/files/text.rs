@@ -1,11 +1,25 @@
-//! Numbers in text files, each with the line it stands on, and records of them.
+//! The text layer of all readers: lines, words and numbers, read as the formats' other programs
+//! read them.
+//!
+//! | what | how |
+//! |---|---|
+//! | bytes | UTF-8, or UTF-16 after its byte-order mark, lossily: bytes of other encodings are in names and comments, which decide nothing |
+//! | lines | end with LF, CR LF or CR |
+//! | words | are separated by blanks and tabs; keywords in either case |
+//! | numbers | as C and Fortran print them: `1.`, `.5`, `+1e3`, `1.0D+05`, `inf`, `-nan(ind)`, `1.#QNAN` |
+//! | unused columns | are not read at all |
+//!
+//! What starts a comment is the format's own.
+
+use std::borrow::Cow;
+use std::fmt::{Display, LowerExp, Write};
 
 use crate::mesh::{Problem, check_vertex};
 
 /// A problem with the 1-based line where it shows, if it has one.
 pub(super) type Fault = (Option<usize>, Problem);
 
-/// A whitespace-separated word and its 1-based line.
+/// A word and its 1-based line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token<'a> {
     pub(super) text: &'a str,
@@ -13,14 +27,17 @@ pub(super) struct Token<'a> {
 }
 
 impl Token<'_> {
-    /// The number written here, rounded to the nearest value of its type.
-    pub(super) fn number<T: std::str::FromStr>(&self, what: &str) -> Result<T, Fault> {
-        self.text.parse().map_err(|_| {
+    /// Whether this is the keyword, in capitals or not.
+    pub(super) fn is(&self, keyword: &str) -> bool {
+        self.text.eq_ignore_ascii_case(keyword)
+    }
+
+    /// The number written here: an f64 that rounds to the f32 nearest to the text.
+    pub(super) fn number(&self, what: &str) -> Result<f64, Fault> {
+        number(self.text).ok_or_else(|| {
             let message = format!("{what} should be a number, found {}", excerpt(self.text));
-            (
-                Some(self.line),
-                Problem::malformed(message, "correct the number or the line's layout"),
-            )
+            let help = "correct the number or the line's layout";
+            (Some(self.line), Problem::malformed(message, help))
         })
     }
 
@@ -31,10 +48,8 @@ impl Token<'_> {
                 "{what} should be a whole number, found {}",
                 excerpt(self.text)
             );
-            (
-                Some(self.line),
-                Problem::malformed(message, "counts and indices have no decimal point"),
-            )
+            let help = "counts and indices have no decimal point";
+            (Some(self.line), Problem::malformed(message, help))
         })
     }
 }
@@ -46,53 +61,96 @@ pub(super) fn excerpt(text: &str) -> String {
     format!("{short:?}{dots}")
 }
 
-/// The bytes as text without a byte-order mark.
-pub(super) fn decode(bytes: &[u8]) -> Result<&str, Fault> {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
-        Err(error) => {
-            let offset = error.valid_up_to();
-            let line = bytes[..offset]
-                .iter()
-                .filter(|&&byte| byte == b'\n')
-                .count()
-                + 1;
-            let message = format!(
-                "this is not text: byte {:#04x} at offset {offset}",
-                bytes[offset]
-            );
-            let help = "the file is binary or damaged; does its extension name the right format?";
-            Err((Some(line), Problem::malformed(message, help)))
-        }
+/// The bytes as text without a byte-order mark. What is no text becomes U+FFFD, of which no number
+/// and no keyword is made.
+pub(super) fn decode(bytes: &[u8]) -> Cow<'_, str> {
+    match utf16(bytes) {
+        Some(units) => String::from_utf16_lossy(&units).into(),
+        None => String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)),
     }
 }
 
-/// Splits text into tokens.
-pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
-    let words = |(index, line): (usize, _)| {
-        str::split_whitespace(line).map(move |text| Token {
-            text,
-            line: index + 1,
-        })
+/// The units of UTF-16, if its byte-order mark begins the bytes.
+pub(super) fn utf16(bytes: &[u8]) -> Option<Vec<u16>> {
+    let (unit, text): (fn([u8; 2]) -> u16, _) = match bytes {
+        [0xfe, 0xff, text @ ..] => (u16::from_be_bytes, text),
+        [0xff, 0xfe, text @ ..] => (u16::from_le_bytes, text),
+        _ => return None,
     };
-    text.lines().enumerate().flat_map(words).collect()
+    Some(text.as_chunks().0.iter().map(|&pair| unit(pair)).collect())
+}
+
+/// The refusal of a file in which a text format's reader found nothing, if it has a byte that text
+/// never has.
+pub(super) fn not_text(bytes: &[u8]) -> Option<Fault> {
+    let offset = bytes.iter().position(|&byte| byte == 0)?;
+    let message = format!("this is not text: byte 0x00 at offset {offset}");
+    let help = "the file is binary or damaged; does its extension name the right format?";
+    Some((None, Problem::malformed(message, help)))
+}
+
+/// The lines with their numbers from 1, without their ends.
+pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut rest = Some(text);
+    let lines = std::iter::from_fn(move || {
+        let text = rest?;
+        let (line, after) = match text.find(['\n', '\r']) {
+            Some(end) => text.split_at(end),
+            None => (text, ""),
+        };
+        rest = after
+            .strip_prefix("\r\n")
+            .or_else(|| after.strip_prefix(['\n', '\r']));
+        Some(line)
+    });
+    lines.enumerate().map(|(index, line)| (index + 1, line))
+}
+
+/// The words of one line.
+pub(super) fn words((line, text): (usize, &str)) -> impl Iterator<Item = Token<'_>> {
+    text.split_whitespace()
+        .map(move |text| Token { text, line })
+}
+
+/// The words of all lines.
+pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
+    lines(text).flat_map(words).collect()
+}
+
+/// A number in any of the forms that C and Fortran print, as an f64 that rounds to the f32 nearest
+/// to the text.
+pub(super) fn number(text: &str) -> Option<f64> {
+    if let Ok(number) = text.parse() {
+        return between_f32(number, || text.parse::<f32>()).ok();
+    }
+    let lower = text.to_ascii_lowercase();
+    let digits = lower.trim_start_matches(['+', '-']);
+    if digits.starts_with("nan(") || digits.starts_with("1.#") {
+        return Some(f64::NAN); // MSVC's infinities too: neither is a coordinate
+    }
+    // Of what has a digit first, only an exponent has the letter d.
+    let fortran = lower.replacen('d', "e", 1);
+    if fortran == lower {
+        return None;
+    }
+    let number = fortran.parse().ok()?;
+    between_f32(number, || fortran.parse::<f32>()).ok()
 }
 
 /// The vertex written in the first three tokens.
 pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<[f64; 3], Fault> {
     let mut position = [0.0; 3];
     for (coordinate, token) in position.iter_mut().zip(tokens) {
-        *coordinate = between_f32(token.number("a coordinate")?, || {
-            token.number("a coordinate")
-        })?;
+        *coordinate = token.number("a coordinate")?;
     }
     let line = tokens.first().map(|token| token.line);
     check_vertex(vertex, position).map_err(|problem| (line, problem))?;
     Ok(position)
 }
 
-/// The number as an f64 that rounds to the f32 that is nearest to the text. Where an f64 lies in the middle of two f32, the
-/// text may lie on either side of it, and is read once more, by `nearest`.
+/// The number as an f64 that rounds to the f32 that is nearest to the text. Where an f64 lies in
+/// the middle of two f32, the text may lie on either side of it, and is read once more, by
+/// `nearest`.
 pub(super) fn between_f32<E>(
     number: f64,
     nearest: impl FnOnce() -> Result<f32, E>,
@@ -111,6 +169,47 @@ pub(super) fn between_f32<E>(
     } else {
         number.next_down()
     })
+}
+
+/// The shortest text that reads back to the same f64, also where that lies in the middle of two
+/// f32.
+pub(super) fn wide(x: f64) -> String {
+    let text = shortest(x);
+    if between_f32(x, || text.parse()) == Ok(x) {
+        return text;
+    }
+    let all_digits = format!("{x:.1074}");
+    all_digits
+        .trim_end_matches('0')
+        .trim_end_matches('.')
+        .to_owned()
+}
+
+/// Appends to a text.
+pub(super) fn put(text: &mut String, line: std::fmt::Arguments) {
+    // Writing to a String cannot fail.
+    let _ = text.write_fmt(line);
+}
+
+/// The shorter of the plain and the exponent form that reads back to the same number.
+pub(super) fn shortest(value: impl Display + LowerExp) -> String {
+    let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
+    if exponent.len() < plain.len() {
+        exponent
+    } else {
+        plain
+    }
+}
+
+/// A polygon as triangles: a fan about its first corner; of one or two corners a degenerate one, so
+/// that nothing is lost.
+pub(super) fn fan(corners: &[i64]) -> Vec<[i64; 3]> {
+    match *corners {
+        [] => Vec::new(),
+        [a] => vec![[a, a, a]],
+        [a, b] => vec![[a, b, b]],
+        [a, ref rest @ ..] => rest.windows(2).map(|edge| [a, edge[0], edge[1]]).collect(),
+    }
 }
 
 /// A place in the tokens. Taking a record by line asks that it fill exactly one line.

@@ -9,13 +9,14 @@
 //! | `openmeeg` | `- nv` | position, normal | after a line `- nt nt nt`: 3 indices from 0 | OpenMEEG, BrainVISA |
 //! | `soup` | none | | 9 coordinates, perhaps a colour 0x… | POV-Ray raw triangles; AC3D as OpenFOAM reads it |
 //!
-//! A dialect *fits* when every number is what it should be, every index is in range and nothing is left over. Fits with
-//! one record a line come first. Only when none comes to a triangle may records run over line ends, which Fortran's
-//! list-directed output and the raw format allow; each section must start a line even then, or a file that was cut off could
-//! pass for one of another dialect. One fit is the answer, two are refused with both names.
-//! When nothing fits, the message comes from the dialect that got furthest into the file.
+//! A dialect *fits* when every number is what it should be, every index is in range and nothing is
+//! left over. Fits with one record a line come first. Only when none comes to a triangle may
+//! records run over line ends, which Fortran's list-directed output and the raw format allow; each
+//! section must start a line even then, or a file that was cut off could pass for one of another
+//! dialect. One fit is the answer, two are refused with both names. When nothing fits, the message
+//! comes from the dialect that got furthest into the file.
 
-use super::read::Parts;
+use super::parts::Parts;
 use super::text::{self, Cursor, Fault, Token};
 use crate::choice::choices;
 use crate::mesh::{Problem, check_triangle};
@@ -27,7 +28,8 @@ choices! {
         Bourke = "bourke",
         /// Positions; faces of three indices from 0.
         Indexed = "indexed",
-        /// Positions; faces of three indices from 1, perhaps followed by a component number for each face.
+        /// Positions; faces of three indices from 1, perhaps followed by a component number for
+        /// each face.
         Cart3d = "cart3d",
         /// Positions; faces of a count or label and three indices from 0.
         Labelled = "labelled",
@@ -88,7 +90,8 @@ impl TriFormat {
 
 /// Reads a `.tri` file of the given dialect, or of the one that fits.
 pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<Parts, Fault> {
-    let tokens = text::tokens(text::decode(bytes)?);
+    let text = text::decode(bytes);
+    let tokens = text::tokens(&text);
     if tokens.is_empty() {
         return Err((None, Problem::NoVertices));
     }
@@ -126,8 +129,9 @@ pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<Parts, Fau
     }
 }
 
-/// The dialects to try. Any nine numbers are a triangle of a soup, so that a cut-off file of another dialect would pass
-/// for one when lines do not count: then, a first line like `nv nt` rules it out.
+/// The dialects to try. Any nine numbers are a triangle of a soup, so that a cut-off file of
+/// another dialect would pass for one when lines do not count: then, a first line like `nv nt`
+/// rules it out.
 fn candidates(format: Option<TriFormat>, tokens: &[Token], by_line: bool) -> Vec<TriFormat> {
     let first_line: Vec<_> = tokens
         .iter()
@@ -224,9 +228,10 @@ fn vertices(cursor: &mut Cursor, count: usize, numbers: usize) -> Result<Vec<[f6
     let mut vertices = Vec::with_capacity(count.min(cursor.tokens.len() / numbers));
     for index in 0..count {
         let record = cursor.record(numbers, &format!("vertex {index} of {count}"))?;
-        // Normals and colours are not used, and a degenerate mesh has NaN normals: they need only be numbers.
+        // Normals and colours are not used, and a degenerate mesh has NaN normals: they need only
+        // be numbers.
         for token in &record[3..] {
-            token.number::<f32>("a normal or colour")?;
+            token.number("a normal or colour")?;
         }
         vertices.push(text::position(index, record)?);
     }
@@ -267,7 +272,8 @@ fn triangles(
     Ok(triangles)
 }
 
-/// Cart3D's configurations name a component for each triangle; the numbers may be spread over lines in any way.
+/// Cart3D's configurations name a component for each triangle; the numbers may be spread over lines
+/// in any way.
 fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), Fault> {
     let numbers = cursor.rest();
     cursor.at = cursor.tokens.len();

@@ -1,9 +1,11 @@
-//! Joins vertices at equal positions, for formats that write every triangle with its own three points.
+//! Joins vertices at equal positions, for formats that write every triangle with its own three
+//! points.
 
 use std::collections::HashMap;
 
-/// Gives each distinct position one index, in the order of first use, and keeps each once; three in a row are a triangle, whose
-/// indices are returned. Positions are equal when their coordinates are (0 and −0 too).
+/// Gives each distinct position one index, in the order of first use, and keeps each once; three in
+/// a row are a triangle, whose indices are returned. Positions are equal when their coordinates are
+/// (0 and −0 too).
 pub(crate) fn weld(corners: &mut Vec<[f32; 3]>) -> Vec<[u32; 3]> {
     let mut vertices = Vec::new();
     let mut index_of: HashMap<[u32; 3], u32> = HashMap::new();

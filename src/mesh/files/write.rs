@@ -1,20 +1,20 @@
 //! Writing a mesh; the extension names the format.
 //!
-//! Coordinates are the shortest decimals that read back to the same f32, or f64 for a mesh far from its origin or nearly so:
-//! a mesh survives the way to a file and back to the bit. `.tri` files are Bourke's dialect, whose vertices also have a unit normal and a colour: the
-//! normal is the sum of the adjacent triangles' cross products (area-weighted), in three decimals
-//! since it is for display only; a vertex without one gets 0 0 1.
+//! Coordinates are the shortest decimals that read back to the same f32, or f64 for a mesh far from
+//! its origin or nearly so: a mesh survives the way to a file and back to the bit. `.tri` files are
+//! Bourke's dialect, whose vertices also have a unit normal and a colour: the normal is the sum of
+//! the adjacent triangles' cross products (area-weighted), in three decimals since it is for
+//! display only; a vertex without one gets 0 0 1.
 
-use std::fmt::{Display, LowerExp, Write};
 use std::path::Path;
 
 use glam::DVec3;
 
-use super::text::between_f32;
+use super::text::{put, shortest, wide};
 use super::{MeshFormat, stl};
 use crate::files;
 use crate::mesh::far::place;
-use crate::mesh::{MeshError, Problem, TriangleMesh};
+use crate::mesh::{MeshError, Problem, TriangleMesh, in_f64};
 
 /// Writes a mesh in the format that the extension names; the file appears when it is whole.
 ///
@@ -40,6 +40,7 @@ pub fn write_bytes(mesh: &TriangleMesh, format: MeshFormat) -> Vec<u8> {
         MeshFormat::Obj => obj_text(mesh).into_bytes(),
         MeshFormat::Stl => stl::bytes(mesh),
         MeshFormat::Ply => ply_text(mesh).into_bytes(),
+        MeshFormat::Off => off_text(mesh).into_bytes(),
     }
 }
 
@@ -90,15 +91,29 @@ fn ply_text(mesh: &TriangleMesh) -> String {
     text
 }
 
-/// Each vertex' coordinates in the file, as text that is read back as they are: the shortest f32 where that keeps the mesh where
-/// it is, f64 otherwise.
+/// The mesh as an OFF file.
+fn off_text(mesh: &TriangleMesh) -> String {
+    let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
+    let mut text = format!("OFF\n{vertices} {triangles} 0\n");
+    for [x, y, z] in coordinates(mesh) {
+        put(&mut text, format_args!("{x} {y} {z}\n"));
+    }
+    for [a, b, c] in &mesh.triangles {
+        put(&mut text, format_args!("3 {a} {b} {c}\n"));
+    }
+    text
+}
+
+/// Each vertex' coordinates in the file, as text that is read back as they are: the shortest f32
+/// where that keeps the mesh where it is, f64 otherwise.
 fn coordinates(mesh: &TriangleMesh) -> impl Iterator<Item = [String; 3]> + '_ {
     let short = !mesh.is_far() && stays_when_shortened(mesh);
     let word = move |x: f64| if short { shortest(x as f32) } else { wide(x) };
     mesh.points().map(move |point| point.map(word))
 }
 
-/// Whether a mesh that isn't far would not be so as the shortest decimals of its f32: read as f64, they are others.
+/// Whether a mesh that isn't far would not be so as the shortest decimals of its f32: read as f64,
+/// they are others.
 fn stays_when_shortened(mesh: &TriangleMesh) -> bool {
     let shortened = |x: f64| shortest(x as f32).parse().unwrap_or(x);
     let points: Vec<[f64; 3]> = mesh.points().map(|point| point.map(shortened)).collect();
@@ -106,44 +121,17 @@ fn stays_when_shortened(mesh: &TriangleMesh) -> bool {
     placed.offset == [0.0; 3] && placed.rounding == 0.0
 }
 
-/// The shortest text that reads back to the same f64, and is not taken for one beside the middle of two f32.
-pub(super) fn wide(x: f64) -> String {
-    let text = shortest(x);
-    if between_f32(x, || text.parse()) == Ok(x) {
-        return text;
-    }
-    let all_digits = format!("{x:.1074}");
-    all_digits
-        .trim_end_matches('0')
-        .trim_end_matches('.')
-        .to_owned()
-}
-
-pub(super) fn put(text: &mut String, line: std::fmt::Arguments) {
-    // Writing to a String cannot fail.
-    let _ = text.write_fmt(line);
-}
-
-/// The shorter of the plain and the exponent form that reads back to the same number.
-fn shortest(value: impl Display + LowerExp) -> String {
-    let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
-    if exponent.len() < plain.len() {
-        exponent
-    } else {
-        plain
-    }
-}
-
 fn three_decimals(value: f64) -> f64 {
     // Adding 0 turns −0 into 0.
     libm::round(value * 1000.0) / 1000.0 + 0.0
 }
 
-/// Area-weighted vertex normals; the cross product of a triangle's edges is its unit normal times twice its area.
+/// Area-weighted vertex normals; the cross product of a triangle's edges is its unit normal times
+/// twice its area.
 fn vertex_normals(mesh: &TriangleMesh) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; mesh.vertices.len()];
     for triangle in &mesh.triangles {
-        let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize].as_dvec3());
+        let [a, b, c] = triangle.map(|i| in_f64(&mesh.vertices[i as usize]));
         for &corner in triangle {
             sums[corner as usize] += (b - a).cross(c - a);
         }

@@ -1,10 +1,11 @@
-//! Procedural shapes: closed, outward-oriented 2-manifolds with named sizes, equal to the bit on every platform.
+//! Procedural shapes: closed, outward-oriented 2-manifolds with named sizes, equal to the bit on
+//! every platform.
 //!
-//! Each shape stresses a volume in its own way: the box is tight for every or-DOP, the icosphere for the
-//! sphere alone, needle and plate for neither sphere nor small k, torus and gear have holes, the L-shape and
-//! the knot leave most of their hull empty. Coordinates are computed in f64 with `libm`'s trigonometry
-//! (the platform's own differs in the last bit), then rounded once to f32. All shapes are centred on the
-//! origin; counter-clockwise triangles face outward.
+//! Each shape stresses a volume in its own way: the box is tight for every or-DOP, the icosphere
+//! for the sphere alone, needle and plate for neither sphere nor small k, torus and gear have
+//! holes, the L-shape and the knot leave most of their hull empty. Coordinates are computed in f64
+//! with `libm`'s trigonometry (the platform's own differs in the last bit), then rounded once to
+//! f32. All shapes are centred on the origin; counter-clockwise triangles face outward.
 
 mod polyhedra;
 mod prisms;
@@ -12,6 +13,8 @@ mod sizes;
 mod tubes;
 
 pub use sizes::ShapeError;
+
+use glam::Vec3;
 
 use super::TriangleMesh;
 
@@ -240,7 +243,7 @@ impl ProceduralShape {
         };
         Ok(TriangleMesh {
             name: self.name().to_owned(),
-            vertices,
+            vertices: vertices.iter().map(Vec3::to_array).collect(),
             triangles,
             ..TriangleMesh::default()
         })

@@ -56,8 +56,8 @@ pub(super) fn icosphere(radius: f32, subdivisions: u32) -> (Vec<Vec3>, Vec<[u32;
     (vertices, triangles)
 }
 
-/// The twelve vertices (0, ±1, ±φ) and their cyclic shifts, scaled to the unit sphere. Vertices at the shortest
-/// distance, 2 before scaling, are neighbours; three mutual neighbours are a face.
+/// The twelve vertices (0, ±1, ±φ) and their cyclic shifts, scaled to the unit sphere. Vertices at
+/// the shortest distance, 2 before scaling, are neighbours; three mutual neighbours are a face.
 fn icosahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let golden = (1.0 + libm::sqrt(5.0)) / 2.0;
     let mut corners = Vec::new();

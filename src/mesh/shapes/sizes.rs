@@ -9,18 +9,16 @@ enum Size<'a> {
 }
 
 /// Why a shape cannot be made from the given name and sizes.
-#[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ShapeError {
     /// No shape has this name.
     #[error("there is no shape {name:?}")]
-    #[diagnostic(help("the shapes are {}", ProceduralShape::NAMES.join(", ")))]
     UnknownShape {
         /// The name as given.
         name: String,
     },
     /// The shape has no such size.
     #[error("the shape {shape:?} has no size {size:?}")]
-    #[diagnostic(help("its sizes are {}", known.join(", ")))]
     UnknownSize {
         /// The shape's name.
         shape: &'static str,
@@ -31,7 +29,6 @@ pub enum ShapeError {
     },
     /// The value is outside what the size allows.
     #[error("the size {size:?} of the shape {shape:?} cannot be {value}")]
-    #[diagnostic(help("{size} must be {allowed}"))]
     BadSize {
         /// The shape's name.
         shape: &'static str,
@@ -42,6 +39,20 @@ pub enum ShapeError {
         /// What would do.
         allowed: String,
     },
+}
+
+impl ShapeError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> String {
+        match self {
+            Self::UnknownShape { .. } => {
+                format!("the shapes are {}", ProceduralShape::NAMES.join(", "))
+            }
+            Self::UnknownSize { known, .. } => format!("its sizes are {}", known.join(", ")),
+            Self::BadSize { size, allowed, .. } => format!("{size} must be {allowed}"),
+        }
+    }
 }
 
 /// Sizes by the names of their fields.

@@ -1,7 +1,7 @@
 //! Torus and trefoil knot: a circle swept along a closed curve.
 //!
-//! Vertex (i, j) = p(uᵢ) + r·(cos vⱼ·n + sin vⱼ·m) with unit normals n, m of the curve and n × m = −p′/|p′|,
-//! which makes (i, j) → (i+1, j) → (i+1, j+1) counter-clockwise from outside.
+//! Vertex (i, j) = p(uᵢ) + r·(cos vⱼ·n + sin vⱼ·m) with unit normals n, m of the curve and n × m =
+//! −p′/|p′|, which makes (i, j) → (i+1, j) → (i+1, j+1) counter-clockwise from outside.
 
 use std::f64::consts::TAU;
 
@@ -32,8 +32,9 @@ pub(super) fn torus(
     })
 }
 
-/// p(u) = (sin u + 2 sin 2u, cos u − 2 cos 2u, −sin 3u)·radius/3. Its curvature never vanishes, so principal normal and
-/// binormal are continuous and meet again after one turn: no twist is left to undo.
+/// p(u) = (sin u + 2 sin 2u, cos u − 2 cos 2u, −sin 3u)·radius/3. Its curvature never vanishes, so
+/// principal normal and binormal are continuous and meet again after one turn: no twist is left to
+/// undo.
 pub(super) fn trefoil(
     radius: f32,
     tube: f32,

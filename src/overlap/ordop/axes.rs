@@ -15,7 +15,8 @@ pub const FRAMES: usize = 17;
 /// Two bodies' frames in each other's coordinates.
 #[derive(Clone, Copy)]
 pub struct Frames<L: Lanes> {
-    /// `turn[i][j]` = axis i of A · axis j of B: row i is A's axis in B's coordinates, column j B's axis in A's.
+    /// `turn[i][j]` = axis i of A · axis j of B: row i is A's axis in B's coordinates, column j B's
+    /// axis in A's.
     turn: [Vector<L>; 3],
     /// Δ along A's axes, Δ from the centre of A to that of B.
     gap_a: Vector<L>,
@@ -26,8 +27,8 @@ pub struct Frames<L: Lanes> {
 }
 
 impl<L: Lanes> Frames<L> {
-    /// Relates two rows. Δ is the difference of the input translations plus that of the offsets: a difference of rounded
-    /// world centres would lose it far from the origin.
+    /// Relates two rows. Δ is the difference of the input translations plus that of the offsets: a
+    /// difference of rounded world centres would lose it far from the origin.
     #[cfg_attr(not(unoptimised), inline(always))]
     pub fn new(l: L, a: [L::F; ROW], b: [L::F; ROW]) -> Self {
         let zero = l.splat(0.0);
@@ -92,8 +93,8 @@ impl<L: Lanes> Frames<L> {
         [self.turn[0][j], self.turn[1][j], self.turn[2][j]]
     }
 
-    /// Axes edge × edge. An axis shorter than ½ (nearly parallel edges) is skipped: the error bounds are relative to its
-    /// length, and the normals serve such pairs.
+    /// Axes edge × edge. An axis shorter than ½ (nearly parallel edges) is skipped: the error
+    /// bounds are relative to its length, and the normals serve such pairs.
     #[cfg_attr(not(unoptimised), inline(always))]
     pub fn by_edges<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
         let all = l.bits(l.first(L::WIDTH));
@@ -126,8 +127,8 @@ impl<L: Lanes> Frames<L> {
     }
 }
 
-/// Lanes separated along one body's own slab normals. `turn[i]` is its axis i in the other's coordinates, `gap` the way
-/// to the other's centre along its own axes.
+/// Lanes separated along one body's own slab normals. `turn[i]` is its axis i in the other's
+/// coordinates, `gap` the way to the other's centre along its own axes.
 #[cfg_attr(not(unoptimised), inline(always))]
 fn by_normals<L: Lanes, const K: usize>(
     l: L,
@@ -143,14 +144,16 @@ fn by_normals<L: Lanes, const K: usize>(
         combinations::<L>(turn[0][2], turn[1][2], turn[2][2]),
     ];
     let tau = combinations::<L>(gap[0], gap[1], gap[2]);
-    // The normal turned towards the other body faces one slab end; the other body answers in the opposite direction.
+    // The normal turned towards the other body faces one slab end; the other body answers in the
+    // opposite direction.
     let other = other.mirrored();
     let mut separated = l.first(0);
     each_direction!(K, |i, _place| {
         let towards = flip(l, [x[i], y[i], z[i]], tau[i]);
         let reach = own.own(l, i, tau[i]) + support::<L, K>(l, &other, towards);
         separated = separated | l.gt(l.abs(tau[i]), reach);
-        // One lane alone leaves at its first separating axis; in a wide vector all lanes seldom agree so early.
+        // One lane alone leaves at its first separating axis; in a wide vector all lanes seldom
+        // agree so early.
         if L::WIDTH == 1 && l.bits(separated) == all {
             return separated;
         }
@@ -259,7 +262,8 @@ mod tests {
         }
     }
 
-    /// Boxes of these half edges, the second turned and moved: whether an edge × edge axis separates them, for k = 6.
+    /// Boxes of these half edges, the second turned and moved: whether an edge × edge axis
+    /// separates them, for k = 6.
     struct Boxes([[f32; 3]; 2], Rotation, [f32; 3]);
 
     impl Kernel for Boxes {

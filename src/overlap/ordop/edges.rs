@@ -1,10 +1,12 @@
-//! Edge directions of a k-DOP, up to sign: the cross products of its slab normals, as integer coefficients.
+//! Edge directions of a k-DOP, up to sign: the cross products of its slab normals, as integer
+//! coefficients.
 //!
-//! An edge of a polytope lies in two of its facets, so it is parallel to the cross product of their normals. Which of
-//! these edges a given DOP really has depends on its slabs; trying all of them is conservative and the same for every body.
+//! An edge of a polytope lies in two of its facets, so it is parallel to the cross product of their
+//! normals. Which of these edges a given DOP really has depends on its slabs; trying all of them is
+//! conservative and the same for every body.
 
-/// 3 axes; with cube or face diagonals also the 6 face diagonals; face diagonals bring the 4 cube diagonals, and both
-/// diagonals together the 12 of type (1, 1, 2).
+/// 3 axes; with cube or face diagonals also the 6 face diagonals; face diagonals bring the 4 cube
+/// diagonals, and both diagonals together the 12 of type (1, 1, 2).
 const EDGES: [[f32; 3]; 25] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],

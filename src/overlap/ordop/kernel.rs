@@ -9,7 +9,8 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
 use crate::update::RowsByNumber;
 use crate::volume::DirectionSet;
 
-/// Pairs that go through the first bodies' normals before the rest: their survivors' frames fit the first-level cache.
+/// Pairs that go through the first bodies' normals before the rest: their survivors' frames fit the
+/// first-level cache.
 const BLOCK: usize = 128;
 
 /// How many pairs ahead rows are prefetched.
@@ -39,7 +40,8 @@ pub struct Tested {
 }
 
 impl OrDopColumns<'_> {
-    /// Tests the listed pairs in the tier `tier` and appends the ones that may overlap to `out`, in list order.
+    /// Tests the listed pairs in the tier `tier` and appends the ones that may overlap to `out`, in
+    /// list order.
     pub fn test_pairs(
         &self,
         tier: Tier,
@@ -58,8 +60,8 @@ impl OrDopColumns<'_> {
         dispatch(tier, Test(self, first, second, out))
     }
 
-    /// Whether no tried axis separates the two rows: the same test of one pair, in one lane, which leaves at the first axis
-    /// that does.
+    /// Whether no tried axis separates the two rows: the same test of one pair, in one lane, which
+    /// leaves at the first axis that does.
     #[must_use]
     pub fn may_overlap(&self, first: u32, second: u32) -> bool {
         struct Test<'a, 'b>(&'a OrDopColumns<'b>, [u32; 2]);
@@ -108,7 +110,8 @@ impl OrDopColumns<'_> {
         second: &[u32],
         out: &mut PairList,
     ) -> Tested {
-        // Only a vector of 16 has a permutation for 16 shapes; with two halves each, rows are as quick.
+        // Only a vector of 16 has a permutation for 16 shapes; with two halves each, rows are as
+        // quick.
         let few = L::WIDTH == 16 && !self.tables.columns().is_empty();
         if few {
             self.test_blocks::<L, K, true>(l, first, second, out)
@@ -141,8 +144,8 @@ impl OrDopColumns<'_> {
         }
     }
 
-    /// Pairs through the normals of the first bodies. `later` are the pairs that follow [`PREFETCH_AHEAD`] behind
-    /// these.
+    /// Pairs through the normals of the first bodies. `later` are the pairs that follow
+    /// [`PREFETCH_AHEAD`] behind these.
     #[cfg_attr(not(unoptimised), inline(always))]
     fn by_first<L: Lanes, const K: usize, const FEW: bool>(
         &self,

@@ -10,7 +10,8 @@ use crate::threads::Threads;
 use crate::update::{Frames, OrDopRows, Posed, RowsByNumber, ShapeFrame};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
-/// Rows and tables of bodies in the order of their columns, so that pairs of rows are pairs of bodies.
+/// Rows and tables of bodies in the order of their columns, so that pairs of rows are pairs of
+/// bodies.
 #[derive(Debug)]
 pub struct PosedOrDops {
     rows: OrDopRows,

@@ -1,9 +1,11 @@
-//! How far from its centre an or-DOP can matter: the radius by which pair finders bin a homogeneous or-DOP.
+//! How far from its centre an or-DOP can matter: the radius by which pair finders bin a homogeneous
+//! or-DOP.
 //!
-//! Two or-DOPs whose circumscribed balls are apart may still be reported, since slab normals alone don't separate all
-//! disjoint polytopes. But some normal a of A is within the covering angle θ of Δ, so a·Δ ≥ cos θ·|Δ|, while the supports
-//! are at most S = C·w each: w is the widest slab half over its normal's length, and C bounds Σλᵢ‖dᵢ‖ of the weak-duality
-//! multipliers of a unit vector. Hence separated if |Δ| > (S_A + S_B)/cos θ:
+//! Two or-DOPs whose circumscribed balls are apart may still be reported, since slab normals alone
+//! don't separate all disjoint polytopes. But some normal a of A is within the covering angle θ of
+//! Δ, so a·Δ ≥ cos θ·|Δ|, while the supports are at most S = C·w each: w is the widest slab half
+//! over its normal's length, and C bounds Σλᵢ‖dᵢ‖ of the weak-duality multipliers of a unit vector.
+//! Hence separated if |Δ| > (S_A + S_B)/cos θ:
 //!
 //! | k | cos θ | C | C/cos θ |
 //! |---|---|---|---|
@@ -18,8 +20,8 @@ use super::table::{COEFFICIENTS, members_of};
 const MARGIN: f64 = 1.0 / 4096.0;
 const OFFSET_MARGIN: f64 = 1.0 / (1 << 20) as f64;
 
-/// The radius about the or-DOP's centre such that the test separates any two or-DOPs with |Δ| above the sum of theirs.
-/// `reach` bounds the distance of the shape's centre from the body origin.
+/// The radius about the or-DOP's centre such that the test separates any two or-DOPs with |Δ| above
+/// the sum of theirs. `reach` bounds the distance of the shape's centre from the body origin.
 pub fn reach(table: &[f32], k: usize, reach: f32) -> f64 {
     let factor = match k {
         6 => 3.0,
@@ -62,7 +64,8 @@ mod tests {
     #[test]
     fn factors_cover_every_direction() {
         for k in [6, 14, 18, 26] {
-            // A table in which every half is its normal's length: w = 1, so S is the plain bound on supports.
+            // A table in which every half is its normal's length: w = 1, so S is the plain bound on
+            // supports.
             let length = |&member: &usize| {
                 COEFFICIENTS[member]
                     .map(f32::from)

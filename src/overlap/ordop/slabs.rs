@@ -1,8 +1,10 @@
-//! Slab ends of a vector of or-DOPs, one per lane, as columns: an end is picked by signs, never fetched.
+//! Slab ends of a vector of or-DOPs, one per lane, as columns: an end is picked by signs, never
+//! fetched.
 //!
-//! A lane's shape is its own, so its ends can't be a broadcast, and fetching them look-up by look-up takes 144 gathers a
-//! vector at k = 18, which was two thirds of the test. Instead all ends of each lane's shape are loaded once, and every
-//! look-up becomes one to seven selections by the sign bits of the direction.
+//! A lane's shape is its own, so its ends can't be a broadcast, and fetching them look-up by
+//! look-up takes 144 gathers a vector at k = 18, which was two thirds of the test. Instead all ends
+//! of each lane's shape are loaded once, and every look-up becomes one to seven selections by the
+//! sign bits of the direction.
 
 use super::table::{SlabTables, each_direction};
 use crate::simd::{Lanes, MAX_WIDTH, ROW};
@@ -11,8 +13,8 @@ use crate::update::row::SHAPE;
 /// The ends of each lane's slabs.
 #[derive(Clone, Copy)]
 pub struct Slabs<L: Lanes> {
-    /// By direction in the order of K26: the end that the direction faces, and the one that its opposite faces. What the
-    /// set of directions lacks is zero.
+    /// By direction in the order of K26: the end that the direction faces, and the one that its
+    /// opposite faces. What the set of directions lacks is zero.
     pub ends: [[L::F; 2]; 13],
 }
 
@@ -29,7 +31,8 @@ impl<L: Lanes> Signs<L> {
 }
 
 impl<L: Lanes> Slabs<L> {
-    /// The slabs of each lane's shape, with the K half-spaces that all tables have; shapes as rows hold them.
+    /// The slabs of each lane's shape, with the K half-spaces that all tables have; shapes as rows
+    /// hold them.
     #[inline(always)]
     pub fn load<const K: usize, const FEW: bool>(l: L, tables: &SlabTables, shape: L::F) -> Self {
         let shape = l.add_u32(l.as_u32(shape), l.splat_u32(0u32.wrapping_sub(SHAPE)));
@@ -164,7 +167,8 @@ impl<L: Lanes> Slabs<L> {
     }
 }
 
-/// The only lane of a mask as an index: one lane alone does better by an indexed load than by choices.
+/// The only lane of a mask as an index: one lane alone does better by an indexed load than by
+/// choices.
 #[inline(always)]
 fn bit<L: Lanes>(l: L, mask: L::M) -> usize {
     (l.bits(mask) & 1) as usize

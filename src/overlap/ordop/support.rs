@@ -1,9 +1,12 @@
-//! Support of an or-DOP in any direction, bounded from its slabs alone by weak duality (design, section 4.5).
+//! Support of an or-DOP in any direction, bounded from its slabs alone by weak duality (design,
+//! section 4.5).
 //!
-//! If e = Σ λᵢdᵢ with λ ≥ 0, then h(e) ≤ Σ λᵢhᵢ, the dual of the linear program that maximises e·x over the slabs. The
-//! multipliers below are the optimal ones for a DOP whose slabs are all tight against a centrally placed ball, written in
+//! If e = Σ λᵢdᵢ with λ ≥ 0, then h(e) ≤ Σ λᵢhᵢ, the dual of the linear program that maximises e·x
+//! over the slabs. The multipliers below are the optimal ones for a DOP whose slabs are all tight
+//! against a centrally placed ball, written in
 //! |e| = (a, b, c) and without sorting, so that lanes never diverge; a slab whose turn it is not gets λ = 0.
-//! No vertices are needed, rounding keeps λ ≥ 0, and the bound reports .9 % more pairs than the vertices would.
+//! No vertices are needed, rounding keeps λ ≥ 0, and the bound reports .9 % more pairs than the
+//! vertices would.
 
 use super::slabs::{Signs, Slabs};
 use crate::simd::Lanes;
@@ -24,8 +27,9 @@ pub fn support<L: Lanes, const K: usize>(l: L, slabs: &Slabs<L>, e: [L::F; 3]) -
     }
 }
 
-/// Axes and cube diagonals: ½(median + low) on the octant's own diagonal, the rest of the lower two on the diagonal that
-/// is bent over the lowest coordinate, and the lead of the largest on its axis.
+/// Axes and cube diagonals: ½(median + low) on the octant's own diagonal, the rest of the lower two
+/// on the diagonal that is bent over the lowest coordinate, and the lead of the largest on its
+/// axis.
 #[inline(always)]
 fn support_14<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, size: [L::F; 3]) -> L::F {
     let (low, [ab, ac, bc]) = minima(l, size);
@@ -39,8 +43,8 @@ fn support_14<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, size: [L::F; 3]
     (base + bent) + leads(l, slabs, signs, size)
 }
 
-/// Axes and face diagonals: where no coordinate exceeds the sum of the others, face diagonals alone; else two of them
-/// and the excess on its axis.
+/// Axes and face diagonals: where no coordinate exceeds the sum of the others, face diagonals
+/// alone; else two of them and the excess on its axis.
 #[inline(always)]
 fn support_18<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, [a, b, c]: [L::F; 3]) -> L::F {
     let (half, zero) = (l.splat(0.5), l.splat(0.0));
@@ -53,8 +57,8 @@ fn support_18<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, [a, b, c]: [L::
     ((ab + ac) + bc) + axes
 }
 
-/// All groups: the lowest coordinate on the cube diagonal, the median's lead over it on a face diagonal, and the
-/// largest's lead on its axis.
+/// All groups: the lowest coordinate on the cube diagonal, the median's lead over it on a face
+/// diagonal, and the largest's lead on its axis.
 #[inline(always)]
 fn support_26<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, size: [L::F; 3]) -> L::F {
     let (low, [ab, ac, bc]) = minima(l, size);
@@ -71,7 +75,8 @@ fn minima<L: Lanes>(l: L, [a, b, c]: [L::F; 3]) -> (L::F, [L::F; 3]) {
     (l.min(ab, c), [ab, l.min(a, c), l.min(b, c)])
 }
 
-/// The axes' part where diagonals take the rest: the lead of the largest coordinate over the second.
+/// The axes' part where diagonals take the rest: the lead of the largest coordinate over the
+/// second.
 #[inline(always)]
 fn leads<L: Lanes>(l: L, slabs: &Slabs<L>, signs: Signs<L>, [a, b, c]: [L::F; 3]) -> L::F {
     let zero = l.splat(0.0);
@@ -118,7 +123,8 @@ mod tests {
         (0..343).map(move |n| [0, 1, 2].map(|place| whole(n, place)))
     }
 
-    /// A bound is linear in the ends: one end of 1 among zeros tells its multiplier, and all of them put e together again.
+    /// A bound is linear in the ends: one end of 1 among zeros tells its multiplier, and all of
+    /// them put e together again.
     #[test]
     fn multipliers_are_no_less_than_zero_and_make_up_the_direction() {
         for tier in Tier::available() {
@@ -142,7 +148,8 @@ mod tests {
         }
     }
 
-    /// About a ball of radius 1, whose slabs end at the lengths of their normals, the multipliers are the best there are.
+    /// About a ball of radius 1, whose slabs end at the lengths of their normals, the multipliers
+    /// are the best there are.
     #[test]
     fn a_ball_s_bound_is_the_polytope_s_own_support() {
         let length = |c: [i8; 3]| f32::from(c.iter().map(|x| x * x).sum::<i8>()).sqrt();

@@ -1,7 +1,8 @@
 //! Inflated slabs of all shapes, as rows that lanes load.
 //!
-//! A shape has two rows: for its n-th direction d (in the order of its set), number 2n is the end that d faces, hi, and
-//! number 2n + 1 the one that −d faces, −lo. Both are support values, so both are positive.
+//! A shape has two rows: for its n-th direction d (in the order of its set), number 2n is the end
+//! that d faces, hi, and number 2n + 1 the one that −d faces, −lo. Both are support values, so both
+//! are positive.
 
 use crate::rounding::pose::norm;
 use crate::rounding::slab::inflate_slab;
@@ -49,8 +50,9 @@ pub const fn place_of(member: usize, k: usize) -> Option<usize> {
     }
 }
 
-/// Writes `$body` out for every direction `$member` of the set of `$k` half-spaces, which has place `$place` in it: a loop
-/// would keep vectors in memory for the sake of its index, at twice the time.
+/// Writes `$body` out for every direction `$member` of the set of `$k` half-spaces, which has place
+/// `$place` in it: a loop would keep vectors in memory for the sake of its index, at twice the
+/// time.
 macro_rules! each_direction {
     ($k:expr, |$member:ident, $place:ident| $body:block) => {
         each_direction!(@ $k, |$member, $place| $body, 0 1 2 3 4 5 6 7 8 9 10 11 12)
@@ -73,7 +75,8 @@ pub struct SlabTables {
 }
 
 impl SlabTables {
-    /// Builds the tables of `shapes`, each with its or-DOP as `ordop` picks it; all have the same directions.
+    /// Builds the tables of `shapes`, each with its or-DOP as `ordop` picks it; all have the same
+    /// directions.
     pub fn new<'a>(
         directions: DirectionSet,
         shapes: impl IntoIterator<Item = (&'a Shape, &'a OrDop)>,
@@ -84,12 +87,13 @@ impl SlabTables {
             columns: vec![[0.0; ROW]; directions.k()],
         };
         for (shape, ordop) in shapes {
-            tables.push(ordop, shape.ball.centre.to_array(), shape.reach);
+            tables.push(ordop, shape.ball.centre, shape.reach);
         }
         tables
     }
 
-    /// Appends a table: an or-DOP about the ball's `centre`, no point of it farther than `reach` from the body origin.
+    /// Appends a table: an or-DOP about the ball's `centre`, no point of it farther than `reach`
+    /// from the body origin.
     pub(crate) fn push(&mut self, ordop: &OrDop, centre: [f32; 3], reach: f32) {
         let (shape, table) = (self.rows.len() / 2, table(ordop, centre, reach));
         self.rows.extend_from_slice(table.as_chunks::<ROW>().0);
@@ -138,7 +142,8 @@ impl SlabTables {
         &self.rows
     }
 
-    /// With up to [`ROW`] shapes, the same the other way: row n holds number n of every shape. Otherwise empty.
+    /// With up to [`ROW`] shapes, the same the other way: row n holds number n of every shape.
+    /// Otherwise empty.
     #[must_use]
     pub fn columns(&self) -> &[[f32; ROW]] {
         &self.columns
@@ -152,7 +157,7 @@ impl SlabTables {
 
 fn table(ordop: &OrDop, centre: [f32; 3], reach: f32) -> [f32; TABLE] {
     let mut table = [0.0; TABLE];
-    let columns = ordop.basis.columns.map(|column| column.to_array());
+    let columns = ordop.basis.columns;
     let scale = norm(columns[0]);
     for (slab, &member) in members_of(2 * ordop.lo.len()).iter().enumerate() {
         let coefficients = COEFFICIENTS[member];
@@ -209,7 +214,7 @@ mod tests {
         let mut tables = SlabTables::new(box_of(1).ordop.directions, []);
         for shapes in 1..=ROW + 2 {
             let shape = box_of(shapes as u16);
-            tables.push(&shape.ordop, shape.ball.centre.to_array(), shape.reach);
+            tables.push(&shape.ordop, shape.ball.centre, shape.reach);
             assert_eq!(tables.rows().len(), 2 * shapes);
             assert_eq!(tables.columns().is_empty(), shapes > ROW, "{shapes}");
             for (number, column) in tables.columns().iter().enumerate() {

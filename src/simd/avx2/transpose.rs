@@ -4,7 +4,8 @@ use std::arch::x86_64::*;
 
 use super::F8;
 
-/// Eight quads as four columns: quads i and i + 4 share a register, so a 4 × 4 transpose within halves puts all in place.
+/// Eight quads as four columns: quads i and i + 4 share a register, so a 4 × 4 transpose within
+/// halves puts all in place.
 ///
 /// # Safety
 /// The CPU has AVX, and each pointer leads to four floats.

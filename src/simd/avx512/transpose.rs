@@ -4,8 +4,8 @@ use std::arch::x86_64::*;
 
 use super::F16;
 
-/// Sixteen quads as four columns: quads i, i + 4, i + 8 and i + 12 share a register, so a 4 × 4 transpose within quarters
-/// puts all in place. Some 12 cycles, where four gathers take 80.
+/// Sixteen quads as four columns: quads i, i + 4, i + 8 and i + 12 share a register, so a 4 × 4
+/// transpose within quarters puts all in place. Some 12 cycles, where four gathers take 80.
 ///
 /// # Safety
 /// The CPU has AVX-512 F, and each pointer leads to four floats.

@@ -2,6 +2,7 @@
 
 use sdop::BoxCuller;
 
+use sdop_bench::remedy::OrReport as _;
 use sdop_judge::contestant::Contestant;
 
 use crate::boxes::Frame;
@@ -13,7 +14,8 @@ pub struct Boxes(BoxCuller);
 impl Boxes {
     /// On so many threads.
     pub fn new(setup: &Setup<'_>) -> miette::Result<Self> {
-        Ok(Self(BoxCuller::builder().threads(setup.threads).build()?))
+        let culler = BoxCuller::builder().threads(setup.threads).build();
+        Ok(Self(culler.or_report()?))
     }
 }
 

@@ -3,6 +3,7 @@
 use sdop::culler::Culler;
 use sdop::settings::Strategy;
 
+use sdop_bench::remedy::OrReport as _;
 use sdop_judge::contestant::Contestant;
 
 use crate::boxes::Frame;
@@ -17,7 +18,8 @@ impl Culled {
         let culler = Culler::builder()
             .strategy(strategy)
             .threads(setup.threads)
-            .build(&setup.scene.shapes, &setup.first.bodies)?;
+            .build(&setup.scene.shapes, &setup.first.bodies)
+            .or_report()?;
         Ok(Self(culler))
     }
 }

@@ -1,4 +1,5 @@
-//! Ourselves: boxes for the comparison on equal work, and what a user of the culler has instead of boxes.
+//! Ourselves: boxes for the comparison on equal work, and what a user of the culler has instead of
+//! boxes.
 
 mod boxes;
 mod culler;
@@ -16,7 +17,6 @@ pub const ENTRIES: [Entry; 3] = [
         version: VERSION,
         work: Work::Boxes,
         threads: usize::MAX,
-        slack: 0,
         ages: true,
         new: |setup| Ok(Box::new(boxes::Boxes::new(setup)?)),
     },
@@ -25,7 +25,6 @@ pub const ENTRIES: [Entry; 3] = [
         version: VERSION,
         work: Work::Spheres,
         threads: usize::MAX,
-        slack: 0,
         ages: true,
         new: |setup| Ok(Box::new(culler::Culled::new(setup, Strategy::Sphere)?)),
     },
@@ -34,7 +33,6 @@ pub const ENTRIES: [Entry; 3] = [
         version: VERSION,
         work: Work::SDop,
         threads: usize::MAX,
-        slack: 0,
         ages: true,
         new: |setup| {
             Ok(Box::new(culler::Culled::new(

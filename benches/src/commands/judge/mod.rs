@@ -25,7 +25,8 @@ pub use print::{ReportFormat, emit as emit_verdict};
 /// The choices for judging a program.
 #[derive(clap::Args)]
 pub struct Outside {
-    /// Judge this program in place of the own culler: a line for the shell that reads cases and answers with pairs
+    /// Judge this program in place of the own culler: a line for the shell that reads cases and
+    /// answers with pairs
     #[arg(long, value_name = "CMD", help_heading = "Judging a program")]
     pub exec: Option<String>,
     /// What it claims never to miss
@@ -145,7 +146,7 @@ pub fn run(
     };
     print::emit(format, &verdict)?;
     save(args, command, &verdict, out, format)?;
-    Ok(Outcome::of(verdict.why().as_deref()))
+    Ok(Outcome::from(&verdict))
 }
 
 impl Outside {
@@ -161,8 +162,8 @@ impl Outside {
     }
 }
 
-/// Reads a case, a record or one of Broadmark's recordings (`.aabbs`) from a file. A recording, or a line of another, has at most
-/// `most` bytes.
+/// Reads a case, a record or one of Broadmark's recordings (`.aabbs`) from a file. A recording, or
+/// a line of another, has at most `most` bytes.
 ///
 /// # Errors
 /// A file that can't be read or is none.
@@ -176,7 +177,8 @@ pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::Read> {
             .wrap_err_with(|| format!("cannot read {}", path.display()))?;
         let case = broadmark::read(&bytes).into_diagnostic()?;
         let pairs = vec![None; case.frames.len()];
-        return Ok(ndjson::Read { case, pairs });
+        let lacks = None;
+        return Ok(ndjson::Read { case, pairs, lacks });
     }
     let file = File::open(path)
         .into_diagnostic()

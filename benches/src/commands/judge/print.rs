@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 use miette::miette;
-use sdop_judge::Verdict;
 use sdop_judge::report::junit;
 use sdop_judge::verdict::GroupVerdict;
+use sdop_judge::{Conclusion, Verdict};
 use serde::Serialize;
 
 use crate::commands::output::{self, Format, print, rows};
@@ -45,9 +45,11 @@ impl ReportFormat {
 #[derive(Serialize)]
 struct Whole<'a> {
     passed: bool,
-    /// Why the exit code isn't 0.
+    conclusion: Conclusion,
     #[serde(skip_serializing_if = "Option::is_none")]
     why: Option<String>,
+    asked: usize,
+    judged: usize,
     groups: Vec<GroupVerdict>,
     #[serde(flatten)]
     verdict: &'a Verdict,
@@ -70,7 +72,10 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
                 .and_then(|smallest| smallest.witness.as_ref());
             let whole = Whole {
                 passed: verdict.passed(),
+                conclusion: verdict.conclusion(),
                 why: verdict.why(),
+                asked: verdict.asked(),
+                judged: verdict.judged(),
                 groups: verdict.groups(),
                 verdict,
                 witness,
@@ -81,7 +86,8 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
     }
 }
 
-/// The groups that have more to say than that they passed, the failed ones first; all others in one line.
+/// The groups that have more to say than that they passed, the failed ones first; all others in one
+/// line.
 fn table(verdict: &Verdict) -> String {
     let header = [
         "cases", "passed", "failed", "errors", "skipped", "judged", "required", "missed", "extra",

@@ -1,7 +1,7 @@
 //! Records of work in units: measured by the ranks of `mpirun`, or put together from shards.
 //!
-//! Each rank runs the experiment's command as a rank; the first alone keeps what it writes. A shard is kept beside the record
-//! to be, until all of them become it.
+//! Each rank runs the experiment's command as a rank; the first alone keeps what it writes. A shard
+//! is kept beside the record to be, until all of them become it.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -87,7 +87,8 @@ pub(super) fn shard(args: &Args, experiment: &Experiment, directory: &Path) -> m
     Ok(())
 }
 
-/// Makes the record of all shards: that of one process, of the machine that the shards name, if they do.
+/// Makes the record of all shards: that of one process, of the machine that the shards name, if
+/// they do.
 pub(super) fn merge(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
     let line = command_line(experiment, args);
     let shards = shards(&beside(directory, SHARDS), &line)?;
@@ -111,7 +112,7 @@ pub(super) fn merge(args: &Args, experiment: &Experiment, directory: &Path) -> m
         .map(serde_json::from_value)
         .transpose()
         .into_diagnostic()?;
-    let part = prepare(directory, false)?;
+    let part = prepare(directory)?;
     let program = std::env::current_exe().into_diagnostic()?;
     let mut command = Command::new(program);
     command

@@ -53,7 +53,7 @@ pub(super) fn command(step: &Step, out: &Path) -> miette::Result<(Command, Optio
             // Engines in C++ are built as their packages are.
             command
                 .env("CXX", "g++")
-                .args(arguments)
+                .args(words(arguments))
                 .arg("--out")
                 .arg(out);
             (command, None)
@@ -90,6 +90,19 @@ pub(super) fn command(step: &Step, out: &Path) -> miette::Result<(Command, Optio
     Ok((command, file))
 }
 
+/// The arguments in a line. A flag's value goes up to the next flag, whatever spaces it has.
+fn words(line: &str) -> Vec<String> {
+    let line = format!(" {line}");
+    let (first, flags) = line.split_once(" --").unwrap_or((&line, ""));
+    let mut words: Vec<String> = first.split_whitespace().map(str::to_owned).collect();
+    for flag in flags.split(" --").filter(|flag| !flag.is_empty()) {
+        let (name, value) = flag.split_once(' ').unwrap_or((flag, ""));
+        words.push(format!("--{name}"));
+        words.extend((!value.is_empty()).then(|| value.to_owned()));
+    }
+    words
+}
+
 const PEERS: [&str; 8] = [
     "run",
     "--release",
@@ -114,7 +127,8 @@ const BULLET: [&str; 8] = [
     "--",
 ];
 
-/// Runs benches into a directory of their own; the command that gathers criterion's estimates from it.
+/// Runs benches into a directory of their own; the command that gathers criterion's estimates from
+/// it.
 fn estimates(benches: &[&str], file: &Path) -> miette::Result<Command> {
     let home = std::env::current_dir()
         .into_diagnostic()?
@@ -146,4 +160,22 @@ fn estimates(benches: &[&str], file: &Path) -> miette::Result<Command> {
     ]);
     command.arg("--from").arg(home).arg("--out").arg(file);
     Ok(command)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words;
+
+    #[test]
+    fn values_may_have_spaces() {
+        assert_eq!(
+            words("narrow a.toml --frames 5"),
+            ["narrow", "a.toml", "--frames", "5"]
+        );
+        let peers = "--peers sdop,parry3d refit,Embree --quick";
+        assert_eq!(
+            words(peers),
+            ["--peers", "sdop,parry3d refit,Embree", "--quick"]
+        );
+    }
 }

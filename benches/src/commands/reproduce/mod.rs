@@ -1,8 +1,8 @@
-//! `sdop reproduce`: the paper's experiments, from the runs to the written summary.
+//! `sdop reproduce`: the paper's experiments, from the runs to their tables and figures.
 
+mod brief;
 mod figures;
 mod rows;
-mod summary;
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use sdop_bench::sweep::{Merged, Sweep as _};
 
 use super::Outcome;
 use super::files::{command, write};
-use super::output::{Format, Reasoned, csv_text, emit};
+use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::MachineArgs;
 use super::sweep::{self, SweepArgs};
 pub use figures::draw_costs;
@@ -25,10 +25,11 @@ use rows::Tables;
 
 /// Run the paper's experiments: Table 1, Figs 12 to 14, costs, claims
 ///
-/// For 50, 150, 300, 350 and 500 objects in one box, and 500 in a small one, every strategy culls the same seeded trajectories.
-/// Counts and hashes are equal on every CPU; times are medians over warm frames with intervals over seeds. Results are written
-/// as CSV, JSON, SVG and a summary in Markdown. The exit code is 1 when the sequential and the listed S-DOP report
-/// different pairs.
+/// For 50, 150, 300, 350 and 500 objects in one box, and 500 in a small one, every strategy culls
+/// the same seeded trajectories. Counts and hashes are equal on every CPU; times are medians over
+/// warm frames with intervals over seeds. Results are written as CSV, JSON and SVG; of a record
+/// (`sdop record reproduce`), `sdop report` makes the page paper/summary.md. The exit code is 1
+/// when the sequential and the listed S-DOP report different pairs.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop reproduce --quick\n          sdop reproduce --out results --seeds 20\n          \
@@ -49,7 +50,7 @@ pub struct Args {
     /// Where tables go
     #[arg(long, value_name = "DIR", default_value = "target/reproduce")]
     out: PathBuf,
-    /// Where the summary and its figures go [default: the same]
+    /// Where figures go, in a directory of that name [default: the same]
     #[arg(long, value_name = "DIR")]
     paper: Option<PathBuf>,
     /// Where the paper's scenes are
@@ -57,7 +58,7 @@ pub struct Args {
     scenes: PathBuf,
     #[command(flatten)]
     machine: MachineArgs,
-    /// What is printed: the summary, or all results as JSON, or Table 1 as CSV
+    /// What is printed: the main numbers, or all results as JSON, or Table 1 as CSV
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -96,7 +97,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let before = Conditions::before();
     let mut results = Results::of_header(&experiments.header()?)?;
     let mut take = |_, result: &str| results.take(result);
-    let Some(finished) = args.sweep.run(&experiments, &args.out, &mut take)? else {
+    let Some(seconds) = args.sweep.run(&experiments, &args.out, &mut take)? else {
         return Ok(Outcome::Passed);
     };
     let machine = experiments.settings().machine;
@@ -105,12 +106,11 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let written = Written {
         numbers: &args.out,
         paper,
-        seconds: finished.seconds,
+        seconds,
     };
-    let why = why(&results);
-    written.write(&tables, why, args.format)?;
-    finished.clear()?;
-    Ok(Outcome::of(why))
+    let why = disagreement(&results);
+    written.write(&tables, args.format, why.as_deref())?;
+    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
 /// What merged shards give.
@@ -131,9 +131,9 @@ pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Out
         paper: out,
         seconds: merged.seconds,
     };
-    let why = why(&results);
-    written.write(&tables, why, format)?;
-    Ok(Outcome::of(why))
+    let why = disagreement(&results);
+    written.write(&tables, format, why.as_deref())?;
+    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
 /// Where results go, and how long they took.
@@ -144,27 +144,16 @@ struct Written<'a> {
 }
 
 impl Written<'_> {
-    fn write(&self, tables: &Tables, why: Option<&str>, format: Format) -> miette::Result<()> {
+    fn write(&self, tables: &Tables, format: Format, why: Option<&str>) -> miette::Result<()> {
         write_tables(self.numbers, tables)?;
         figures::draw_all(&self.paper.join("figures"), tables)?;
-        let summary = self.paper.join("summary.md");
-        write(&summary, summary::write(tables))?;
         match format {
             Format::Csv => emit(Format::Csv, &tables.table_1, |_| String::new()),
-            format => {
-                let result = tables;
-                emit(format, &Reasoned { result, why }, |_| {
-                    let place = format!("{}, {}", summary.display(), self.numbers.display());
-                    summary::brief(tables, self.seconds, &place)
-                })
-            }
+            format => emit_with_reason(format, tables, why, |tables| {
+                brief::brief(tables, self.seconds, &self.numbers.display().to_string())
+            }),
         }
     }
-}
-
-/// What failed.
-fn why(results: &Results) -> Option<&'static str> {
-    (!lists_agree(results)).then_some("sequential and listed S-DOP report different pairs")
 }
 
 fn plan(args: &Args) -> miette::Result<Plan> {
@@ -183,8 +172,8 @@ fn plan(args: &Args) -> miette::Result<Plan> {
     Ok(Plan::new(&args.scenes, seeds, frames, size.effort, tier))
 }
 
-/// Whether sequential and listed S-DOP reported the same pairs in every run.
-fn lists_agree(results: &Results) -> bool {
+/// Says so if sequential and listed S-DOP did not report the same pairs in every run.
+fn disagreement(results: &Results) -> Option<String> {
     let hashes = |strategy| {
         let of = results
             .runs
@@ -192,7 +181,8 @@ fn lists_agree(results: &Results) -> bool {
             .filter(move |run| run.strategy == strategy);
         of.map(|run| &run.pairs_sha256)
     };
-    hashes(Strategy::SDopSequential).eq(hashes(Strategy::SDopBatch))
+    let agree = hashes(Strategy::SDopSequential).eq(hashes(Strategy::SDopBatch));
+    (!agree).then(|| "sequential and listed S-DOP report different pairs".to_owned())
 }
 
 fn write_tables(directory: &Path, tables: &Tables) -> miette::Result<()> {

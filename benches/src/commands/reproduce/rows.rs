@@ -1,6 +1,8 @@
-//! The result files: each CSV file is one table, and `results.json` holds all but the two of single runs.
+//! The result files: each CSV file is one table, and `results.json` holds all but the two of single
+//! runs.
 //!
-//! Of those, `counts` has what is equal on every machine, and its hash stands in the summary; `times` has what is not.
+//! Of those, `counts` has what is equal on every machine, and its hash stands in the summary;
+//! `times` has what is not.
 
 use miette::IntoDiagnostic as _;
 use sdop::settings::Strategy;
@@ -90,7 +92,8 @@ pub struct CountRow {
     pairs_sha256: Option<String>,
 }
 
-/// What it took, in seconds: medians over warm frames and over cold ones, the mean, the simulation's step, and Co once.
+/// What it took, in seconds: medians over warm frames and over cold ones, the mean, the
+/// simulation's step, and Co once.
 #[derive(Serialize)]
 pub struct TimeRow {
     scene: String,
@@ -106,7 +109,8 @@ pub struct TimeRow {
     simulation_step: f64,
 }
 
-/// The F from which on two strategies' frame rates are within five percent; none where they are without any F.
+/// The F from which on two strategies' frame rates are within five percent; none where they are
+/// without any F.
 #[derive(Serialize)]
 pub struct HiddenRow {
     pub scene: &'static str,

@@ -1,14 +1,16 @@
 //! `mpirun -n R sdop run`: each rank builds its share of the scene, rank 0 prints.
 //!
-//! Whatever goes wrong, all ranks learn of it before any of them ends, so that none waits for one that is gone.
+//! Whatever goes wrong, all ranks learn of it before any of them ends, so that none waits for one
+//! that is gone.
 
 use miette::IntoDiagnostic as _;
 use sdop::bodies::Bodies;
-use sdop_bench::domain::{DomainError, DomainSummary, MpiNetwork, Network as _, Rank};
+use sdop_bench::domain::{DomainError, DomainSummary, Rank};
 use sdop_bench::effects::Velocities;
 use sdop_bench::hash::volumes_sha256;
 use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::mpi::Ranks;
+use sdop_bench::network::{MpiNetwork, Network as _};
 use sdop_bench::scene::Scene;
 use sdop_bench::sweep::{code, digest};
 
@@ -93,8 +95,9 @@ fn tell(
     }
 }
 
-/// The value, when every rank has one. Otherwise nothing on all of them, and the first that has an error of its own says it: with
-/// its number, unless all have one, which they have then come to alike. Collective.
+/// The value, when every rank has one. Otherwise nothing on all of them, and the first that has an
+/// error of its own says it: with its number, unless all have one, which they have then come to
+/// alike. Collective.
 fn agreed<T>(network: &MpiNetwork, outcome: Result<T, Option<miette::Report>>) -> Option<T> {
     let own = matches!(outcome, Err(Some(_)));
     let troubles = network.gather(&[u64::from(outcome.is_err()), own.into()]);
@@ -126,6 +129,7 @@ fn without_bodies(scene: &Scene) -> Scene {
         effects: scene.effects.clone(),
         cull: scene.cull.clone(),
         share: Some(scene.share()),
+        fine: scene.fine.clone(),
         ..*scene
     }
 }

@@ -1,4 +1,5 @@
-//! The figures, as SVG: precision against time, break-even against density, precision against budget.
+//! The figures, as SVG: precision against time, break-even against density, precision against
+//! budget.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -19,8 +20,8 @@ const COLOURS: [RGBColor; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLA
 
 type Points = Vec<(f64, f64)>;
 
-/// Precision against time per frame: the Pareto front with error bars, and world-aligned boxes, labelled at their points; what is
-/// tied is grey.
+/// Precision against time per frame: the Pareto front with error bars, and world-aligned boxes,
+/// labelled at their points; what is tied is grey.
 pub fn precision(result: &Tradeoff) -> miette::Result<String> {
     let front = front(result);
     let is_drawn_as = |row: &VariantResult, standing| match row.standing {
@@ -102,7 +103,8 @@ fn at(row: &VariantResult) -> (f64, f64) {
     (1e6 * row.seconds().mean, row.precision.mean)
 }
 
-/// The Pareto front as it is drawn, fastest first: without what another is drawn above and to the left of.
+/// The Pareto front as it is drawn, fastest first: without what another is drawn above and to the
+/// left of.
 fn front(result: &Tradeoff) -> Vec<&VariantResult> {
     let is_beaten = |row: &VariantResult| {
         let (time, precision) = at(row);
@@ -117,8 +119,8 @@ fn front(result: &Tradeoff) -> Vec<&VariantResult> {
     front
 }
 
-/// Where the names of points go, in pixels from each: to the right, the lowest point's first, each above the one below it where
-/// they would hide one another. Points are in pixels, down the page.
+/// Where the names of points go, in pixels from each: to the right, the lowest point's first, each
+/// above the one below it where they would hide one another. Points are in pixels, down the page.
 fn label_offsets(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
     const HEIGHT: i32 = 15;
     const WIDTH: i32 = 200;

@@ -1,10 +1,9 @@
-//! The result as tables: what a terminal shows, and what the page quotes.
+//! The result as tables for a terminal.
 
 use comfy_table::Table;
 use sdop::settings::{Axes, Overlap};
 use sdop_bench::cost::predict::Terms;
 use sdop_bench::cost::table::Compared;
-use sdop_bench::measure::turns::median;
 use sdop_bench::tradeoff::decide::{CHECKS, Decision};
 use sdop_bench::tradeoff::pays::{Line, Standing};
 use sdop_bench::tradeoff::shapes::ShapeSurvival;
@@ -76,7 +75,8 @@ pub fn text(result: &Tradeoff) -> String {
     parts.join("\n\n")
 }
 
-/// A line a density and class of shapes, a column a price of a check: what to use, and what is tied with it.
+/// A line a density and class of shapes, a column a price of a check: what to use, and what is tied
+/// with it.
 pub fn decisions(result: &Tradeoff) -> Table {
     let checks: Vec<String> = CHECKS.iter().map(|check| nanoseconds(*check)).collect();
     let header = [
@@ -107,7 +107,8 @@ fn with_ties(best: &str, tied: &[String]) -> String {
     }
 }
 
-/// A line a change of the scene, a column a price of a check: what to use, and what is tied with it.
+/// A line a change of the scene, a column a price of a check: what to use, and what is tied with
+/// it.
 pub fn variations(result: &Tradeoff) -> Table {
     let checks = CHECKS.map(nanoseconds);
     let header = [
@@ -370,50 +371,6 @@ pub fn survivors(
 
 fn short(estimate: &Estimate) -> String {
     plus_minus(estimate, 1.0, 3)
-}
-
-/// Mean volume over hull volume in an earlier study of 15 shapes.
-const STUDY: [(&str, f64); 6] = [
-    ("sphere", 4.65),
-    ("aabb", 1.93),
-    ("or-dop-6-principal", 2.01),
-    ("or-dop-14-principal", 1.50),
-    ("or-dop-18-principal", 1.40),
-    ("or-dop-26-principal", 1.33),
-];
-
-/// A line a shape, a column a volume, the mean and the study's below.
-pub fn sizes(result: &Tradeoff) -> Table {
-    let names: Vec<&str> = match result.shapes.first() {
-        Some(shape) => shape.sizes.iter().map(|size| size.name.as_str()).collect(),
-        None => Vec::new(),
-    };
-    let mut rows = table(&[&["shape"], names.as_slice()].concat());
-    let cell = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.2}"));
-    let mut line = |name: &str, values: Vec<Option<f64>>| {
-        let values = values.into_iter().map(cell);
-        rows.add_row(std::iter::once(name.to_owned()).chain(values));
-    };
-    for shape in &result.shapes {
-        line(
-            &shape.shape,
-            shape.sizes.iter().map(|s| s.over_hull).collect(),
-        );
-    }
-    let column = |place: usize| -> Vec<f64> {
-        let size = |shape: &ShapeSurvival| shape.sizes.get(place)?.over_hull;
-        result.shapes.iter().filter_map(size).collect()
-    };
-    let mean = |place| {
-        let column = column(place);
-        (!column.is_empty()).then(|| column.iter().sum::<f64>() / column.len() as f64)
-    };
-    line("mean", (0..names.len()).map(mean).collect());
-    let middle = |place| (!column(place).is_empty()).then(|| median(column(place)));
-    line("median", (0..names.len()).map(middle).collect());
-    let study = |name: &&str| STUDY.iter().find(|(of, _)| of == name).map(|&(_, x)| x);
-    line("study", names.iter().map(study).collect());
-    rows
 }
 
 /// A line an arithmetic and tier.

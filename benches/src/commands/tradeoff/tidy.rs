@@ -5,8 +5,9 @@ use serde::Serialize;
 
 use crate::commands::cost::lines::{Line, of_cost, of_price};
 
-/// Every number of every variant: what it reports, how precise and how tight it is, its time by the formula's terms, and the
-/// prices. The strategy of a line is the variant's name, which says all of its settings.
+/// Every number of every variant: what it reports, how precise and how tight it is, its time by the
+/// formula's terms, and the prices. The strategy of a line is the variant's name, which says all of
+/// its settings.
 pub fn lines(result: &Tradeoff) -> Vec<Line<'_>> {
     let mut lines = Vec::new();
     for row in &result.rows {
@@ -55,19 +56,20 @@ pub struct SeedLine<'a> {
 
 /// What every variant reported, seed by seed: equal on every machine.
 pub fn seeds(result: &Tradeoff) -> Vec<SeedLine<'_>> {
-    let of = |row: &'_ VariantResult| {
+    fn of<'a>(result: &Tradeoff, row: &'a VariantResult) -> Vec<SeedLine<'a>> {
         let found = result
             .seeds
             .iter()
             .zip(&row.precisions)
             .zip(&row.pairs_sha256);
-        let line = |((&seed, &precision), pairs_sha256)| SeedLine {
+        let line = |((&seed, &precision), pairs_sha256): ((&u64, &f64), &'a String)| SeedLine {
             variant: &row.name,
             seed,
             precision,
             pairs_sha256,
         };
-        found.map(line).collect::<Vec<_>>()
-    };
-    result.rows.iter().flat_map(of).collect()
+        found.map(line).collect()
+    }
+    let rows = result.rows.iter();
+    rows.flat_map(|row| of(result, row)).collect()
 }

@@ -1,5 +1,5 @@
-//! What a verification run says of itself: answers by stage and lists by strategy, one table each a source, and the matrix
-//! of what was judged.
+//! What a verification run says of itself: answers by stage and lists by strategy, one table each a
+//! source, and the matrix of what was judged.
 
 mod coverage;
 
@@ -22,11 +22,9 @@ pub struct Report {
     seconds: f64,
     /// Pairs missed, over all sources.
     missed: u64,
-    /// Pairs on which a list and that of all-pairs differ, over all sources; of given boxes, a list and their definition.
+    /// Pairs on which a list and that of all-pairs differ, over all sources; of given boxes, a list
+    /// and their definition.
     differ: u64,
-    /// Why the exit code isn't 0.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    why: Option<String>,
     sources: Vec<SourceReport>,
     coverage: Coverage,
     #[serde(skip)]
@@ -61,11 +59,14 @@ struct StrategyReport {
     missed: u64,
     /// On which a list and that of all-pairs differ.
     differ: u64,
-    /// Reported although the exact volumes are apart, but not those wider by the rounding margins; per million judged.
+    /// Reported although the exact volumes are apart, but not those wider by the rounding margins;
+    /// per million judged.
     margin_per_million: Option<f64>,
-    /// Reported although those are apart too, since supports are bounded from slabs; per million judged.
+    /// Reported although those are apart too, since supports are bounded from slabs; per million
+    /// judged.
     bound_per_million: Option<f64>,
-    /// Reported and rightly so, but the meshes are apart, per million pairs whose meshes were judged.
+    /// Reported and rightly so, but the meshes are apart, per million pairs whose meshes were
+    /// judged.
     looseness_per_million: Option<f64>,
 }
 
@@ -76,7 +77,6 @@ impl Report {
             seconds: 0.0,
             missed: 0,
             differ: 0,
-            why: None,
             sources: Vec::new(),
             coverage: Coverage::default(),
             matrix: Matrix::default(),
@@ -109,18 +109,23 @@ impl Report {
         self.seconds = seconds;
         self.differ += boxes.wrong();
         self.coverage = Coverage::of(&self.matrix, boxes, rotation);
-        self.why = match (self.missed, self.differ) {
-            (0, 0) if self.coverage.is_full() => None,
-            (0, 0) => Some("a combination of choices was not judged: see the matrix".to_owned()),
-            (missed, differ) => Some(format!(
-                "{missed} pairs are missed, {differ} differ from all-pairs or from the definition of boxes"
-            )),
-        };
     }
 
-    /// What failed: a pair is missed, a finder disagrees with all-pairs, or a cell of the matrix is empty.
-    pub fn why(&self) -> Option<&str> {
-        self.why.as_deref()
+    /// What is wrong, if anything is: a pair is missed, a finder disagrees with all-pairs, or a
+    /// cell of the matrix is empty.
+    pub fn why(&self) -> Option<String> {
+        if self.missed > 0 {
+            Some(format!("{} pairs were missed", self.missed))
+        } else if self.differ > 0 {
+            Some(format!(
+                "lists differ from all-pairs' in {} pairs",
+                self.differ
+            ))
+        } else if !self.coverage.is_full() {
+            Some("a cell of the matrix is empty".to_owned())
+        } else {
+            None
+        }
     }
 
     /// Two tables a source, and those of the matrix.

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::Tier;
+use sdop_bench::remedy::OrReport as _;
 use sdop_bench::view::Show;
 use sdop_judge::answer::{Answer, Stop, sorted};
 use sdop_judge::ours::hard::Group;
@@ -26,10 +27,12 @@ pub enum Input {
     Broken(RecordError),
 }
 
-/// Reads what the path names. A record begins with a brace, a group of hard cases has a `[recipe]`, anything else is a scene.
+/// Reads what the path names. A record begins with a brace, a group of hard cases has a `[recipe]`,
+/// anything else is a scene.
 ///
 /// # Errors
-/// A file that can't be read; a scene or case that can't be built; flags that the kind of file can't have.
+/// A file that can't be read; a scene or case that can't be built; flags that the kind of file
+/// can't have.
 pub fn read(
     args: &SceneArgs,
     run: Option<usize>,
@@ -89,7 +92,8 @@ fn is_record(path: &Path) -> miette::Result<bool> {
     Ok(start[..read].trim_ascii_start().starts_with(b"{"))
 }
 
-/// Whether a TOML file has a recipe. What is no TOML, or can't be read, is left to the scene's reader, which says so.
+/// Whether a TOML file has a recipe. What is no TOML, or can't be read, is left to the scene's
+/// reader, which says so.
 fn is_case(path: &Path, most: u64) -> bool {
     let table = sdop::files::read_text(path, most)
         .ok()
@@ -97,7 +101,8 @@ fn is_case(path: &Path, most: u64) -> bool {
     table.is_some_and(|table| table.contains_key("recipe"))
 }
 
-/// The claim that a case of the judge is about: the first of those in its first line. Records have none.
+/// The claim that a case of the judge is about: the first of those in its first line. Records have
+/// none.
 fn claim(path: &Path, most: u64) -> Option<Claim> {
     #[derive(serde::Deserialize)]
     struct Mark {
@@ -110,13 +115,14 @@ fn claim(path: &Path, most: u64) -> Option<Claim> {
     mark.claims?.first().copied()
 }
 
-/// A case with the pairs that its file has or that `answers` has; a line, and the answers, have at most `most` bytes.
+/// A case with the pairs that its file has or that `answers` has; a line, and the answers, have at
+/// most `most` bytes.
 fn judged(
     (path, most): (&Path, u64),
     claim: Claim,
     answers: Option<&Path>,
 ) -> miette::Result<Show> {
-    let Read { case, pairs } = read_case(path, most)?;
+    let Read { case, pairs, .. } = read_case(path, most)?;
     let given = match answers {
         None => {
             let answer = |pairs: Option<Vec<_>>| pairs.map(|pairs| Answer { pairs, ns: None });
@@ -164,7 +170,7 @@ fn answered(case: &Case, file: &Path, most: u64) -> miette::Result<Vec<Answer>> 
             "{name}: {} answers to {frames} frames",
             answers.len()
         )),
-        Err(Stop::Skipped(why)) => Err(miette!("{name}: the case was skipped: {why}")),
+        Err(Stop::Skipped { why, .. }) => Err(miette!("{name}: the case was skipped: {why}")),
         Err(Stop::Trouble(trouble)) => Err(miette!(help = hint, "{name}: {trouble}")),
     }
 }
@@ -186,7 +192,7 @@ fn record(args: &SceneArgs, run: Option<usize>) -> miette::Result<Input> {
     match Show::record(args.path(), args.frames()) {
         Ok((show, broken)) => Ok(Input::Show(Box::new(show), broken)),
         // Nothing there is no record that is broken.
-        Err(error @ RecordError::Unreadable { .. }) => Err(error.into()),
+        Err(error @ RecordError::Unreadable { .. }) => Err(error).or_report(),
         Err(error) => Ok(Input::Broken(error)),
     }
 }
@@ -233,7 +239,8 @@ fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<Show> {
         &frames[..most],
         &settings,
         tier,
-    )?;
+    )
+    .or_report()?;
     show.header.seed = group.seed;
     show.messages.push(group.why.clone());
     if cases.runs.len() > 1 {

@@ -23,7 +23,8 @@ pub struct Calls {
     pub hits: Timed,
     /// Pairs without.
     pub misses: Timed,
-    /// Of the misses, those that the filter rejects. In [`Filtering::Shadow`] they are checked all the same.
+    /// Of the misses, those that the filter rejects. In [`Filtering::Shadow`] they are checked all
+    /// the same.
     pub culled: Timed,
     /// Pairs that the filter was asked about: the time is its own.
     pub asked: Timed,

@@ -52,9 +52,10 @@ pub fn check(
     check
 }
 
-/// Whether the two are farther apart than rapier looks in this step, by its own distance query. It keeps points of such a
-/// pair all the same where a shape was replaced by one with fewer manifolds (`set_shape`): it updates the first of them and
-/// leaves the others as they were. A pair that is rejected loses them.
+/// Whether the two are farther apart than rapier looks in this step, by its own distance query. It
+/// keeps points of such a pair all the same where a shape was replaced by one with fewer manifolds
+/// (`set_shape`): it updates the first of them and leaves the others as they were. A pair that is
+/// rejected loses them.
 fn out_of_sight(world: &PhysicsWorld, pair: [ColliderHandle; 2]) -> bool {
     let body = |collider: &Collider| collider.parent().and_then(|body| world.bodies.get(body));
     let pose = |collider: &Collider| match (body(collider), collider.position_wrt_parent()) {

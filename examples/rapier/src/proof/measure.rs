@@ -97,7 +97,8 @@ fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Prices checks and tests in a run of `steps` steps in which nothing is rejected, with another seed.
+/// Prices checks and tests in a run of `steps` steps in which nothing is rejected, with another
+/// seed.
 #[must_use]
 pub fn calibrate(plan: Plan, forms: &[TriangleMesh], steps: usize) -> Prices {
     let plan = Plan {

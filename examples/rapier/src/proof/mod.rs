@@ -1,4 +1,5 @@
-//! The proof by running: scenes stepped with and without the filter, contacts compared, steps timed.
+//! The proof by running: scenes stepped with and without the filter, contacts compared, steps
+//! timed.
 
 pub mod calls;
 pub mod case;
@@ -17,7 +18,8 @@ use self::sim::Sim;
 use crate::plan::{Mode, Plan};
 use crate::record::{Check, Prices, Share};
 
-/// Checks every step of a filtered run, with a bug planted if `without_margin`. The first dropped pair is saved in `cases`.
+/// Checks every step of a filtered run, with a bug planted if `without_margin`. The first dropped
+/// pair is saved in `cases`.
 ///
 /// # Errors
 /// A case that can't be written.
@@ -41,7 +43,8 @@ pub fn check(
     saved.map(|()| found)
 }
 
-/// Measures the scene in these modes, in turns, and takes prices from another run of `calibrate` steps.
+/// Measures the scene in these modes, in turns, and takes prices from another run of `calibrate`
+/// steps.
 #[must_use]
 pub fn measure(
     plan: Plan,

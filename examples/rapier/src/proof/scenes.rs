@@ -148,8 +148,8 @@ impl Stage {
         }
     }
 
-    /// Sets all bodies out on a cube's lattice about `centre`, `apart` times the usual distance; returns the cube's side in
-    /// bodies.
+    /// Sets all bodies out on a cube's lattice about `centre`, `apart` times the usual distance;
+    /// returns the cube's side in bodies.
     pub(super) fn lattice(&mut self, apart: Real, centre: Vector, speed: Real) -> Real {
         let side = (1..).find(|n| n * n * n >= self.plan.bodies).unwrap_or(1);
         for i in 0..self.plan.bodies {
@@ -284,11 +284,7 @@ impl Stage {
 
 /// The colliders of one body.
 fn made_of(kind: Kind, form: &TriangleMesh, hooks: ActiveHooks) -> Vec<Collider> {
-    let points: Vec<Vector> = form
-        .vertices
-        .iter()
-        .map(|v| to_vector(v.to_array()))
-        .collect();
+    let points: Vec<Vector> = form.vertices.iter().map(|v| to_vector(*v)).collect();
     let hull =
         |points: &[Vector]| SharedShape::convex_hull(points).expect("every form has a volume");
     let halves = || {

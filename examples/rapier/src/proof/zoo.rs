@@ -1,4 +1,5 @@
-//! What a user does to bodies between steps, all at once: whatever the filter knows may have changed.
+//! What a user does to bodies between steps, all at once: whatever the filter knows may have
+//! changed.
 
 use super::super::rapier::math::{Pose, Real, Vector};
 use super::super::rapier::prelude::*;

@@ -1,7 +1,8 @@
-//! Changes along one axis: whoever keeps a body's old place or extent along that axis, and no other, misses a pair.
+//! Changes along one axis: whoever keeps a body's old place or extent along that axis, and no
+//! other, misses a pair.
 //!
-//! Small bodies stand in rows, far from one another. In each row a change brings one of them to its partner along one axis
-//! alone: from either side, so that both ends of a box matter.
+//! Small bodies stand in rows, far from one another. In each row a change brings one of them to its
+//! partner along one axis alone: from either side, so that both ends of a box matter.
 
 use rand::{Rng, RngExt};
 
@@ -122,9 +123,10 @@ impl Rows {
         bodies
     }
 
-    /// The frame of this number, with another set of bodies than the one before. In a third of the rows a new body is at
-    /// another place than the one whose number it takes, in a third it reaches further, and in a third a body moves while
-    /// others come and go. The fourth frame's bodies are in reverse.
+    /// The frame of this number, with another set of bodies than the one before. In a third of the
+    /// rows a new body is at another place than the one whose number it takes, in a third it
+    /// reaches further, and in a third a body moves while others come and go. The fourth frame's
+    /// bodies are in reverse.
     fn with_another_set(&self, frame: usize, shapes: &[Shape]) -> Frame {
         let after = frame % 2 == 1;
         let (mut bodies, mut stays) = (Bodies::default(), Vec::new());

@@ -217,7 +217,8 @@ fn permutation(n: usize, rng: &mut impl Rng) -> Vec<usize> {
     order
 }
 
-/// The former number of each body of a frame, where it was there; `None` for a frame in which nothing changed.
+/// The former number of each body of a frame, where it was there; `None` for a frame in which
+/// nothing changed.
 type FormerNumbers = Option<Vec<Option<u32>>>;
 
 /// Some bodies go, others come, numbers change: each frame's former numbers.

@@ -1,4 +1,5 @@
-//! Cubes and octahedra that touch exactly: all coordinates are short binary numbers, so nothing rounds.
+//! Cubes and octahedra that touch exactly: all coordinates are short binary numbers, so nothing
+//! rounds.
 
 use glam::Vec3;
 use rand::{Rng, RngExt};
@@ -38,7 +39,7 @@ pub fn solids(size: f32) -> Result<[Shape; 2], CatalogueError> {
     let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
     let cube = TriangleMesh::new(
         "cube",
-        (0..8).map(corner).collect(),
+        (0..8).map(corner),
         quads.into_iter().flat_map(halves).collect(),
     )?;
     let tips = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z].map(|tip| tip * size);
@@ -52,7 +53,7 @@ pub fn solids(size: f32) -> Result<[Shape; 2], CatalogueError> {
         [3, 1, 5],
         [0, 3, 5],
     ];
-    let octahedron = TriangleMesh::new("octahedron", tips.to_vec(), sides.to_vec())?;
+    let octahedron = TriangleMesh::new("octahedron", tips, sides.to_vec())?;
     let spec = ShapeSpec {
         origin: Origin::File,
         radius: None,
@@ -74,7 +75,8 @@ const TURNS: [[f32; 4]; 5] = [
     [0.0, 0.0, 3.0, 0.0],
 ];
 
-/// A dynamic body at a lattice point with partners that touch it; every third one is an ulp further out or in.
+/// A dynamic body at a lattice point with partners that touch it; every third one is an ulp further
+/// out or in.
 pub fn touching(
     touch: Touch,
     number: u32,

@@ -1,8 +1,9 @@
-//! Tips that touch across cells: when the cell's side is the bodies' diameter and cells are counted in f32, the partner's cell
-//! is two away.
+//! Tips that touch across cells: when the cell's side is the bodies' diameter and cells are counted
+//! in f32, the partner's cell is two away.
 //!
-//! A quotient x / c alone never does that: as far as floor(x / c) is rounded up at the further border, it is at the nearer
-//! one. A difference x − least before it does, and so does the product with a reciprocal.
+//! A quotient x / c alone never does that: as far as floor(x / c) is rounded up at the further
+//! border, it is at the nearer one. A difference x − least before it does, and so does the product
+//! with a reciprocal.
 
 use rand::{Rng, RngExt};
 
@@ -13,7 +14,8 @@ use sdop::bodies::Bodies;
 
 /// Pairs a case.
 const PAIRS: usize = 16;
-/// Sizes that are tried until a case's pairs are found, and places for each pair: one in some ten and some hundred will do.
+/// Sizes that are tried until a case's pairs are found, and places for each pair: one in some ten
+/// and some hundred will do.
 const SIZES: usize = 256;
 const PLACES: usize = 4096;
 
@@ -84,7 +86,8 @@ impl Cells {
     }
 }
 
-/// Pairs of octahedra, tip to tip along an axis, each pair where cells as large as they are lose it.
+/// Pairs of octahedra, tip to tip along an axis, each pair where cells as large as they are lose
+/// it.
 pub fn tips_across_borders(number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
     let counting = Counting::ALL[number as usize % Counting::ALL.len()];
     let axis = rng.random_range(0..3);
@@ -146,7 +149,8 @@ mod tests {
 
     use super::*;
 
-    /// Whether a grid of cells as large as the bodies, counted from the least centre, sees the neighbours of both.
+    /// Whether a grid of cells as large as the bodies, counted from the least centre, sees the
+    /// neighbours of both.
     fn finds(counting: Counting, from_ends: bool, drawn: &Drawn) -> usize {
         let radius = drawn.shapes[0].ball.radius;
         let places = &drawn.frames[0].bodies.translation;

@@ -1,7 +1,9 @@
-//! The cases that everyone is judged by: groups with a name, the bug that each looks for, and its source.
+//! The cases that everyone is judged by: groups with a name, the bug that each looks for, and its
+//! source.
 //!
-//! A case is drawn from its group's name and its number alone, so `touch/edge-edge/0017` is the same bodies on every machine.
-//! With a seed the same group draws other bodies, `touch/edge-edge/0017@42`: nobody can prepare for those.
+//! A case is drawn from its group's name and its number alone, so `touch/edge-edge/0017` is the
+//! same bodies on every machine. With a seed the same group draws other bodies,
+//! `touch/edge-edge/0017@42`: nobody can prepare for those.
 
 mod boxes;
 mod changes;
@@ -309,8 +311,8 @@ fn key(name: &str) -> u64 {
     })
 }
 
-/// Which cases: a group and a number each, in turns over the groups so that every bug is looked for early. Groups that are
-/// about this claim alone come first.
+/// Which cases: a group and a number each, in turns over the groups so that every bug is looked for
+/// early. Groups that are about this claim alone come first.
 ///
 /// # Errors
 /// As [`groups`].

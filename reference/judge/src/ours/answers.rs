@@ -1,4 +1,5 @@
-//! The exact answers about one frame: every pair that is not static–static, judged by every predicate, bit by bit.
+//! The exact answers about one frame: every pair that is not static–static, judged by every
+//! predicate, bit by bit.
 
 use sdop_reference as reference;
 
@@ -80,7 +81,8 @@ pub struct Answers {
 }
 
 impl Answers {
-    /// Judges all pairs of a frame by the given predicates. `k` is the set of the world-aligned k-DOP.
+    /// Judges all pairs of a frame by the given predicates. `k` is the set of the world-aligned
+    /// k-DOP.
     ///
     /// # Errors
     /// A pose outside the contract.
@@ -147,9 +149,11 @@ impl Answers {
         self.tallies[predicate.index()]
     }
 
-    /// Whether a strategy must report the pair number `n`: its predicate on the exact, uninflated volumes.
+    /// Whether a strategy must report the pair number `n`: its predicate on the exact, uninflated
+    /// volumes.
     ///
-    /// For `s-dop-time-critical` this is the refined answer; what its budget leaves untested comes on top.
+    /// For `s-dop-time-critical` this is the refined answer; what its budget leaves untested comes
+    /// on top.
     #[must_use]
     pub fn required(
         &self,
@@ -165,8 +169,8 @@ impl Answers {
     }
 }
 
-/// Whether the rounding margins explain the report of a pair: volumes wider by them overlap exactly. World-aligned
-/// volumes have no other looseness than their rounding.
+/// Whether the rounding margins explain the report of a pair: volumes wider by them overlap
+/// exactly. World-aligned volumes have no other looseness than their rounding.
 ///
 /// # Errors
 /// A pose outside the contract.
@@ -200,7 +204,8 @@ pub fn explained_by_margins(
     ))
 }
 
-/// The widened ball; a centre off the body's origin is rounded in world coordinates, which adds up to √3 ulps of them.
+/// The widened ball; a centre off the body's origin is rounded in world coordinates, which adds up
+/// to √3 ulps of them.
 fn world_ball(body: &reference::Body<'_>) -> reference::Ball {
     let ball = body.shape.ball;
     if ball.centre == [0.0; 3] {

@@ -53,8 +53,8 @@ pub fn placed(shapes: usize) -> impl Strategy<Value = Placed> {
     })
 }
 
-/// A body and, for each of up to `most` partners, a shape, an orientation and the contact that places it: feed them to
-/// [`Contact::place`] one by one.
+/// A body and, for each of up to `most` partners, a shape, an orientation and the contact that
+/// places it: feed them to [`Contact::place`] one by one.
 pub fn probe(
     shapes: usize,
     most: usize,

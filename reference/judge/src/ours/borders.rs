@@ -1,10 +1,11 @@
-//! Scenes built from the grid's own arithmetic: extents, centres and reaches on the borders between its cells, a few units
-//! in the last place of f64 to either side.
+//! Scenes built from the grid's own arithmetic: extents, centres and reaches on the borders between
+//! its cells, a few units in the last place of f64 to either side.
 //!
-//! A random coordinate comes that near to a border once in 2⁵⁰ draws, so random scenes can't tell a cell found by rounding
-//! half to even from one counted by a division that rounds half away from zero. Here the lowest centre, which is the grid's
-//! origin, or the coordinate on the border is a number so small that its last place moves a quotient by one of the
-//! quotient's. All that is chosen comes from one function, "a number below n": a random generator searches, a fuzzer is
+//! A random coordinate comes that near to a border once in 2⁵⁰ draws, so random scenes can't tell a
+//! cell found by rounding half to even from one counted by a division that rounds half away from
+//! zero. Here the lowest centre, which is the grid's origin, or the coordinate on the border is a
+//! number so small that its last place moves a quotient by one of the quotient's. All that is
+//! chosen comes from one function, "a number below n": a random generator searches, a fuzzer is
 //! guided.
 
 use sdop::bodies::Bodies;
@@ -26,8 +27,8 @@ pub struct Borders {
     pub radii: [f32; 2],
     /// The bodies.
     pub bodies: Bodies,
-    /// Whether the extent along some axis is so near to a border that a division rounded half away from zero gives another
-    /// number of cells than a product rounded half to even.
+    /// Whether the extent along some axis is so near to a border that a division rounded half away
+    /// from zero gives another number of cells than a product rounded half to even.
     pub divides: bool,
 }
 
@@ -84,8 +85,8 @@ pub fn bar_within(radius: f32, directions: DirectionSet, axes: Axes) -> Result<S
 }
 
 impl Borders {
-    /// Each finder's list against that of all pairs, over some frames in which nothing moves, so that places are reordered.
-    /// The first difference, and how many pairs there are.
+    /// Each finder's list against that of all pairs, over some frames in which nothing moves, so
+    /// that places are reordered. The first difference, and how many pairs there are.
     ///
     /// # Errors
     /// Settings that lack something, bodies outside of the contract.
@@ -269,7 +270,8 @@ impl Draw<'_> {
         scene
     }
 
-    /// Extents first, whose cells have some size; then coordinates on the borders between cells of that size.
+    /// Extents first, whose cells have some size; then coordinates on the borders between cells of
+    /// that size.
     fn axes(&mut self, plan: &Plan) -> ([Axis; 3], f64, bool) {
         let least = plan.cells(&[Axis::default(); 3]).size();
         let on: [On; 3] = std::array::from_fn(|_| {
@@ -341,7 +343,8 @@ impl Draw<'_> {
         }
     }
 
-    /// Two coordinates as far apart as f32 and their difference in f64 can tell: one of them is small.
+    /// Two coordinates as far apart as f32 and their difference in f64 can tell: one of them is
+    /// small.
     fn apart(&mut self, by: f64) -> (f32, f32) {
         let near = by as f32;
         if self.below(2) == 0 {

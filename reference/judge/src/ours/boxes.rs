@@ -1,5 +1,6 @@
-//! Given boxes against their definition: by every finder, in every tier, on any number of threads exactly those are listed
-//! that have a point in common. Ends are compared one by one, which rounds nothing.
+//! Given boxes against their definition: by every finder, in every tier, on any number of threads
+//! exactly those are listed that have a point in common. Ends are compared one by one, which rounds
+//! nothing.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +11,8 @@ use sdop::boxes::BoxCuller;
 use sdop::culler::CullError;
 use sdop::settings::{Finder, Updates};
 
-/// Sides of boxes, in halves of a unit: cubes, of any aspect, of many sizes, without a length on an axis or two.
+/// Sides of boxes, in halves of a unit: cubes, of any aspect, of many sizes, without a length on an
+/// axis or two.
 const SIDES: [&[[f32; 3]]; 4] = [
     &[[2.0, 2.0, 2.0]],
     &[[0.25, 2.0, 16.0], [16.0, 0.25, 2.0], [2.0, 16.0, 0.25]],
@@ -87,8 +89,9 @@ impl BoxLedger {
     }
 }
 
-/// Frames of boxes that are hard to tell apart: each begins where another ends, or a few last places before or behind, or lies
-/// anywhere; then all move, and some begin at another one's end again. `below(n)` draws a number below n.
+/// Frames of boxes that are hard to tell apart: each begins where another ends, or a few last
+/// places before or behind, or lies anywhere; then all move, and some begin at another one's end
+/// again. `below(n)` draws a number below n.
 pub fn draw(below: &mut impl FnMut(u32) -> u32) -> Vec<Vec<Aabb>> {
     let unit = 2.0_f32.powi(UNITS[below(UNITS.len() as u32) as usize]);
     let sides = SIDES[below(SIDES.len() as u32) as usize];
@@ -131,7 +134,8 @@ fn share(below: &mut impl FnMut(u32) -> u32) -> f32 {
     below(1 << 16) as f32 / (1 << 16) as f32
 }
 
-/// A box that begins where another one ends on some axis, or ends where that begins, give or take three last places.
+/// A box that begins where another one ends on some axis, or ends where that begins, give or take
+/// three last places.
 fn beside(other: &Aabb, sides: [f32; 3], below: &mut impl FnMut(u32) -> u32) -> Aabb {
     let (mut min, at) = (other.min, below(3) as usize);
     let off = below(7) as i32 - 3;

@@ -1,4 +1,5 @@
-//! A culler's list against the exact answers: what it must report, what it reports on top, and where that comes from.
+//! A culler's list against the exact answers: what it must report, what it reports on top, and
+//! where that comes from.
 
 use super::answers::{Answers, Predicate};
 use super::ways::Mode;
@@ -21,12 +22,14 @@ pub struct Count {
     pub missed: u64,
     /// In this list and not in that of all-pairs, or the other way round.
     pub differ: u64,
-    /// Reported although the exact volumes don't overlap, but volumes wider by the stated margins do: the price of rounding.
+    /// Reported although the exact volumes don't overlap, but volumes wider by the stated margins
+    /// do: the price of rounding.
     pub margin: u64,
-    /// Reported although not even those overlap: an or-DOP's support is bounded from its slabs, not from its corners
-    /// (and, with `s-dop-time-critical`, what the budget left untested).
+    /// Reported although not even those overlap: an or-DOP's support is bounded from its slabs, not
+    /// from its corners (and, with `s-dop-time-critical`, what the budget left untested).
     pub bound: u64,
-    /// Reported and required although the meshes don't meet: the volumes' looseness. Of `meshes_judged` pairs.
+    /// Reported and required although the meshes don't meet: the volumes' looseness. Of
+    /// `meshes_judged` pairs.
     pub loose: u64,
     /// Pairs of which the meshes were judged too.
     pub meshes_judged: u64,
@@ -47,7 +50,8 @@ impl Count {
     }
 }
 
-/// The culling settings that a strategy needs to run on any frame: interest in every seventh body, a budget of three tests.
+/// The culling settings that a strategy needs to run on any frame: interest in every seventh body,
+/// a budget of three tests.
 #[must_use]
 pub fn settings(strategy: Strategy, base: &CullSettings, bodies: usize) -> CullSettings {
     CullSettings {
@@ -77,8 +81,9 @@ pub fn culler(
     mode.build(shapes, bodies)
 }
 
-/// What the finder led to in the culler's last frame, sorted: the list, which every finder must give. What a budget leaves
-/// untested depends on the order in which pairs were found, so time-critical culling shows the potentially colliding set.
+/// What the finder led to in the culler's last frame, sorted: the list, which every finder must
+/// give. What a budget leaves untested depends on the order in which pairs were found, so
+/// time-critical culling shows the potentially colliding set.
 #[must_use]
 pub fn found(culler: &Culler, settings: &CullSettings) -> Vec<[u32; 2]> {
     if !settings.strategy.scheme().has_budget() {
@@ -103,11 +108,12 @@ pub fn difference(one: &[[u32; 2]], other: &[[u32; 2]]) -> Vec<[u32; 2]> {
     differing
 }
 
-/// Compares a sorted list with the answers. Returns the count, in which all that is reported and not required is `bound`,
-/// the missed pairs (a strategy's predicate, and the mesh intersections themselves where they were judged), and
-/// those reported and not required.
+/// Compares a sorted list with the answers. Returns the count, in which all that is reported and
+/// not required is `bound`, the missed pairs (a strategy's predicate, and the mesh intersections
+/// themselves where they were judged), and those reported and not required.
 ///
-/// A pair that the list holds twice or that isn't among the judged pairs (i ≥ j, static–static) counts as missed.
+/// A pair that the list holds twice or that isn't among the judged pairs (i ≥ j, static–static)
+/// counts as missed.
 #[must_use]
 pub fn compare(
     answers: &Answers,

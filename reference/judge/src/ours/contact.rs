@@ -1,9 +1,10 @@
-//! Near-touching configurations, drawn on purpose: uniform random pairs are far apart or deep inside one another and
-//! never ask for the last bit.
+//! Near-touching configurations, drawn on purpose: uniform random pairs are far apart or deep
+//! inside one another and never ask for the last bit.
 //!
-//! A supporting feature of A and one of B along an axis n are put together, Δ = a* − b* + gap·n. At gap 0 the sets share
-//! the point a* and n separates their interiors, so the pair touches whatever the other axes say. The gap is a few u of the
-//! bodies' size, and rounding tB to f32 adds half an ulp of the coordinates to it.
+//! A supporting feature of A and one of B along an axis n are put together, Δ = a* − b* + gap·n. At
+//! gap 0 the sets share the point a* and n separates their interiors, so the pair touches whatever
+//! the other axes say. The gap is a few u of the bodies' size, and rounding tB to f32 adds half an
+//! ulp of the coordinates to it.
 
 use glam::{DMat3, DVec3};
 use sdop_reference as reference;
@@ -58,7 +59,8 @@ pub struct Contact {
     pub kind: Kind,
     /// Which face, edge or world direction; taken modulo their number.
     pub pick: [u32; 2],
-    /// Any direction, any length; used by kinds that take one, and for the sign of the others' axes.
+    /// Any direction, any length; used by kinds that take one, and for the sign of the others'
+    /// axes.
     pub direction: [f64; 3],
     /// Gap (overlap if negative) in u = 2⁻²⁴ of the two bodies' reach.
     pub gap: f64,
@@ -76,8 +78,8 @@ pub struct Placed {
 }
 
 impl Contact {
-    /// The translation that brings the second body, in `shape` with `rotation`, to the contact with `first`. `None` when
-    /// a pose is outside the contract.
+    /// The translation that brings the second body, in `shape` with `rotation`, to the contact with
+    /// `first`. `None` when a pose is outside the contract.
     #[must_use]
     pub fn place(
         &self,
@@ -183,7 +185,7 @@ impl<'a> Side<'a> {
     }
 
     fn ball(&self) -> DVec3 {
-        self.matrix * self.built.ball.centre.as_dvec3()
+        self.matrix * in_f64(&self.built.ball.centre)
     }
 
     fn turned(&self) -> Turned {
@@ -195,14 +197,19 @@ impl<'a> Side<'a> {
     }
 
     fn vertices(&self) -> Vec<[f64; 3]> {
-        let turn = |v: &glam::Vec3| (self.matrix * v.as_dvec3()).to_array();
+        let turn = |v: &[f32; 3]| (self.matrix * in_f64(v)).to_array();
         self.built.vertices.iter().map(turn).collect()
     }
 
     fn triangle_normal(&self, pick: u32) -> Option<DVec3> {
         let triangles = &self.built.triangles;
         let triangle = triangles.get(pick as usize % triangles.len().max(1))?;
-        let [p, q, r] = triangle.map(|v| self.built.vertices[v as usize].as_dvec3());
+        let [p, q, r] = triangle.map(|v| in_f64(&self.built.vertices[v as usize]));
         (self.matrix * (q - p).cross(r - p)).try_normalize()
     }
+}
+
+/// A vertex in f64.
+fn in_f64(vertex: &[f32; 3]) -> DVec3 {
+    DVec3::from_array(vertex.map(f64::from))
 }

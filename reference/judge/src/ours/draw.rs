@@ -117,11 +117,14 @@ pub struct ContactSpec {
     pub kinds: Vec<Kind>,
     /// How orientations relate.
     pub turn: Turn,
-    /// The largest gap or overlap, in u = 2⁻²⁴ of the bodies' reach; 0 is as close as rounding allows.
+    /// The largest gap or overlap, in u = 2⁻²⁴ of the bodies' reach; 0 is as close as rounding
+    /// allows.
     pub gap: f64,
-    /// Least and largest power of two of the distance from the world's origin; absent: at the origin.
+    /// Least and largest power of two of the distance from the world's origin; absent: at the
+    /// origin.
     pub origin: Option<[f64; 2]>,
-    /// Vectors that span the directions of contacts, for kinds that take any: one is a line, two a plane, none all space.
+    /// Vectors that span the directions of contacts, for kinds that take any: one is a line, two a
+    /// plane, none all space.
     pub span: Vec<[f64; 3]>,
 }
 
@@ -181,7 +184,8 @@ impl ContactSpec {
         }
     }
 
-    /// A body of `shape` in contact with `first`; beside it where the contact lies outside the contract.
+    /// A body of `shape` in contact with `first`; beside it where the contact lies outside the
+    /// contract.
     pub fn partner(
         &self,
         shapes: &Shapes,
@@ -208,8 +212,8 @@ pub fn add(bodies: &mut Bodies, placed: &Placed, dynamic: bool) {
     bodies.push(shape, dynamic, placed.rotation, placed.translation);
 }
 
-/// One dynamic probe among static partners, each in contact with it: every tested pair is a near miss. Half of the
-/// partners come before the probe, so that either body is the first of the pair.
+/// One dynamic probe among static partners, each in contact with it: every tested pair is a near
+/// miss. Half of the partners come before the probe, so that either body is the first of the pair.
 pub fn probe(
     shapes: &Shapes,
     spec: &ContactSpec,
@@ -231,7 +235,8 @@ pub fn probe(
     bodies
 }
 
-/// Dynamic bodies with uniform centres in a cube: `side` is in units of the shapes' mean bounding radius.
+/// Dynamic bodies with uniform centres in a cube: `side` is in units of the shapes' mean bounding
+/// radius.
 pub fn crowd(shapes: &Shapes, bodies: usize, side: f64, rng: &mut impl Rng) -> Bodies {
     let radii = shapes.built.iter().map(|s| f64::from(s.ball.radius));
     let mean = radii.sum::<f64>() / shapes.built.len() as f64;
@@ -242,7 +247,7 @@ pub fn crowd(shapes: &Shapes, bodies: usize, side: f64, rng: &mut impl Rng) -> B
         let rotation = rotation(rng);
         let centre: [f32; 3] = std::array::from_fn(|_| rng.random_range(0.0..side));
         // The ball's centre is what is uniform, wherever the shape's origin is.
-        let ball = shapes.built[shape].ball.centre.to_array();
+        let ball = shapes.built[shape].ball.centre;
         let offset = pose::rotate(&pose::rotation(rotation), ball);
         let placed = Placed {
             shape,

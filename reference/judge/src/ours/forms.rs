@@ -14,7 +14,8 @@ use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Form {
-    /// A procedural shape's name, or `point`, `segment`, `triangle`, `sliver` (zero area), `tetrahedron`.
+    /// A procedural shape's name, or `point`, `segment`, `triangle`, `sliver` (zero area),
+    /// `tetrahedron`.
     pub form: String,
     /// A procedural shape's sizes.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -59,7 +60,7 @@ impl Form {
         let error = |problem: String| FormError::of(&self.form, problem);
         let flat = |vertices: &[[f32; 3]], triangles: &[[u32; 3]]| TriangleMesh {
             name: self.form.clone(),
-            vertices: vertices.iter().copied().map(Vec3::from).collect(),
+            vertices: vertices.to_vec(),
             triangles: triangles.to_vec(),
             ..TriangleMesh::default()
         };
@@ -116,7 +117,7 @@ impl Form {
         if let Some(offset) = self.offset {
             mesh.vertices
                 .iter_mut()
-                .for_each(|v| *v += Vec3::from(offset));
+                .for_each(|v| *v = (Vec3::from(*v) + Vec3::from(offset)).to_array());
         }
         let spec = ShapeSpec {
             origin: if self.offset.is_some() {

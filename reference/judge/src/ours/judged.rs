@@ -19,8 +19,9 @@ pub struct Shapes {
     pub built: Vec<Shape>,
     /// The same numbers for the reference, with each shape's oriented box.
     pub judged: Vec<reference::Shape>,
-    /// The same shapes, as much wider as the rounding margins may make a report: balls by r·15u + 2⁻⁶⁸ (the bound that
-    /// [`inflate_radius`](sdop::rounding::sphere::inflate_radius) states), slabs by twice their margin.
+    /// The same shapes, as much wider as the rounding margins may make a report: balls by r·15u +
+    /// 2⁻⁶⁸ (the bound that [`inflate_radius`](sdop::rounding::sphere::inflate_radius) states),
+    /// slabs by twice their margin.
     pub widened: Vec<reference::Shape>,
 }
 
@@ -79,17 +80,17 @@ fn shape(shape: &Shape, margins: f64) -> Result<reference::Shape, InvalidInput> 
     let radius = f64::from(shape.ball.radius);
     let wider = radius + margins * (15.0 * U * radius + exp2(-69));
     let ball = reference::Ball {
-        centre: shape.ball.centre.to_array(),
+        centre: shape.ball.centre,
         radius: if margins > 0.0 {
             up(wider)
         } else {
             shape.ball.radius
         },
     };
-    let reach = f64::from(shape.reach) + norm(shape.ball.centre.to_array());
+    let reach = f64::from(shape.reach) + norm(shape.ball.centre);
     let by = margins * 2.0 * (SLAB_MARGIN * reach + SLAB_FLOOR);
     let slabs = |ordop: &OrDop| slabs(ordop, by);
-    let vertices = shape.vertices.iter().map(|v| v.to_array()).collect();
+    let vertices = shape.vertices.clone();
     let obb = shape.obb(&Hull::of(&shape.vertices));
     reference::Shape::new(ball, slabs(&shape.ordop), vertices, shape.triangles.clone())?
         .with_obb(&slabs(&obb))
@@ -98,7 +99,7 @@ fn shape(shape: &Shape, margins: f64) -> Result<reference::Shape, InvalidInput> 
 /// The slabs in the reference's terms, each end further out by `by` times its direction's length.
 pub(crate) fn slabs(ordop: &OrDop, by: f64) -> reference::Slabs {
     let lengths = ordop.directions.coefficients().iter();
-    let lengths = lengths.map(|&c| norm(ordop.basis.direction(c).to_array()));
+    let lengths = lengths.map(|&c| norm(ordop.basis.direction(c)));
     let moved = |ends: &[f32], sign: f64, outward: fn(f64) -> f32| -> Vec<f32> {
         let moved = ends.iter().zip(lengths.clone());
         moved
@@ -110,7 +111,7 @@ pub(crate) fn slabs(ordop: &OrDop, by: f64) -> reference::Slabs {
     };
     reference::Slabs {
         directions: directions(ordop.directions),
-        basis: ordop.basis.columns.map(|column| column.to_array()),
+        basis: ordop.basis.columns,
         lo: moved(&ordop.lo, -1.0, down),
         hi: moved(&ordop.hi, 1.0, up),
     }

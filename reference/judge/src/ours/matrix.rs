@@ -1,5 +1,5 @@
-//! What was judged: the matrix strategy × overlap test × finder × k × axes × updates × tier × threads, a count of lists in
-//! each cell.
+//! What was judged: the matrix strategy × overlap test × finder × k × axes × updates × tier ×
+//! threads, a count of lists in each cell.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,8 @@ use super::ways::{Mode, Rotation, variants, ways};
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
 use sdop::volume::{Axes, DirectionSet};
 
-/// One cell. A strategy without an overlap test has one cell instead of one a test: the others can't exist.
+/// One cell. A strategy without an overlap test has one cell instead of one a test: the others
+/// can't exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Cell {
     /// The strategy.
@@ -98,8 +99,8 @@ impl Matrix {
         Cell::all(rotation).filter(is_empty).collect()
     }
 
-    /// The cells that fall together under a name: how many, how many of them are filled, and the fewest lists in one. In the
-    /// order of [`Cell::all`].
+    /// The cells that fall together under a name: how many, how many of them are filled, and the
+    /// fewest lists in one. In the order of [`Cell::all`].
     #[must_use]
     pub fn fold<K: PartialEq>(
         &self,

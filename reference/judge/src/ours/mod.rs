@@ -1,8 +1,10 @@
-//! The optimised culler against the exact reference: `optimised ⊇ reference predicate ⊇ exact mesh intersection`.
+//! The optimised culler against the exact reference: `optimised ⊇ reference predicate ⊇ exact mesh
+//! intersection`.
 //!
-//! [`answers`] are the reference's, pair by pair; [`compare()`] holds a culler's list against them. What is judged comes
-//! from seeds ([`draw`]: random crowds, and contacts put together on purpose), from the corpus of [`hard`] cases, and
-//! from scenes. Given [`boxes`] are held against their definition.
+//! [`answers`] are the reference's, pair by pair; [`compare()`] holds a culler's list against them.
+//! What is judged comes from seeds ([`draw`]: random crowds, and contacts put together on purpose),
+//! from the corpus of [`hard`] cases, and from scenes. Given [`boxes`] are held against their
+//! definition.
 
 pub mod answers;
 #[cfg(feature = "proptest")]

@@ -1,6 +1,7 @@
 //! The same tests as most programs write them: f32, no margin, no directed rounding.
 //!
-//! They are here to be wrong. A group of hard cases on which they miss nothing teaches nothing and is replaced.
+//! They are here to be wrong. A group of hard cases on which they miss nothing teaches nothing and
+//! is replaced.
 
 use sdop_reference as reference;
 
@@ -113,8 +114,8 @@ impl Posed {
         let (shape, polytope) = (&shapes.built[shape], &shapes.judged[shape].polytope);
         let length = q.iter().map(|x| x * x).sum::<f32>().sqrt();
         let q = glam::Quat::from_array(q.map(|x| x / length));
-        let turn = |v: glam::Vec3| (q * v).to_array();
-        let place = |v: glam::Vec3| {
+        let turn = |v: [f32; 3]| (q * glam::Vec3::from(v)).to_array();
+        let place = |v: [f32; 3]| {
             let p = turn(v);
             [p[0] + t[0], p[1] + t[1], p[2] + t[2]]
         };
@@ -126,7 +127,7 @@ impl Posed {
         };
         let ordop = &shape.ordop;
         let corners = polytope.rounded.iter().map(|xi| polytope.position(xi));
-        let corners = corners.map(|p| place(glam::DVec3::from(p).as_vec3()));
+        let corners = corners.map(|p| place(p.map(|x| x as f32)));
         let slabs = ordop.directions.coefficients().iter().enumerate();
         let slabs = slabs.map(|(i, &c)| {
             let normal = turn(ordop.basis.direction(c));

@@ -1,5 +1,5 @@
-//! What a verification run does with frames: exact answers once, then every way to cull against them and against
-//! all-pairs, in the modes whose turn it is.
+//! What a verification run does with frames: exact answers once, then every way to cull against
+//! them and against all-pairs, in the modes whose turn it is.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -78,7 +78,8 @@ pub struct Failure {
     pub frames: Vec<Bodies>,
     /// The pair.
     pub pair: [u32; 2],
-    /// Whether the exact answers ask for it; otherwise all-pairs has it and this list not, or the other way round.
+    /// Whether the exact answers ask for it; otherwise all-pairs has it and this list not, or the
+    /// other way round.
     pub missed: bool,
 }
 
@@ -146,8 +147,8 @@ pub struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Culls the frames in every way, way number `w` in the mode numbered `w` modulo their number, and holds every list
-    /// against the answers and against that of all-pairs.
+    /// Culls the frames in every way, way number `w` in the mode numbered `w` modulo their number,
+    /// and holds every list against the answers and against that of all-pairs.
     ///
     /// # Errors
     /// Settings that the bodies can't have.
@@ -233,7 +234,8 @@ impl Run<'_> {
 struct Expected<'a> {
     run: &'a Run<'a>,
     row: &'a CullSettings,
-    /// What all-pairs finds in the plainest mode, a list a frame, by tier: flush-to-zero may decide otherwise.
+    /// What all-pairs finds in the plainest mode, a list a frame, by tier: flush-to-zero may decide
+    /// otherwise.
     all_pairs: BTreeMap<&'static str, Vec<Vec<[u32; 2]>>>,
     /// Whether the margins explain an extra pair, by frame.
     explained: BTreeMap<(usize, [u32; 2]), bool>,
@@ -281,7 +283,8 @@ impl<'a> Expected<'a> {
     }
 }
 
-/// Judges runs of frames and culls them in every way; run number `n` takes turn `turn + n` of the rotation.
+/// Judges runs of frames and culls them in every way; run number `n` takes turn `turn + n` of the
+/// rotation.
 ///
 /// # Errors
 /// As [`Run::check`], and poses outside the contract.
@@ -339,7 +342,8 @@ pub const PARTNERS: usize = 1024;
 /// Bodies of a random round.
 pub const CROWD: usize = 150;
 
-/// One round: the frame of a seed for one or-DOP, judged by everything but the meshes. The seed is the turn, too.
+/// One round: the frame of a seed for one or-DOP, judged by everything but the meshes. The seed is
+/// the turn, too.
 ///
 /// # Errors
 /// As [`judge_and_check`].
@@ -372,7 +376,8 @@ pub fn round(
     )
 }
 
-/// Every procedural shape with a size of its own, and two about origins that are not their balls' centres.
+/// Every procedural shape with a size of its own, and two about origins that are not their balls'
+/// centres.
 fn pool() -> Vec<Form> {
     let mut forms: Vec<Form> = ProceduralShape::NAMES
         .iter()
@@ -397,8 +402,8 @@ fn contacts(seed: u64) -> ContactSpec {
     }
 }
 
-/// One group of hard cases for one or-DOP. As many groups as there are modes, numbered from 0, fill every cell: run `n` of
-/// group `g` takes turn `g + n`.
+/// One group of hard cases for one or-DOP. As many groups as there are modes, numbered from 0, fill
+/// every cell: run `n` of group `g` takes turn `g + n`.
 ///
 /// # Errors
 /// As [`judge_and_check`], and groups that can't be made.

@@ -1,10 +1,11 @@
 //! Every way to cull a frame, and in which mode each way takes its turn.
 //!
-//! A *way* decides what is reported: strategy × overlap test × finder, for one or-DOP (k, axes). A *mode* decides how it is
-//! computed and must change nothing: updates × tier × threads. Every way in every mode on every frame would cost twenty
-//! times as much, so a [`Rotation`] gives each way another mode in each turn. Nothing else may follow the turn's number in
-//! step, or a mode would always meet the same kind of case: the order of modes is drawn anew each time all have had
-//! their turn.
+//! A *way* decides what is reported: strategy × overlap test × finder, for one or-DOP (k, axes). A
+//! *mode* decides how it is computed and must change nothing: updates × tier × threads. Every way
+//! in every mode on every frame would cost twenty times as much, so a [`Rotation`] gives each way
+//! another mode in each turn. Nothing else may follow the turn's number in step, or a mode would
+//! always meet the same kind of case: the order of modes is drawn anew each time all have had their
+//! turn.
 
 use rand::SeedableRng as _;
 use rand::seq::SliceRandom as _;
@@ -54,7 +55,8 @@ pub fn ways(k: DirectionSet, axes: Axes) -> Vec<CullSettings> {
     rows((k, axes)).into_iter().flat_map(finders).collect()
 }
 
-/// Numbers of threads that take turns: the caller's alone, and more than most machines of a build farm have.
+/// Numbers of threads that take turns: the caller's alone, and more than most machines of a build
+/// farm have.
 pub const THREADS: [usize; 2] = [1, 3];
 
 /// How a list is computed; none may change it.
@@ -109,9 +111,11 @@ impl Rotation {
         &self.modes
     }
 
-    /// The modes in the order of this turn: way number `w` takes the one numbered `w` modulo their number.
+    /// The modes in the order of this turn: way number `w` takes the one numbered `w` modulo their
+    /// number.
     ///
-    /// In turns 0 … m − 1 with m modes, and in every m turns from a multiple of m on, each way has each mode once.
+    /// In turns 0 … m − 1 with m modes, and in every m turns from a multiple of m on, each way has
+    /// each mode once.
     #[must_use]
     pub fn turn(&self, turn: u64) -> Vec<Mode> {
         let mut order = self.modes.clone();

@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
-use miette::Diagnostic;
 use thiserror::Error;
 
 use super::VERSION;
 
 /// Why a record could not be written or read.
-#[derive(Debug, Error, Diagnostic)]
+#[derive(Debug, Error)]
 pub enum RecordError {
     /// The file can't be written.
     #[error("cannot write {file}: {cause}")]
@@ -20,7 +19,6 @@ pub enum RecordError {
     },
     /// The file can't be read.
     #[error("{file}: {cause}")]
-    #[diagnostic(help("give the path of a record: `sdop run SCENE --record FILE` writes one"))]
     Unreadable {
         /// The path as given.
         file: String,
@@ -29,9 +27,6 @@ pub enum RecordError {
     },
     /// Another kind of file.
     #[error("{file}:1: this is no record: {problem}")]
-    #[diagnostic(help(
-        "a record is lines of JSON, the first {{\"format\":\"sdop-record\",\"version\":1,…}}: `sdop run SCENE --record FILE` writes one"
-    ))]
     Stranger {
         /// The path as given.
         file: String,
@@ -40,9 +35,6 @@ pub enum RecordError {
     },
     /// A layout that this program doesn't know.
     #[error("{file}:1: the record has version {found}; this program reads version {VERSION}")]
-    #[diagnostic(help(
-        "read it with the sdop that wrote it, or write it again with `sdop run SCENE --record FILE`"
-    ))]
     Version {
         /// The path as given.
         file: String,
@@ -59,12 +51,29 @@ pub enum RecordError {
         /// What is wrong.
         problem: String,
         /// How to mend it.
-        #[help]
         hint: String,
     },
 }
 
 impl RecordError {
+    /// How to mend it, where that is known.
+    #[must_use]
+    pub fn help(&self) -> Option<&str> {
+        match self {
+            Self::Unwritable { .. } => None,
+            Self::Unreadable { .. } => {
+                Some("give the path of a record: `sdop run SCENE --record FILE` writes one")
+            }
+            Self::Stranger { .. } => Some(
+                "a record is lines of JSON, the first {\"format\":\"sdop-record\",\"version\":1,…}: `sdop run SCENE --record FILE` writes one",
+            ),
+            Self::Version { .. } => Some(
+                "read it with the sdop that wrote it, or write it again with `sdop run SCENE --record FILE`",
+            ),
+            Self::Line { hint, .. } => Some(hint),
+        }
+    }
+
     pub(super) fn unwritable(path: &Path, cause: std::io::Error) -> Self {
         Self::Unwritable {
             file: path.display().to_string(),

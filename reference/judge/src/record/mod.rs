@@ -1,9 +1,11 @@
-//! `sdop-record`, version 1: a run as lines of JSON, enough for a stranger's oracle to judge the pairs.
+//! `sdop-record`, version 1: a run as lines of JSON, enough for a stranger's oracle to judge the
+//! pairs.
 //!
-//! Line 1 holds shapes and bodies, every further line a frame with its poses and sorted pairs. Vertices, balls and slabs
-//! are the body-frame numbers exactly as built, before any inflation for rounding. A number is written as the shortest
-//! text of the f64 that equals it ([`crate::json`]); records with the shorter text of an f32 are read as well. Bodies and
-//! frames are counted from 0; frame numbers ascend.
+//! Line 1 holds shapes and bodies, every further line a frame with its poses and sorted pairs.
+//! Vertices, balls and slabs are the body-frame numbers exactly as built, before any inflation for
+//! rounding. A number is written as the shortest text of the f64 that equals it ([`crate::json`]);
+//! records with the shorter text of an f32 are read as well. Bodies and frames are counted from 0;
+//! frame numbers ascend.
 //!
 //! ```text
 //! {"format":"sdop-record","version":1,"scene":name,"seed":n,"shapes":[{"name","vertices":[[x,y,z]…],"triangles":[[a,b,c]…],
@@ -11,17 +13,20 @@
 //! {"frame":n,"poses":[[qx,qy,qz,qw,tx,ty,tz]…],"pairs":[[i,j]…]}
 //! ```
 //!
-//! Readers leave out keys that they don't know. Keys may be added without a new version, which counts what an old reader would
-//! get wrong; `minor` counts additions. Minor 1 added, all optional:
+//! Readers leave out keys that they don't know. Keys may be added without a new version, which
+//! counts what an old reader would get wrong; `minor` counts additions. Minors 1 and 2 added, all
+//! optional:
 //!
 //! | line | key | holds |
 //! |---|---|---|
-//! | first | `minor` | 1 |
+//! | first | `minor` | 2 |
 //! | first | `program` | who culled, with its version |
 //! | first | `dt`, `side` | seconds between frames; the side of the box about the origin |
 //! | first | `effects` | `[{"name","on"}…]`: what is simulated and what isn't |
 //! | first | `cull` | the `[cull]` table of the scene, as run |
 //! | frame | `counters` | `[{"volume","updates","tests","hits"}…]` of this frame, in the order of the tests |
+//! | frame | `translations` | `[[tx,ty,tz]…]` in f64 of every body, where f32 doesn't hold them all; `poses` then have the nearest f32 (minor 2) |
+//! | first | `frames` | how many frames the record has when it is complete (minor 2) |
 //! | frame | `meets` | the pairs, not both static, whose meshes meet in exact arithmetic, sorted |
 
 mod error;
@@ -44,7 +49,7 @@ pub const FORMAT: &str = "sdop-record";
 /// The version written and read here.
 pub const VERSION: u32 = 1;
 /// The additions to it that are written here.
-pub const MINOR: u32 = 1;
+pub const MINOR: u32 = 2;
 
 /// The first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -59,6 +64,9 @@ pub struct Header {
     /// Who culled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub program: Option<String>,
+    /// Frames that the record has when it is complete.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frames: Option<u32>,
     /// The scene's name.
     pub scene: String,
     /// Where all random draws started.
@@ -135,6 +143,9 @@ pub struct FrameLine {
     pub frame: u32,
     /// q (x, y, z, w), then t, of every body.
     pub poses: Vec<[f32; 7]>,
+    /// The translations of every body in f64, where f32 doesn't hold them all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub translations: Option<Vec<[f64; 3]>>,
     /// The reported pairs i < j, sorted.
     pub pairs: Vec<[u32; 2]>,
     /// What this frame's culling counted, in the order of its tests.
@@ -159,11 +170,11 @@ impl ShapeLine {
     /// A shape's numbers.
     #[must_use]
     pub fn of(shape: &Shape) -> Self {
-        let [x, y, z] = shape.ball.centre.to_array();
-        let [a, b, c] = shape.ordop.basis.columns.map(|column| column.to_array());
+        let [x, y, z] = shape.ball.centre;
+        let [a, b, c] = shape.ordop.basis.columns;
         Self {
             name: shape.name.clone(),
-            vertices: shape.vertices.iter().map(|v| v.to_array()).collect(),
+            vertices: shape.vertices.clone(),
             triangles: shape.triangles.clone(),
             ball: [x, y, z, shape.ball.radius],
             ordop: OrDopLine {
@@ -177,12 +188,9 @@ impl ShapeLine {
 
     /// The shape with these numbers, nothing computed anew; `None` for a k that no or-DOP has.
     fn shape(&self) -> Option<Shape> {
-        let vertices: Vec<_> = self.vertices.iter().map(|&v| v.into()).collect();
+        let vertices = self.vertices.clone();
         let [x, y, z, radius] = self.ball;
-        let [a, b, c] = [0, 3, 6].map(|at| {
-            let column = &self.ordop.basis[at..at + 3];
-            glam::Vec3::from_slice(column)
-        });
+        let columns = [0, 3, 6].map(|at| std::array::from_fn(|i| self.ordop.basis[at + i]));
         let mut sets = DirectionSet::ALL.iter();
         Some(Shape {
             name: self.name.clone(),
@@ -190,14 +198,14 @@ impl ShapeLine {
             scale: 1.0,
             pose_offset: [0.0; 3],
             rounding: 0.0,
-            reach: Ball::about(glam::Vec3::ZERO, &vertices).radius,
+            reach: Ball::about([0.0; 3], &vertices).radius,
             ball: Ball {
-                centre: [x, y, z].into(),
+                centre: [x, y, z],
                 radius,
             },
             ordop: OrDop {
                 directions: *sets.find(|set| set.k() == self.ordop.k)?,
-                basis: Basis { columns: [a, b, c] },
+                basis: Basis { columns },
                 lo: self.ordop.lo.clone(),
                 hi: self.ordop.hi.clone(),
             },

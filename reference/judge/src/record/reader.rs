@@ -1,4 +1,5 @@
-//! Reads a record line by line, so that it need not fit into memory. Anything amiss is an error with its line.
+//! Reads a record line by line, so that it need not fit into memory. Anything amiss is an error
+//! with its line.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -8,7 +9,7 @@ use serde::Deserialize;
 
 use super::{BodyLine, FORMAT, FrameLine, Header, RecordError, ShapeLine, VERSION};
 use sdop::bodies::Bodies;
-use sdop::bodies::contract::{ContractError, check_bodies, check_poses};
+use sdop::bodies::contract::{ContractError, check_bodies, check_pose, check_poses};
 use sdop::files::{MAX_BYTES, read_line};
 use sdop::volume::Shape;
 
@@ -37,7 +38,8 @@ impl Reader<BufReader<File>> {
     /// Opens a record and reads its first line.
     ///
     /// # Errors
-    /// A file that can't be read, is no record, or has another version; a first line that contradicts itself.
+    /// A file that can't be read, is no record, or has another version; a first line that
+    /// contradicts itself.
     pub fn open(path: &Path) -> Result<Self, RecordError> {
         let name = path.display().to_string();
         match File::open(path) {
@@ -99,10 +101,12 @@ impl<R: BufRead> Reader<R> {
         &self.bodies
     }
 
-    /// Reads the next frame and moves the bodies to it; `None` at the end. After an error nothing more can be read.
+    /// Reads the next frame and moves the bodies to it; `None` at the end. After an error nothing
+    /// more can be read.
     ///
     /// # Errors
-    /// A line that is no frame, or one that contradicts the first line: with its number and how to mend it.
+    /// A line that is no frame, or one that contradicts the first line: with its number and how to
+    /// mend it.
     pub fn next_frame(&mut self) -> Result<Option<FrameLine>, RecordError> {
         let mut text = Vec::new();
         loop {
@@ -156,10 +160,10 @@ impl<R: BufRead> Reader<R> {
         }
         frame.pose(&mut self.bodies);
         let posed = check_poses(&self.bodies, 0..self.bodies.len());
-        posed.map_err(|error: ContractError| {
-            let problem = format!("frame {}: {error}", frame.frame);
-            self.wrong(problem, error.hint)
-        })?;
+        posed.map_err(|error| self.outside(frame, &error))?;
+        if let Some(translations) = &frame.translations {
+            self.check_translations(frame, translations)?;
+        }
         for (name, pairs) in [
             ("pairs", Some(&frame.pairs)),
             ("meets", frame.meets.as_ref()),
@@ -171,6 +175,40 @@ impl<R: BufRead> Reader<R> {
             }
         }
         Ok(())
+    }
+
+    /// Checks a frame's f64 translations, of which its poses have the nearest f32.
+    fn check_translations(&self, frame: &FrameLine, all: &[[f64; 3]]) -> Result<(), RecordError> {
+        let Bodies {
+            rotation,
+            translation,
+            ..
+        } = &self.bodies;
+        let hint = "give every body its f64 translation, and its pose the nearest f32";
+        if all.len() != translation.len() {
+            let (given, bodies) = (all.len(), translation.len());
+            let problem = format!(
+                "frame {} has {given} translations for {bodies} bodies",
+                frame.frame
+            );
+            return Err(self.wrong(problem, hint));
+        }
+        for (body, t) in all.iter().enumerate() {
+            check_pose(body, &rotation[body], t).map_err(|error| self.outside(frame, &error))?;
+            if t.map(|x| x as f32) != translation[body] {
+                let problem = format!(
+                    "frame {}: body {body} has the translation {t:?} and the pose's {:?}",
+                    frame.frame, translation[body]
+                );
+                return Err(self.wrong(problem, hint));
+            }
+        }
+        Ok(())
+    }
+
+    /// The error for a body outside of the contract.
+    fn outside(&self, frame: &FrameLine, error: &ContractError) -> RecordError {
+        self.wrong(format!("frame {}: {error}", frame.frame), error.hint)
     }
 
     /// What is wrong with a list of pairs.

@@ -20,6 +20,7 @@ impl Header {
             version: VERSION,
             minor: MINOR,
             program: Some(concat!("sdop ", env!("CARGO_PKG_VERSION")).to_owned()),
+            frames: None,
             scene: scene.to_owned(),
             seed,
             dt: None,

@@ -1,6 +1,8 @@
-//! Cases as bytes for programs, and their answers. Two encodings of one content: lines of JSON, and words.
+//! Cases as bytes for programs, and their answers. Two encodings of one content: lines of JSON, and
+//! words.
 //!
-//! A program reads a header and then frames until its input ends, and answers each frame with one line.
+//! A program reads a header and then frames until its input ends, and answers each frame with one
+//! line.
 
 pub mod ndjson;
 pub mod text;

@@ -1,7 +1,8 @@
-//! Cases as lines of JSON: `sdop-record`, version 1, with what a case has on top. Unknown keys are ignored by readers.
+//! Cases as lines of JSON: `sdop-record`, version 1, with what a case has on top. Unknown keys are
+//! ignored by readers.
 //!
-//! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claim `aabb`, and `bodies` when the set
-//! changes, each with its former number as `was` (null for a new body).
+//! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claim `aabb`, and
+//! `bodies` when the set changes, each with its former number as `was` (null for a new body).
 
 use std::io::BufRead;
 
@@ -29,8 +30,8 @@ struct CaseHeader {
     about: About,
 }
 
-/// What a case's first line has on top of a record's. It is read on its own, because a number of a flattened structure
-/// would be rounded twice, to f64 and then to f32.
+/// What a case's first line has on top of a record's. It is read on its own, because a number of a
+/// flattened structure would be rounded twice, to f64 and then to f32.
 #[derive(Serialize, Deserialize)]
 struct About {
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -63,7 +64,8 @@ struct CaseFrame {
     pairs: Option<Vec<[u32; 2]>>,
 }
 
-/// A whole case for one claim; with the pairs that were reported of each frame, where there are any.
+/// A whole case for one claim; with the pairs that were reported of each frame, where there are
+/// any.
 pub(crate) fn encode(
     case: &Case,
     claim: Claim,
@@ -73,7 +75,10 @@ pub(crate) fn encode(
     let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
     let others = case.claims.iter().copied().filter(|other| *other != claim);
     let header = CaseHeader {
-        record: Header::new(&case.name, 0, &case.shapes, first),
+        record: Header {
+            frames: Some(case.frames.len() as u32),
+            ..Header::new(&case.name, 0, &case.shapes, first)
+        },
         about: About {
             flag: case.flag.clone(),
             source: case.source.clone(),
@@ -110,6 +115,8 @@ pub struct Read {
     pub case: Case,
     /// The pairs of each frame that has some.
     pub pairs: Vec<Option<Vec<[u32; 2]>>>,
+    /// Which frames aren't there, in words, if some aren't.
+    pub lacks: Option<String>,
 }
 
 /// Reads a case or a record whose lines have at most `most` bytes.
@@ -150,9 +157,18 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
         .collect::<Result<_, _>>()
         .map_err(|e| format!("line 1: {e}"))?;
     let (mut bodies, mut frames, mut pairs) = (header.bodies, Vec::new(), Vec::new());
+    let mut next = 0;
     for (number, line) in lines {
         let at = |problem: String| format!("line {number}: {problem}");
         let line: CaseFrame = parse(number, &line.map_err(|e| at(e.to_string()))?)?;
+        if line.frame < next {
+            return Err(at(format!(
+                "frame {} follows frame {}",
+                line.frame,
+                next - 1
+            )));
+        }
+        next = line.frame.saturating_add(1);
         let was = line.bodies.map(|changed| {
             let (set, was) = changed
                 .into_iter()
@@ -193,7 +209,13 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
         shapes,
         frames,
     };
-    Ok(Read { case, pairs })
+    let (there, wanted) = (
+        case.frames.len(),
+        header.frames.unwrap_or(0).max(next) as usize,
+    );
+    let lacks = (there == 0 || there < wanted)
+        .then(|| format!("the record has {there} of its {} frames", wanted.max(1)));
+    Ok(Read { case, pairs, lacks })
 }
 
 fn parse<T: for<'a> Deserialize<'a>>(number: usize, line: &[u8]) -> Result<T, String> {
@@ -293,7 +315,8 @@ mod tests {
         }
     }
 
-    /// Old text has 7.038531e-26, which is the f32 0x15ae43fd. By way of an f64 it would be the next one.
+    /// Old text may have 7.038531e-26, which is the f32 0x15ae43fd. By way of an f64 it would be
+    /// the next one.
     #[test]
     fn old_cases_are_read_without_rounding_twice() {
         let group = groups()
@@ -312,6 +335,7 @@ mod tests {
         };
         assert_eq!(read(&old).shapes[0].ball.radius.to_bits(), 0x15ae_43fd);
         assert_eq!(read(&new).frames, case.frames);
-        assert_eq!(read(&new).shapes, case.shapes);
+        let lines = |case: &Case| case.shapes.iter().map(ShapeLine::of).collect::<Vec<_>>();
+        assert_eq!(lines(&read(&new)), lines(&case));
     }
 }

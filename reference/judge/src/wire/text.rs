@@ -1,5 +1,5 @@
-//! Cases as words between white space: every count stands before what it counts, every f32 is its bits in eight hexadecimal
-//! digits. The page in `examples/judge` has the grammar.
+//! Cases as words between white space: every count stands before what it counts, every f32 is its
+//! bits in eight hexadecimal digits. The page in `examples/judge` has the grammar.
 
 use std::fmt::Write as _;
 
@@ -43,20 +43,13 @@ fn write_shape(text: &mut String, shape: &Shape) {
         text.push_str(name);
         hex(text, numbers);
     };
-    let [x, y, z] = shape.ball.centre.to_array();
+    let [x, y, z] = shape.ball.centre;
     line("ball", &[x, y, z, shape.ball.radius]);
-    line(
-        "basis",
-        slabs
-            .basis
-            .columns
-            .map(|column| column.to_array())
-            .as_flattened(),
-    );
+    line("basis", slabs.basis.columns.as_flattened());
     line("lo", &slabs.lo);
     line("hi", &slabs.hi);
     for vertex in vertices {
-        line("v", &vertex.to_array());
+        line("v", vertex);
     }
     for [a, b, c] in triangles {
         let _ = writeln!(text, "t {a} {b} {c}");

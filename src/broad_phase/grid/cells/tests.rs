@@ -1,7 +1,7 @@
 use super::*;
 
-/// Rows that one body looks through, its own and the others' views of it included, differ by up to two each way; three
-/// cells of each must not share a place.
+/// Rows that one body looks through, its own and the others' views of it included, differ by up to
+/// two each way; three cells of each must not share a place.
 #[test]
 fn rows_of_a_wrapped_table_lie_apart() {
     let bounds = Bounds {
@@ -84,8 +84,8 @@ fn the_farthest_centre_falls_in_the_last_cell() {
     }
 }
 
-/// A box's table has room for every body's cell; its cells are as small as that and the widest body allow, within a
-/// sixteenth.
+/// A box's table has room for every body's cell; its cells are as small as that and the widest body
+/// allow, within a sixteenth.
 #[test]
 fn cells_of_a_box_are_as_small_as_its_bodies_allow() {
     let mut larger = 0;
@@ -131,8 +131,8 @@ fn cells(count: [u8; 3]) -> Cells {
     cells
 }
 
-/// An empty cell lies behind each row, and an empty row behind each layer that has more than one; the table ends with the
-/// last cell that the last body looks at.
+/// An empty cell lies behind each row, and an empty row behind each layer that has more than one;
+/// the table ends with the last cell that the last body looks at.
 #[test]
 fn a_box_has_as_few_cells_as_looks_allow() {
     for (count, row, layer, farthest) in [

@@ -22,8 +22,9 @@ fn list(pairs: usize, candidates: u64, [own, typical]: [f64; 2]) -> Ended {
     }
 }
 
-/// What 2000 frames come to in which the fastest body moves by so many radii each, its own or typical ones, where a list
-/// without a skin has 0.75 pairs a body: lists made, frames that one served, and the policy by then.
+/// What 2000 frames come to in which the fastest body moves by so many radii each, its own or
+/// typical ones, where a list without a skin has 0.75 pairs a body: lists made, frames that one
+/// served, and the policy by then.
 fn frames(speeds: [f64; 2]) -> (u32, u32, Policy) {
     let (mut policy, mut since) = (Policy::default(), None);
     let (mut made, mut served) = (0, 0);
@@ -105,7 +106,8 @@ fn a_skin_is_a_share_or_a_length_and_brings_its_cube_of_pairs() {
     }
 }
 
-/// Within two skins a body has gone straight on; beyond, it has jumped, unless the list served no frame but its own.
+/// Within two skins a body has gone straight on; beyond, it has jumped, unless the list served no
+/// frame but its own.
 #[test]
 fn one_that_jumps_tells_nothing_of_the_others() {
     let never = f64::INFINITY;
@@ -141,8 +143,9 @@ fn a_list_that_was_too_long_is_tried_again_seldom() {
     assert!((12..24).contains(&made.count()));
 }
 
-/// Of a million bodies whose list with this skin served so many frames, until one was so far from its place: the skin of the
-/// next one, up to so many pairs and with a pair more, each with so many candidates. No skin is the grid's frames.
+/// Of a million bodies whose list with this skin served so many frames, until one was so far from
+/// its place: the skin of the next one, up to so many pairs and with a pair more, each with so many
+/// candidates. No skin is the grid's frames.
 #[test]
 fn the_next_skin_is_the_cheapest_to_the_pair() {
     const FAR: f64 = f64::INFINITY;

@@ -151,7 +151,8 @@ fn a_list_of_long_boxes_is_followed_until_an_end_leaves_its_grown_box() {
     }
 }
 
-/// A list of boxes serves while cubes decide, and one of cubes while they don't; the next one is made as the frame has it.
+/// A list of boxes serves while cubes decide, and one of cubes while they don't; the next one is
+/// made as the frame has it.
 #[test]
 fn lists_are_made_by_boxes_in_frames_of_long_ones_alone() {
     let mut needles = Needles::within(200.0); // or cubes had too many neighbours

@@ -28,8 +28,8 @@ pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {
     Ok(())
 }
 
-/// A column per strategy: what `sdop cost` draws of one scene. Where some take far longer than others, they have a panel of
-/// their own, so that the terms of all can be seen.
+/// A column per strategy: what `sdop cost` draws of one scene. Where some take far longer than
+/// others, they have a panel of their own, so that the terms of all can be seen.
 pub fn draw_strategies(area: &Area<'_>, scene: &str, costs: &[&Cost]) -> Drawn {
     let title = format!(
         "{scene}: where a warm frame's time goes, µs: predicted terms, and measured (•, 95 %)"
@@ -47,8 +47,8 @@ pub fn draw_strategies(area: &Area<'_>, scene: &str, costs: &[&Cost]) -> Drawn {
     panel(&right, "on another scale", &slow, name)
 }
 
-/// Costs in two parts at the widest gap between neighbours by time, if the slower take three times the faster ones' or more;
-/// the order within each part stays.
+/// Costs in two parts at the widest gap between neighbours by time, if the slower take three times
+/// the faster ones' or more; the order within each part stays.
 fn apart<'a>(costs: &[&'a Cost]) -> (Vec<&'a Cost>, Vec<&'a Cost>) {
     let time = |cost: &Cost| cost.frame.measured.mean;
     let mut times: Vec<f64> = costs.iter().map(|&cost| time(cost)).collect();

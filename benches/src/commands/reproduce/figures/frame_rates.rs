@@ -1,4 +1,5 @@
-//! The paper's Figs 12 and 13: frame rates of 500 objects in the crowded and in the usual box, for each F.
+//! The paper's Figs 12 and 13: frame rates of 500 objects in the crowded and in the usual box, for
+//! each F.
 
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;

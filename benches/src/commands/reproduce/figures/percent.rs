@@ -57,7 +57,8 @@ pub fn point(cell: &&Cell) -> (f64, f64) {
     (cell.bodies as f64, cell.measured.mean)
 }
 
-/// Means with whiskers, cut off at `lo` and `hi`, and the paper's numbers as hollow marks on a dashed line.
+/// Means with whiskers, cut off at `lo` and `hi`, and the paper's numbers as hollow marks on a
+/// dashed line.
 pub fn marks<Y>(
     chart: &mut Chart<'_, '_, Y>,
     cells: &[&Cell],

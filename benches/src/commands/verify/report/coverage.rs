@@ -1,5 +1,5 @@
-//! The matrix of what was judged, in two projections: thousands of cells are too many to read, and a tier, a mode or a
-//! finder that was left out shows in one of them.
+//! The matrix of what was judged, in two projections: thousands of cells are too many to read, and
+//! a tier, a mode or a finder that was left out shows in one of them.
 
 use sdop::settings::Strategy;
 use sdop_judge::ours::boxes::{BoxCell, BoxLedger};

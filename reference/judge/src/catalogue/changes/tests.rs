@@ -1,4 +1,5 @@
-//! A culler that keeps a body's old box along one axis is caught by every group of changes, whatever the axis.
+//! A culler that keeps a body's old box along one axis is caught by every group of changes,
+//! whatever the axis.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::truth::boxes_meet;
@@ -83,7 +84,8 @@ impl Contestant for Stale {
     }
 }
 
-/// Whether the published cases of a group pass a culler with these stale ends: 0 to 2 lower ones, 3 to 5 upper ones.
+/// Whether the published cases of a group pass a culler with these stale ends: 0 to 2 lower ones, 3
+/// to 5 upper ones.
 fn passes(group: &str, keeps: Keeps, ends: &[usize]) -> bool {
     let make = |_: &Scene<'_>| Stale {
         keeps,

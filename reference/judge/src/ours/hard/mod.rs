@@ -1,8 +1,9 @@
 //! The corpus of hard cases: groups stored by recipe and seed, each with its exact answers.
 //!
-//! A group's file says what is drawn and, for every or-DOP (k, axes), which pairs overlap by each predicate: one bit a
-//! pair, hexadecimal, in the order of runs, frames and sorted pairs. The answers were computed by the exact reference
-//! when they were recorded and are checked against it ever after.
+//! A group's file says what is drawn and, for every or-DOP (k, axes), which pairs overlap by each
+//! predicate: one bit a pair, hexadecimal, in the order of runs, frames and sorted pairs. The
+//! answers were computed by the exact reference when they were recorded and are checked against it
+//! ever after.
 
 use std::collections::BTreeMap;
 
@@ -35,7 +36,8 @@ pub struct Group {
     pub why: String,
     /// Where all draws start.
     pub seed: u64,
-    /// Predicates that hold for every pair of a dynamic and a static body by construction, whatever the reference says.
+    /// Predicates that hold for every pair of a dynamic and a static body by construction, whatever
+    /// the reference says.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub known: Vec<String>,
     /// How bodies are arranged.

@@ -40,7 +40,8 @@ pub enum Recipe {
         #[serde(default)]
         jumps: usize,
     },
-    /// Balls whose centres differ by 24-bit Pythagorean quadruples, radii adding up to the distance exactly.
+    /// Balls whose centres differ by 24-bit Pythagorean quadruples, radii adding up to the distance
+    /// exactly.
     Quadruples {
         /// Partners of the probe.
         partners: usize,
@@ -57,7 +58,8 @@ pub enum Recipe {
         /// The most bodies of a scene.
         most: usize,
     },
-    /// Balls on a cubic lattice that is turned by a 24-bit integer quaternion, so that neighbours touch exactly.
+    /// Balls on a cubic lattice that is turned by a 24-bit integer quaternion, so that neighbours
+    /// touch exactly.
     Lattice {
         /// Balls along each edge.
         edge: usize,
@@ -171,7 +173,8 @@ fn chain(
     bodies
 }
 
-/// The frame, then for each jump one far away with places exchanged, and the first again. Static bodies stay.
+/// The frame, then for each jump one far away with places exchanged, and the first again. Static
+/// bodies stay.
 fn jumping(first: Bodies, jumps: usize) -> Vec<Bodies> {
     let mut frames = vec![first.clone()];
     for jump in 0..jumps {
@@ -187,7 +190,8 @@ fn jumping(first: Bodies, jumps: usize) -> Vec<Bodies> {
     frames
 }
 
-/// (m²+n²−p²−q², 2(mq+np), 2(nq−mp)) and its length m²+n²+p²+q² < 2²⁴, all nearly as long as f32 holds.
+/// (m²+n²−p²−q², 2(mq+np), 2(nq−mp)) and its length m²+n²+p²+q² < 2²⁴, all nearly as long as f32
+/// holds.
 fn quadruple(rng: &mut impl Rng) -> ([f32; 3], f32) {
     loop {
         let [m, n, p, q]: [i64; 4] = std::array::from_fn(|_| rng.random_range(-2047..=2047));
@@ -203,7 +207,8 @@ fn quadruple(rng: &mut impl Rng) -> ([f32; 3], f32) {
     }
 }
 
-/// Every pair of the probe and a partner touches, exactly (unless nudged); the bounding balls are set, not computed.
+/// Every pair of the probe and a partner touches, exactly (unless nudged); the bounding balls are
+/// set, not computed.
 fn quadruples(mut shapes: Shapes, nudged: bool, rng: &mut impl Rng) -> Cases {
     let mut bodies = Bodies::default();
     let last = shapes.built.len() - 1;

@@ -1,0 +1,87 @@
+//! Errors of the library and the judge as miette's diagnostics: those crates name a remedy, the
+//! program prints it.
+
+use std::error::Error;
+use std::fmt::Display;
+
+use miette::{Diagnostic, Result};
+
+/// An error that may say how to mend it.
+pub trait Remedy: Error + Send + Sync + 'static {
+    /// How to mend it.
+    fn remedy(&self) -> Option<String>;
+}
+
+/// Errors whose `help` is always there.
+macro_rules! always {
+    ($($error:ty),+ $(,)?) => {
+        $(impl Remedy for $error {
+            fn remedy(&self) -> Option<String> {
+                Some(self.help().to_string())
+            }
+        })+
+    };
+}
+
+always!(
+    sdop::bodies::contract::ContractError,
+    sdop::choice::UnknownChoice,
+    sdop::culler::CullError,
+    sdop::mesh::MeshError,
+    sdop::mesh::shapes::ShapeError,
+    sdop::settings::SettingsError,
+    sdop::threads::ThreadsError,
+    sdop::volume::VolumeError,
+    sdop::world::SnapshotError,
+    sdop::world::WorldError,
+);
+
+impl Remedy for sdop_judge::record::RecordError {
+    fn remedy(&self) -> Option<String> {
+        self.help().map(str::to_owned)
+    }
+}
+
+/// An error with its remedy, as a diagnostic that prints the same message and the remedy as its
+/// help.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(transparent)]
+pub struct Explained<E: Remedy>(#[from] pub E);
+
+impl<E: Remedy> Diagnostic for Explained<E> {
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        let help = self.0.remedy()?;
+        Some(Box::new(help))
+    }
+}
+
+/// Results whose error becomes a report with its remedy.
+pub trait OrReport<T> {
+    /// The value, or the error as a report.
+    ///
+    /// # Errors
+    /// The same error.
+    fn or_report(self) -> Result<T>;
+}
+
+impl<T, E: Remedy> OrReport<T> for Result<T, E> {
+    fn or_report(self) -> Result<T> {
+        self.map_err(|error| Explained(error).into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use sdop::threads::Threads;
+
+    use super::OrReport as _;
+
+    #[test]
+    fn reports_keep_message_and_remedy() {
+        let report = Threads::new(5000).or_report().unwrap_err();
+        assert!(report.to_string().contains("5000 threads"));
+        assert_eq!(report.help().unwrap().to_string(), "ask for fewer threads");
+    }
+}

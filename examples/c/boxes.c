@@ -1,0 +1,63 @@
+/* Boxes of an engine in, pairs that meet out; then a world in which they come and go. C11. */
+#include <assert.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "sdop.h"
+
+static void check(SdopStatus status) {
+    if (status != SDOP_STATUS_OK) {
+        fprintf(stderr, "%s\n", sdop_last_error());
+        exit(1);
+    }
+}
+
+static void print_event(void *user, SdopEvent event) {
+    const char *const kinds[] = {"begun", "persisting", "ended"};
+    printf("%s: %" PRIx64 " and %" PRIx64 "\n", kinds[event.kind], event.pair.first, event.pair.second);
+    ++*(int *)user;
+}
+
+int main(void) {
+    const SdopBox boxes[] = {
+        {{0, 0, 0}, {1, 1, 1}},
+        {{1, 0, 0}, {2, 1, 1}}, /* touches the first: touching is meeting */
+        {{5, 5, 5}, {6, 6, 6}},
+    };
+    const size_t count = sizeof boxes / sizeof *boxes;
+
+    SdopBoxCuller *culler;
+    check(sdop_box_culler_new(NULL, 1, &culler));
+    size_t found;
+    check(sdop_box_culler_cull(culler, boxes, NULL, count, &found));
+    SdopPair *pairs = malloc((found + 1) * sizeof *pairs);
+    check(sdop_box_culler_pairs(culler, pairs, found, &found));
+    for (size_t i = 0; i < found; ++i) printf("boxes %u and %u meet\n", pairs[i].first, pairs[i].second);
+    assert(found == 1 && pairs[0].first == 0 && pairs[0].second == 1);
+    free(pairs);
+    sdop_box_culler_free(culler);
+
+    SdopBoxWorld *world;
+    check(sdop_box_world_new(NULL, 1, &world));
+    uint64_t ids[3];
+    for (size_t i = 0; i < count; ++i) {
+        const SdopBoxBody body = {boxes[i], false, false, {UINT32_MAX, UINT32_MAX}};
+        check(sdop_box_world_insert(world, &body, &ids[i]));
+    }
+    int events = 0;
+    check(sdop_box_world_cull(world, &found));
+    check(sdop_box_world_events(world, print_event, &events));
+    check(sdop_box_world_remove(world, ids[1]));
+    check(sdop_box_world_cull(world, &found));
+    check(sdop_box_world_events(world, print_event, &events));
+    assert(found == 0 && events == 2);
+
+    /* What is refused says how to mend it. */
+    const SdopBox inside_out = {{1, 0, 0}, {0, 1, 1}};
+    const SdopStatus status = sdop_box_world_set_bounds(world, &ids[0], &inside_out, 1);
+    assert(status == SDOP_STATUS_REFUSED);
+    printf("%s\n", sdop_last_error());
+    sdop_box_world_free(world);
+    return 0;
+}

@@ -1,0 +1,96 @@
+// Meshes with poses of an engine: a fixed set, then a world with margins that is saved and rolled back. C++17.
+#include <array>
+#include <cassert>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "sdop.h"
+
+namespace {
+
+void check(SdopStatus status) {
+    if (status != SDOP_STATUS_OK) throw std::runtime_error(sdop_last_error());
+}
+
+template <typename T, void (*FREE)(T *)>
+struct Free {
+    void operator()(T *handle) const { FREE(handle); }
+};
+using Shape = std::unique_ptr<SdopShape, Free<SdopShape, sdop_shape_free>>;
+using Culler = std::unique_ptr<SdopCuller, Free<SdopCuller, sdop_culler_free>>;
+using World = std::unique_ptr<SdopWorld, Free<SdopWorld, sdop_world_free>>;
+
+Shape tetrahedron() {
+    const double vertices[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const std::uint32_t triangles[][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    SdopShape *shape = nullptr;
+    check(sdop_shape_new(vertices, 4, triangles, 4, nullptr, &shape));
+    return Shape(shape);
+}
+
+std::vector<SdopIdPair> pairs_of(SdopWorld *world) {
+    std::size_t count = 0;
+    check(sdop_world_cull(world, &count));
+    std::vector<SdopIdPair> pairs(count);
+    check(sdop_world_pairs(world, pairs.data(), pairs.size(), &count));
+    return pairs;
+}
+
+void a_fixed_set(const SdopShape *shape) {
+    const std::uint32_t shapes[] = {0, 0, 0};
+    const float rotations[][4] = {{0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}};
+    float translations[][3] = {{0, 0, 0}, {0.5F, 0, 0}, {9, 0, 0}};
+    SdopBodies bodies{};
+    bodies.count = 3;
+    bodies.shape = shapes;
+    bodies.rotation = rotations;
+    bodies.translation = translations;
+    SdopCuller *made = nullptr;
+    check(sdop_culler_new(&shape, 1, &bodies, nullptr, &made));
+    const Culler culler(made);
+    std::size_t count = 0;
+    check(sdop_culler_cull(culler.get(), rotations, translations, &count));
+    assert(count == 1);
+    translations[2][0] = 1; // touches the second's corner
+    check(sdop_culler_cull(culler.get(), rotations, translations, &count));
+    assert(count == 3);
+    std::array<SdopPair, 3> pairs{};
+    assert(sdop_culler_pairs(culler.get(), pairs.data(), 1, &count) == SDOP_STATUS_TOO_SMALL && count == 3);
+    check(sdop_culler_pairs(culler.get(), pairs.data(), pairs.size(), &count));
+    for (const auto &[first, second] : pairs) std::printf("%u and %u might touch\n", first, second);
+}
+
+void a_world(const SdopShape *shape) {
+    SdopWorld *made = nullptr;
+    check(sdop_world_new(&shape, 1, nullptr, &made));
+    const World world(made);
+    std::array<std::uint64_t, 2> ids{};
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const SdopBody body{0, false, {0, 0, 0, 1}, {1000000031.5 + 0.7 * static_cast<double>(i), 0, 0}, 0, {~0U, ~0U}};
+        check(sdop_world_insert(world.get(), &body, &ids[i]));
+    }
+    assert(pairs_of(world.get()).size() == 1); // they overlap by 0.3, a billion units from the origin
+
+    std::size_t bytes = 0;
+    sdop_world_snapshot(world.get(), nullptr, 0, &bytes);
+    std::vector<std::uint8_t> saved(bytes);
+    check(sdop_world_snapshot(world.get(), saved.data(), saved.size(), &bytes));
+
+    const float rotation[][4] = {{0, 0, 0, 1}};
+    const double far_away[][3] = {{0, 0, 0}};
+    check(sdop_world_set_poses(world.get(), &ids[1], rotation, far_away, 1));
+    assert(pairs_of(world.get()).empty());
+    check(sdop_world_restore(world.get(), saved.data(), saved.size()));
+    assert(pairs_of(world.get()).size() == 1);
+}
+
+} // namespace
+
+int main() {
+    const Shape shape = tetrahedron();
+    a_fixed_set(shape.get());
+    a_world(shape.get());
+    std::puts("all as expected");
+}

@@ -1,0 +1,52 @@
+"""Collision culling that never misses a touching pair, and the exact judge that proves it.
+
+>>> import numpy as np, sdop
+>>> boxes = np.array([[0, 0, 0, 1, 1, 1], [1, 0, 0, 2, 1, 1], [5, 5, 5, 6, 6, 6]], dtype=np.float32)
+>>> sdop.box_pairs(boxes)
+array([[0, 1]], dtype=uint32)
+
+Lengths have any one unit. Axes are right-handed; rotations are quaternions x, y, z, w of any non-zero norm that turn a body's
+frame into the world's. Columns are float32: arrays of float64 are taken where float32 holds each number exactly, and refused
+otherwise, because the answer would be about other numbers. `World` takes float64 translations as they are.
+
+Classes may be used from several threads; calls on one object take turns, and other threads of Python run meanwhile. Arrays are
+read where they are: don't write to one while a call reads it.
+"""
+
+from __future__ import annotations
+
+from ._sdop import (
+    BoxCuller,
+    BoxWorld,
+    Culler,
+    Events,
+    Scene,
+    SdopError,
+    Shape,
+    World,
+    box_pairs,
+    exact_meet,
+)
+from .boxes import rounded_outward
+from .collision import CollisionManager
+from .laboratory import MissedPair, Verdict, cost, judge, tradeoff
+
+__all__ = [
+    "BoxCuller",
+    "BoxWorld",
+    "CollisionManager",
+    "Culler",
+    "Events",
+    "MissedPair",
+    "Scene",
+    "SdopError",
+    "Shape",
+    "Verdict",
+    "World",
+    "box_pairs",
+    "cost",
+    "exact_meet",
+    "judge",
+    "rounded_outward",
+    "tradeoff",
+]

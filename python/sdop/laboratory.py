@@ -1,0 +1,143 @@
+"""The judge and the measurements."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _sdop
+from ._sdop import Scene, SdopError
+
+
+@dataclass(frozen=True)
+class MissedPair:
+    """The smallest case that a culler still fails."""
+
+    case: str
+    frame: int
+    pair: tuple[int, int]
+    point: tuple[float, float, float] | None
+    """A point that both bodies share, rounded to float64."""
+    boxes: NDArray[np.float32] = field(repr=False)
+    """The boxes of that frame, shape (n, 6)."""
+    files: dict[str, bytes] = field(repr=False)
+    """The case for ``sdop view`` and ``sdop judge --replay``, and its meshes."""
+
+    def save(self, folder: str | os.PathLike[str]) -> None:
+        """Writes the files into a folder, which must exist."""
+        for name, content in self.files.items():
+            Path(folder, name).write_bytes(content)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the judge says of a culler; true if it is a pass."""
+
+    passed: bool
+    text: str = field(repr=False)
+    """The summary, as the command prints it."""
+    data: dict[str, Any] = field(repr=False)
+    """Every case, as the command's ``--format json`` has it."""
+    missed: MissedPair | None = None
+    """The smallest case of a miss, if there is one."""
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def __str__(self) -> str:
+        return self.text
+
+    @property
+    def cases(self) -> list[dict[str, Any]]:
+        """A row for each case that was run."""
+        cases: list[dict[str, Any]] = self.data["cases"]
+        return cases
+
+
+def judge(
+    make: Callable[[Scene], Any],
+    claims: str = "mesh",
+    *,
+    cases: str = "*",
+    seed: int | None = None,
+    extra_limit: float | None = None,
+    fail_fast: bool = False,
+) -> Verdict:
+    """Judges a culler against the exact reference.
+
+    Parameters
+    ----------
+    make : a class, or anything else that makes a culler of a `Scene`
+        The culler has ``frame(rotations, translations)``, which returns the pairs i < j as an array of shape (m, 2); with the
+        claim "aabb" it has ``frame(boxes)``. If its set of bodies can change, it has ``change(body_shapes, dynamic, was)``,
+        where ``was`` holds each body's former number, or -1; otherwise cases with such a change are skipped.
+    claims : {"mesh", "hull", "or-dop", "sphere", "aabb"}
+        What it never misses.
+    cases : str
+        Names of cases; ``*`` stands for any text.
+    seed : int, optional
+        Adds fresh cases.
+    extra_limit : float, optional
+        The most extra pairs for each required one; otherwise they are only counted.
+    fail_fast : bool
+        Whether to stop at the first failure.
+    """
+    passed, text, data, smallest = _sdop.judge(make, claims, cases, seed, extra_limit, fail_fast)
+    if smallest is None:
+        return Verdict(passed, text, json.loads(data))
+    found, boxes, files = smallest
+    missed = MissedPair(**json.loads(found), boxes=boxes, files={name: bytes(content) for name, content in files})
+    return Verdict(passed, text, json.loads(data), missed)
+
+
+def cost(scene: str | os.PathLike[str], *flags: str) -> list[dict[str, str | float]]:
+    """What each strategy costs on a scene: T = Nu·Cu + Nv·Cv + Co (+ F), predicted and measured.
+
+    Parameters
+    ----------
+    scene : path of a scene file
+    flags : str
+        Further flags of ``sdop cost``, such as ``"--strategy=s-dop"``.
+
+    Returns
+    -------
+    list of dict
+        The rows of ``sdop cost --format csv``, for ``pandas.DataFrame``.
+    """
+    return _rows("cost", os.fspath(scene), *flags)
+
+
+def tradeoff(scene: str | os.PathLike[str], *flags: str) -> list[dict[str, str | float]]:
+    """What accuracy costs in time on a scene, for every volume and strategy.
+
+    Parameters and result as for `cost`; the rows are those of ``sdop tradeoff --format csv``.
+    """
+    return _rows("tradeoff", os.fspath(scene), *flags)
+
+
+def _rows(*arguments: str) -> list[dict[str, str | float]]:
+    """Runs the command in a process of its own, which can be interrupted, and reads its table."""
+    command = [sys.executable, "-m", "sdop", *arguments, "--format", "csv"]
+    run = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8")
+    if run.returncode == 2:
+        raise SdopError(run.stderr.strip())
+    table = csv.DictReader(io.StringIO(run.stdout))
+    return [{name: _number(text) for name, text in row.items()} for row in table]
+
+
+def _number(text: str) -> str | float:
+    try:
+        return float(text)
+    except ValueError:
+        return text

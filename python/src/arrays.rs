@@ -1,0 +1,223 @@
+//! Arrays of numpy as rows of numbers, and back.
+//!
+//! One rule for all columns of f32: an array of float32 whose rows lie one behind the other is read
+//! where it is; any other array of numbers is copied; a number that float32 can't hold is refused,
+//! since the answer would be about another one.
+
+use numpy::{
+    PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn,
+    PyUntypedArrayMethods as _,
+};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::errors::with_help;
+
+/// Rows of N numbers, borrowed from an array of numpy or copied.
+pub enum Rows<'py, const N: usize> {
+    Borrowed(PyReadonlyArrayDyn<'py, f32>),
+    Copied(Vec<f32>),
+}
+
+impl<const N: usize> Rows<'_, N> {
+    /// The rows.
+    pub fn rows(&self) -> &[[f32; N]] {
+        let numbers = match self {
+            // checked when it was borrowed
+            Self::Borrowed(array) => array.as_slice().unwrap_or_default(),
+            Self::Copied(numbers) => numbers,
+        };
+        numbers.as_chunks().0
+    }
+}
+
+/// A column of rows of N numbers in f32. `what` names it in errors, `remedy` says what to do with
+/// numbers that f32 can't hold.
+pub fn rows<'py, const N: usize>(
+    given: &Bound<'py, PyAny>,
+    what: &str,
+    remedy: &str,
+) -> PyResult<Rows<'py, N>> {
+    if let Ok(array) = given.cast::<PyArrayDyn<f32>>() {
+        check_shape::<N>(array.shape(), what)?;
+        let array = array.readonly();
+        return Ok(if array.is_c_contiguous() {
+            Rows::Borrowed(array)
+        } else {
+            Rows::Copied(array.as_array().iter().copied().collect())
+        });
+    }
+    let (array, shape) = as_f64(given, what)?;
+    check_shape::<N>(&shape, what)?;
+    let numbers = array.into_iter().enumerate().map(|(at, wide)| {
+        let narrow = wide as f32;
+        let is_same = f64::from(narrow) == wide || wide.is_nan();
+        is_same
+            .then_some(narrow)
+            .ok_or_else(|| with_help(inexact(what, at, N, wide), remedy))
+    });
+    Ok(Rows::Copied(numbers.collect::<PyResult<_>>()?))
+}
+
+fn inexact(what: &str, at: usize, n: usize, number: f64) -> String {
+    let (row, column) = (at / n, at % n);
+    format!("{what}[{row}, {column}] is {number:?}, which float32 can't hold exactly")
+}
+
+/// A column of rows of N numbers in f64.
+pub fn wide_rows<const N: usize>(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[f64; N]>> {
+    let (numbers, shape) = as_f64(given, what)?;
+    check_shape::<N>(&shape, what)?;
+    Ok(numbers.as_chunks().0.to_vec())
+}
+
+/// Whole numbers from 0 to 2³² − 1, in rows of N; `shape` says which shapes are taken.
+pub fn whole_rows<const N: usize>(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[u32; N]>> {
+    let (numbers, shape) = whole(given, what)?;
+    check_shape::<N>(&shape, what)?;
+    Ok(numbers.as_chunks().0.to_vec())
+}
+
+/// A column of whole numbers from 0 to 2³² − 1.
+pub fn whole_column(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<u32>> {
+    let (numbers, shape) = whole(given, what)?;
+    check_column(&shape, what)?;
+    Ok(numbers)
+}
+
+/// A column of ids.
+pub fn id_column(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<u64>> {
+    let array = as_array(given, "uint64", what)?;
+    let array = array.cast::<PyArrayDyn<u64>>()?;
+    check_column(array.shape(), what)?;
+    Ok(array.readonly().as_array().iter().copied().collect())
+}
+
+/// A column of true and false.
+pub fn flags(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<bool>> {
+    let array = numpy(given.py())?.call_method1("asarray", (given,))?;
+    let Ok(array) = array.cast::<PyArrayDyn<bool>>() else {
+        let text = format!("{what} has dtype {}", array.getattr("dtype")?);
+        return Err(PyTypeError::new_err(format!("{text}, and must be of bool")));
+    };
+    check_column(array.shape(), what)?;
+    Ok(array.readonly().as_array().iter().copied().collect())
+}
+
+fn whole(given: &Bound<'_, PyAny>, what: &str) -> PyResult<(Vec<u32>, Vec<usize>)> {
+    let array = as_array(given, "int64", what)?;
+    let array = array.cast::<PyArrayDyn<i64>>()?;
+    let numbers = array.readonly();
+    let numbers = numbers
+        .as_array()
+        .iter()
+        .map(|&number| {
+            u32::try_from(number).map_err(|_| {
+                with_help(
+                    format!("{what} has the number {number}"),
+                    "numbers of shapes, bodies and vertices are at least 0 and below 2**32",
+                )
+            })
+        })
+        .collect::<PyResult<Vec<u32>>>()?;
+    Ok((numbers, array.shape().to_vec()))
+}
+
+fn as_f64(given: &Bound<'_, PyAny>, what: &str) -> PyResult<(Vec<f64>, Vec<usize>)> {
+    let array = as_array(given, "float64", what)?;
+    let array = array.cast::<PyArrayDyn<f64>>()?;
+    let numbers = array.readonly().as_array().iter().copied().collect();
+    Ok((numbers, array.shape().to_vec()))
+}
+
+/// Anything that numpy takes for an array of numbers, in another type of the same kind: no fraction
+/// is cut off.
+fn as_array<'py>(
+    given: &Bound<'py, PyAny>,
+    dtype: &str,
+    what: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    let array = numpy(given.py())?.call_method1("asarray", (given,))?;
+    if array.getattr("size")?.extract::<usize>()? == 0 {
+        return array.call_method1("astype", (dtype,)); // an empty list has no kind
+    }
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    let fits = match dtype {
+        "float64" => ["f", "i", "u"].contains(&kind.as_str()),
+        _ => ["i", "u"].contains(&kind.as_str()),
+    };
+    if !fits {
+        let text = format!("{what} has dtype {}", array.getattr("dtype")?);
+        return Err(PyTypeError::new_err(format!(
+            "{text}, and must be of {dtype}"
+        )));
+    }
+    let options = PyDict::new(given.py());
+    options.set_item("copy", false)?;
+    array.call_method("astype", (dtype,), Some(&options))
+}
+
+fn numpy(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
+    py.import("numpy")
+}
+
+/// (rows, N), or for boxes also (rows, 2, 3).
+fn check_shape<const N: usize>(shape: &[usize], what: &str) -> PyResult<()> {
+    match shape {
+        [_, columns] if *columns == N => Ok(()),
+        [_, 2, 3] if N == 6 => Ok(()),
+        [0] => Ok(()),
+        _ => {
+            let wanted = if N == 6 {
+                "(n, 6) or (n, 2, 3)".to_owned()
+            } else {
+                format!("(n, {N})")
+            };
+            Err(with_help(
+                format!("{what} has shape {shape:?}"),
+                format!("its shape must be {wanted}"),
+            ))
+        }
+    }
+}
+
+fn check_column(shape: &[usize], what: &str) -> PyResult<()> {
+    match shape {
+        [_] => Ok(()),
+        _ => Err(with_help(
+            format!("{what} has shape {shape:?}"),
+            "its shape must be (n,)",
+        )),
+    }
+}
+
+/// Checks that two columns have one entry for each body.
+pub fn check_length(what: &str, length: usize, bodies: usize) -> PyResult<()> {
+    if length == bodies {
+        return Ok(());
+    }
+    Err(with_help(
+        format!("{what} has {length} rows for {bodies} bodies"),
+        "all columns have one row per body",
+    ))
+}
+
+/// Rows of two as an array of shape (rows, 2), which takes the vector over.
+pub fn pairs<T: numpy::Element>(
+    py: Python<'_>,
+    pairs: Vec<[T; 2]>,
+) -> PyResult<Bound<'_, PyArray2<T>>> {
+    let rows = pairs.len();
+    let flat = PyArray1::from_vec(py, pairs.into_flattened());
+    flat.reshape([rows, 2])
+}
+
+/// Rows of N as an array of shape (rows, N).
+pub fn matrix<'py, T: numpy::Element + Copy, const N: usize>(
+    py: Python<'py>,
+    rows: &[[T; N]],
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let flat: Bound<'py, PyArray<T, _>> = PyArray1::from_slice(py, rows.as_flattened());
+    flat.reshape([rows.len(), N])
+}

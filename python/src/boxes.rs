@@ -1,0 +1,258 @@
+//! Boxes on the world's axes.
+
+use std::sync::Mutex;
+
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use sdop::bodies::Motion;
+use sdop::boxes::BoxBody;
+use sdop::{Aabb, BodyId, Finder, Groups, PairList};
+
+use super::arrays::{Rows, check_length, id_column, pairs, rows, whole_rows};
+use super::errors::{locked, refused, with_help};
+use super::ids::bits_of;
+use super::world::Events;
+
+const ROUND: &str = "pass float32, or `sdop.rounded_outward(boxes)`, which misses none and may report boxes that all but touch";
+
+fn boxes<'py>(given: &Bound<'py, PyAny>) -> PyResult<Rows<'py, 6>> {
+    rows(given, "boxes", ROUND)
+}
+
+/// Pairs as rows, sorted if wanted.
+pub(super) fn list(found: &PairList, sort: bool) -> Vec<[u32; 2]> {
+    if sort {
+        found.sorted()
+    } else {
+        found.iter().collect()
+    }
+}
+
+/// Groups as two numbers: those that a body is in, and those that it collides with.
+pub(super) fn groups(
+    given: Option<&Bound<'_, PyAny>>,
+    bodies: usize,
+) -> PyResult<Option<Vec<Groups>>> {
+    let Some(given) = given else { return Ok(None) };
+    let given = whole_rows::<2>(given, "groups")?;
+    check_length("groups", given.len(), bodies)?;
+    let groups = given
+        .into_iter()
+        .map(|[member, mask]| Groups { member, mask });
+    Ok(Some(groups.collect()))
+}
+
+/// Which boxes meet? Touching is meeting.
+///
+/// Parameters ---------- boxes : array of float32, shape (n, 6) or (n, 2, 3) Lower corner x, y, z,
+/// then the upper one. float64 is taken where float32 holds each number exactly. groups : array of
+/// whole numbers, shape (n, 2), optional Bits of the groups that each box is in, and of those that
+/// it collides with. sort : bool Whether the rows are sorted; otherwise their order is the same for
+/// the same boxes. threads : int Number of threads.
+///
+/// Returns
+/// -------
+/// array of uint32, shape (m, 2)
+///     Each pair i < j once: exactly those that share a point in exact arithmetic.
+#[pyfunction]
+#[pyo3(signature = (boxes, *, groups=None, sort=false, threads=1))]
+pub fn box_pairs<'py>(
+    py: Python<'py>,
+    boxes: &Bound<'py, PyAny>,
+    groups: Option<&Bound<'py, PyAny>>,
+    sort: bool,
+    threads: usize,
+) -> PyResult<Bound<'py, PyArray2<u32>>> {
+    BoxCuller::new("auto", threads)?.cull(py, boxes, groups, sort)
+}
+
+/// Finds the boxes that meet, frame after frame: faster than `box_pairs`, since what one frame
+/// finds serves the next.
+///
+/// Parameters
+/// ----------
+/// finder : str
+///     Who finds the candidates; the reported set doesn't depend on it.
+/// threads : int
+///     Number of threads.
+#[pyclass(frozen, module = "sdop")]
+pub struct BoxCuller(Mutex<sdop::BoxCuller>);
+
+#[pymethods]
+impl BoxCuller {
+    #[new]
+    #[pyo3(signature = (*, finder="auto", threads=1))]
+    fn new(finder: &str, threads: usize) -> PyResult<Self> {
+        let finder: Finder = finder.parse().map_err(refused)?;
+        let builder = sdop::BoxCuller::builder().finder(finder).threads(threads);
+        Ok(Self(Mutex::new(builder.build().map_err(refused)?)))
+    }
+
+    /// The pairs of this frame's boxes, as `box_pairs` has them. Their number may change from frame
+    /// to frame.
+    #[pyo3(signature = (boxes, *, groups=None, sort=false))]
+    fn cull<'py>(
+        &self,
+        py: Python<'py>,
+        boxes: &Bound<'py, PyAny>,
+        groups: Option<&Bound<'py, PyAny>>,
+        sort: bool,
+    ) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        let given = self::boxes(boxes)?;
+        let boxes = Aabb::from_rows(given.rows());
+        let groups = self::groups(groups, boxes.len())?;
+        let found = locked(py, &self.0, |culler| {
+            culler.set_groups(groups);
+            culler.cull(boxes).map(|found| list(found, sort))
+        });
+        pairs(py, found.map_err(refused)?)
+    }
+}
+
+/// A long-lived set of boxes: ids that stay, boxes at rest, groups, and pairs as a list or as
+/// events.
+#[pyclass(frozen, module = "sdop")]
+pub struct BoxWorld(Mutex<sdop::BoxWorld>);
+
+#[pymethods]
+impl BoxWorld {
+    #[new]
+    #[pyo3(signature = (*, finder="auto", threads=1))]
+    fn new(finder: &str, threads: usize) -> PyResult<Self> {
+        let finder: Finder = finder.parse().map_err(refused)?;
+        let builder = sdop::BoxCuller::builder().finder(finder).threads(threads);
+        Ok(Self(Mutex::new(
+            sdop::BoxWorld::with(&builder).map_err(refused)?,
+        )))
+    }
+
+    /// Adds a box (lower corner x, y, z, then the upper one) and returns its id, which stays until
+    /// `remove`.
+    #[pyo3(signature = (bounds, *, motion="dynamic", groups=(u32::MAX, u32::MAX)))]
+    fn insert(
+        &self,
+        py: Python<'_>,
+        bounds: &Bound<'_, PyAny>,
+        motion: &str,
+        groups: (u32, u32),
+    ) -> PyResult<u64> {
+        let (member, mask) = groups;
+        let body = BoxBody {
+            bounds: one(bounds)?,
+            motion: self::motion(motion)?,
+            groups: Groups { member, mask },
+        };
+        locked(py, &self.0, |world| world.insert(body))
+            .map(BodyId::to_bits)
+            .map_err(refused)
+    }
+
+    /// Removes a box.
+    fn remove(&self, py: Python<'_>, id: u64) -> PyResult<()> {
+        locked(py, &self.0, |world| world.remove(BodyId::from_bits(id))).map_err(refused)
+    }
+
+    /// Moves a box, or gives it another size.
+    fn set_bounds(&self, py: Python<'_>, id: u64, bounds: &Bound<'_, PyAny>) -> PyResult<()> {
+        let bounds = one(bounds)?;
+        locked(py, &self.0, |world| {
+            world.set_bounds(BodyId::from_bits(id), bounds)
+        })
+        .map_err(refused)
+    }
+
+    /// Puts a box to rest, wakes it, or makes it scenery: "resting", "dynamic" or "fixed". Rest
+    /// begins and ends no pair.
+    fn set_motion(&self, py: Python<'_>, id: u64, motion: &str) -> PyResult<()> {
+        let motion = self::motion(motion)?;
+        locked(py, &self.0, |world| {
+            world.set_motion(BodyId::from_bits(id), motion)
+        })
+        .map_err(refused)
+    }
+
+    /// Moves many boxes: ids of shape (n,), boxes as `box_pairs` takes them. Those before one that
+    /// is refused have moved.
+    fn set_many(
+        &self,
+        py: Python<'_>,
+        ids: &Bound<'_, PyAny>,
+        boxes: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let (ids, given) = (id_column(ids, "ids")?, self::boxes(boxes)?);
+        let boxes = Aabb::from_rows(given.rows());
+        check_length("boxes", boxes.len(), ids.len())?;
+        locked(py, &self.0, |world| {
+            let mut all = ids.iter().zip(boxes);
+            all.try_for_each(|(&id, &bounds)| world.set_bounds(BodyId::from_bits(id), bounds))
+        })
+        .map_err(refused)
+    }
+
+    /// Finds the pairs that meet now: ids of shape (m, 2), sorted.
+    fn cull<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        let found = locked(py, &self.0, |world| {
+            world.cull().map(|found| bits_of(found.iter()))
+        });
+        pairs(py, found.map_err(refused)?)
+    }
+
+    /// The pairs of the last cull.
+    fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())))
+    }
+
+    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    fn events(&self, py: Python<'_>) -> Events {
+        locked(py, &self.0, |world| Events::new(&world.events()))
+    }
+
+    /// The world as bytes, for `restore`.
+    fn snapshot(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
+        let snapshot = locked(py, &self.0, |world| world.snapshot());
+        super::world::saved(&snapshot)
+    }
+
+    /// Makes this world the one of a snapshot.
+    fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
+        let snapshot = super::world::read_back(snapshot)?;
+        locked(py, &self.0, |world| world.restore(&snapshot)).map_err(refused)
+    }
+
+    fn __len__(&self, py: Python<'_>) -> usize {
+        locked(py, &self.0, |world| world.len())
+    }
+
+    fn __contains__(&self, py: Python<'_>, id: u64) -> bool {
+        locked(py, &self.0, |world| world.contains(BodyId::from_bits(id)))
+    }
+}
+
+/// "dynamic", "resting" or "fixed".
+fn motion(name: &str) -> PyResult<Motion> {
+    match name {
+        "dynamic" => Ok(Motion::Dynamic),
+        "resting" => Ok(Motion::Resting),
+        "fixed" => Ok(Motion::Fixed),
+        _ => Err(with_help(
+            format!("unknown motion `{name}`"),
+            "one of: dynamic, resting, fixed",
+        )),
+    }
+}
+
+/// One box: six numbers, or two corners.
+fn one(given: &Bound<'_, PyAny>) -> PyResult<Aabb> {
+    let given = given
+        .py()
+        .import("numpy")?
+        .call_method1("reshape", (given, (-1, 6)))?;
+    let given = boxes(&given)?;
+    match Aabb::from_rows(given.rows()) {
+        [one] => Ok(*one),
+        _ => Err(with_help(
+            "bounds are not one box",
+            "six numbers: the lower corner, then the upper one",
+        )),
+    }
+}

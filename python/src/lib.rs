@@ -1,0 +1,36 @@
+//! The extension module behind the Python package `sdop`: arrays in, arrays out, and nothing
+//! decided here.
+//!
+//! Every class guards its culler with a lock that is taken without the interpreter's, so that
+//! threads of Python take turns instead of failing, and others run while a frame is culled.
+
+mod arrays;
+mod boxes;
+mod culler;
+mod errors;
+mod exact;
+mod ids;
+mod judge;
+mod program;
+mod shape;
+mod world;
+
+#[pyo3::pymodule]
+mod _sdop {
+    #[pymodule_export]
+    use super::boxes::{BoxCuller, BoxWorld, box_pairs};
+    #[pymodule_export]
+    use super::culler::Culler;
+    #[pymodule_export]
+    use super::errors::SdopError;
+    #[pymodule_export]
+    use super::exact::exact_meet;
+    #[pymodule_export]
+    use super::judge::{Scene, judge};
+    #[pymodule_export]
+    use super::program::main;
+    #[pymodule_export]
+    use super::shape::Shape;
+    #[pymodule_export]
+    use super::world::{Events, World};
+}

@@ -1,0 +1,279 @@
+//! Long-lived worlds.
+
+use std::sync::Mutex;
+
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use sdop::{Body, BodyId, Finder, Groups, Strategy};
+
+use super::arrays::{check_length, id_column, pairs, rows, wide_rows};
+use super::errors::{locked, refused, with_help};
+use super::ids::bits_of;
+use super::shape::{Shape, built};
+
+const ROUND: &str = "pass a float32 quaternion, whose rotation is then the one that is culled";
+
+/// A long-lived set of bodies that come and go, with ids that stay, groups, contact margins,
+/// float64 translations, and pairs as a list or as events.
+///
+/// At every `cull`, if two meshes, each grown by its body's margin and posed at its float64
+/// translation, meet in exact arithmetic, one of them is dynamic and their groups collide, the pair
+/// is reported.
+///
+/// Parameters
+/// ----------
+/// shapes : list of Shape
+/// strategy : str
+///     Which volumes are tested: "s-dop-sequential" tests spheres, then or-DOPs.
+/// finder : str
+///     Who finds the candidates; the reported set doesn't depend on it.
+/// threads : int
+///     Number of threads.
+#[pyclass(frozen, module = "sdop")]
+pub struct World(Mutex<sdop::World>);
+
+#[pymethods]
+impl World {
+    #[new]
+    #[pyo3(signature = (shapes, *, strategy="s-dop-sequential", finder="auto", threads=1))]
+    fn new(
+        shapes: Vec<PyRef<'_, Shape>>,
+        strategy: &str,
+        finder: &str,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let (strategy, finder): (Strategy, Finder) = (
+            strategy.parse().map_err(refused)?,
+            finder.parse().map_err(refused)?,
+        );
+        let builder = sdop::Culler::builder()
+            .strategy(strategy)
+            .finder(finder)
+            .threads(threads);
+        let world = sdop::World::with(built(&shapes), &builder).map_err(refused)?;
+        Ok(Self(Mutex::new(world)))
+    }
+
+    /// Adds a shape and returns its number.
+    fn add_shape(&self, py: Python<'_>, shape: &Shape) -> PyResult<u32> {
+        let shape = shape.built.clone();
+        locked(py, &self.0, |world| world.add_shape(shape)).map_err(refused)
+    }
+
+    /// Removes a shape that no body has.
+    fn remove_shape(&self, py: Python<'_>, shape: u32) -> PyResult<()> {
+        locked(py, &self.0, |world| world.remove_shape(shape)).map_err(refused)
+    }
+
+    /// Adds a body and returns its id, which stays until `remove`.
+    ///
+    /// Parameters
+    /// ----------
+    /// shape : int
+    ///     Number of its shape.
+    /// rotation : four numbers
+    ///     Quaternion x, y, z, w of any non-zero norm, in float32.
+    /// translation : three numbers
+    ///     Of its origin, in world coordinates, in float64.
+    /// margin : float
+    ///     A length: pairs are reported whose meshes, each grown by its margin, meet.
+    /// dynamic : bool
+    ///     Whether it may move; pairs of two bodies that may not are never reported.
+    /// groups : (int, int)
+    ///     Bits of the groups that it is in, and of those that it collides with.
+    #[pyo3(signature = (shape, rotation, translation, *, margin=0.0, dynamic=true, groups=(u32::MAX, u32::MAX)))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn insert(
+        &self,
+        py: Python<'_>,
+        shape: u32,
+        rotation: &Bound<'_, PyAny>,
+        translation: &Bound<'_, PyAny>,
+        margin: f32,
+        dynamic: bool,
+        groups: (u32, u32),
+    ) -> PyResult<u64> {
+        let (rotation, translation) = pose(rotation, translation)?;
+        let (member, mask) = groups;
+        let body = Body {
+            shape,
+            dynamic,
+            rotation,
+            translation,
+            margin,
+            groups: Groups { member, mask },
+        };
+        locked(py, &self.0, |world| world.insert(body))
+            .map(BodyId::to_bits)
+            .map_err(refused)
+    }
+
+    /// Removes a body.
+    fn remove(&self, py: Python<'_>, id: u64) -> PyResult<()> {
+        locked(py, &self.0, |world| world.remove(BodyId::from_bits(id))).map_err(refused)
+    }
+
+    /// Moves a body: a step or a teleport.
+    fn set_pose(
+        &self,
+        py: Python<'_>,
+        id: u64,
+        rotation: &Bound<'_, PyAny>,
+        translation: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let (rotation, translation) = pose(rotation, translation)?;
+        locked(py, &self.0, |world| {
+            world.set_pose(BodyId::from_bits(id), rotation, translation)
+        })
+        .map_err(refused)
+    }
+
+    /// Moves many bodies: ids of shape (n,), rotations (n, 4), translations (n, 3). Those before
+    /// one that is refused have moved.
+    fn set_poses(
+        &self,
+        py: Python<'_>,
+        ids: &Bound<'_, PyAny>,
+        rotations: &Bound<'_, PyAny>,
+        translations: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let ids = id_column(ids, "ids")?;
+        let rotations = rows::<4>(rotations, "rotations", ROUND)?;
+        let (rotations, translations) = (
+            rotations.rows(),
+            wide_rows::<3>(translations, "translations")?,
+        );
+        check_length("rotations", rotations.len(), ids.len())?;
+        check_length("translations", translations.len(), ids.len())?;
+        locked(py, &self.0, |world| {
+            let poses = rotations.iter().zip(&translations);
+            let mut all = ids.iter().zip(poses);
+            all.try_for_each(|(&id, (&q, &t))| world.set_pose(BodyId::from_bits(id), q, t))
+        })
+        .map_err(refused)
+    }
+
+    /// The body as it is now, by the names of `insert`'s parameters.
+    fn body<'py>(&self, py: Python<'py>, id: u64) -> PyResult<Bound<'py, PyDict>> {
+        let body =
+            locked(py, &self.0, |world| world.body(BodyId::from_bits(id))).map_err(refused)?;
+        let named = PyDict::new(py);
+        named.set_item("shape", body.shape)?;
+        named.set_item("rotation", body.rotation)?;
+        named.set_item("translation", body.translation)?;
+        named.set_item("margin", body.margin)?;
+        named.set_item("dynamic", body.dynamic)?;
+        named.set_item("groups", (body.groups.member, body.groups.mask))?;
+        Ok(named)
+    }
+
+    /// Finds the pairs that might touch now: ids of shape (m, 2), sorted.
+    fn cull<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        let found = locked(py, &self.0, |world| {
+            world.cull().map(|found| bits_of(found.iter()))
+        });
+        pairs(py, found.map_err(refused)?)
+    }
+
+    /// The pairs of the last cull.
+    fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())))
+    }
+
+    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    fn events(&self, py: Python<'_>) -> Events {
+        locked(py, &self.0, |world| Events::new(&world.events()))
+    }
+
+    /// The world as bytes, for `restore` here or elsewhere: bodies, ids, pairs and events, without
+    /// shapes.
+    fn snapshot(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
+        let snapshot = locked(py, &self.0, |world| world.snapshot());
+        saved(&snapshot)
+    }
+
+    /// Makes this world the one of a snapshot. It must have the same shapes under the same numbers.
+    fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
+        let snapshot = read_back(snapshot)?;
+        locked(py, &self.0, |world| world.restore(&snapshot)).map_err(refused)
+    }
+
+    fn __len__(&self, py: Python<'_>) -> usize {
+        locked(py, &self.0, |world| world.len())
+    }
+
+    fn __contains__(&self, py: Python<'_>, id: u64) -> bool {
+        locked(py, &self.0, |world| world.contains(BodyId::from_bits(id)))
+    }
+}
+
+/// A rotation and a translation.
+fn pose(
+    rotation: &Bound<'_, PyAny>,
+    translation: &Bound<'_, PyAny>,
+) -> PyResult<([f32; 4], [f64; 3])> {
+    let row = |given: &Bound<'_, PyAny>, n: usize| -> PyResult<Py<PyAny>> {
+        let numpy = given.py().import("numpy")?;
+        Ok(numpy.call_method1("reshape", (given, (1, n)))?.unbind())
+    };
+    let py = rotation.py();
+    let (rotation, translation) = (row(rotation, 4)?, row(translation, 3)?);
+    let rotation = rows::<4>(rotation.bind(py), "rotation", ROUND)?.rows()[0];
+    Ok((
+        rotation,
+        wide_rows::<3>(translation.bind(py), "translation")?[0],
+    ))
+}
+
+/// What has changed between two reads of events: three lists of pairs, each of shape (m, 2),
+/// sorted.
+#[pyclass(frozen, module = "sdop")]
+pub struct Events {
+    begun: Vec<[u64; 2]>,
+    persisting: Vec<[u64; 2]>,
+    ended: Vec<[u64; 2]>,
+}
+
+impl Events {
+    pub(super) fn new(events: &sdop::Events) -> Self {
+        Self {
+            begun: bits_of(events.begun()),
+            persisting: bits_of(events.persisting()),
+            ended: bits_of(events.ended()),
+        }
+    }
+}
+
+#[pymethods]
+impl Events {
+    /// Pairs reported now and not before.
+    #[getter]
+    fn begun<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        pairs(py, self.begun.clone())
+    }
+
+    /// Pairs reported now and before.
+    #[getter]
+    fn persisting<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        pairs(py, self.persisting.clone())
+    }
+
+    /// Pairs reported before and not now.
+    #[getter]
+    fn ended<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        pairs(py, self.ended.clone())
+    }
+}
+
+/// A snapshot as bytes.
+pub fn saved(snapshot: &impl serde::Serialize) -> PyResult<Vec<u8>> {
+    serde_json::to_vec(snapshot)
+        .map_err(|error| with_help(error, "this is a bug of sdop: please report it"))
+}
+
+/// A snapshot of bytes.
+pub fn read_back<T: serde::de::DeserializeOwned>(bytes: &[u8]) -> PyResult<T> {
+    let help = "pass what `snapshot` of this version has returned";
+    serde_json::from_slice(bytes).map_err(|error| with_help(format!("no snapshot: {error}"), help))
+}

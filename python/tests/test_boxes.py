@@ -1,0 +1,122 @@
+"""Boxes: the pairs that numpy finds by brute force, and what is refused."""
+
+import hashlib
+
+import numpy as np
+import pytest
+import sdop
+
+
+def boxes(n, seed=0, extent=10.0):
+    random = np.random.default_rng(seed)
+    lower = random.uniform(0, extent, (n, 3))
+    return np.concatenate([lower, lower + random.uniform(0, 1, (n, 3))], axis=1).astype(np.float32)
+
+
+def brute_force(boxes):
+    lower, upper = boxes[:, None, :3], boxes[None, :, 3:]
+    meet = (lower <= upper).all(axis=2)
+    i, j = np.nonzero(np.triu(meet & meet.T, k=1))
+    return np.stack([i, j], axis=1).astype(np.uint32)
+
+
+@pytest.mark.parametrize("n", [0, 1, 2, 17, 1000])
+@pytest.mark.parametrize("threads", [1, 2])
+def test_pairs_are_those_of_brute_force(n, threads):
+    given = boxes(n)
+    found = sdop.box_pairs(given, sort=True, threads=threads)
+    assert found.dtype == np.uint32 and found.shape == (len(found), 2)
+    np.testing.assert_array_equal(found, brute_force(given))
+
+
+def test_touching_is_meeting():
+    row = [[x, 0, 0, x + 1, 1, 1] for x in range(4)]
+    assert sdop.box_pairs(row, sort=True).tolist() == [[0, 1], [1, 2], [2, 3]]
+
+
+def test_corners_columns_and_strides_are_read_alike():
+    given = boxes(200)
+    wanted = sdop.box_pairs(given, sort=True)
+    wide = np.zeros((200, 12), dtype=np.float32)
+    wide[:, ::2] = given
+    for same in (given.reshape(-1, 2, 3), np.asfortranarray(given), wide[:, ::2], given.astype(np.float64), given.tolist()):
+        np.testing.assert_array_equal(sdop.box_pairs(same, sort=True), wanted)
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "text"),
+    [
+        (np.zeros((3, 5), np.float32), sdop.SdopError, r"shape \[3, 5\]"),
+        (np.zeros(6, np.float32), sdop.SdopError, r"\(n, 6\)"),
+        ([[0, 0, 0, np.nan, 1, 1]], sdop.SdopError, "box"),
+        ([[2, 0, 0, 1, 1, 1]], sdop.SdopError, "min"),
+        ([[0.1, 0, 0, 1, 1, 1]], sdop.SdopError, r"boxes\[0, 0\] is 0.1.*\n.*rounded_outward"),
+        (np.zeros((3, 6), complex), TypeError, "complex"),
+        ("no boxes", TypeError, "dtype"),
+        (np.zeros((3, 6), object), TypeError, "object"),
+    ],
+)
+def test_what_is_no_column_of_boxes_is_refused(given, error, text):
+    with pytest.raises(error, match=text):
+        sdop.box_pairs(given)
+
+
+def test_boxes_of_float64_rounded_outward_contain_the_given():
+    wide = np.random.default_rng(1).uniform(-1, 1, (1000, 6)) * 10.0 ** np.arange(-300, 30, 55)
+    wide.sort(axis=1)
+    narrow = sdop.rounded_outward(wide)
+    assert narrow.dtype == np.float32
+    assert (narrow[:, :3] <= wide[:, :3]).all() and (narrow[:, 3:] >= wide[:, 3:]).all()
+    exact = boxes(10)
+    np.testing.assert_array_equal(sdop.rounded_outward(exact.astype(np.float64)), exact)
+
+
+def test_groups_exclude_pairs():
+    given = np.zeros((3, 6), np.float32)
+    groups = [[1, 1], [2, 2], [3, 3]]
+    assert sdop.box_pairs(given, groups=groups, sort=True).tolist() == [[0, 2], [1, 2]]
+    with pytest.raises(sdop.SdopError, match="groups has 2 rows for 3 bodies"):
+        sdop.box_pairs(given, groups=groups[:2])
+
+
+def test_a_culler_follows_moving_boxes_of_any_number():
+    culler = sdop.BoxCuller(finder="sweep")
+    for seed in range(20):
+        given = boxes(100 + seed % 3, seed)
+        np.testing.assert_array_equal(culler.cull(given, sort=True), brute_force(given))
+    with pytest.raises(sdop.SdopError, match="sweep"):
+        sdop.BoxCuller(finder="sweeep")
+
+
+def test_a_world_of_boxes_reports_changes():
+    world = sdop.BoxWorld()
+    floor = world.insert([-9, -9, -1, 9, 9, 0], motion="fixed")
+    crates = [world.insert([x, 0, 0, x + 1, 1, 1]) for x in (0, 5)]
+    assert world.cull().tolist() == [[floor, crates[0]], [floor, crates[1]]]
+    saved = world.snapshot()
+    assert len(world.events().begun) == 2
+    world.set_many(crates, [[0, 0, 1, 1, 1, 2], [0.5, 0, 1, 1, 1, 2]])
+    assert world.cull().tolist() == [crates]
+    events = world.events()
+    assert (events.begun.tolist(), len(events.persisting), len(events.ended)) == ([crates], 0, 2)
+    world.remove(crates[0])
+    assert crates[0] not in world and len(world) == 2
+    with pytest.raises(sdop.SdopError, match="no longer in this world"):
+        world.set_bounds(crates[0], np.zeros(6))
+    other = sdop.BoxWorld()
+    other.restore(saved)
+    assert crates[0] in other and len(other.events().begun) == 2
+    with pytest.raises(sdop.SdopError, match="no snapshot"):
+        other.restore(b"{}")
+
+
+def test_pairs_are_those_of_rust_to_the_bit():
+    """The hash is the one of the same boxes in `tests/boxes/main.rs`."""
+    i = np.arange(3000, dtype=np.uint32)
+    lower = np.stack([(i * k) % 1021 for k in (7, 131, 577)], axis=1).astype(np.float32) / 16
+    sides = np.stack([(i * k) % 61 for k in (3, 11, 29)], axis=1).astype(np.float32) / 16
+    found = sdop.box_pairs(np.concatenate([lower, lower + sides], axis=1), sort=True)
+    assert hashlib.sha256(found.astype("<u4").tobytes()).hexdigest() == HASH
+
+
+HASH = "bf3a97d3cf6860a4eba71ead750f8e5a0928f8a2a647e078928cac46621b6769"

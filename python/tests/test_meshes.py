@@ -1,0 +1,143 @@
+"""Meshes: nothing missed against the exact answer, in the mesh's own coordinates."""
+
+import threading
+import tracemalloc
+
+import numpy as np
+import pytest
+import sdop
+from scipy.spatial.transform import Rotation
+
+BRACKET = (
+    np.array([[0, 0, 0], [4, 0, 0], [4, 1, 0], [1, 1, 0], [1, 3, 0], [0, 3, 0]] * 2, dtype=np.float32)
+    + np.repeat([[0, 0, 0], [0, 0, 1]], 6, axis=0)
+).astype(np.float32)
+
+
+def bracket():
+    """An L whose ball is centred far from its origin."""
+    sides = [[i, (i + 1) % 6, (i + 1) % 6 + 6] for i in range(6)] + [[i, (i + 1) % 6 + 6, i + 6] for i in range(6)]
+    bottom = [[0, 2, 1], [0, 3, 2], [0, 4, 3], [0, 5, 4]]
+    top = [[a + 6, c + 6, b + 6] for a, b, c in bottom]
+    return BRACKET, np.array(sides + bottom + top)
+
+
+def poses(n, seed=0, extent=6.0):
+    rotations = Rotation.random(n, random_state=seed).as_quat().astype(np.float32)
+    translations = np.random.default_rng(seed).uniform(-extent, extent, (n, 3)).astype(np.float32)
+    return rotations, translations
+
+
+def meeting(shape, rotations, translations):
+    n = len(rotations)
+    pose = [(rotations[i], translations[i]) for i in range(n)]
+    return [[i, j] for i in range(n) for j in range(i + 1, n) if sdop.exact_meet(shape, pose[i], shape, pose[j])]
+
+
+@pytest.mark.parametrize("strategy", ["s-dop-sequential", "sphere", "k-dop", "obb"])
+def test_nothing_that_meets_is_missed(strategy):
+    shape = sdop.Shape(*bracket())
+    rotations, translations = poses(60)
+    truth = meeting(shape, rotations, translations)
+    culler = sdop.Culler([shape], [0] * 60, strategy=strategy)
+    found = culler.cull(rotations, translations, sort=True).tolist()
+    assert len(truth) > 50 and all(pair in found for pair in truth)
+    world = sdop.World([shape], strategy=strategy)
+    ids = [world.insert(0, q, t.astype(np.float64)) for q, t in zip(rotations, translations)]
+    found = world.cull().tolist()
+    assert all([ids[i], ids[j]] in found for i, j in truth)
+
+
+def test_static_bodies_are_placed_by_the_first_frame_and_moved_by_others():
+    shape = sdop.Shape(*bracket())
+    culler = sdop.Culler([shape], [0, 0], dynamic=[True, False])
+    unturned = np.tile(np.float32([0, 0, 0, 1]), (2, 1))
+    for x, meets in [(9, 0), (2, 1), (9, 0)]:
+        assert len(culler.cull(unturned, np.float32([[0, 0, 0], [x, 0, 0]]))) == meets
+
+
+def test_translations_are_float64_in_a_world():
+    tetrahedron = sdop.Shape([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    world = sdop.World([tetrahedron])
+    for x in (1000000031.5, 1000000032.2):
+        world.insert(0, [0, 0, 0, 1], [x, 0, 0])
+    assert len(world.cull()) == 1
+    culler = sdop.Culler([tetrahedron], [0, 0])
+    with pytest.raises(sdop.SdopError, match=r"translations\[0, 0\] is 1000000031.5.*\n.*World"):
+        culler.cull([[0, 0, 0, 1]] * 2, [[1000000031.5, 0, 0], [1000000032.2, 0, 0]])
+
+
+def test_a_world_is_saved_and_restored():
+    shape = sdop.Shape(*bracket())
+    rotations, translations = poses(30)
+    world = sdop.World([shape])
+    ids = [world.insert(0, q, t, margin=0.1) for q, t in zip(rotations, translations)]
+    world.remove(ids.pop())
+    world.cull()
+    saved = world.snapshot()
+    other = sdop.World([shape])
+    other.restore(saved)
+    for it in (world, other):
+        it.set_poses(ids, *[column[: len(ids)] for column in poses(30, seed=1)])
+    np.testing.assert_array_equal(world.cull(), other.cull())
+    for kind in ("begun", "persisting", "ended"):
+        np.testing.assert_array_equal(getattr(world.events(), kind), getattr(other.events(), kind))
+    assert world.body(ids[3])["margin"] == pytest.approx(0.1) and world.snapshot() == other.snapshot()
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (lambda s: sdop.Culler([s], [1]), "shape"),
+        (lambda s: sdop.Culler([s], [-1]), "-1"),
+        (lambda s: sdop.Culler([s], [0], dynamic=[True, False]), "dynamic has 2 rows for 1 bodies"),
+        (lambda s: sdop.Culler([s], [0], strategy="s-dop-sequentail"), "did you mean `s-dop-sequential`"),
+        (lambda s: sdop.Culler([s], [0]).cull([[0, 0, 0, 1]] * 2, [[0, 0, 0]] * 2), "2 rows for 1 bodies"),
+        (lambda s: sdop.Culler([s], [0]).cull([[0, 0, 0, 0]], [[0, 0, 0]]), "quaternion"),
+        (lambda s: sdop.Culler([s], [0]).cull([[0, 0, 0, 1]], [[np.inf, 0, 0]]), "inf"),
+        (lambda s: sdop.Shape([[0, 0, 0]], [[0, 0, 1]]), "0"),
+        (lambda s: sdop.Shape(np.zeros((0, 3)), np.zeros((0, 3), int)), "no vert"),
+        (lambda s: sdop.Shape.load("nowhere.obj"), "nowhere.obj"),
+        (lambda s: sdop.World([s]).insert(3, [0, 0, 0, 1], [0, 0, 0]), "3"),
+        (lambda s: sdop.World([s]).remove(12345678901), "no longer"),
+    ],
+)
+def test_what_is_wrong_is_said_with_a_remedy(call, text):
+    with pytest.raises(sdop.SdopError, match=text):
+        call(sdop.Shape(*bracket()))
+
+
+def test_one_culler_serves_many_threads():
+    shape = sdop.Shape(*bracket())
+    culler = sdop.Culler([shape], [0] * 100)
+    frames = [poses(100, seed) for seed in range(8)]
+    wanted = [sdop.Culler([shape], [0] * 100).cull(*frame, sort=True).tolist() for frame in frames]
+    wrong = []
+
+    def cull(which):
+        for _ in range(50):
+            if culler.cull(*frames[which], sort=True).tolist() != wanted[which]:
+                wrong.append(which)
+
+    threads = [threading.Thread(target=cull, args=(which,)) for which in range(8)]
+    [thread.start() for thread in threads]
+    [thread.join() for thread in threads]
+    assert not wrong
+
+
+def test_a_hundred_thousand_calls_leave_nothing_behind():
+    given = np.zeros((3, 6), np.float32)
+    culler = sdop.BoxCuller()
+
+    def resident():
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * 4096
+
+    for _ in range(10_000):
+        culler.cull(given)
+    before = resident()
+    tracemalloc.start()
+    for _ in range(100_000):
+        culler.cull(given)
+    held, _ = tracemalloc.get_traced_memory()
+    assert held < 100_000 and resident() - before < 8_000_000

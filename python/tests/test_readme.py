@@ -1,0 +1,23 @@
+"""Every block of Python in the README runs, one after the other; and the examples in docstrings."""
+
+import doctest
+import re
+from pathlib import Path
+
+import sdop
+
+
+def test_blocks_of_the_readme_run(monkeypatch):
+    here = Path(__file__).resolve().parent.parent
+    monkeypatch.chdir(here.parent)
+    blocks = re.findall(r"```python\n(.*?)```", (here / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    names = {}
+    for block in blocks:
+        exec(compile(block, "README.md", "exec"), names)
+    assert len(blocks) == 4 and names["pairs"].tolist() == [[0, 1]]
+    assert names["world"].pairs().tolist() == [[names["a"], names["b"]]]
+
+
+def test_examples_in_docstrings_hold():
+    failed, tried = doctest.testmod(sdop)
+    assert tried > 0 and failed == 0

@@ -1,0 +1,254 @@
+//! What the contract asks of shapes and poses.
+
+use std::ops::Range;
+
+use glam::Vec3;
+
+use super::{ContractError, check_column, check_number, refuse};
+use crate::bodies::Bodies;
+use crate::rounding::LIMIT;
+use crate::simd::{Kernel, Lanes, Tier, dispatch};
+use crate::volume::Shape;
+
+/// How to mend a rotation.
+const INVERTIBLE: &str = "a quaternion (x, y, z, w) has a finite norm above zero";
+
+/// How to mend a vector.
+const WITHIN_LIMIT: &str = "coordinates are finite and at most 2^60 in size";
+
+/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, a shape that exists and is no
+/// larger than 2⁶⁰, no more than [`MOST_BODIES`](super::MOST_BODIES).
+///
+/// # Errors
+/// A body that breaks it, the first in the first column at fault; columns of unequal length.
+pub fn check_bodies(bodies: &Bodies, shapes: &[Shape]) -> Result<(), ContractError> {
+    check_columns(bodies)?;
+    let sound: Vec<bool> = shapes.iter().map(has_sound_size).collect();
+    for (body, &number) in bodies.shape.iter().enumerate() {
+        if sound.get(number as usize) != Some(&true) {
+            return check_shape(body, number, shapes);
+        }
+    }
+    check_poses(bodies, 0..bodies.len())
+}
+
+/// Checks that the shape of every body is one of so many.
+pub(crate) fn check_numbers(numbers: &[u32], shapes: usize) -> Result<(), ContractError> {
+    match numbers.iter().position(|&number| number as usize >= shapes) {
+        None => Ok(()),
+        Some(body) => refuse_number(body, numbers[body], shapes),
+    }
+}
+
+fn refuse_number(body: usize, number: u32, shapes: usize) -> Result<(), ContractError> {
+    let value = format!("{number} of {shapes}");
+    refuse(body, "shape", value, "shapes are counted from 0")
+}
+
+/// Checks that a body's shape exists and is no larger than 2⁶⁰.
+pub(crate) fn check_shape(body: usize, number: u32, shapes: &[Shape]) -> Result<(), ContractError> {
+    let Some(shape) = shapes.get(number as usize) else {
+        return refuse_number(body, number, shapes.len());
+    };
+    if !has_sound_size(shape) {
+        let Shape {
+            name, reach, ball, ..
+        } = shape;
+        let value = format!("{name} with reach {reach} and {ball:?}");
+        return refuse(body, "shape", value, "sizes are finite and at most 2^60");
+    }
+    Ok(())
+}
+
+/// Checks one pose with a translation in f64.
+#[doc(hidden)]
+pub fn check_pose(body: usize, q: &[f32; 4], t: &[f64; 3]) -> Result<(), ContractError> {
+    if !is_invertible(q) {
+        return refuse(body, "rotation", format!("{q:?}"), INVERTIBLE);
+    }
+    if !t.iter().all(|x| x.abs() <= f64::from(LIMIT)) {
+        return refuse(body, "translation", format!("{t:?}"), WITHIN_LIMIT);
+    }
+    Ok(())
+}
+
+/// Checks the poses of the bodies `range`: what an effects step may have changed.
+#[doc(hidden)]
+pub fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), ContractError> {
+    let first = range.start;
+    check_vectors("translation", &bodies.translation[range.clone()], first)?;
+    let rotations = &bodies.rotation[range];
+    match rotations.iter().position(|q| !is_invertible(q)) {
+        None => Ok(()),
+        Some(at) => {
+            let value = format!("{:?}", rotations[at]);
+            refuse(first + at, "rotation", value, INVERTIBLE)
+        }
+    }
+}
+
+/// Whether all coordinates of a column are at most 2⁶⁰ in size.
+fn are_within_limit(column: &[[f32; 3]]) -> bool {
+    // Without an early exit, so that the compiler makes vectors of it: a column that fails is the
+    // last one.
+    column
+        .as_flattened()
+        .iter()
+        .fold(0, |most, x| size(*x).max(most))
+        <= size(LIMIT)
+}
+
+/// Checks that every column has one entry a body, and that so many bodies can be numbered.
+pub(crate) fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
+    check_number(bodies.len())?;
+    for (name, length) in [
+        ("dynamic", bodies.dynamic.len()),
+        ("rotation", bodies.rotation.len()),
+        ("translation", bodies.translation.len()),
+    ] {
+        check_column(name, length, bodies.len())?;
+    }
+    Ok(())
+}
+
+/// Checks that the coordinates of a column are at most 2⁶⁰ in size; its first entry is that of the
+/// body `first`.
+#[doc(hidden)]
+pub fn check_vectors(
+    name: &'static str,
+    column: &[[f32; 3]],
+    first: usize,
+) -> Result<(), ContractError> {
+    if are_within_limit(column) {
+        return Ok(());
+    }
+    let at = column.iter().position(|v| !is_within_limit(v)).unwrap_or(0);
+    refuse(first + at, name, format!("{:?}", column[at]), WITHIN_LIMIT)
+}
+
+// All limits are written as `x ≤ limit`, and what isn't so is refused: a NaN fails.
+
+/// A number's size: its bits without the sign. They are in the order of sizes, and those of NaN
+/// above all.
+#[inline(always)]
+fn size(number: f32) -> u32 {
+    number.to_bits() & !(1 << 31)
+}
+
+pub(crate) fn has_sound_size(shape: &Shape) -> bool {
+    // The reach bounds the ball's centre and radius; a NaN in them it does not.
+    [
+        shape.reach,
+        shape.ball.radius,
+        Vec3::from_array(shape.ball.centre).length(),
+    ]
+    .iter()
+    .all(|size| (0.0..=LIMIT).contains(size))
+}
+
+#[inline]
+pub(crate) fn is_within_limit(v: &[f32; 3]) -> bool {
+    v.iter().all(|&x| size(x) <= size(LIMIT))
+}
+
+/// Whether the centres of all balls are within 2⁶⁰, and their radii finite. A function of its own,
+/// of which callgrind tells what the check costs (`.ci/instructions`).
+#[inline(never)]
+pub(crate) fn balls_are_within_limit(tier: Tier, balls: &[[f32; 4]]) -> bool {
+    dispatch(tier, BallsWithinLimit(balls))
+}
+
+struct BallsWithinLimit<'a>(&'a [[f32; 4]]);
+
+/// Numbers that are looked at together: some vectors of any tier, so that what a loop takes by
+/// itself is little beside them.
+const TOGETHER: usize = 64;
+
+impl Kernel for BallsWithinLimit<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) -> bool {
+        // The largest of each column, for two instructions a vector.
+        let mut largest = [0; TOGETHER];
+        let (many, rest) = self.0.as_flattened().as_chunks::<TOGETHER>();
+        for numbers in many {
+            enlarge(&mut largest, numbers);
+        }
+        enlarge(&mut largest, rest);
+        let mut fine = true;
+        for ball in largest.as_chunks::<4>().0 {
+            let [x, y, z, radius] = *ball;
+            fine &= x.max(y).max(z) <= size(LIMIT) && radius <= size(f32::MAX);
+        }
+        fine
+    }
+}
+
+#[inline(always)]
+fn enlarge(largest: &mut [u32; TOGETHER], numbers: &[f32]) {
+    for (largest, number) in largest.iter_mut().zip(numbers) {
+        *largest = size(*number).max(*largest);
+    }
+}
+
+fn is_invertible(q: &[f32; 4]) -> bool {
+    // In f64, where the square of no f32 underflows or overflows.
+    let [x, y, z, w] = q.map(f64::from);
+    let norm2 = x * x + y * y + z * z + w * w;
+    norm2 > 0.0 && norm2 < f64::INFINITY
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No coordinates: an ulp beyond the limit, and more.
+    const BEYOND: [f32; 5] = [
+        LIMIT.next_up(),
+        -LIMIT.next_up(),
+        f32::INFINITY,
+        f32::NAN,
+        -f32::NAN,
+    ];
+
+    #[test]
+    fn coordinates_are_refused_for_an_ulp_beyond_the_limit() {
+        for count in [1, 2, 40] {
+            let fine = vec![[LIMIT, -LIMIT, -0.0]; count];
+            assert_eq!(check_vectors("translation", &fine, 7), Ok(()));
+            for (at, axis) in (0..count).flat_map(|at| [0, 1, 2].map(|axis| (at, axis))) {
+                for bad in BEYOND {
+                    let mut column = fine.clone();
+                    column[at][axis] = bad;
+                    assert!(!is_within_limit(&column[at]));
+                    let told = check_vectors("translation", &column, 7);
+                    assert_eq!(told.map_err(|error| error.body), Err(7 + at), "{bad}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn balls_are_refused_in_every_lane_for_an_ulp_beyond_the_limit() {
+        for tier in Tier::available() {
+            for count in [0, 1, 16, 17, 50] {
+                let fine = vec![[LIMIT, -LIMIT, 0.0, f32::MAX]; count];
+                assert!(balls_are_within_limit(tier, &fine), "{tier}, {count}");
+                for (ball, axis) in
+                    (0..count).flat_map(|ball| [0, 1, 2, 3].map(|axis| (ball, axis)))
+                {
+                    for bad in BEYOND {
+                        let mut balls = fine.clone();
+                        balls[ball][axis] = bad;
+                        let is_fine = axis == 3 && bad.is_finite();
+                        assert_eq!(
+                            balls_are_within_limit(tier, &balls),
+                            is_fine,
+                            "{tier}, {ball}, {axis}: {bad}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

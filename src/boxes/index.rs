@@ -1,0 +1,300 @@
+//! Where each box is, to be changed box by box: cells of several sizes ([`levels`](super::levels))
+//! in a hash table.
+//!
+//! A box that moves, comes or goes costs its old cell and its new one; a query costs the cells near
+//! the box, and what is in them. Nothing is sorted, and nothing rebuilt but the table of cells when
+//! it is full.
+
+use super::levels::{Levels, cell_count};
+use crate::bodies::{Aabb, Groups};
+use crate::pairs::{Run, Runs};
+use crate::simd::prefetch;
+
+/// The table of cells is made larger when more than this share of it is taken.
+const MAX_LOAD: [usize; 2] = [3, 4];
+
+/// So many cells cost as much as a box to look at.
+const CELLS_PER_BOX: u64 = 2;
+
+/// What a box is, beside its ends.
+pub(super) const FIXED: u32 = 1;
+/// It doesn't collide with all groups.
+pub(super) const GROUPED: u32 = 2;
+
+/// A box in its cell.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
+struct Entry {
+    min: [f32; 3],
+    slot: u32,
+    max: [f32; 3],
+    tags: u32,
+}
+
+/// A cell of the table.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cell {
+    /// See [`Level::name`]; 0 if there is no cell.
+    name: u64,
+    boxes: Run,
+}
+
+/// In which cell a box is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Home {
+    /// The cell's name, or 0.
+    cell: u64,
+    level: u16,
+}
+
+/// A box of which partners are sought.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seeker<'a> {
+    pub slot: u32,
+    /// One that is gone meets no box.
+    pub is_present: bool,
+    pub aabb: &'a Aabb,
+    pub tags: u32,
+    /// By slot.
+    pub groups: &'a [Groups],
+}
+
+/// All boxes of a world by location.
+#[derive(Clone, Debug)]
+pub(super) struct BoxIndex {
+    levels: Levels,
+    /// Open addressing with linear probing. Cells stay when their last box leaves, until the table
+    /// is made anew.
+    cells: Vec<Cell>,
+    taken: usize,
+    boxes: Runs<Entry>,
+    /// By slot.
+    homes: Vec<Home>,
+    len: usize,
+}
+
+impl BoxIndex {
+    /// For these boxes, none of which is in it yet.
+    pub fn suited_to<'a>(boxes: impl Iterator<Item = &'a Aabb>, count: usize) -> Self {
+        Self {
+            levels: Levels::suited_to(boxes, count),
+            cells: vec![Cell::default(); (count / 2).next_power_of_two().max(16)],
+            taken: 0,
+            boxes: Runs::default(),
+            homes: Vec::new(),
+            len: 0,
+        }
+    }
+
+    /// Number of boxes.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Puts a box where it is now. Returns the work that it took: entries that were looked at.
+    pub fn put(&mut self, slot: u32, aabb: &Aabb, tags: u32) -> usize {
+        if self.homes.len() <= slot as usize {
+            self.homes.resize(slot as usize + 1, Home::default());
+        }
+        let level = self.levels.level_of(aabb);
+        let cell = self.levels.all[usize::from(level)].home(aabb);
+        let home = Home { cell, level };
+        let entry = Entry {
+            min: aabb.min,
+            slot,
+            max: aabb.max,
+            tags,
+        };
+        if self.homes[slot as usize] == home {
+            let at = self.find(cell);
+            let boxes = self.boxes.get_mut(self.cells[at].boxes);
+            if let Some(place) = boxes.iter().position(|other| other.slot == slot) {
+                boxes[place] = entry;
+                return place;
+            }
+        }
+        let work = self.remove(slot);
+        if (self.taken + 1) * MAX_LOAD[1] > self.cells.len() * MAX_LOAD[0] {
+            self.make_room();
+        }
+        let at = self.find(cell);
+        if self.cells[at].name == 0 {
+            self.cells[at].name = cell;
+            self.taken += 1;
+        }
+        self.boxes.push(&mut self.cells[at].boxes, entry);
+        self.levels.all[usize::from(level)].boxes += 1;
+        self.homes[slot as usize] = home;
+        self.len += 1;
+        work
+    }
+
+    /// Takes a box out, if it is in. Returns the work that it took.
+    pub fn remove(&mut self, slot: u32) -> usize {
+        let home = match self.homes.get_mut(slot as usize) {
+            Some(home) if home.cell != 0 => std::mem::take(home),
+            _ => return 0,
+        };
+        let at = self.find(home.cell);
+        let run = &mut self.cells[at].boxes;
+        let boxes = self.boxes.get(*run);
+        let place = boxes.iter().position(|other| other.slot == slot);
+        if let Some(place) = place {
+            self.boxes.swap_remove(run, place);
+            self.levels.all[usize::from(home.level)].boxes -= 1;
+            self.len -= 1;
+        }
+        place.unwrap_or(0)
+    }
+
+    /// Where a cell is in the table, or would be.
+    #[inline(always)]
+    fn find(&self, name: u64) -> usize {
+        let mask = self.cells.len() - 1;
+        let mut at = name as usize & mask;
+        loop {
+            let found = self.cells[at].name;
+            if found == name || found == 0 {
+                return at;
+            }
+            at = (at + 1) & mask;
+        }
+    }
+
+    /// Makes the table anew, without cells that are empty, and so large that half of it is free.
+    fn make_room(&mut self) {
+        let filled = self.cells.iter().filter(|cell| !cell.boxes.is_empty());
+        let size = (2 * filled.clone().count() + 16).next_power_of_two();
+        let filled: Vec<Cell> = filled.copied().collect();
+        self.taken = filled.len();
+        self.cells = vec![Cell::default(); size];
+        for cell in filled {
+            let at = self.find(cell.name);
+            self.cells[at] = cell;
+        }
+    }
+
+    /// Brings near what [`Self::put`] and [`Self::remove`] will read of a box: some boxes before
+    /// them.
+    #[inline]
+    pub fn prefetch(&self, slot: u32) {
+        if let Some(home) = self.homes.get(slot as usize) {
+            prefetch(&self.cells[home.cell as usize & (self.cells.len() - 1)]);
+        }
+    }
+
+    /// Appends for each seeker the slots of the boxes that meet it, not both fixed, whose groups
+    /// collide: sorted, each once. Where each one's end goes to `ends`. Returns how many boxes and
+    /// cells were looked at.
+    pub fn find_partners(
+        &self,
+        seekers: &[Seeker<'_>],
+        search: &mut Search,
+        found: &mut Vec<u32>,
+        ends: &mut Vec<usize>,
+    ) -> usize {
+        // Three rounds, so that a core waits for many cache misses at once.
+        search.clear();
+        for seeker in seekers {
+            if seeker.is_present {
+                self.list_cells(seeker.aabb, search);
+            } else {
+                search.ends.push((search.names.len(), false));
+            }
+        }
+        for &name in &search.names {
+            let run = self.cells[self.find(name)].boxes;
+            if !run.is_empty() {
+                self.boxes.prefetch(run);
+            }
+            search.runs.push(run);
+        }
+        let (mut work, mut first) = (search.runs.len(), 0);
+        for (seeker, &(end, is_everywhere)) in seekers.iter().zip(&search.ends) {
+            let start = found.len();
+            if is_everywhere {
+                for cell in &self.cells {
+                    work += self.look_into(cell.boxes, *seeker, found);
+                }
+            }
+            for &run in &search.runs[std::mem::replace(&mut first, end)..end] {
+                work += self.look_into(run, *seeker, found);
+            }
+            sort_each_once(found, start);
+            ends.push(found.len());
+        }
+        work
+    }
+
+    /// Lists the cells that a box looks into, or that it looks into all.
+    fn list_cells(&self, aabb: &Aabb, search: &mut Search) {
+        let start = search.names.len();
+        let mut left = CELLS_PER_BOX * self.len as u64;
+        for level in self.levels.all.iter().filter(|level| level.boxes > 0) {
+            let range = level.cells_near(aabb);
+            let Some(rest) = left.checked_sub(cell_count(&range)) else {
+                search.names.truncate(start);
+                search.ends.push((start, true));
+                return;
+            };
+            left = rest;
+            level.each_name(&range, |name| {
+                prefetch(&self.cells[name as usize & (self.cells.len() - 1)]);
+                search.names.push(name);
+            });
+        }
+        search.ends.push((search.names.len(), false));
+    }
+
+    #[inline(always)]
+    fn look_into(&self, run: Run, seeker: Seeker<'_>, found: &mut Vec<u32>) -> usize {
+        let Aabb { min, max } = *seeker.aabb;
+        for entry in self.boxes.get(run) {
+            let on = |axis: usize| (min[axis] <= entry.max[axis]) & (entry.min[axis] <= max[axis]);
+            if on(0) & on(1) & on(2) && seeker.may_meet(entry) {
+                found.push(entry.slot);
+            }
+        }
+        run.len()
+    }
+}
+
+/// What searches write down on their way, kept from frame to frame.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Search {
+    names: Vec<u64>,
+    runs: Vec<Run>,
+    /// Where the cells of each seeker end, and whether it looks into all there are.
+    ends: Vec<(usize, bool)>,
+}
+
+impl Search {
+    fn clear(&mut self) {
+        self.names.clear();
+        self.runs.clear();
+        self.ends.clear();
+    }
+}
+
+/// Sorts the numbers from `start` on, and drops those that are there before.
+fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
+    numbers[start..].sort_unstable();
+    let mut end = start;
+    for at in start..numbers.len() {
+        if end == start || numbers[end - 1] != numbers[at] {
+            numbers[end] = numbers[at];
+            end += 1;
+        }
+    }
+    numbers.truncate(end);
+}
+
+impl Seeker<'_> {
+    /// Whether a pair with this box is reported if the boxes meet.
+    fn may_meet(&self, other: &Entry) -> bool {
+        let are_fixed = self.tags & other.tags & FIXED != 0;
+        let collide = (self.tags | other.tags) & GROUPED == 0
+            || self.groups[self.slot as usize].collide(self.groups[other.slot as usize]);
+        other.slot != self.slot && !are_fixed && collide
+    }
+}

@@ -1,0 +1,264 @@
+//! Sizes of boxes and of cells: boxes of about one size share a level, whose cells are twice as
+//! wide as the widest of them.
+//!
+//! A box is in the cell of its lower corner. Let b be a level's bound, no less than any side of its
+//! boxes, and q a box. A box t of the level that meets q has q.min − b ≤ t.min ≤ q.max on each
+//! axis. The cell of a coordinate is a monotone function of it, ⌊fl(x·w)⌋, so t is in the cells
+//! from that of a number no greater than q.min − b to that of q.max. Everything is monotone, so
+//! rounding costs at most a cell; q.min − b is rounded to a number below it.
+
+use crate::bodies::Aabb;
+
+/// Quantiles of a sample of boxes: so many of them are drawn, and so many are smaller than the one
+/// in question.
+const SAMPLE_SIZE: usize = 256;
+const USUAL_RANK: usize = 192;
+
+/// Boxes of one size differ by what rounding makes of their ends.
+const UNIT_SLACK: f64 = 1.0 + 1.0 / (1 << 10) as f64;
+
+/// Bits of a number's fraction.
+const MANTISSA: u32 = f64::MANTISSA_DIGITS - 1;
+
+/// Boxes of about one size.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Level {
+    /// Of its size: see [`size_number`].
+    number: i32,
+    /// No box has a longer side.
+    bound: f64,
+    /// Cells per unit of length.
+    cells_per_unit: f64,
+    /// How many boxes it has.
+    pub boxes: usize,
+}
+
+/// The cells from the first to the last of each axis.
+pub(super) type CellRange = [[i64; 2]; 3];
+
+impl Level {
+    /// Its boxes are no larger than its size, in such units.
+    fn new(number: i32, unit: f64) -> Self {
+        let bound = (unit * size_of_number(number)).next_up();
+        Self {
+            number,
+            bound,
+            cells_per_unit: 0.5 / bound,
+            boxes: 0,
+        }
+    }
+
+    fn cell(&self, x: f64) -> i64 {
+        // The number rounded down. The cast toward zero saturates, and all of it stays monotone.
+        let cells = x * self.cells_per_unit;
+        let whole = cells as i64;
+        whole.saturating_sub(i64::from(whole as f64 > cells))
+    }
+
+    /// The name of the cell of a box of this level.
+    pub fn home(&self, aabb: &Aabb) -> u64 {
+        self.name(aabb.min.map(|x| self.cell(f64::from(x))))
+    }
+
+    /// The cells that boxes of this level are in if they meet this one.
+    pub fn cells_near(&self, aabb: &Aabb) -> CellRange {
+        std::array::from_fn(|axis| {
+            let from = (f64::from(aabb.min[axis]) - self.bound).next_down();
+            [self.cell(from), self.cell(f64::from(aabb.max[axis]))]
+        })
+    }
+
+    /// Calls `take` with the name of each cell of a range.
+    #[inline(always)]
+    pub fn each_name(&self, range: &CellRange, mut take: impl FnMut(u64)) {
+        let [x, y, z] = range.map(|[first, last]| (first, last.abs_diff(first)));
+        for dz in 0..=z.1 {
+            for dy in 0..=y.1 {
+                for dx in 0..=x.1 {
+                    let cell = [(x.0, dx), (y.0, dy), (z.0, dz)];
+                    take(self.name(cell.map(|(first, steps)| first.wrapping_add_unsigned(steps))));
+                }
+            }
+        }
+    }
+
+    /// A number that hardly any other cell has; never 0. Cells that share it share their boxes,
+    /// which costs time and nothing else.
+    #[inline(always)]
+    pub fn name(&self, cell: [i64; 3]) -> u64 {
+        const FACTORS: [u64; 3] = [
+            0x9e37_79b9_7f4a_7c15,
+            0xc2b2_ae3d_27d4_eb4f,
+            0x1656_67b1_9e37_79f9,
+        ];
+        let start = (self.number as u64).wrapping_mul(0xff51_afd7_ed55_8ccd);
+        let mixed = (cell.iter().zip(FACTORS)).fold(start, |sum, (&x, factor)| {
+            sum.wrapping_add((x as u64).wrapping_mul(factor))
+        });
+        let mixed = (mixed ^ mixed >> 32).wrapping_mul(0xd6e8_feb8_6659_fd93);
+        (mixed ^ mixed >> 29).max(1)
+    }
+}
+
+/// How many cells there are.
+pub(super) fn cell_count(range: &CellRange) -> u64 {
+    let [x, y, z] = range.map(|[first, last]| last.abs_diff(first).saturating_add(1));
+    x.saturating_mul(y).saturating_mul(z)
+}
+
+/// The levels of a set of boxes.
+#[derive(Clone, Debug)]
+pub(super) struct Levels {
+    /// Sizes are counted in units somewhat above the usual size, so that cells suit it best.
+    unit: f64,
+    /// Smaller boxes are in the level of this number.
+    least: i32,
+    pub all: Vec<Level>,
+}
+
+impl Levels {
+    /// Levels that suit these boxes: none has cells much smaller than the mean distance of boxes,
+    /// unless most boxes are smaller.
+    pub fn suited_to<'a>(boxes: impl Iterator<Item = &'a Aabb>, count: usize) -> Self {
+        let step = count.div_ceil(SAMPLE_SIZE).max(1);
+        let (mut lower, mut upper) = ([f64::MAX; 3], [f64::MIN; 3]);
+        let mut sides: Vec<f64> = Vec::new();
+        for (number, aabb) in boxes.enumerate() {
+            for axis in 0..3 {
+                lower[axis] = lower[axis].min(f64::from(aabb.min[axis]));
+                upper[axis] = upper[axis].max(f64::from(aabb.max[axis]));
+            }
+            if number % step == 0 {
+                sides.push(longest_side(aabb));
+            }
+        }
+        sides.sort_by(f64::total_cmp);
+        let usual = sides.get(sides.len() * USUAL_RANK / SAMPLE_SIZE).copied();
+        let usual = usual.unwrap_or(1.0);
+        let space = (0..3).map(|axis| (upper[axis] - lower[axis]).max(usual));
+        let distance = (space.product::<f64>() / count.max(1) as f64).cbrt();
+        let tiniest = f64::from(f32::from_bits(1));
+        let (least, unit) = if usual > f64::from(f32::MIN_POSITIVE) {
+            (usual.min(0.5 * distance), usual * UNIT_SLACK)
+        } else {
+            let least = (0.5 * distance).max(tiniest);
+            (least, least)
+        };
+        Self {
+            unit,
+            least: size_number(least.max(tiniest) / unit),
+            all: Vec::new(),
+        }
+    }
+
+    /// The index of the level of a box.
+    #[inline]
+    pub fn level_of(&mut self, aabb: &Aabb) -> u16 {
+        let number = size_number((longest_side(aabb) / self.unit).next_up()).max(self.least);
+        let found = self.all.iter().position(|level| level.number == number);
+        let index = found.unwrap_or_else(|| {
+            self.all.push(Level::new(number, self.unit));
+            self.all.len() - 1
+        });
+        // Sizes of f32 have some 600 numbers.
+        index as u16
+    }
+}
+
+/// A number no less than the longest side.
+fn longest_side(aabb: &Aabb) -> f64 {
+    let side = |axis: usize| f64::from(aabb.max[axis]) - f64::from(aabb.min[axis]);
+    (0..3).map(side).fold(0.0, f64::max).next_up()
+}
+
+/// Sizes 1, 1.5, 2, 3, 4, 6 … have the numbers 0, 1, 2 …; of a number in between, that of the next
+/// larger one.
+fn size_number(size: f64) -> i32 {
+    let bits = size.to_bits();
+    let exponent = (bits >> MANTISSA) as i32 - (f64::MAX_EXP - 1);
+    let mantissa = bits & ((1 << MANTISSA) - 1);
+    let half = 1 << (MANTISSA - 1);
+    2 * exponent + i32::from(mantissa > 0) + i32::from(mantissa > half)
+}
+
+fn size_of_number(number: i32) -> f64 {
+    let exponent = (number >> 1) + (f64::MAX_EXP - 1);
+    let power = f64::from_bits((exponent as u64) << MANTISSA);
+    if number & 1 == 1 { 1.5 * power } else { power }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn numbers_of_sizes_round_up() {
+        for (size, number) in [
+            (1.0, 0),
+            (1.5, 1),
+            (2.0, 2),
+            (3.0, 3),
+            (0.75, -1),
+            (0.5, -2),
+        ] {
+            assert_eq!((size_number(size), size_of_number(number)), (number, size));
+            assert_eq!(size_number(size.next_up()), number + 1);
+            assert_eq!(size_number(size.next_down()), number);
+        }
+    }
+
+    fn end() -> impl Strategy<Value = f32> {
+        prop_oneof![
+            -8_i8..8, // shares ends with others
+        ]
+        .prop_map(f32::from)
+        .boxed()
+        .prop_union((-9.0_f32..9.0).boxed())
+        .or((0_u32..40).prop_map(f32::from_bits).boxed())
+        .or(any::<f32>()
+            .prop_filter("finite", |x| x.is_finite())
+            .boxed())
+    }
+
+    fn aabb() -> impl Strategy<Value = Aabb> {
+        prop::array::uniform3([end(), end()]).prop_map(|ends| {
+            let lower = ends.map(|[a, b]| a.min(b));
+            Aabb::new(lower, ends.map(|[a, b]| a.max(b)))
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        /// The argument of the module's head: what meets is in a cell that is looked into.
+        #[test]
+        fn boxes_that_meet_are_in_cells_nearby(one in aabb(), other in aabb(), least in 1e-30_f32..9.0) {
+            let sized = Aabb::new([0.0; 3], [least; 3]);
+            let mut levels = Levels::suited_to([sized].iter(), 1);
+            let index = levels.level_of(&other);
+            let level = levels.all[usize::from(index)];
+            let home = other.min.map(|x| level.cell(f64::from(x)));
+            prop_assert_eq!(level.home(&other), level.name(home));
+            let near = level.cells_near(&one);
+            let is_near = (0..3).all(|axis| (near[axis][0]..=near[axis][1]).contains(&home[axis]));
+            prop_assert!(is_near || !one.meets(&other));
+        }
+    }
+
+    #[test]
+    fn a_box_of_the_same_size_looks_into_eight_cells() {
+        let cube = |x: f32, side: f32| Aabb::new([x; 3], [x + side; 3]);
+        let boxes = [cube(0.0, 1.0), cube(5.0, 1.0), cube(9.0, 1.0)];
+        let mut levels = Levels::suited_to(boxes.iter(), 3);
+        for side in [0.25_f32, 0.8, 1.0, 1.2, 1.5, 3.0, 40.0] {
+            for x in 0..50 {
+                let aabb = cube(0.37 * x as f32, side);
+                let index = levels.level_of(&aabb);
+                let near = levels.all[usize::from(index)].cells_near(&aabb);
+                assert!(cell_count(&near) <= 27, "{side}: {near:?}");
+            }
+        }
+        assert!(levels.all.len() <= 7);
+    }
+}

@@ -1,0 +1,114 @@
+//! What the search for a list has found and tested so far, on all threads together, and when it
+//! ends.
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use super::list::Limits;
+
+/// Candidates after which a thread adds its counts to those of all.
+pub const STEP: u64 = 1024;
+
+/// Counts of all threads. They only grow, so whether the search ends beyond its limits depends on
+/// no thread; how far beyond does, by a [`STEP`] and one piece of the work for each of them.
+#[derive(Debug)]
+pub struct Effort {
+    limits: Limits,
+    pairs: AtomicU64,
+    candidates: AtomicU64,
+}
+
+impl Effort {
+    /// None so far.
+    pub fn new(limits: Limits) -> Self {
+        Self {
+            limits,
+            pairs: AtomicU64::new(0),
+            candidates: AtomicU64::new(0),
+        }
+    }
+
+    /// Adds a thread's counts.
+    pub fn add(&self, pairs: u64, candidates: u64) {
+        self.pairs.fetch_add(pairs, Relaxed);
+        self.candidates.fetch_add(candidates, Relaxed);
+    }
+
+    /// Whether the counts of all and these, of which nothing has been added, exceed the limits.
+    #[inline(always)]
+    pub fn is_over_with(&self, pairs: u64, candidates: u64) -> bool {
+        self.pairs.load(Relaxed) + pairs > self.limits.pairs
+            || self.candidates.load(Relaxed) + candidates > self.limits.candidates
+    }
+
+    /// Whether the search is to end.
+    pub fn is_over(&self) -> bool {
+        self.is_over_with(0, 0)
+    }
+
+    /// Candidates tested. An abandoned search counts as its limit, on any number of threads.
+    pub fn tested(&self) -> u64 {
+        if self.is_over() {
+            self.limits.candidates
+        } else {
+            self.candidates.load(Relaxed)
+        }
+    }
+
+    /// Checks in debug builds that no thread went on beyond the limits.
+    pub fn check(&self, threads: usize) {
+        let slack = threads as u64 * (STEP + 2 * crate::broad_phase::MOST_CANDIDATES as u64);
+        debug_assert!(
+            self.pairs.load(Relaxed) <= self.limits.pairs + slack
+                && self.candidates.load(Relaxed) <= self.limits.candidates + slack,
+            "the search for a list ends at its limits"
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    impl Effort {
+        /// Of a search that never ends early.
+        pub fn unlimited() -> Self {
+            Self::new(Limits {
+                pairs: u64::MAX,
+                candidates: u64::MAX,
+            })
+        }
+    }
+
+    #[test]
+    fn an_effort_is_over_beyond_either_limit() {
+        let limits = Limits {
+            pairs: 10,
+            candidates: 100,
+        };
+        for (pairs, candidates, over) in [(10, 100, false), (11, 50, true), (5, 101, true)] {
+            let effort = Effort::new(limits);
+            assert_eq!(effort.is_over_with(pairs, candidates), over);
+            effort.add(pairs - 1, candidates - 1);
+            assert!(!effort.is_over() && effort.tested() == candidates - 1);
+            assert_eq!(effort.is_over_with(1, 1), over);
+            effort.add(1, 1);
+            assert_eq!(effort.is_over(), over);
+            assert_eq!(
+                effort.tested(),
+                100.min(candidates).max(if over { 100 } else { 0 })
+            );
+        }
+    }
+
+    #[test]
+    #[cfg_attr(debug_assertions, should_panic(expected = "ends at its limits"))]
+    fn a_search_without_end_is_noticed() {
+        let limits = Limits {
+            pairs: 10,
+            candidates: 100,
+        };
+        let effort = Effort::new(limits);
+        effort.add(0, 100_000);
+        effort.check(4);
+    }
+}

@@ -1,0 +1,338 @@
+//! What crosses the border: statuses, the last error, columns, buffers and callbacks.
+
+use std::cell::RefCell;
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::slice;
+
+use crate::choice::UnknownChoice;
+use crate::culler::CullError;
+use crate::mesh::MeshError;
+use crate::pairs::PairList;
+use crate::volume::VolumeError;
+use crate::world::{BodyId, Event, Events, SnapshotError, WorldError};
+
+/// How a call ended.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SdopStatus {
+    /// As asked.
+    Ok = 0,
+    /// Input that can't be carried out. Of a column, what comes before it has been.
+    Refused = 1,
+    /// The buffer is too small; the count says how much is needed.
+    TooSmall = 2,
+    /// A pointer is null that must not be.
+    Null = 3,
+    /// A bug of sdop: free the handle, and report it.
+    Bug = 4,
+}
+
+/// Two bodies by their numbers, the lower one first.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SdopPair {
+    /// The lower number.
+    pub first: u32,
+    /// The higher number.
+    pub second: u32,
+}
+
+/// Two bodies of a world by their ids, the lower slot first.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SdopIdPair {
+    /// The id of the lower slot.
+    pub first: u64,
+    /// The id of the higher slot.
+    pub second: u64,
+}
+
+impl From<[BodyId; 2]> for SdopIdPair {
+    fn from(pair: [BodyId; 2]) -> Self {
+        let [first, second] = pair.map(BodyId::to_bits);
+        Self { first, second }
+    }
+}
+
+/// What has become of a pair.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SdopEventKind {
+    /// Reported now and not before.
+    Begun = 0,
+    /// Reported now and before.
+    Persisting = 1,
+    /// Reported before and not now.
+    Ended = 2,
+}
+
+/// A pair and what has become of it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SdopEvent {
+    /// What has become of it.
+    pub kind: SdopEventKind,
+    /// The pair.
+    pub pair: SdopIdPair,
+}
+
+/// Takes some of a frame's pairs: the pointer given along, the pairs, their number. Must return
+/// normally.
+pub type SdopTakePairs = Option<unsafe extern "C" fn(*mut c_void, *const SdopPair, usize)>;
+
+/// Takes an event: the pointer given along, the event. Must return normally.
+pub type SdopTakeEvent = Option<unsafe extern "C" fn(*mut c_void, SdopEvent)>;
+
+thread_local! {
+    static LAST_ERROR: RefCell<CString> = RefCell::default();
+}
+
+pub fn last_error() -> *const c_char {
+    LAST_ERROR.with(|text| text.borrow().as_ptr())
+}
+
+/// Why a call fails.
+pub struct Refusal {
+    status: SdopStatus,
+    text: String,
+}
+
+impl Refusal {
+    pub fn new(status: SdopStatus, text: impl Into<String>) -> Self {
+        let text = text.into();
+        Self { status, text }
+    }
+}
+
+macro_rules! refusals {
+    ($($error:ty),+) => {
+        $(impl From<$error> for Refusal {
+            fn from(error: $error) -> Self {
+                let text = format!("{error}\nhelp: {}", error.help());
+                Self::new(SdopStatus::Refused, text)
+            }
+        })+
+    };
+}
+refusals!(
+    UnknownChoice,
+    CullError,
+    MeshError,
+    VolumeError,
+    WorldError,
+    SnapshotError
+);
+
+/// Carries out a call, and keeps why it failed.
+pub fn call(run: impl FnOnce() -> Result<(), Refusal>) -> SdopStatus {
+    let (status, text) = match catch_unwind(AssertUnwindSafe(run)) {
+        Ok(Ok(())) => (SdopStatus::Ok, String::new()),
+        Ok(Err(Refusal { status, text })) => (status, text),
+        Err(_) => (
+            SdopStatus::Bug,
+            "a bug of sdop\nhelp: free the handle, and report what was called".to_owned(),
+        ),
+    };
+    let text = CString::new(text.replace('\0', "\\0")).unwrap_or_default();
+    LAST_ERROR.with(|last| *last.borrow_mut() = text);
+    status
+}
+
+fn null(what: &str) -> Refusal {
+    Refusal::new(
+        SdopStatus::Null,
+        format!("{what} is null\nhelp: pass a pointer"),
+    )
+}
+
+/// What a handle points to.
+///
+/// # Safety
+/// The pointer is null, or from the function that makes such handles and not freed, and no other
+/// call uses it meanwhile.
+pub unsafe fn handle<'a, T>(handle: *mut T, what: &str) -> Result<&'a mut T, Refusal> {
+    // SAFETY: the caller's promise.
+    unsafe { handle.as_mut() }.ok_or_else(|| null(what))
+}
+
+/// What a pointer that is only read points to. Many threads may read it at the same time.
+///
+/// # Safety
+/// The pointer is null, or to a value that nobody writes for as long as the call lasts.
+pub unsafe fn shared<'a, T>(pointer: *const T, what: &str) -> Result<&'a T, Refusal> {
+    // SAFETY: the caller's promise.
+    unsafe { pointer.as_ref() }.ok_or_else(|| null(what))
+}
+
+/// Frees what a handle points to.
+///
+/// # Safety
+/// As [`handle`], and nobody uses it afterwards.
+pub unsafe fn free<T>(handle: *mut T) {
+    if !handle.is_null() {
+        // SAFETY: it came from `give`, by the caller's promise.
+        drop(unsafe { Box::from_raw(handle) });
+    }
+}
+
+/// Hands a new handle out.
+///
+/// # Safety
+/// `out` is null or may be written.
+pub unsafe fn give<T>(out: *mut *mut T, value: T) -> Result<(), Refusal> {
+    // SAFETY: the caller's promise.
+    unsafe { put(out, Box::into_raw(Box::new(value)), "out") }
+}
+
+/// Writes one value.
+///
+/// # Safety
+/// `out` is null or may be written.
+pub unsafe fn put<T>(out: *mut T, value: T, what: &str) -> Result<(), Refusal> {
+    if out.is_null() {
+        return Err(null(what));
+    }
+    // SAFETY: not null, and writable by the caller's promise.
+    unsafe { out.write(value) };
+    Ok(())
+}
+
+/// A column of so many entries.
+///
+/// # Safety
+/// The pointer is null, or so many entries behind it may be read for as long as the call lasts.
+pub unsafe fn column<'a, T>(first: *const T, count: usize, what: &str) -> Result<&'a [T], Refusal> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    if first.is_null() {
+        return Err(null(what));
+    }
+    // SAFETY: not null, and readable by the caller's promise.
+    Ok(unsafe { slice::from_raw_parts(first, count) })
+}
+
+/// A column that may be left out.
+///
+/// # Safety
+/// As [`column`].
+pub unsafe fn optional<'a, T>(first: *const T, count: usize) -> Option<&'a [T]> {
+    // SAFETY: the caller's promise.
+    unsafe { column(first, count, "") }
+        .ok()
+        .filter(|_| !first.is_null())
+}
+
+/// A text that may be left out.
+///
+/// # Safety
+/// The pointer is null, or to a text that ends with a zero.
+pub unsafe fn text(text: *const c_char, default: &str) -> Result<&str, Refusal> {
+    if text.is_null() {
+        return Ok(default);
+    }
+    // SAFETY: not null, and ended by a zero, by the caller's promise.
+    let text = unsafe { CStr::from_ptr(text) };
+    let refused = |_| Refusal::new(SdopStatus::Refused, "a text is not UTF-8\nhelp: pass UTF-8");
+    text.to_str().map_err(refused)
+}
+
+/// Copies values into a caller's buffer; `count` gets their number, whether they fit or not.
+///
+/// # Safety
+/// `capacity` entries behind `buffer` may be written, if there are any; `count` is null or may be
+/// written.
+pub unsafe fn fill<T>(
+    values: impl ExactSizeIterator<Item = T>,
+    buffer: *mut T,
+    capacity: usize,
+    count: *mut usize,
+) -> Result<(), Refusal> {
+    let needed = values.len();
+    // SAFETY: the caller's promise.
+    unsafe { put(count, needed, "count") }?;
+    if needed > capacity {
+        let text = format!(
+            "{needed} entries don't fit into a buffer of {capacity}\nhelp: pass a larger buffer"
+        );
+        return Err(Refusal::new(SdopStatus::TooSmall, text));
+    }
+    if needed > 0 && buffer.is_null() {
+        return Err(null("buffer"));
+    }
+    for (at, value) in values.enumerate() {
+        // SAFETY: below `capacity`, so writable by the caller's promise.
+        unsafe { buffer.add(at).write(value) };
+    }
+    Ok(())
+}
+
+/// A snapshot as bytes.
+pub fn saved(snapshot: &impl serde::Serialize) -> Result<Vec<u8>, Refusal> {
+    let refused = |error| {
+        Refusal::new(
+            SdopStatus::Bug,
+            format!("{error}\nhelp: report what was called"),
+        )
+    };
+    serde_json::to_vec(snapshot).map_err(refused)
+}
+
+/// A snapshot of bytes.
+pub fn read_back<T: serde::de::DeserializeOwned>(bytes: &[u8]) -> Result<T, Refusal> {
+    let help = "pass what a snapshot of this version has written";
+    let refused = |error| {
+        Refusal::new(
+            SdopStatus::Refused,
+            format!("no snapshot: {error}\nhelp: {help}"),
+        )
+    };
+    serde_json::from_slice(bytes).map_err(refused)
+}
+
+/// The pairs of a list.
+pub fn pairs(list: &PairList) -> impl ExactSizeIterator<Item = SdopPair> + '_ {
+    list.iter()
+        .map(|[first, second]| SdopPair { first, second })
+}
+
+/// The pointer that a caller wants back in its callback, which may be called on another thread.
+pub struct User(pub *mut c_void);
+
+// SAFETY: it is handed back as it is and never followed; calls come one at a time, and the caller
+// is told that any thread may make them.
+unsafe impl Send for User {}
+
+impl User {
+    /// Hands pairs to a callback.
+    ///
+    /// # Safety
+    /// The callback may be called with this pointer.
+    pub unsafe fn take(&self, take: SdopTakePairs, list: &PairList) {
+        let pairs: Vec<SdopPair> = pairs(list).collect();
+        if let Some(take) = take {
+            // SAFETY: the caller's promise.
+            unsafe { take(self.0, pairs.as_ptr(), pairs.len()) };
+        }
+    }
+}
+
+/// Hands events to a callback.
+///
+/// # Safety
+/// The callback may be called with this pointer.
+pub unsafe fn tell(events: &Events, take: SdopTakeEvent, user: *mut c_void) -> Result<(), Refusal> {
+    let take = take.ok_or_else(|| null("take"))?;
+    for event in events.iter() {
+        let (kind, pair) = match event {
+            Event::Begun(pair) => (SdopEventKind::Begun, pair),
+            Event::Persisting(pair) => (SdopEventKind::Persisting, pair),
+            Event::Ended(pair) => (SdopEventKind::Ended, pair),
+        };
+        let pair = pair.into();
+        // SAFETY: the caller's promise.
+        unsafe { take(user, SdopEvent { kind, pair }) };
+    }
+    Ok(())
+}

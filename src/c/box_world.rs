@@ -1,0 +1,238 @@
+//! Long-lived worlds of boxes.
+
+use std::ffi::{c_char, c_void};
+
+use super::border::{
+    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back,
+    saved, shared, tell,
+};
+use super::boxes::builder;
+use crate::bodies::{Aabb, Groups, Motion};
+use crate::boxes::{BoxBody, BoxWorld};
+use crate::world::BodyId;
+
+/// A long-lived set of boxes: ids that stay, groups, pairs and events.
+#[derive(Debug)]
+pub struct SdopBoxWorld(BoxWorld);
+
+/// A box to be inserted.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SdopBoxBody {
+    /// Where it is.
+    pub bounds: Aabb,
+    /// Whether it is scenery; pairs of two such boxes are never reported.
+    pub fixed: bool,
+    /// Whether it lies still for the time being; its pairs stay.
+    pub resting: bool,
+    /// Which boxes it may collide with; all bits for all.
+    pub groups: Groups,
+}
+
+impl From<SdopBoxBody> for BoxBody {
+    fn from(body: SdopBoxBody) -> Self {
+        Self {
+            bounds: body.bounds,
+            motion: match (body.fixed, body.resting) {
+                (true, _) => Motion::Fixed,
+                (false, true) => Motion::Resting,
+                (false, false) => Motion::Dynamic,
+            },
+            groups: body.groups,
+        }
+    }
+}
+
+/// Makes a world without boxes. `finder` is "auto" if null; 0 threads are 1.
+///
+/// # Safety
+/// `finder` is null or ends with a zero; `out` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_new(
+    finder: *const c_char,
+    threads: usize,
+    out: *mut *mut SdopBoxWorld,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let world = BoxWorld::with(&unsafe { builder(finder, threads) }?)?;
+        // SAFETY: the caller's promise.
+        unsafe { give(out, SdopBoxWorld(world)) }
+    })
+}
+
+/// Frees a world; null is fine.
+///
+/// # Safety
+/// It is from `sdop_box_world_new` and not used afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_free(world: *mut SdopBoxWorld) {
+    // SAFETY: the caller's promise.
+    unsafe { free(world) }
+}
+
+/// Adds a box; `id` gets its id, which stays until the box is removed.
+///
+/// # Safety
+/// `world` is a handle, `body` a box; `id` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_insert(
+    world: *mut SdopBoxWorld,
+    body: *const SdopBoxBody,
+    id: *mut u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
+        let inserted = it.0.insert(BoxBody::from(body))?;
+        // SAFETY: the caller's promise.
+        unsafe { put(id, inserted.to_bits(), "id") }
+    })
+}
+
+/// Removes a box.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_remove(world: *mut SdopBoxWorld, id: u64) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    call(|| {
+        Ok(unsafe { handle(world, "world") }?
+            .0
+            .remove(BodyId::from_bits(id))?)
+    })
+}
+
+/// Changes a box in any of its properties.
+///
+/// # Safety
+/// `world` is a handle, `body` a box.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_set(
+    world: *mut SdopBoxWorld,
+    id: u64,
+    body: *const SdopBoxBody,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
+        Ok(it.0.set(BodyId::from_bits(id), BoxBody::from(body))?)
+    })
+}
+
+/// Moves boxes: columns of ids and boxes. Those before one that is refused have moved.
+///
+/// # Safety
+/// `world` is a handle; the columns have `count` entries.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_set_bounds(
+    world: *mut SdopBoxWorld,
+    ids: *const u64,
+    boxes: *const Aabb,
+    count: usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        // SAFETY: the caller's promise.
+        let (ids, boxes) = unsafe { (column(ids, count, "ids")?, column(boxes, count, "boxes")?) };
+        for (&id, &bounds) in ids.iter().zip(boxes) {
+            it.0.set_bounds(BodyId::from_bits(id), bounds)?;
+        }
+        Ok(())
+    })
+}
+
+/// Finds the boxes that meet now. `pairs` gets their number; read them with `sdop_box_world_pairs`.
+///
+/// # Safety
+/// `world` is a handle; `pairs` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_cull(
+    world: *mut SdopBoxWorld,
+    pairs: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let found = unsafe { handle(world, "world") }?.0.cull()?.len();
+        // SAFETY: the caller's promise.
+        unsafe { put(pairs, found, "pairs") }
+    })
+}
+
+/// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
+/// says how many there are.
+///
+/// # Safety
+/// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_pairs(
+    world: *mut SdopBoxWorld,
+    buffer: *mut SdopIdPair,
+    capacity: usize,
+    count: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        // SAFETY: the caller's promise.
+        unsafe { fill(it.0.pairs().map(SdopIdPair::from), buffer, capacity, count) }
+    })
+}
+
+/// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
+/// other way round.
+///
+/// # Safety
+/// `world` is a handle; `take` may be called with `user`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_events(
+    world: *mut SdopBoxWorld,
+    take: SdopTakeEvent,
+    user: *mut c_void,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        // SAFETY: the caller's promise.
+        unsafe { tell(&it.0.events(), take, user) }
+    })
+}
+
+/// Copies the world as bytes into `buffer`, for `sdop_box_world_restore`. If they don't fit,
+/// `count` says how many there are.
+///
+/// # Safety
+/// `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_snapshot(
+    world: *mut SdopBoxWorld,
+    buffer: *mut u8,
+    capacity: usize,
+    count: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let bytes = saved(&unsafe { handle(world, "world") }?.0.snapshot())?;
+        // SAFETY: the caller's promise.
+        unsafe { fill(bytes.into_iter(), buffer, capacity, count) }
+    })
+}
+
+/// Makes this world the one of a snapshot.
+///
+/// # Safety
+/// `world` is a handle; `count` bytes may be read.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_restore(
+    world: *mut SdopBoxWorld,
+    bytes: *const u8,
+    count: usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, bytes) = unsafe { (handle(world, "world")?, column(bytes, count, "bytes")?) };
+        Ok(it.0.restore(&read_back(bytes)?)?)
+    })
+}

@@ -1,0 +1,149 @@
+//! All boxes anew in each frame.
+
+use std::ffi::{c_char, c_void};
+
+use super::border::{
+    Refusal, SdopPair, SdopStatus, SdopTakePairs, User, call, column, fill, free, give, handle,
+    optional, pairs, put, text,
+};
+use crate::bodies::{Aabb, Groups};
+use crate::boxes::{BoxCuller, BoxCullerBuilder};
+use crate::pairs::PairList;
+use crate::settings::Finder;
+
+/// Finds the boxes that meet, frame after frame.
+#[derive(Debug)]
+pub struct SdopBoxCuller(BoxCuller);
+
+/// How a culler of boxes is made of what C gives.
+///
+/// # Safety
+/// The finder is null or a text that ends with a zero.
+pub(super) unsafe fn builder(
+    finder: *const c_char,
+    threads: usize,
+) -> Result<BoxCullerBuilder, Refusal> {
+    // SAFETY: the caller's promise.
+    let finder: Finder = unsafe { text(finder, "auto") }?.parse()?;
+    Ok(BoxCuller::builder().finder(finder).threads(threads))
+}
+
+/// Makes a culler of boxes. `finder` is "auto" if null; 0 threads are 1.
+///
+/// # Safety
+/// `finder` is null or ends with a zero; `out` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_culler_new(
+    finder: *const c_char,
+    threads: usize,
+    out: *mut *mut SdopBoxCuller,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let culler = unsafe { builder(finder, threads) }?.build()?;
+        // SAFETY: the caller's promise.
+        unsafe { give(out, SdopBoxCuller(culler)) }
+    })
+}
+
+/// Frees a culler; null is fine.
+///
+/// # Safety
+/// It is from `sdop_box_culler_new` and not used afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_culler_free(culler: *mut SdopBoxCuller) {
+    // SAFETY: the caller's promise.
+    unsafe { free(culler) }
+}
+
+impl SdopBoxCuller {
+    /// The frame's boxes; its groups are set.
+    ///
+    /// # Safety
+    /// The columns have `count` entries for as long as the call lasts; that of groups may be null.
+    unsafe fn take<'a>(
+        &mut self,
+        boxes: *const Aabb,
+        groups: *const Groups,
+        count: usize,
+    ) -> Result<&'a [Aabb], Refusal> {
+        // SAFETY: the caller's promise.
+        let groups = unsafe { optional(groups, count) };
+        self.0.set_groups(groups.map(<[Groups]>::to_vec));
+        // SAFETY: the caller's promise.
+        unsafe { column(boxes, count, "boxes") }
+    }
+}
+
+/// Finds the pairs of boxes that meet, touching included, and whose groups collide. `groups` may be
+/// null: all do. `pairs` gets their number; read them with `sdop_box_culler_pairs`.
+///
+/// # Safety
+/// `culler` is a handle; `boxes` has `count` entries, `groups` too unless null; `pairs` may be
+/// written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_culler_cull(
+    culler: *mut SdopBoxCuller,
+    boxes: *const Aabb,
+    groups: *const Groups,
+    count: usize,
+    pairs: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(culler, "culler") }?;
+        // SAFETY: the caller's promise.
+        let boxes = unsafe { it.take(boxes, groups, count) }?;
+        let found = it.0.cull(boxes)?.len();
+        // SAFETY: the caller's promise.
+        unsafe { put(pairs, found, "pairs") }
+    })
+}
+
+/// Copies the pairs of the last frame into `buffer`, in an order that depends on the finder and the
+/// frames so far alone. If they don't fit, `count` says how many there are.
+///
+/// # Safety
+/// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_culler_pairs(
+    culler: *mut SdopBoxCuller,
+    buffer: *mut SdopPair,
+    capacity: usize,
+    count: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(culler, "culler") }?;
+        // SAFETY: the caller's promise.
+        unsafe { fill(pairs(it.0.pairs()), buffer, capacity, count) }
+    })
+}
+
+/// Culls as `sdop_box_culler_cull` does and hands the pairs to `take`, some 65,000 at a time, so
+/// that memory doesn't grow with their number. With several threads, `take` is called from any of
+/// them, one call at a time.
+///
+/// # Safety
+/// As `sdop_box_culler_cull`; `take` may be called with `user`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_culler_cull_each(
+    culler: *mut SdopBoxCuller,
+    boxes: *const Aabb,
+    groups: *const Groups,
+    count: usize,
+    take: SdopTakePairs,
+    user: *mut c_void,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(culler, "culler") }?;
+        // SAFETY: the caller's promise.
+        let boxes = unsafe { it.take(boxes, groups, count) }?;
+        let user = User(user);
+        // SAFETY: the caller's promise.
+        let hand_over = move |portion: &PairList| unsafe { user.take(take, portion) };
+        it.0.cull_in_portions(boxes, hand_over)?;
+        Ok(())
+    })
+}

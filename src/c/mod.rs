@@ -1,0 +1,36 @@
+//! The interface for C and C++ (`sdop.h`): handles, columns in, pairs out.
+//!
+//! A function that can fail returns an [`SdopStatus`] and leaves the reason, with its remedy, in
+//! [`sdop_last_error`]. No panic crosses the border. Handles may move between threads, and one is
+//! used by one thread at a time.
+
+#![allow(unsafe_code, reason = "pointers of C cross the border here")]
+
+mod bodies;
+mod border;
+mod box_world;
+mod boxes;
+mod world;
+
+use std::ffi::c_char;
+
+pub use bodies::*;
+pub use border::{
+    SdopEvent, SdopEventKind, SdopIdPair, SdopPair, SdopStatus, SdopTakeEvent, SdopTakePairs,
+};
+pub use box_world::*;
+pub use boxes::*;
+pub use world::*;
+
+/// The version of the library, such as "0.1.0".
+#[unsafe(no_mangle)]
+pub extern "C" fn sdop_version() -> *const c_char {
+    concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
+}
+
+/// Why the last call on this thread failed and how to mend it, until the next call; empty if it did
+/// not.
+#[unsafe(no_mangle)]
+pub extern "C" fn sdop_last_error() -> *const c_char {
+    border::last_error()
+}

@@ -1,0 +1,444 @@
+/* sdop: collision culling that never misses a touching pair. Made by cbindgen from src/c. */
+
+#ifndef SDOP_H
+#define SDOP_H
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+// What has become of a pair.
+typedef enum {
+  // Reported now and not before.
+  SDOP_EVENT_KIND_BEGUN = 0,
+  // Reported now and before.
+  SDOP_EVENT_KIND_PERSISTING = 1,
+  // Reported before and not now.
+  SDOP_EVENT_KIND_ENDED = 2,
+} SdopEventKind;
+
+// How a call ended.
+typedef enum {
+  // As asked.
+  SDOP_STATUS_OK = 0,
+  // Input that can't be carried out. Of a column, what comes before it has been.
+  SDOP_STATUS_REFUSED = 1,
+  // The buffer is too small; the count says how much is needed.
+  SDOP_STATUS_TOO_SMALL = 2,
+  // A pointer is null that must not be.
+  SDOP_STATUS_NULL = 3,
+  // A bug of sdop: free the handle, and report it.
+  SDOP_STATUS_BUG = 4,
+} SdopStatus;
+
+// Finds the boxes that meet, frame after frame.
+typedef struct SdopBoxCuller SdopBoxCuller;
+
+// A long-lived set of boxes: ids that stay, groups, pairs and events.
+typedef struct SdopBoxWorld SdopBoxWorld;
+
+// Culls the frames of a fixed set of bodies whose poses change.
+typedef struct SdopCuller SdopCuller;
+
+// A mesh with its bounding ball and or-DOP.
+typedef struct SdopShape SdopShape;
+
+// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and
+// events.
+typedef struct SdopWorld SdopWorld;
+
+// How a mesh becomes a shape. All zeros is the default.
+typedef struct {
+  // Number of or-DOP faces: 6, 14, 18 or 26; 0 is 18.
+  uint32_t k;
+  // Scales the mesh about its origin until its smallest enclosing ball has this radius; 0 keeps
+  // its size.
+  float radius;
+  // Whether poses place the centre of the smallest enclosing ball instead of the mesh's own
+  // origin.
+  bool about_ball;
+  // Whether the or-DOP stands on the mesh's own axes instead of the principal axes of its hull.
+  bool on_model_axes;
+} SdopShapeSpec;
+
+// Bits of the groups that a body is in, and of those that it collides with.
+typedef struct {
+  // The groups that the body is in.
+  uint32_t member;
+  // The groups that it collides with.
+  uint32_t mask;
+} SdopGroups;
+// In all groups, colliding with all.
+#define SdopGroups_ALL (SdopGroups){ .member = UINT32_MAX, .mask = UINT32_MAX }
+
+// Bodies as columns of `count` entries.
+typedef struct {
+  // Number of bodies.
+  size_t count;
+  // For each body, the number of its shape.
+  const uint32_t *shape;
+  // Whether each may move; null: all may. Pairs of two that may not are never reported.
+  const bool *dynamic;
+  // Quaternions x, y, z, w of any non-zero norm.
+  const float (*rotation)[4];
+  // Translations of the bodies' origins, world frame.
+  const float (*translation)[3];
+  // Which bodies may collide; null: all.
+  const SdopGroups *groups;
+} SdopBodies;
+
+// How bodies are culled. All zeros is the default.
+typedef struct {
+  // Which volumes are tested; null is "s-dop-sequential", spheres and then or-DOPs.
+  const char *strategy;
+  // Who finds the candidates; null is "auto".
+  const char *finder;
+  // Number of threads; 0 is 1.
+  size_t threads;
+} SdopOptions;
+
+// Two bodies by their numbers, the lower one first.
+typedef struct {
+  // The lower number.
+  uint32_t first;
+  // The higher number.
+  uint32_t second;
+} SdopPair;
+
+// A closed box on the world's axes: boxes that touch meet. Its ends are finite, and no lower one
+// is above the upper one; sides of no length are fine.
+typedef struct {
+  // The lower corner.
+  float min[3];
+  // The upper corner.
+  float max[3];
+} SdopBox;
+
+// A box to be inserted.
+typedef struct {
+  // Where it is.
+  SdopBox bounds;
+  // Whether it is scenery; pairs of two such boxes are never reported.
+  bool fixed;
+  // Whether it lies still for the time being; its pairs stay.
+  bool resting;
+  // Which boxes it may collide with; all bits for all.
+  SdopGroups groups;
+} SdopBoxBody;
+
+// Two bodies of a world by their ids, the lower slot first.
+typedef struct {
+  // The id of the lower slot.
+  uint64_t first;
+  // The id of the higher slot.
+  uint64_t second;
+} SdopIdPair;
+
+// A pair and what has become of it.
+typedef struct {
+  // What has become of it.
+  SdopEventKind kind;
+  // The pair.
+  SdopIdPair pair;
+} SdopEvent;
+
+// Takes an event: the pointer given along, the event. Must return normally.
+typedef void (*SdopTakeEvent)(void*, SdopEvent);
+
+// Takes some of a frame's pairs: the pointer given along, the pairs, their number. Must return
+// normally.
+typedef void (*SdopTakePairs)(void*, const SdopPair*, size_t);
+
+// A body to be inserted.
+typedef struct {
+  // Number of its shape.
+  uint32_t shape;
+  // Whether it is scenery; pairs of two such bodies are never reported.
+  bool fixed;
+  // Quaternion x, y, z, w of any non-zero norm.
+  float rotation[4];
+  // Translation of its origin, world frame.
+  double translation[3];
+  // Contact margin, a length: pairs are reported whose meshes, each grown by its margin, meet.
+  float margin;
+  // Which bodies it may collide with; all bits for all.
+  SdopGroups groups;
+} SdopBody;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// The version of the library, such as "0.1.0".
+const char *sdop_version(void);
+
+// Why the last call on this thread failed and how to mend it, until the next call; empty if it did
+// not.
+const char *sdop_last_error(void);
+
+// Makes a shape of vertices in the mesh's own frame, to whose origin poses refer, and vertex
+// indices of triangles. `spec` may be null.
+//
+// # Safety
+// The columns have as many entries as said; `spec` is null or a specification; `out` may be
+// written.
+SdopStatus sdop_shape_new(const double (*vertices)[3],
+                          size_t vertex_count,
+                          const uint32_t (*triangles)[3],
+                          size_t triangle_count,
+                          const SdopShapeSpec *spec,
+                          SdopShape **out);
+
+// Frees a shape; null is fine. Cullers and worlds keep copies.
+//
+// # Safety
+// It is from `sdop_shape_new` and not used afterwards.
+void sdop_shape_free(SdopShape *shape);
+
+// Makes the culler of these bodies. `options` may be null.
+//
+// # Safety
+// The columns have as many entries as said; `options` is null or options; `out` may be written.
+SdopStatus sdop_culler_new(const SdopShape *const *shapes,
+                           size_t shape_count,
+                           const SdopBodies *bodies,
+                           const SdopOptions *options,
+                           SdopCuller **out);
+
+// Frees a culler; null is fine.
+//
+// # Safety
+// It is from `sdop_culler_new` and not used afterwards.
+void sdop_culler_free(SdopCuller *culler);
+
+// Finds the pairs that might touch at these poses, one of each column for each body. Static bodies
+// stay where they were made. `pairs` gets their number; read them with `sdop_culler_pairs`.
+//
+// # Safety
+// `culler` is a handle; the columns have an entry for each body; `pairs` may be written.
+SdopStatus sdop_culler_cull(SdopCuller *culler,
+                            const float (*rotation)[4],
+                            const float (*translation)[3],
+                            size_t *pairs);
+
+// Copies the pairs of the last frame into `buffer`. If they don't fit, `count` says how many there
+// are.
+//
+// # Safety
+// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
+SdopStatus sdop_culler_pairs(SdopCuller *culler, SdopPair *buffer, size_t capacity, size_t *count);
+
+// Makes a world without boxes. `finder` is "auto" if null; 0 threads are 1.
+//
+// # Safety
+// `finder` is null or ends with a zero; `out` may be written.
+SdopStatus sdop_box_world_new(const char *finder, size_t threads, SdopBoxWorld **out);
+
+// Frees a world; null is fine.
+//
+// # Safety
+// It is from `sdop_box_world_new` and not used afterwards.
+void sdop_box_world_free(SdopBoxWorld *world);
+
+// Adds a box; `id` gets its id, which stays until the box is removed.
+//
+// # Safety
+// `world` is a handle, `body` a box; `id` may be written.
+SdopStatus sdop_box_world_insert(SdopBoxWorld *world, const SdopBoxBody *body, uint64_t *id);
+
+// Removes a box.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_box_world_remove(SdopBoxWorld *world, uint64_t id);
+
+// Changes a box in any of its properties.
+//
+// # Safety
+// `world` is a handle, `body` a box.
+SdopStatus sdop_box_world_set(SdopBoxWorld *world, uint64_t id, const SdopBoxBody *body);
+
+// Moves boxes: columns of ids and boxes. Those before one that is refused have moved.
+//
+// # Safety
+// `world` is a handle; the columns have `count` entries.
+SdopStatus sdop_box_world_set_bounds(SdopBoxWorld *world,
+                                     const uint64_t *ids,
+                                     const SdopBox *boxes,
+                                     size_t count);
+
+// Finds the boxes that meet now. `pairs` gets their number; read them with `sdop_box_world_pairs`.
+//
+// # Safety
+// `world` is a handle; `pairs` may be written.
+SdopStatus sdop_box_world_cull(SdopBoxWorld *world, size_t *pairs);
+
+// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
+// says how many there are.
+//
+// # Safety
+// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
+SdopStatus sdop_box_world_pairs(SdopBoxWorld *world, SdopIdPair *buffer, size_t capacity, size_t *count);
+
+// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
+// other way round.
+//
+// # Safety
+// `world` is a handle; `take` may be called with `user`.
+SdopStatus sdop_box_world_events(SdopBoxWorld *world, SdopTakeEvent take, void *user);
+
+// Copies the world as bytes into `buffer`, for `sdop_box_world_restore`. If they don't fit,
+// `count` says how many there are.
+//
+// # Safety
+// `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
+SdopStatus sdop_box_world_snapshot(SdopBoxWorld *world, uint8_t *buffer, size_t capacity, size_t *count);
+
+// Makes this world the one of a snapshot.
+//
+// # Safety
+// `world` is a handle; `count` bytes may be read.
+SdopStatus sdop_box_world_restore(SdopBoxWorld *world, const uint8_t *bytes, size_t count);
+
+// Makes a culler of boxes. `finder` is "auto" if null; 0 threads are 1.
+//
+// # Safety
+// `finder` is null or ends with a zero; `out` may be written.
+SdopStatus sdop_box_culler_new(const char *finder, size_t threads, SdopBoxCuller **out);
+
+// Frees a culler; null is fine.
+//
+// # Safety
+// It is from `sdop_box_culler_new` and not used afterwards.
+void sdop_box_culler_free(SdopBoxCuller *culler);
+
+// Finds the pairs of boxes that meet, touching included, and whose groups collide. `groups` may be
+// null: all do. `pairs` gets their number; read them with `sdop_box_culler_pairs`.
+//
+// # Safety
+// `culler` is a handle; `boxes` has `count` entries, `groups` too unless null; `pairs` may be
+// written.
+SdopStatus sdop_box_culler_cull(SdopBoxCuller *culler,
+                                const SdopBox *boxes,
+                                const SdopGroups *groups,
+                                size_t count,
+                                size_t *pairs);
+
+// Copies the pairs of the last frame into `buffer`, in an order that depends on the finder and the
+// frames so far alone. If they don't fit, `count` says how many there are.
+//
+// # Safety
+// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
+SdopStatus sdop_box_culler_pairs(SdopBoxCuller *culler, SdopPair *buffer, size_t capacity, size_t *count);
+
+// Culls as `sdop_box_culler_cull` does and hands the pairs to `take`, some 65,000 at a time, so
+// that memory doesn't grow with their number. With several threads, `take` is called from any of
+// them, one call at a time.
+//
+// # Safety
+// As `sdop_box_culler_cull`; `take` may be called with `user`.
+SdopStatus sdop_box_culler_cull_each(SdopBoxCuller *culler,
+                                     const SdopBox *boxes,
+                                     const SdopGroups *groups,
+                                     size_t count,
+                                     SdopTakePairs take,
+                                     void *user);
+
+// Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
+// defaults.
+//
+// # Safety
+// The column has as many shapes as said; `options` is null or options; `out` may be written.
+SdopStatus sdop_world_new(const SdopShape *const *shapes,
+                          size_t shape_count,
+                          const SdopOptions *options,
+                          SdopWorld **out);
+
+// Frees a world; null is fine.
+//
+// # Safety
+// It is from `sdop_world_new` and not used afterwards.
+void sdop_world_free(SdopWorld *world);
+
+// Adds a shape; `number` gets its number.
+//
+// # Safety
+// `world` and `shape` are handles; `number` may be written.
+SdopStatus sdop_world_add_shape(SdopWorld *world, const SdopShape *shape, uint32_t *number);
+
+// Removes a shape that no body has.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_world_remove_shape(SdopWorld *world, uint32_t shape);
+
+// Adds a body; `id` gets its id, which stays until the body is removed.
+//
+// # Safety
+// `world` is a handle, `body` a body; `id` may be written.
+SdopStatus sdop_world_insert(SdopWorld *world, const SdopBody *body, uint64_t *id);
+
+// Removes a body.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_world_remove(SdopWorld *world, uint64_t id);
+
+// Changes a body in any of its properties.
+//
+// # Safety
+// `world` is a handle, `body` a body.
+SdopStatus sdop_world_set(SdopWorld *world, uint64_t id, const SdopBody *body);
+
+// Moves bodies: columns of ids, rotations and translations. Those before one that is refused have
+// moved.
+//
+// # Safety
+// `world` is a handle; the columns have `count` entries.
+SdopStatus sdop_world_set_poses(SdopWorld *world,
+                                const uint64_t *ids,
+                                const float (*rotation)[4],
+                                const double (*translation)[3],
+                                size_t count);
+
+// Finds the pairs that might touch now. `pairs` gets their number; read them with
+// `sdop_world_pairs`.
+//
+// # Safety
+// `world` is a handle; `pairs` may be written.
+SdopStatus sdop_world_cull(SdopWorld *world, size_t *pairs);
+
+// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
+// says how many there are.
+//
+// # Safety
+// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
+SdopStatus sdop_world_pairs(SdopWorld *world, SdopIdPair *buffer, size_t capacity, size_t *count);
+
+// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
+// other way round.
+//
+// # Safety
+// `world` is a handle; `take` may be called with `user`.
+SdopStatus sdop_world_events(SdopWorld *world, SdopTakeEvent take, void *user);
+
+// Copies the world as bytes into `buffer`, for `sdop_world_restore`. If they don't fit, `count`
+// says how many there are.
+//
+// # Safety
+// `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
+SdopStatus sdop_world_snapshot(SdopWorld *world, uint8_t *buffer, size_t capacity, size_t *count);
+
+// Makes this world the one of a snapshot. It must have the same shapes under the same numbers.
+//
+// # Safety
+// `world` is a handle; `count` bytes may be read.
+SdopStatus sdop_world_restore(SdopWorld *world, const uint8_t *bytes, size_t count);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* SDOP_H */

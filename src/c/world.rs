@@ -1,0 +1,279 @@
+//! Long-lived worlds of meshes.
+
+use std::ffi::c_void;
+
+use super::bodies::{SdopOptions, SdopShape, builder, shapes};
+use super::border::{
+    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back,
+    saved, shared, tell,
+};
+use crate::bodies::Groups;
+use crate::world::{Body, BodyId, World};
+
+/// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and
+/// events.
+#[derive(Debug)]
+pub struct SdopWorld(World);
+
+/// A body to be inserted.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SdopBody {
+    /// Number of its shape.
+    pub shape: u32,
+    /// Whether it is scenery; pairs of two such bodies are never reported.
+    pub fixed: bool,
+    /// Quaternion x, y, z, w of any non-zero norm.
+    pub rotation: [f32; 4],
+    /// Translation of its origin, world frame.
+    pub translation: [f64; 3],
+    /// Contact margin, a length: pairs are reported whose meshes, each grown by its margin, meet.
+    pub margin: f32,
+    /// Which bodies it may collide with; all bits for all.
+    pub groups: Groups,
+}
+
+impl From<SdopBody> for Body {
+    fn from(body: SdopBody) -> Self {
+        Self {
+            shape: body.shape,
+            dynamic: !body.fixed,
+            rotation: body.rotation,
+            translation: body.translation,
+            groups: body.groups,
+            margin: body.margin,
+        }
+    }
+}
+
+/// Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
+/// defaults.
+///
+/// # Safety
+/// The column has as many shapes as said; `options` is null or options; `out` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_new(
+    shapes: *const *const SdopShape,
+    shape_count: usize,
+    options: *const SdopOptions,
+    out: *mut *mut SdopWorld,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (shapes, builder) = unsafe { (self::shapes(shapes, shape_count)?, builder(options)?) };
+        let world = World::with(shapes, &builder)?;
+        // SAFETY: the caller's promise.
+        unsafe { give(out, SdopWorld(world)) }
+    })
+}
+
+/// Frees a world; null is fine.
+///
+/// # Safety
+/// It is from `sdop_world_new` and not used afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_free(world: *mut SdopWorld) {
+    // SAFETY: the caller's promise.
+    unsafe { free(world) }
+}
+
+/// Adds a shape; `number` gets its number.
+///
+/// # Safety
+/// `world` and `shape` are handles; `number` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_add_shape(
+    world: *mut SdopWorld,
+    shape: *const SdopShape,
+    number: *mut u32,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, shape) = unsafe { (handle(world, "world")?, shared(shape, "shape")?) };
+        let added = it.0.add_shape(shape.0.clone())?;
+        // SAFETY: the caller's promise.
+        unsafe { put(number, added, "number") }
+    })
+}
+
+/// Removes a shape that no body has.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_remove_shape(world: *mut SdopWorld, shape: u32) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    call(|| Ok(unsafe { handle(world, "world") }?.0.remove_shape(shape)?))
+}
+
+/// Adds a body; `id` gets its id, which stays until the body is removed.
+///
+/// # Safety
+/// `world` is a handle, `body` a body; `id` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_insert(
+    world: *mut SdopWorld,
+    body: *const SdopBody,
+    id: *mut u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
+        let inserted = it.0.insert(body.into())?;
+        // SAFETY: the caller's promise.
+        unsafe { put(id, inserted.to_bits(), "id") }
+    })
+}
+
+/// Removes a body.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_remove(world: *mut SdopWorld, id: u64) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    call(|| {
+        Ok(unsafe { handle(world, "world") }?
+            .0
+            .remove(BodyId::from_bits(id))?)
+    })
+}
+
+/// Changes a body in any of its properties.
+///
+/// # Safety
+/// `world` is a handle, `body` a body.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_set(
+    world: *mut SdopWorld,
+    id: u64,
+    body: *const SdopBody,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
+        Ok(it.0.set(BodyId::from_bits(id), body.into())?)
+    })
+}
+
+/// Moves bodies: columns of ids, rotations and translations. Those before one that is refused have
+/// moved.
+///
+/// # Safety
+/// `world` is a handle; the columns have `count` entries.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_set_poses(
+    world: *mut SdopWorld,
+    ids: *const u64,
+    rotation: *const [f32; 4],
+    translation: *const [f64; 3],
+    count: usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        // SAFETY: the caller's promise.
+        let (ids, rotations, translations) = unsafe {
+            (
+                column(ids, count, "ids")?,
+                column(rotation, count, "rotation")?,
+                column(translation, count, "translation")?,
+            )
+        };
+        for ((&id, &q), &t) in ids.iter().zip(rotations).zip(translations) {
+            it.0.set_pose(BodyId::from_bits(id), q, t)?;
+        }
+        Ok(())
+    })
+}
+
+/// Finds the pairs that might touch now. `pairs` gets their number; read them with
+/// `sdop_world_pairs`.
+///
+/// # Safety
+/// `world` is a handle; `pairs` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_cull(world: *mut SdopWorld, pairs: *mut usize) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let found = unsafe { handle(world, "world") }?.0.cull()?.len();
+        // SAFETY: the caller's promise.
+        unsafe { put(pairs, found, "pairs") }
+    })
+}
+
+/// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
+/// says how many there are.
+///
+/// # Safety
+/// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_pairs(
+    world: *mut SdopWorld,
+    buffer: *mut SdopIdPair,
+    capacity: usize,
+    count: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        // SAFETY: the caller's promise.
+        unsafe { fill(it.0.pairs().map(SdopIdPair::from), buffer, capacity, count) }
+    })
+}
+
+/// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
+/// other way round.
+///
+/// # Safety
+/// `world` is a handle; `take` may be called with `user`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_events(
+    world: *mut SdopWorld,
+    take: SdopTakeEvent,
+    user: *mut c_void,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        // SAFETY: the caller's promise.
+        unsafe { tell(&it.0.events(), take, user) }
+    })
+}
+
+/// Copies the world as bytes into `buffer`, for `sdop_world_restore`. If they don't fit, `count`
+/// says how many there are.
+///
+/// # Safety
+/// `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_snapshot(
+    world: *mut SdopWorld,
+    buffer: *mut u8,
+    capacity: usize,
+    count: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let bytes = saved(&unsafe { handle(world, "world") }?.0.snapshot())?;
+        // SAFETY: the caller's promise.
+        unsafe { fill(bytes.into_iter(), buffer, capacity, count) }
+    })
+}
+
+/// Makes this world the one of a snapshot. It must have the same shapes under the same numbers.
+///
+/// # Safety
+/// `world` is a handle; `count` bytes may be read.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_restore(
+    world: *mut SdopWorld,
+    bytes: *const u8,
+    count: usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, bytes) = unsafe { (handle(world, "world")?, column(bytes, count, "bytes")?) };
+        Ok(it.0.restore(&read_back(bytes)?)?)
+    })
+}

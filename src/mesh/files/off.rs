@@ -1,0 +1,215 @@
+//! OFF, Geomview's format and CGAL's: a header, the counts, a line for each vertex and for each
+//! face.
+//!
+//! The header's letters say what a vertex has besides its position: `ST` texture coordinates, `C` a
+//! colour, `N` a normal, `4` a weight, which divides. A face is its number of corners, their
+//! indices from 0, and perhaps a colour. `#` starts a comment. Files without a header are read as
+//! well. A record is a line; only a file that does not fit so is read without regard to lines,
+//! which Geomview allows.
+
+use super::parts::Parts;
+use super::text::{self, Fault, Token};
+use crate::mesh::{Problem, check_triangle, check_vertex};
+
+/// Reads an OFF file.
+pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
+    let text = text::decode(bytes);
+    let without_comment =
+        |(number, line): (usize, _)| (number, str::split(line, '#').next().unwrap_or_default());
+    let tokens: Vec<Token> = text::lines(&text)
+        .map(without_comment)
+        .flat_map(text::words)
+        .collect();
+    let (layout, rest) = header(&tokens)?;
+    let by_line = Body {
+        rest,
+        line: 0,
+        by_line: true,
+    }
+    .read(&layout);
+    by_line.or_else(|fault| {
+        let free = Body {
+            rest,
+            line: 0,
+            by_line: false,
+        }
+        .read(&layout);
+        free.map_err(|_| fault)
+    })
+}
+
+/// What a vertex has.
+struct Layout {
+    weight: bool,
+    /// Numbers after the position (and the weight), where these are known.
+    extra: Option<usize>,
+}
+
+/// Reads the header: letters, and `OFF`.
+fn header<'t, 'a>(tokens: &'t [Token<'a>]) -> Result<(Layout, &'t [Token<'a>]), Fault> {
+    let Some((first, rest)) = tokens.split_first() else {
+        return Err((None, Problem::NoVertices));
+    };
+    let refused =
+        |message: String, help: &str| Err((Some(first.line), Problem::malformed(message, help)));
+    if rest.first().is_some_and(|second| second.is("BINARY")) {
+        return refused("this is a binary OFF file".to_owned(), "convert it to text");
+    }
+    if text::number(first.text).is_some() {
+        let layout = Layout {
+            weight: false,
+            extra: Some(0),
+        };
+        return Ok((layout, tokens)); // no header
+    }
+    let upper = first.text.to_ascii_uppercase();
+    let help = "an OFF file starts with OFF, COFF, NOFF, CNOFF, STOFF or 4OFF";
+    let Some(letters) = upper.strip_suffix("OFF") else {
+        return refused(
+            format!("this is not OFF: found {}", text::excerpt(first.text)),
+            help,
+        );
+    };
+    let after_texture = letters.strip_prefix("ST");
+    let after_colour = after_texture.unwrap_or(letters).trim_start_matches('C');
+    let after_normal = after_colour.trim_start_matches('N');
+    if !matches!(after_normal, "" | "4") || first.text.ends_with("nOFF") {
+        return refused(
+            format!(
+                "vertices of {} have another number of dimensions",
+                first.text
+            ),
+            help,
+        );
+    }
+    let normal = if after_colour == after_normal { 0 } else { 3 };
+    let texture = if after_texture.is_some() { 2 } else { 0 };
+    let colour = letters.contains('C');
+    let layout = Layout {
+        weight: after_normal == "4",
+        extra: (!colour).then_some(normal + texture), // colours have three numbers or four
+    };
+    Ok((layout, rest))
+}
+
+/// What is left of the file.
+struct Body<'t, 'a> {
+    rest: &'t [Token<'a>],
+    /// The line of the last word that was taken.
+    line: usize,
+    by_line: bool,
+}
+
+impl<'t, 'a> Body<'t, 'a> {
+    fn read(mut self, layout: &Layout) -> Result<Parts, Fault> {
+        let counts = self.take(2, || "the numbers of vertices and faces".to_owned())?;
+        let [vertices, faces] = [count(&counts[0])?, count(&counts[1])?];
+        // The number of edges follows, which some leave out and nobody uses.
+        let same_line = self
+            .rest
+            .first()
+            .is_some_and(|token| token.line == self.line);
+        if same_line {
+            self.take(1, || "the number of edges".to_owned())?;
+        }
+        if vertices == 0 {
+            return Err((Some(counts[0].line), Problem::NoVertices));
+        }
+        let mut points = Vec::new();
+        for index in 0..vertices {
+            points.push(self.vertex(index, vertices, layout)?);
+        }
+        let mut triangles = Vec::new();
+        for index in 0..faces {
+            self.face(index, faces, points.len(), &mut triangles)?;
+        }
+        if let Some(token) = self.rest.first() {
+            let message = format!("{} words after the last face", self.rest.len());
+            let help = "remove what follows, or correct the counts in the header";
+            return Err((Some(token.line), Problem::malformed(message, help)));
+        }
+        Ok(Parts::indexed(points, triangles))
+    }
+
+    fn vertex(&mut self, index: usize, count: usize, layout: &Layout) -> Result<[f64; 3], Fault> {
+        let numbers = 3 + usize::from(layout.weight);
+        let record = self.take(numbers, || format!("vertex {index} of {count}"))?;
+        let mut position = text::position(index, record)?;
+        if let Some(weight) = record.get(3) {
+            let weight = weight.number("a weight")?;
+            position = position.map(|x| x / weight);
+            check_vertex(index, position).map_err(|problem| (Some(record[3].line), problem))?;
+        }
+        match layout.extra {
+            _ if self.by_line => self.skip_line(),
+            Some(extra) => {
+                self.take(extra, || format!("vertex {index} of {count}"))?;
+            }
+            None => {
+                let message = "lines can't be left out where vertices have colours".to_owned();
+                return Err((
+                    Some(self.line),
+                    Problem::malformed(message, "write a line for each vertex"),
+                ));
+            }
+        }
+        Ok(position)
+    }
+
+    fn face(
+        &mut self,
+        index: usize,
+        faces: usize,
+        vertices: usize,
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> Result<(), Fault> {
+        let what = || format!("face {index} of {faces}");
+        let size = &self.take(1, what)?[0];
+        let corners = self.take(count(size)?, what)?;
+        let corners: Vec<i64> = corners
+            .iter()
+            .map(|corner| corner.integer("an index"))
+            .collect::<Result<_, _>>()?;
+        if corners.is_empty() {
+            let message = format!("face {index} has no vertices");
+            return Err((Some(size.line), Problem::malformed(message, "remove it")));
+        }
+        for triangle in text::fan(&corners) {
+            check_triangle(triangles.len(), triangle, 0, vertices)
+                .map_err(|problem| (Some(size.line), problem))?;
+            triangles.push(triangle.map(|index| index as u32));
+        }
+        if self.by_line {
+            self.skip_line();
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, words: usize, what: impl Fn() -> String) -> Result<&'t [Token<'a>], Fault> {
+        let Some((taken, rest)) = self.rest.split_at_checked(words) else {
+            let last = self.rest.last().map_or(self.line, |token| token.line);
+            let message = format!("the file ends where {} should be", what());
+            let help = "the file is cut off, or the counts in its header are too high";
+            return Err((Some(last), Problem::malformed(message, help)));
+        };
+        self.line = taken.last().map_or(self.line, |token| token.line);
+        self.rest = rest;
+        Ok(taken)
+    }
+
+    fn skip_line(&mut self) {
+        let rest = self.rest.iter().position(|token| token.line != self.line);
+        self.rest = &self.rest[rest.unwrap_or(self.rest.len())..];
+    }
+}
+
+fn count(token: &Token) -> Result<usize, Fault> {
+    let count = token.integer("a count")?;
+    usize::try_from(count).map_err(|_| {
+        let message = format!("a count should not be negative, found {count}");
+        (
+            Some(token.line),
+            Problem::malformed(message, "correct the count"),
+        )
+    })
+}

@@ -1,0 +1,206 @@
+//! Pairs as lists of partners: who is in a pair with a given number is read, and a pair comes or
+//! goes, without a look at others.
+
+use super::runs::{Run, Runs};
+use super::{PairList, bytes};
+use crate::simd::prefetch;
+
+/// A set of pairs of numbers. Each number has the sorted list of those that it is in a pair with.
+///
+/// A pair is in the lists of both of its numbers; between the changes of one frame it may be in one
+/// of them alone.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Partners {
+    lists: Runs<u32>,
+    by_number: Vec<Run>,
+    /// Entries of all lists: two of each pair.
+    entries: usize,
+}
+
+impl Partners {
+    /// The pairs of a list, which is sorted and has the lower number first. All numbers are below
+    /// `numbers`.
+    pub fn of(pairs: &PairList, numbers: usize) -> Self {
+        let mut partners = Self::default();
+        let mut counts = vec![0_u32; numbers];
+        for &number in pairs.first().iter().chain(pairs.second()) {
+            counts[number as usize] += 1;
+        }
+        partners.by_number.resize(numbers, Run::default());
+        for (run, count) in partners.by_number.iter_mut().zip(counts) {
+            if count > 0 {
+                partners.lists.reserve(run, count as usize);
+            }
+        }
+        // Of each number, the pairs with lower ones come before those with higher ones.
+        for [i, j] in pairs.iter() {
+            partners.lists.push(&mut partners.by_number[j as usize], i);
+            partners.lists.push(&mut partners.by_number[i as usize], j);
+        }
+        partners.entries = 2 * pairs.len();
+        partners
+    }
+
+    /// Whether all numbers below this one have a list.
+    pub fn has_room_for(&self, numbers: usize) -> bool {
+        self.by_number.len() >= numbers
+    }
+
+    /// Makes room for numbers below this one.
+    pub fn extend_to(&mut self, numbers: usize) {
+        if self.by_number.len() < numbers {
+            self.by_number.resize(numbers, Run::default());
+        }
+    }
+
+    /// The numbers that this one is in a pair with, sorted.
+    #[inline(always)]
+    pub fn of_number(&self, number: u32) -> &[u32] {
+        self.lists.get(self.by_number[number as usize])
+    }
+
+    /// Brings near where a number's list is, and then the list, before it is read.
+    #[inline(always)]
+    pub fn prefetch(&self, [soon, next]: [Option<&u32>; 2]) {
+        if let Some(&number) = soon {
+            prefetch(&self.by_number[number as usize]);
+        }
+        if let Some(&number) = next {
+            self.lists.prefetch(self.by_number[number as usize]);
+        }
+    }
+
+    /// Replaces a number's list, and leaves those of its partners.
+    pub fn replace(&mut self, number: u32, partners: &[u32]) {
+        let run = &mut self.by_number[number as usize];
+        self.entries = self.entries - run.len() + partners.len();
+        self.lists.replace(run, partners);
+    }
+
+    /// Adds a partner to a number's list, if it isn't in it.
+    pub fn insert(&mut self, number: u32, partner: u32) {
+        let run = &mut self.by_number[number as usize];
+        if let Err(at) = self.lists.get(*run).binary_search(&partner) {
+            self.lists.insert(run, at, partner);
+            self.entries += 1;
+        }
+    }
+
+    /// Takes a partner out of a number's list, if it is in it.
+    pub fn remove(&mut self, number: u32, partner: u32) {
+        let run = &mut self.by_number[number as usize];
+        if let Ok(at) = self.lists.get(*run).binary_search(&partner) {
+            self.lists.remove(run, at);
+            self.entries -= 1;
+        }
+    }
+
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.entries / 2
+    }
+
+    /// The pairs, the lower number first, sorted.
+    pub fn iter(&self) -> PartnerPairs<'_> {
+        PartnerPairs {
+            partners: self,
+            next: 0,
+            higher: [].iter(),
+            left: self.len(),
+        }
+    }
+
+    /// Bytes that the lists hold.
+    pub fn bytes(&self) -> usize {
+        self.lists.bytes() + bytes(&self.by_number)
+    }
+}
+
+/// The pairs of [`Partners`], one after the other.
+#[derive(Clone, Debug)]
+pub(crate) struct PartnerPairs<'a> {
+    partners: &'a Partners,
+    /// The number whose list comes next.
+    next: u32,
+    /// Those in the list of the number before that are above it.
+    higher: std::slice::Iter<'a, u32>,
+    left: usize,
+}
+
+impl Iterator for PartnerPairs<'_> {
+    type Item = [u32; 2];
+    #[inline]
+    fn next(&mut self) -> Option<[u32; 2]> {
+        loop {
+            if let Some(&second) = self.higher.next() {
+                self.left -= 1;
+                return Some([self.next - 1, second]);
+            }
+            let run = self.partners.by_number.get(self.next as usize)?;
+            let list = self.partners.lists.get(*run);
+            let lower = list.iter().take_while(|&&other| other < self.next).count();
+            self.higher = list[lower..].iter();
+            self.next += 1;
+        }
+    }
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.left, Some(self.left))
+    }
+}
+
+impl ExactSizeIterator for PartnerPairs<'_> {}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    use super::*;
+
+    #[test]
+    fn pairs_come_and_go_in_order() {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut draw = |n: u32| random.next_u32() % n;
+        let mut wanted: BTreeSet<[u32; 2]> = (0..300)
+            .map(|_| [draw(40), draw(40)])
+            .filter(|[i, j]| i < j)
+            .collect();
+        let list: PairList = wanted.iter().copied().collect();
+        let mut partners = Partners::of(&list, 40);
+        for step in 0..2000 {
+            assert!(partners.iter().eq(wanted.iter().copied()), "{step}");
+            assert_eq!(partners.len(), wanted.len());
+            assert_eq!(partners.iter().len(), wanted.len());
+            let [i, j] = [draw(40), draw(40)];
+            if i >= j {
+                continue;
+            }
+            // Both directions, in either order.
+            if wanted.insert([i, j]) {
+                partners.insert(j, i);
+                partners.insert(i, j);
+            } else {
+                wanted.remove(&[i, j]);
+                partners.remove(i, j);
+                partners.remove(j, i);
+            }
+        }
+    }
+
+    #[test]
+    fn a_list_is_replaced_apart_from_its_partners() {
+        let list: PairList = [[0, 3], [1, 3], [2, 4]].into_iter().collect();
+        let mut partners = Partners::of(&list, 5);
+        partners.extend_to(6);
+        partners.replace(3, &[1, 5]);
+        partners.remove(0, 3);
+        partners.insert(5, 3);
+        partners.insert(5, 3);
+        let pairs: Vec<_> = partners.iter().collect();
+        assert_eq!(pairs, [[1, 3], [2, 4], [3, 5]]);
+        assert_eq!((partners.len(), partners.of_number(3)), (3, &[1, 5][..]));
+        assert!(partners.bytes() > 6 * 12);
+    }
+}

@@ -1,0 +1,258 @@
+//! Many short lists in one piece of memory.
+//!
+//! Each list is a run of entries with room for a power of two of them. A list that outgrows its
+//! room moves to a larger one, and the room that it leaves is given to the next list of that size.
+//! So a list costs no call of the allocator, and changing one costs what it holds.
+
+use super::bytes;
+use crate::simd::prefetch;
+
+/// The least room of a list that has any.
+const SMALLEST_ROOM: u32 = 4;
+
+/// A list shrinks to half of its room when it fills no more than this share of it.
+const SPARSE: u32 = 4;
+
+/// Where a list's entries are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Run {
+    /// In units of [`SMALLEST_ROOM`].
+    start: u32,
+    len: u32,
+    /// Zero, or a power of two no less than [`SMALLEST_ROOM`].
+    room: u32,
+}
+
+impl Run {
+    fn first(self) -> usize {
+        self.start as usize * SMALLEST_ROOM as usize
+    }
+
+    /// Whether the list is empty.
+    #[inline(always)]
+    pub fn is_empty(self) -> bool {
+        self.len == 0
+    }
+
+    /// Number of entries.
+    #[inline(always)]
+    pub fn len(self) -> usize {
+        self.len as usize
+    }
+}
+
+/// The entries of many lists.
+#[derive(Clone, Debug)]
+pub(crate) struct Runs<T> {
+    items: Vec<T>,
+    /// Starts of free rooms, by the logarithm of their size.
+    free: Vec<Vec<u32>>,
+}
+
+impl<T> Default for Runs<T> {
+    fn default() -> Self {
+        Self {
+            items: Vec::new(),
+            free: Vec::new(),
+        }
+    }
+}
+
+impl<T: Copy + Default> Runs<T> {
+    /// The entries of a list.
+    #[inline(always)]
+    pub fn get(&self, run: Run) -> &[T] {
+        let first = run.first();
+        &self.items[first..first + run.len()]
+    }
+
+    /// Brings the first entries of a list that isn't empty near.
+    #[inline(always)]
+    pub fn prefetch(&self, run: Run) {
+        let list = self.get(run);
+        list.first().map(prefetch);
+        list.last().map(prefetch);
+    }
+
+    /// The same, to be changed.
+    #[inline(always)]
+    pub fn get_mut(&mut self, run: Run) -> &mut [T] {
+        let first = run.first();
+        &mut self.items[first..first + run.len()]
+    }
+
+    /// Makes room for at least `len` entries of an empty list.
+    pub fn reserve(&mut self, run: &mut Run, len: usize) {
+        let needed = (len as u32).next_power_of_two().max(SMALLEST_ROOM);
+        if needed > run.room {
+            self.release(run);
+            run.start = self.take_room(needed);
+            run.room = needed;
+        }
+    }
+
+    /// Appends an entry.
+    #[inline]
+    pub fn push(&mut self, run: &mut Run, item: T) {
+        self.insert(run, run.len(), item);
+    }
+
+    /// Puts an entry before the one at `at`.
+    #[inline]
+    pub fn insert(&mut self, run: &mut Run, at: usize, item: T) {
+        if run.len == run.room {
+            self.resize(run, (2 * run.room).max(SMALLEST_ROOM));
+        }
+        let (first, len) = (run.first(), run.len());
+        self.items
+            .copy_within(first + at..first + len, first + at + 1);
+        self.items[first + at] = item;
+        run.len += 1;
+    }
+
+    /// Takes out the entry at `at`; the others keep their order.
+    pub fn remove(&mut self, run: &mut Run, at: usize) {
+        let (first, len) = (run.first(), run.len());
+        self.items
+            .copy_within(first + at + 1..first + len, first + at);
+        self.shorten(run);
+    }
+
+    /// Takes out the entry at `at`; the last one takes its place.
+    pub fn swap_remove(&mut self, run: &mut Run, at: usize) {
+        let (first, last) = (run.first(), run.len() - 1);
+        self.items[first + at] = self.items[first + last];
+        self.shorten(run);
+    }
+
+    /// Replaces the list by another.
+    pub fn replace(&mut self, run: &mut Run, items: &[T]) {
+        let len = items.len() as u32;
+        if len == 0 {
+            self.release(run);
+            return;
+        }
+        if len > run.room || (len * SPARSE <= run.room && run.room > SMALLEST_ROOM) {
+            self.release(run);
+            self.reserve(run, items.len());
+        }
+        run.len = len;
+        self.get_mut(*run).copy_from_slice(items);
+    }
+
+    fn shorten(&mut self, run: &mut Run) {
+        run.len -= 1;
+        if run.len == 0 {
+            self.release(run);
+        } else if run.len * SPARSE <= run.room && run.room > SMALLEST_ROOM {
+            self.resize(run, run.room / 2);
+        }
+    }
+
+    /// Moves the list to another room.
+    fn resize(&mut self, run: &mut Run, room: u32) {
+        let mut moved = Run {
+            start: self.take_room(room),
+            len: run.len,
+            room,
+        };
+        let from = run.first();
+        self.items
+            .copy_within(from..from + run.len(), moved.first());
+        std::mem::swap(run, &mut moved);
+        self.release(&mut moved);
+    }
+
+    /// Gives the list's room back; it is empty then.
+    fn release(&mut self, run: &mut Run) {
+        if run.room > 0 {
+            let size = run.room.ilog2() as usize;
+            if self.free.len() <= size {
+                self.free.resize_with(size + 1, Vec::new);
+            }
+            self.free[size].push(run.start);
+        }
+        *run = Run::default();
+    }
+
+    fn take_room(&mut self, room: u32) -> u32 {
+        let freed = self.free.get_mut(room.ilog2() as usize);
+        if let Some(start) = freed.and_then(Vec::pop) {
+            return start;
+        }
+        let start = self.items.len();
+        self.items.resize(start + room as usize, T::default());
+        (start / SMALLEST_ROOM as usize) as u32
+    }
+
+    /// Bytes that the lists hold, their free rooms included.
+    pub fn bytes(&self) -> usize {
+        bytes(&self.items) + self.free.iter().map(bytes).sum::<usize>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    use super::*;
+
+    #[test]
+    fn lists_in_runs_are_lists() {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut runs = Runs::default();
+        let mut lists: Vec<(Run, Vec<u32>)> = vec![Default::default(); 12];
+        for step in 0..20_000 {
+            let mut below = |n: usize| random.next_u32() as usize % n;
+            // Some lists are filled, then others, so that all grow long and short again.
+            let (run, list) = &mut lists[below(12)];
+            let fills = step / 1000 % 2 == 0;
+            match (below(6), list.len()) {
+                (0, len) => {
+                    let items: Vec<u32> = (0..below(2 * len + 2) as u32).collect();
+                    runs.replace(run, &items);
+                    *list = items;
+                }
+                (_, len) if fills || len == 0 => {
+                    let at = below(len + 1);
+                    runs.insert(run, at, step);
+                    list.insert(at, step);
+                }
+                (1..3, len) => {
+                    let at = below(len);
+                    runs.remove(run, at);
+                    list.remove(at);
+                }
+                (_, len) => {
+                    let at = below(len);
+                    runs.swap_remove(run, at);
+                    list.swap_remove(at);
+                }
+            }
+            assert_eq!((run.len(), run.is_empty()), (list.len(), list.is_empty()));
+            assert!(
+                lists.iter().all(|(run, list)| runs.get(*run) == list),
+                "{step}"
+            );
+        }
+    }
+
+    #[test]
+    fn rooms_are_used_again() {
+        let mut runs = Runs::default();
+        let mut taken = 0;
+        for round in 0..10 {
+            let mut lists = [Run::default(); 20];
+            for run in &mut lists {
+                (0..50_u32).for_each(|item| runs.push(run, item));
+            }
+            lists.iter_mut().for_each(|run| runs.replace(run, &[]));
+            if round == 0 {
+                taken = runs.items.len();
+            }
+        }
+        assert_eq!(runs.items.len(), taken);
+        assert!(runs.bytes() >= 4 * taken);
+    }
+}

@@ -1,0 +1,298 @@
+//! How a scene is culled: the `[cull]` table, whose keys are also the flags of the command line
+//! (design, section 2).
+
+use thiserror::Error;
+
+use super::{Finder, Flow};
+use crate::choice::choices;
+use crate::volume::{Axes, DirectionSet};
+
+choices! {
+    /// Which volumes are tested, and in which order.
+    Strategy, "strategy", {
+        /// The control: nothing is culled, nothing is reported.
+        None = "none",
+        /// Bounding spheres alone.
+        Sphere = "sphere",
+        /// or-DOPs alone, without the sphere stage.
+        OrDop = "or-dop",
+        /// Spheres, and each hit's or-DOPs at once.
+        SDopSequential = "s-dop-sequential",
+        /// Spheres, the potentially colliding set listed, then the or-DOPs of the list.
+        SDopBatch = "s-dop-batch",
+        /// As sequential where a body is of interest; elsewhere the spheres decide.
+        SDopObjectOfInterest = "s-dop-object-of-interest",
+        /// Spheres, then or-DOPs until the budget ends; what is left untested is reported.
+        SDopTimeCritical = "s-dop-time-critical",
+        /// World-aligned boxes, re-fitted each frame.
+        Aabb = "aabb",
+        /// World-aligned k-DOPs, re-fitted each frame.
+        KDop = "k-dop",
+        /// Oriented boxes, 15 axes.
+        Obb = "obb",
+    }
+}
+
+choices! {
+    /// Which separating axes the or-DOP test tries.
+    Overlap, "overlap test", {
+        /// The first body's slab normals: the paper's "interval pairs in local space".
+        OneSided = "one-sided",
+        /// Both bodies' slab normals.
+        TwoSided = "two-sided",
+        /// Both bodies' normals and every edge × edge axis.
+        Full = "full",
+    }
+}
+
+choices! {
+    /// When or-DOP poses are updated.
+    Updates, "update mode", {
+        /// Every dynamic body's, each frame: before any pair is tested, or, of many bodies in a
+        /// batch, stretch by stretch with the pairs that need them. Each counts as one update
+        /// either way.
+        Eager = "eager",
+        /// Only those of the potentially colliding set.
+        Lazy = "lazy",
+    }
+}
+
+choices! {
+    /// In which order time-critical culling spends its budget.
+    Order, "refinement order", {
+        /// As the pair finder lists them.
+        AsFound = "as-found",
+        /// Pairs with a body of interest first.
+        InterestFirst = "interest-first",
+        /// Deepest relative sphere overlap first.
+        LargestOverlap = "largest-overlap",
+        /// Longest untested first.
+        OldestAnswer = "oldest-answer",
+    }
+}
+
+/// What the viewer looks at: only pairs with a body of interest are refined.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(untagged))]
+pub enum Interest {
+    /// Body indices.
+    Bodies(Vec<u32>),
+    /// Every body whose sphere centre lies in the cone.
+    Cone(ViewCone),
+}
+
+/// A cone of view over sphere centres. With `body` it moves and turns with that body, with `apex`
+/// it stands still.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct ViewCone {
+    /// The body that looks: the apex is its translation, `direction` is in its frame. It is of
+    /// interest itself when its sphere's centre lies in the cone, as one at its origin does.
+    pub body: Option<u32>,
+    /// The fixed apex, world frame, instead of `body`.
+    pub apex: Option<[f32; 3]>,
+    /// The cone's axis, any non-zero length; world frame with `apex`.
+    pub direction: [f32; 3],
+    /// Angle between the axis and the rim, degrees, in (0, 180]. What lies on the rim is in the
+    /// cone.
+    pub half_angle: f32,
+    /// How far it reaches from the apex; absent: without end.
+    pub range: Option<f32>,
+}
+
+/// What a frame's refinement may cost in time-critical culling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum Budget {
+    /// So many or-DOP tests: deterministic.
+    Tests(u64),
+    /// So much time by the clock.
+    Microseconds(u64),
+}
+
+/// How a scene is culled: sequential S-DOP with the finder that `auto` picks unless the settings
+/// name others. A scene file's `[cull]` table has the same keys and defaults.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct CullSettings {
+    /// The culling strategy.
+    pub strategy: Strategy,
+    /// The pair finder.
+    pub pairs: Finder,
+    /// The or-DOP's slab directions; written as k = 6, 14, 18 or 26.
+    #[cfg_attr(
+        feature = "serde",
+        serde(
+            serialize_with = "super::text::write_k",
+            deserialize_with = "super::text::read_k"
+        )
+    )]
+    pub k: DirectionSet,
+    /// The or-DOP's axes.
+    pub axes: Axes,
+    /// The or-DOP test.
+    pub overlap: Overlap,
+    /// When or-DOP poses are updated.
+    pub updates: Updates,
+    /// The bodies of interest.
+    pub interest: Option<Interest>,
+    /// The budget per frame of time-critical culling.
+    pub budget: Option<Budget>,
+    /// How time-critical culling spends it.
+    pub order: Order,
+}
+
+impl Default for CullSettings {
+    fn default() -> Self {
+        Self {
+            strategy: Strategy::SDopSequential,
+            pairs: Finder::Auto,
+            k: DirectionSet::K18,
+            axes: Axes::Principal,
+            overlap: Overlap::TwoSided,
+            updates: Updates::Eager,
+            interest: None,
+            budget: None,
+            order: Order::AsFound,
+        }
+    }
+}
+
+/// Settings that can't be carried out as they stand.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SettingsError {
+    /// A strategy lacks what it spends or looks at.
+    #[error("strategy {strategy} needs `{key}`")]
+    Missing {
+        /// The strategy.
+        strategy: &'static str,
+        /// The `[cull]` key that is absent.
+        key: &'static str,
+        /// How to mend it.
+        hint: &'static str,
+    },
+    /// An interest that names no body of the scene, or a cone that is none.
+    #[error("interest: {problem}")]
+    Interest {
+        /// What is wrong.
+        problem: String,
+        /// How to mend it.
+        hint: &'static str,
+    },
+}
+
+impl SettingsError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        match self {
+            Self::Missing { hint, .. } | Self::Interest { hint, .. } => hint,
+        }
+    }
+}
+
+impl CullSettings {
+    /// As [`Self::default`], but every pair is a candidate, as in the paper.
+    #[must_use]
+    pub fn all_pairs() -> Self {
+        Self {
+            pairs: Finder::AllPairs,
+            ..Self::default()
+        }
+    }
+
+    /// Checks the settings against each other and against a scene of `bodies` bodies.
+    ///
+    /// # Errors
+    /// A strategy without its interest or budget; an interest outside of the scene.
+    pub fn check(&self, bodies: usize) -> Result<(), SettingsError> {
+        let missing = |key, hint| SettingsError::Missing {
+            strategy: self.strategy.name(),
+            key,
+            hint,
+        };
+        let flow = self.strategy.scheme().flow;
+        let needs_interest = flow == Flow::OfInterest
+            || (flow == Flow::TimeCritical && self.order == Order::InterestFirst);
+        if needs_interest && self.interest.is_none() {
+            return Err(missing(
+                "interest",
+                "list body indices, interest = [0], or a cone, interest = { body = 0, direction = [0, 0, 1], half_angle = 30 }",
+            ));
+        }
+        if flow == Flow::TimeCritical && self.budget.is_none() {
+            return Err(missing(
+                "budget",
+                "give budget = { tests = 1000 } or budget = { microseconds = 500 }",
+            ));
+        }
+        self.interest
+            .as_ref()
+            .map_or(Ok(()), |interest| interest.check(bodies))
+    }
+}
+
+impl Interest {
+    /// Checks the interest against a scene of `bodies` bodies.
+    ///
+    /// # Errors
+    /// A body index out of range; a cone without one apex, a direction or a possible angle or
+    /// range.
+    pub fn check(&self, bodies: usize) -> Result<(), SettingsError> {
+        let wrong = |problem, hint| Err(SettingsError::Interest { problem, hint });
+        let named: &[u32] = match self {
+            Self::Bodies(list) => list,
+            Self::Cone(cone) => cone.body.as_slice(),
+        };
+        if let Some(body) = named.iter().find(|&&body| body as usize >= bodies) {
+            return wrong(
+                format!("body {body} of a scene of {bodies}"),
+                "bodies are counted from 0",
+            );
+        }
+        let Self::Cone(cone) = self else {
+            return Ok(());
+        };
+        if cone.body.is_some() == cone.apex.is_some() {
+            return wrong(
+                "a cone has one apex".to_owned(),
+                "give `body` or `apex`, not both",
+            );
+        }
+        let all_finite = |v: &[f32; 3]| v.iter().all(|x| x.is_finite());
+        if !all_finite(&cone.direction) || cone.direction == [0.0; 3] {
+            return wrong(
+                format!("direction {:?}", cone.direction),
+                "any finite vector but zero",
+            );
+        }
+        if let Some(apex) = cone.apex.filter(|apex| !all_finite(apex)) {
+            return wrong(format!("apex {apex:?}"), "coordinates are finite");
+        }
+        if !(cone.half_angle > 0.0 && cone.half_angle <= 180.0) {
+            return wrong(
+                format!("half_angle {}", cone.half_angle),
+                "degrees, above 0 and up to 180",
+            );
+        }
+        if let Some(range) = cone.range.filter(|range| range.is_nan() || *range <= 0.0) {
+            return wrong(
+                format!("range {range}"),
+                "a length above 0, or leave it out",
+            );
+        }
+        Ok(())
+    }
+}

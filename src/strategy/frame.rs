@@ -1,0 +1,185 @@
+//! One frame by the strategy of the settings: what it reads, what it keeps, and the way that pairs
+//! take.
+
+use super::tasks::Tasks;
+#[cfg(feature = "serde")]
+use super::time_critical::Answers;
+use super::{SlotNames, Totals, batch, listing, output::Output, sequential, time_critical};
+use crate::bodies::{Groups, Places};
+use crate::broad_phase::{Arranged, PairFinder};
+use crate::overlap::intervals::IntervalSlots;
+use crate::overlap::ordop::SlabTables;
+use crate::pairs::PairList;
+use crate::settings::{CullSettings, Flow, Updates};
+use crate::threads::Executor;
+use crate::update::{OrDopRows, Posed};
+
+/// Rows that the second-level cache holds.
+const FEW_ROWS: usize = 1 << 14;
+
+/// What culling a frame reads, once volumes are updated and bodies arranged in slots.
+#[derive(Clone, Copy)]
+pub(crate) struct Inputs<'a> {
+    pub executor: Executor<'a>,
+    pub settings: &'a CullSettings,
+    /// Whether budgets are spent on pairs in the order of their bodies.
+    pub is_canonical: bool,
+    pub finder: &'a PairFinder,
+    /// What the finder has arranged.
+    pub slots: Arranged<'a>,
+    pub names: SlotNames<'a>,
+    /// The poses, and spheres by place where there are any.
+    pub posed: Posed<'a>,
+    /// Each body's groups where not all collide with all.
+    pub groups: Option<&'a [Groups]>,
+    pub intervals: &'a IntervalSlots,
+    pub tables: &'a SlabTables,
+    /// Whether each body is of interest.
+    pub interest: &'a [bool],
+    /// Counts frames from 1.
+    pub stamp: u32,
+    /// Whether the rows of this frame are still to be made ([`makes_rows`]).
+    pub without_rows: bool,
+}
+
+impl Inputs<'_> {
+    /// Whether rows are made when a pair needs them.
+    pub(super) fn is_lazy(&self) -> bool {
+        self.settings.updates == Updates::Lazy
+    }
+
+    /// The body in each place.
+    pub(super) fn bodies_by_place(&self) -> &[u32] {
+        &self.posed.places.body
+    }
+}
+
+/// What stays from frame to frame: buffers, and when time-critical culling refined which pair.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Scratch {
+    pub(super) tasks: Tasks,
+    /// The potentially colliding set by places, where a list of it is kept.
+    pub candidates: PairList,
+    /// Those of them that have a body of interest, and which of those survived.
+    pub(super) selected: PairList,
+    pub(super) survivors: PairList,
+    /// What is reported of a portion of them.
+    pub(super) portion: PairList,
+    pub(super) history: time_critical::History,
+}
+
+impl Scratch {
+    /// Gives back the memory of lists of pairs, but for the last potentially colliding set.
+    pub fn shrink_to_fit(&mut self) {
+        self.candidates.shrink_to_fit();
+        self.history.shrink_to_fit();
+        (self.tasks, self.selected, self.survivors, self.portion) = Default::default();
+    }
+
+    /// Gives back the memory of all lists of pairs, the last potentially colliding set included.
+    pub fn forget_lists(&mut self) {
+        self.candidates.clear();
+        self.shrink_to_fit();
+    }
+
+    /// When the pairs of the last frame were refined.
+    #[cfg(feature = "serde")]
+    pub fn answers(&self) -> Answers {
+        self.history.answers()
+    }
+
+    /// Takes over when pairs were refined.
+    #[cfg(feature = "serde")]
+    pub fn set_answers(&mut self, answers: &Answers) {
+        self.history.set_answers(answers);
+    }
+
+    /// Bytes that lists of pairs hold.
+    pub fn pair_bytes(&self) -> usize {
+        let lists = [
+            &self.candidates,
+            &self.selected,
+            &self.survivors,
+            &self.portion,
+        ];
+        let lists: usize = lists.into_iter().map(PairList::bytes).sum();
+        lists + self.tasks.pair_bytes()
+    }
+}
+
+/// Whether a strategy makes the rows of bodies that move itself, when their pairs are listed, so
+/// that they are tested while the caches have them. Where a list isn't kept, or caches hold all
+/// rows anyway, they are made before.
+pub(crate) fn makes_rows(settings: &CullSettings, places: &Places, output: &Output<'_>) -> bool {
+    settings.strategy.scheme().flow == Flow::Batch
+        && settings.updates == Updates::Eager
+        && !output.is_in_portions()
+        && places.moving > FEW_ROWS
+}
+
+/// Culls one frame by the strategy of the settings.
+pub(crate) fn cull(
+    inputs: Inputs<'_>,
+    rows: &mut OrDopRows,
+    scratch: &mut Scratch,
+    output: Output<'_>,
+) -> Totals {
+    scratch.candidates.clear();
+    let (interest, lazy) = (Some(inputs.interest), inputs.is_lazy());
+    match inputs.settings.strategy.scheme().flow {
+        Flow::Nothing => Totals::default(),
+        Flow::FirstTest => listing::flow(inputs, scratch, output),
+        // Rows on demand need the whole set before its first test.
+        Flow::Sequential if lazy => batch::flow(inputs, rows, scratch, None, output),
+        Flow::OfInterest if lazy => batch::flow(inputs, rows, scratch, interest, output),
+        Flow::Sequential => sequential::flow(inputs, rows, scratch, None, output),
+        Flow::OfInterest => sequential::flow(inputs, rows, scratch, interest, output),
+        // The same pairs in the same order, and no list that grows with them.
+        Flow::Batch if output.is_in_portions() && !lazy => {
+            sequential::flow(inputs, rows, scratch, None, output)
+        }
+        Flow::Batch => batch::flow(inputs, rows, scratch, None, output),
+        Flow::TimeCritical => time_critical::flow(inputs, rows, scratch, output),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::strategy::tasks::Task;
+
+    /// A list without room to spare.
+    fn list(pairs: u32) -> PairList {
+        let mut list: PairList = (0..pairs).map(|pair| [pair, pair + 1]).collect();
+        list.shrink_to_fit();
+        list
+    }
+
+    #[test]
+    fn bytes_are_those_of_all_lists_and_the_colliding_set_alone_is_kept() {
+        let task = |pairs| Task {
+            out: list(pairs),
+            block: list(10 * pairs),
+            selected: list(100 * pairs),
+            survivors: list(1000 * pairs),
+            ..Task::default()
+        };
+        let mut scratch = Scratch {
+            tasks: Tasks(vec![task(1), task(2)]),
+            candidates: list(50_000),
+            selected: list(600_000),
+            survivors: list(7),
+            portion: list(80),
+            ..Scratch::default()
+        };
+        // Two numbers a pair, and a vector more behind each column.
+        let pairs = 3 * 1111 + 650_087 + 12 * crate::simd::MAX_WIDTH;
+        assert_eq!(scratch.pair_bytes(), 8 * pairs);
+        scratch.candidates.clear();
+        for pair in 0..10 {
+            scratch.candidates.push(pair, pair + 1);
+        }
+        scratch.shrink_to_fit();
+        assert_eq!(scratch.pair_bytes(), list(10).bytes());
+    }
+}

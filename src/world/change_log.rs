@@ -1,0 +1,84 @@
+//! Which pairs came and went since events were last read.
+
+use std::sync::Arc;
+
+use super::pair_log::Reported;
+use super::{BodyId, Event, Events};
+
+/// A log of so many changes is searched for those that cancel each other.
+const WORTH_CANCELLING: usize = 1024;
+
+/// A pair that came or went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct PairChange {
+    pub pair: [BodyId; 2],
+    pub has_begun: bool,
+}
+
+/// What came and went since events were last read, in the order of time.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ChangeLog {
+    changes: Vec<PairChange>,
+    /// So many are left of those that were there when the log was last searched.
+    lasting: usize,
+}
+
+impl ChangeLog {
+    /// What leads from some pairs to others.
+    pub fn between(before: Arc<Reported>, now: Arc<Reported>) -> Self {
+        let change = |pair, has_begun| Some(PairChange { pair, has_begun });
+        let events = Events::between(before, now);
+        let changes = events.iter().filter_map(|event| match event {
+            Event::Begun(pair) => change(pair, true),
+            Event::Persisting(_) => None,
+            Event::Ended(pair) => change(pair, false),
+        });
+        Self {
+            changes: changes.collect(),
+            lasting: 0,
+        }
+    }
+
+    pub fn push(&mut self, change: PairChange) {
+        self.changes.push(change);
+    }
+
+    /// Drops changes that cancel each other, if the log has doubled since it was last done: so it
+    /// holds at most some times the pairs of then and of now, however long events aren't read.
+    pub fn cancel_some(&mut self) {
+        if self.changes.len() > 2 * self.lasting + WORTH_CANCELLING {
+            self.cancel();
+            self.lasting = self.changes.len();
+        }
+    }
+
+    /// Sorts by pair, and leaves those changes that no later one cancels. A pair comes and goes in
+    /// turns, so of an even number of changes nothing is left, and of an odd one the last.
+    fn cancel(&mut self) {
+        self.changes.sort_by_key(|change| change.pair);
+        let mut kept: Vec<PairChange> = Vec::new();
+        for &change in &self.changes {
+            match kept.last() {
+                Some(former) if former.pair == change.pair => _ = kept.pop(),
+                _ => kept.push(change),
+            }
+        }
+        self.changes = kept;
+    }
+
+    /// Pairs that have begun, and those that have ended, each sorted.
+    pub fn net(mut self) -> [Vec<[BodyId; 2]>; 2] {
+        self.cancel();
+        let of = |has_begun: bool| {
+            let changes = self.changes.iter();
+            let changes = changes.filter(move |change| change.has_begun == has_begun);
+            changes.map(|change| change.pair).collect()
+        };
+        [of(true), of(false)]
+    }
+
+    /// Bytes that it holds.
+    pub fn bytes(&self) -> usize {
+        self.changes.capacity() * size_of::<PairChange>()
+    }
+}

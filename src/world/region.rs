@@ -1,0 +1,146 @@
+//! One region's f32 coordinates, and how far from the exact ones they are.
+//!
+//! A translation is subtracted twice in f64 and rounded to f32. Its distance from the exact one is
+//! bounded, and the bound joins the body's margin, so that volumes at the rounded place contain
+//! what the exact mesh occupies (theorem T).
+
+use crate::rounding::exp2;
+
+/// √3·2⁻²⁴ < 2⁻²³: how far rounding the local translation to f64 and then to f32 moves a body, as a
+/// multiple of its largest coordinate.
+const MOVED: f64 = exp2(-23);
+
+/// √3·2⁻¹⁵⁰ < 2⁻¹⁴⁹: the same where f32 underflows.
+const MOVED_LEAST: f64 = exp2(-149);
+
+/// √3·2⁻⁵³ < 2⁻⁵²: how far rounding the distance from the origin to f64 moves a body, as a multiple
+/// of its largest coordinate.
+const MOVED_BEFORE: f64 = exp2(-52);
+
+/// Where the f32 coordinates of a region's bodies count from: `origin` in the world becomes
+/// −`corner`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Region {
+    pub origin: [f64; 3],
+    pub corner: [f64; 3],
+}
+
+/// A body as far as it matters here: its slot, its translation, and how far the mesh with its
+/// margin reaches from there.
+pub(super) type Placed = (usize, [f64; 3], f64);
+
+impl Region {
+    /// The local translation, and how far from the exact one it may be: 0 where no step is rounded.
+    pub fn place(&self, t: [f64; 3]) -> ([f32; 3], f64) {
+        let (mut far, mut near, mut exact) = (0.0_f64, 0.0_f64, true);
+        let local = std::array::from_fn(|i| {
+            let (first, lost) = difference(t[i], self.origin[i]);
+            let (second, lost_again) = difference(first, self.corner[i]);
+            let local = second as f32;
+            exact &= lost == 0.0 && lost_again == 0.0 && f64::from(local) == second;
+            far = far.max(first.abs());
+            near = near.max(second.abs());
+            local
+        });
+        if exact {
+            return (local, 0.0);
+        }
+        (local, near * MOVED + far * MOVED_BEFORE + MOVED_LEAST)
+    }
+}
+
+/// a − b in f64, and what rounding lost of it, exactly (Knuth's two-sum).
+fn difference(a: f64, b: f64) -> (f64, f64) {
+    let sum = a - b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) - (b + of_b))
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    use super::*;
+
+    /// How far rounding moves a body, exactly but for 2⁻⁵⁰ of it, as a share of the bound.
+    fn share(region: &Region, t: [f64; 3]) -> f64 {
+        let (placed, bound) = region.place(t);
+        let moved = |i: usize| {
+            let (first, lost) = difference(t[i], region.origin[i]);
+            let (second, lost_again) = difference(first, region.corner[i]);
+            (f64::from(placed[i]) - second) - (lost + lost_again)
+        };
+        assert!(bound > 0.0);
+        let sum: f64 = (0..3).map(|i| (moved(i) / bound).powi(2)).sum();
+        sum.sqrt()
+    }
+
+    #[test]
+    fn a_difference_keeps_what_is_lost() {
+        let (sum, lost) = difference(1.0e16, -1.0);
+        assert_eq!((sum, lost), (1.0e16, 1.0));
+        assert_eq!(difference(0.5, 0.25), (0.25, 0.0));
+    }
+
+    #[test]
+    fn exact_places_have_no_bound() {
+        let region = Region {
+            origin: [1024.0, -2048.0, 0.0],
+            corner: [-64.0, 128.0, 0.0],
+        };
+        let (place, moved) = region.place([1000.5, -2000.0, 0.25]);
+        assert_eq!((place, moved), ([40.5, -80.0, 0.25], 0.0));
+        assert!(region.place([1000.1, -2000.0, 0.25]).1 > 0.0);
+    }
+
+    #[test]
+    fn the_bound_is_needed_and_holds() {
+        let mut words = ChaCha8Rng::seed_from_u64(1);
+        let mut random = move || words.next_u32();
+        for least in [false, true] {
+            let mut worst = 0.0_f64;
+            for _ in 0..50_000 {
+                // Sizes of 2⁻⁴⁰ to 2⁴⁰, or the smallest there are; halfway between two f32, and
+                // next to halfway.
+                let exponent = if least {
+                    -149
+                } else {
+                    (random() % 80) as i32 - 40
+                };
+                let relative: [f64; 3] = std::array::from_fn(|_| {
+                    let odd = f64::from(2 * (random() % 4) + 1)
+                        + [0.0, 1e-9, -1e-9][random() as usize % 3];
+                    if least {
+                        odd * exp2(-150)
+                    } else {
+                        (1.0 + odd * exp2(-24)) * exp2(exponent)
+                    }
+                });
+                let origin = std::array::from_fn(|_| f64::from(random() % 64) * exp2(exponent + 1));
+                let t = std::array::from_fn(|i| origin[i] + relative[i]);
+                let region = Region {
+                    origin,
+                    ..Region::default()
+                };
+                worst = worst.max(share(&region, t));
+            }
+            // √3/2 of the bound is reached.
+            assert!(
+                (0.86..=1.0).contains(&worst),
+                "{worst}, of the least: {least}"
+            );
+        }
+    }
+
+    /// A body next to the local origin and far from the region's: what f64 loses counts there.
+    #[test]
+    fn the_bound_covers_both_differences() {
+        let region = Region {
+            origin: [0.999 * exp2(-23); 3],
+            corner: [exp2(30); 3],
+        };
+        let share = share(&region, [exp2(30) + exp2(-22); 3]);
+        assert!((0.86..=1.0).contains(&share), "{share}");
+    }
+}
