@@ -118,7 +118,7 @@ fn a_miss_of_boxes_names_the_ends_that_meet() {
     // One line says why the exit code is 1.
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(
-        said.starts_with("sdop: 8 of 8 cases fail, first box/grid/0000: misses"),
+        said.starts_with("sdop: 8 of 8 cases failed, first box/grid/0000 misses"),
         "{said}"
     );
     assert_eq!(said.lines().count(), 1, "{said}");

@@ -136,10 +136,8 @@ fn a_program_that_cannot_start_ends_the_run() {
         "{verdict}"
     );
     let why = verdict.why().unwrap();
-    assert!(
-        why.starts_with("3 of 3 cases fail, first box/grid/0000: cannot be started: exit code 127"),
-        "{why}"
-    );
+    let first = "cases failed, first box/grid/0000 cannot be started: exit code 127";
+    assert!(why.starts_with("3 of ") && why.contains(first), "{why}");
     // One that fails for another reason is asked again.
     let verdict = run("exit 1", Wire::Ndjson, 20.0, "box/flat/*");
     assert_eq!((verdict.cases.len(), verdict.not_run), (8, 0));

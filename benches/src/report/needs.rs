@@ -47,7 +47,6 @@ impl Step {
                 "g++",
                 "libembree-dev",
                 "libbullet-dev",
-                "libcgal-dev",
             ],
             Self::Bullet(..) => &["cargo", "g++", "libbullet-dev"],
             Self::Rapier(..) | Self::Bench(..) | Self::Estimates(..) => &["cargo"],

@@ -54,7 +54,7 @@ impl fmt::Display for CaseVerdict {
         let name = &self.name;
         match &self.outcome {
             Outcome::Pass => write!(f, "{name} passed"),
-            Outcome::Fail { why } => write!(f, "{name} {why} [{}]", self.flag),
+            Outcome::Fail { why } => write!(f, "{name} {why}"),
             Outcome::Error { trouble } => write!(f, "{name} {trouble}"),
             Outcome::Skipped { why } => write!(f, "{name} ({why})"),
         }
@@ -302,6 +302,9 @@ impl fmt::Display for Verdict {
             .take(3)
         {
             writeln!(f, "{case}")?;
+            if matches!(case.outcome, Outcome::Fail { .. }) {
+                writeln!(f, "  case aims at: {}", case.flag)?;
+            }
         }
         let mut skipped = self
             .cases

@@ -134,7 +134,8 @@ export class Stage {
     this.bodies.paint(colour);
     const overlay = (body: number): Color | null => {
       if (this.isAway(body, picked)) return null;
-      return this.hue(body, colours) ?? this.states[body] >= State.Reported ? colours.states[this.states[body]] : colours.volumes;
+      const state: State = this.states[body];
+      return this.hue(body, colours) ?? (state >= State.Reported ? colours.states[state] : colours.volumes);
     };
     const moment: Moment = { frame, run: side, switches, picked, theme: colours, colour: overlay, eye: this.camera.lens.position };
     this.overlays.update(moment, this.marks(picked, colours));
