@@ -46,6 +46,19 @@ fn the_guide_has_every_key_of_a_scene() {
     }
 }
 
+/// A scene is shown whole before its keys are listed, and it is one.
+#[test]
+fn the_guide_shows_a_scene_that_builds() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("paper/guide.md");
+    let guide = std::fs::read_to_string(path).unwrap();
+    let (_, section) = guide.split_once("## Scene files\n").unwrap();
+    let (before, _) = section.split_once("| key |").unwrap();
+    let (_, scene) = before.split_once("```toml\n").unwrap();
+    let (scene, _) = scene.split_once("```").unwrap();
+    let file = SceneFile::parse(scene, "boxes.toml", Path::new(".")).unwrap();
+    assert_eq!(file.build().unwrap().bodies.len(), 201);
+}
+
 /// The columns that the guide explains for a file of a measurement record.
 fn explained(guide: &str, file: &str) -> BTreeSet<String> {
     let rows = guide.lines().filter_map(|line| line.strip_prefix("| `"));

@@ -4,6 +4,7 @@
 
 use sdop::settings::*;
 use sdop::simd::Tier;
+use sdop_bench::scene::SceneFile;
 
 #[test]
 fn every_name_reads_back_as_its_choice() {
@@ -40,9 +41,14 @@ fn an_unknown_name_suggests_the_nearest() {
 }
 
 #[test]
-fn defaults_are_the_papers_sequential_culling() {
+fn scene_files_default_to_the_librarys_settings() {
     let settings: CullSettings = serde_json::from_str("{}").unwrap();
-    assert_eq!(settings, CullSettings::all_pairs());
+    assert_eq!(settings, CullSettings::default());
+    assert_eq!(settings.pairs, Finder::Auto);
+    let scene =
+        "name = \"s\"\nframes = 1\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n";
+    let file = SceneFile::parse(scene, "s.toml", std::path::Path::new(".")).unwrap();
+    assert_eq!(file.spec.cull, CullSettings::default());
     assert_eq!(settings.strategy, Strategy::SDopSequential);
     assert_eq!(settings.k, DirectionSet::K18);
     assert_eq!(serde_json::to_value(&settings).unwrap()["k"], 18);

@@ -337,15 +337,27 @@ fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
         "figures/tradeoff-pays.svg",
         "figures/tradeoff-budget.svg",
         "tradeoff.csv",
+        "tradeoff-seeds.csv",
         "tradeoff.json",
     ] {
         let [one, two] = ["one", "again"].map(|out| fs::read(here.join(out).join(file)).unwrap());
         assert_eq!(one, two, "{file}");
     }
+    let figure = fs::read_to_string(here.join("one/figures/tradeoff.svg")).unwrap();
+    assert!(
+        figure.contains("aabb") && figure.contains("1000") && !figure.contains("1e"),
+        "{figure}"
+    );
     let all = sdop(&["tradeoff", "one/tradeoff.json", "--all"], here);
     assert!(String::from_utf8_lossy(&all.stdout).contains("The price of safety"));
     let lines = String::from_utf8(again.stdout).unwrap();
-    assert_eq!(lines.lines().count(), 1 + 41);
+    let head = "scene,strategy,regime,volume,term,unit,value,half_width";
+    assert_eq!(lines.lines().next(), Some(head));
+    let of = |term: &str| lines.lines().filter(|line| line.contains(term)).count();
+    assert_eq!(of(",precision,"), 41);
+    assert!(of(",warm,sphere,Nu,per frame,") > 0 && of(",cold,sphere,price Cu,") > 0);
+    let seeds = fs::read_to_string(here.join("one/tradeoff-seeds.csv")).unwrap();
+    assert_eq!(seeds.lines().count(), 1 + 41 * 2);
 
     let record = fs::read_to_string(here.join("one/tradeoff.json")).unwrap();
     let missed = record.replacen("\"recall\": 1.0", "\"recall\": 0.5", 1);
@@ -389,6 +401,37 @@ fn advice_is_three_lines_and_the_cheapest_of_the_numbers_behind_them() {
     let least = candidates.iter().map(total).fold(f64::INFINITY, f64::min);
     assert_eq!(total(&candidates[0]), least);
     assert_eq!(candidates[0]["name"], advice["best"]);
+    // Both axes and every finder are tried.
+    let names = |list: &str| -> Vec<String> {
+        let list = advice[list].as_array().unwrap().iter();
+        list.map(|one| one["name"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    for axes in ["principal", "model"] {
+        assert!(names("candidates").contains(&format!("s-dop 18, {axes}, two-sided")));
+    }
+    let mut finders = names("finders");
+    finders.sort();
+    assert_eq!(
+        finders,
+        ["all-pairs", "auto", "grid", "neighbours", "sweep"]
+    );
+    // What is printed to be pasted is a table that a scene takes, and flags that the program takes.
+    let table = &text[text.find("[cull]").unwrap()..];
+    let table = &table[..table.find("\n\n").unwrap()];
+    fs::write(here.join("pasted.toml"), format!("{SCENE}{table}\n")).unwrap();
+    assert_eq!(sdop(&["run", "pasted.toml"], here).status.code(), Some(0));
+    let flags = text
+        .lines()
+        .find_map(|line| line.strip_prefix("As flags: "));
+    let flags: Vec<&str> = flags.unwrap().split(' ').collect();
+    let run = sdop(&[&["run", "few.toml"], &flags[..]].concat(), here);
+    assert_eq!(run.status.code(), Some(0));
+    assert!(
+        text.contains("sdop::Culler::builder().strategy(sdop::Strategy::"),
+        "{text}"
+    );
+
     // A millisecond a check: whoever leaves the fewest pairs wins, and those are the hulls.
     let pairs = |candidate: &serde_json::Value| candidate["pairs"].as_f64().unwrap();
     let fewest = candidates.iter().map(pairs).fold(f64::INFINITY, f64::min);

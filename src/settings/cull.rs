@@ -118,15 +118,13 @@ pub enum Budget {
     Microseconds(u64),
 }
 
-/// How a scene is culled: sequential S-DOP with the finder that `auto` picks unless said otherwise.
-///
-/// A scene file's `[cull]` table, where the finder is `all-pairs` unless said otherwise
-/// ([`Self::all_pairs`]).
+/// How a scene is culled: sequential S-DOP with the finder that `auto` picks unless the settings
+/// name others. A scene file's `[cull]` table has the same keys and defaults.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields, default = "CullSettings::all_pairs")
+    serde(deny_unknown_fields, default)
 )]
 pub struct CullSettings {
     /// The culling strategy.
@@ -206,8 +204,7 @@ impl SettingsError {
 }
 
 impl CullSettings {
-    /// The defaults of a scene file: as [`Self::default`], but every pair is a candidate, as in the
-    /// paper.
+    /// As [`Self::default`], but every pair is a candidate, as in the paper.
     #[must_use]
     pub fn all_pairs() -> Self {
         Self {

@@ -386,3 +386,75 @@ fn a_case_is_shown_with_the_answers_to_it() {
     let message = refusal(&["view", text(&case), "--strategy", "sphere"]);
     assert!(message.contains("its poses are given"), "{message}");
 }
+
+/// A case of boxes, of which a program reports nothing in the frames from `missed` on; the header
+/// of its page.
+fn silent_from(missed: u64, name: &str) -> serde_json::Value {
+    let directory = tempfile::tempdir().unwrap();
+    let cases = directory.path().join("cases");
+    let arguments = ["cases", "--claims", "aabb", "--case", name, "--out"];
+    stdout(&[&arguments[..], &[text(&cases)]].concat());
+    let case = cases.join(format!("{name}.ndjson"));
+    let [answers, page] = ["answers", "page.html"].map(|name| directory.path().join(name));
+    let lines = std::fs::read_to_string(&case).unwrap();
+    let bodies = |line: &str| {
+        let line: serde_json::Value = serde_json::from_str(line).unwrap();
+        line["poses"].as_array().unwrap().len()
+    };
+    let answer = |(frame, line): (u64, &str)| {
+        let all = (0..bodies(line)).flat_map(|j| (0..j).map(move |i| format!("[{i},{j}]")));
+        let pairs = if frame < missed {
+            all.collect::<Vec<_>>().join(",")
+        } else {
+            String::new()
+        };
+        format!("{{\"frame\":{frame},\"pairs\":[{pairs}]}}\n")
+    };
+    let said: String = (0..).zip(lines.lines().skip(1)).map(answer).collect();
+    std::fs::write(&answers, said).unwrap();
+    let flags = [
+        text(&case),
+        "--answers",
+        text(&answers),
+        "--out",
+        text(&page),
+    ];
+    view(&flags);
+    header(&page)
+}
+
+/// The page of a case about boxes has the judged boxes, and opens at the missed pair.
+#[test]
+fn a_counter_example_shows_what_was_judged() {
+    // Pairs meet in every other frame, from the second on; there is nothing to be missed in the
+    // first.
+    let header = silent_from(0, "churn/teleport/0004");
+    assert_eq!(header["layers"], serde_json::json!(["boxes"]));
+    let focus = &header["focus"];
+    assert_eq!(
+        (&focus["frame"], &focus["bodies"]),
+        (&1.into(), &serde_json::json!([0, 1]))
+    );
+    assert!(focus["point"][0].is_f64(), "{focus}");
+    let blocks = header["blocks"].as_array().unwrap();
+    let boxes = blocks.iter().find(|block| block["name"] == "boxes");
+    let numbers = 6 * header["bodies"].as_u64().unwrap() * header["frames"].as_u64().unwrap();
+    assert_eq!(boxes.unwrap()["length"], numbers);
+    assert!(
+        header["messages"]
+            .to_string()
+            .contains("The case aims at: ")
+    );
+    // Where the set of bodies changes, the frames with the set of the miss are shown.
+    let header = silent_from(2, "churn/insert-remove/0004");
+    assert_eq!(
+        (&header["frames"], &header["focus"]["frame"]),
+        (&1.into(), &0.into())
+    );
+    assert!(
+        header["messages"]
+            .to_string()
+            .contains("frames 3 to 3 of 6"),
+        "{header}"
+    );
+}

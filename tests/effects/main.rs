@@ -262,6 +262,8 @@ fn gravity_accelerates_and_turns() {
         "gravity = { acceleration = [0, 0, -8] }",
     );
     assert_eq!(after(&constant, 5).1.linear[0], [1.0, 0.0, -5.0]);
+    let short = single("[0, 0, 0, 1, 0, 0, 0]", "[1, 0, 0]", "gravity = [0, 0, -8]");
+    assert_eq!(after(&short, 5).1.linear[0], [1.0, 0.0, -5.0]);
     // A period of eight steps about x: −z, then after two steps y, after four z, after six −y.
     let turning = single(
         "[0, 0, 0, 1, 0, 0, 0]",

@@ -54,8 +54,11 @@ fn the_python_example_passes_and_its_full_buffer_is_found_with_a_small_scene_tha
         text.contains("buffer/growth") && text.contains("exactly"),
         "{text}"
     );
-    let scene = std::fs::read_to_string(directory.path().join("missed-pair.toml")).unwrap();
-    assert!(scene.matches("[[bodies]]").count() < 96, "{scene}");
+    let case = std::fs::read_to_string(directory.path().join("missed-pair.ndjson")).unwrap();
+    assert!(case.contains("\"scene\":\"missed-pair/b"), "{case}");
+    assert!(case.matches("\"static\"").count() < 96, "{case}");
+    // No scene can state boxes.
+    assert!(!directory.path().join("missed-pair.toml").exists());
     // The counter-example fails again by the command that was printed.
     let command = format!("{right} --full-buffer");
     let again = [
@@ -83,9 +86,177 @@ fn the_python_example_passes_and_its_full_buffer_is_found_with_a_small_scene_tha
         "missed-pair.ndjson",
     ];
     assert!(sdop(directory.path(), &again).0.status.success());
-    // The scene is runnable.
-    let (output, _) = sdop(directory.path(), &["run", "missed-pair.toml"]);
-    assert!(output.status.success(), "{output:?}");
+}
+
+/// What a culler of boxes that reports nothing is told, by the smallest case; the lines that a
+/// person reads.
+fn silence(directory: &Path, more: &[&str]) -> (Output, String) {
+    let silent = answering(RIGHT);
+    let arguments = ["verify", "--exec", &silent, "--timeout", "60", "--no-fresh"];
+    sdop(directory, &[&arguments[..], more].concat())
+}
+
+#[test]
+fn a_miss_of_boxes_names_the_ends_that_meet() {
+    let directory = tempfile::tempdir().unwrap();
+    let cases = ["--claims", "aabb", "--case", "box/grid/*"];
+    let (output, text) = silence(directory.path(), &cases);
+    assert_eq!(output.status.code(), Some(1));
+    for words in [
+        "box/grid/0000 misses",
+        "\n  case aims at: touching taken for apart: < in place of <=\n",
+        "\nsmallest: 2 bodies, 1 frame, from box/grid/000",
+        "\n  box 0: (",
+        " ends at ",
+        " starts at ",
+        "\n  shared point: (",
+        "sdop view missed-pair.ndjson",
+    ] {
+        assert!(text.contains(words), "{words:?} in {text}");
+    }
+    assert!(!text.contains("ulp") && !text.contains(".toml"), "{text}");
+    // One line says why the exit code is 1.
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        said.starts_with("sdop: 8 of 8 cases failed, first box/grid/0000 misses"),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
+    let (_, json) = silence(
+        directory.path(),
+        &[&cases[..], &["--format", "json"]].concat(),
+    );
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let why = json["why"].as_str().unwrap();
+    assert!(said.contains(why), "{why}");
+}
+
+#[test]
+fn failed_groups_come_first_and_passed_ones_in_a_line() {
+    let directory = tempfile::tempdir().unwrap();
+    let (_, text) = silence(directory.path(), &["--claims", "aabb", "--case", "*/0000"]);
+    let table = text.split("\nclaim aabb: ").next().unwrap();
+    let last = table.lines().last().unwrap();
+    assert!(
+        last.ends_with("cases") && last.contains(" groups passed all of their "),
+        "{table}"
+    );
+    assert!(
+        table.contains("box/grid") && table.lines().count() > 5,
+        "{table}"
+    );
+}
+
+#[test]
+fn a_miss_of_meshes_is_a_scene_where_a_scene_can_state_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = directory.path().join("missed-pair.toml");
+    let (_, text) = silence(directory.path(), &["--case", "exact/face-to-face/0000"]);
+    assert!(
+        text.contains("missed-pair.toml") && text.contains("\n  depth: "),
+        "{text}"
+    );
+    let (output, run) = sdop(directory.path(), &["run", "missed-pair.toml"]);
+    assert!(
+        output.status.success() && run.contains("reported 1 pairs"),
+        "{run}"
+    );
+    // Balls that aren't those of the meshes, and a miss that takes two frames, are in no scene.
+    std::fs::remove_file(&scene).unwrap();
+    let spheres = ["--claims", "sphere", "--case", "hard/touch-by-quadruples/*"];
+    let (output, _) = silence(directory.path(), &spheres);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(directory.path().join("missed-pair.ndjson").exists() && !scene.exists());
+}
+
+/// Runs a counter-example's unit test with a culler that reports all pairs, and one that reports
+/// none.
+fn as_test(language: &str, claim: &str, case: &str) {
+    let (compiler, arguments, culler, end): (&str, &[&str], &str, &str) = match language {
+        "python" => (
+            "python3",
+            &[],
+            "def your_culler(*given):\n    n = len(given[-1][-1])\n    return [[i, j] for j in range(n) for i in range(j)][:PAIRS]\n",
+            "TEST()\n",
+        ),
+        "rust" => ("rustc", &["--test", "-o", "tested"], "", ""),
+        _ => (
+            "c++",
+            &["-std=c++17", "-o", "tested"],
+            "#include <array>\n#include <vector>\ntemplate <class... Given> std::vector<std::array<unsigned, 2>> your_culler(const Given&...) {\n    \
+             std::vector<std::array<unsigned, 2>> pairs;\n    for (unsigned j = 0; j < 2; j++) for (unsigned i = 0; i < j; i++) pairs.push_back({i, j});\n    \
+             pairs.resize(PAIRS < pairs.size() ? PAIRS : pairs.size());\n    return pairs;\n}\n",
+            "int main() { TEST(); }\n",
+        ),
+    };
+    if Command::new(compiler).arg("--version").output().is_err() {
+        return;
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let (_, text) = silence(
+        here,
+        &["--claims", claim, "--case", case, "--as-test", language],
+    );
+    let ending = match language {
+        "python" => "py",
+        "rust" => "rs",
+        _ => "cpp",
+    };
+    let test = std::fs::read_to_string(here.join(format!("missed-pair.{ending}"))).unwrap();
+    assert!(text.contains(&test), "{text}");
+    let name = test.split("reports_").nth(1).unwrap();
+    let name = format!("reports_{}", name.split('(').next().unwrap());
+    let name = if language == "python" {
+        format!("test_{name}")
+    } else {
+        name
+    };
+    for (pairs, passes) in [("1", true), ("0", false)] {
+        let culler = if language == "rust" {
+            let given = test
+                .split("your_culler(&")
+                .nth(1)
+                .unwrap()
+                .split(')')
+                .next()
+                .unwrap();
+            let count = given.split(", ").count();
+            let types = ["A", "B", "C", "D", "E", "F"];
+            let list: Vec<String> = types[..count].iter().map(|t| format!("_: &{t}")).collect();
+            format!(
+                "fn your_culler<{}>({}) -> Vec<[u32; 2]> {{ [[0, 1]][..{pairs}].to_vec() }}\n",
+                types[..count].join(", "),
+                list.join(", ")
+            )
+        } else {
+            culler.replace("PAIRS", pairs)
+        };
+        let source = format!("{culler}{test}{}", end.replace("TEST", &name));
+        let file = here.join(format!("whole.{ending}"));
+        std::fs::write(&file, &source).unwrap();
+        let mut command = Command::new(compiler);
+        command.args(arguments).arg(&file).current_dir(here);
+        let output = command.output().unwrap();
+        let ran = if language == "python" {
+            output
+        } else {
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{said}\n{source}");
+            Command::new(here.join("tested")).output().unwrap()
+        };
+        assert_eq!(ran.status.success(), passes, "{ran:?}\n{source}");
+    }
+}
+
+#[test]
+fn counter_examples_are_unit_tests() {
+    for language in ["python", "rust", "cpp"] {
+        as_test(language, "aabb", "box/range/0000");
+        as_test(language, "mesh", "exact/tip-on-face/0000");
+    }
+    as_test("python", "sphere", "touch/ball-ball/0000");
+    as_test("rust", "or-dop", "touch/face-corner/0000");
 }
 
 #[test]

@@ -99,9 +99,17 @@ fn crashes_floods_and_early_ends_have_names() {
             ..
         }
     ));
+    let found = trouble("no-such-program-here");
     assert!(
-        matches!(trouble("no-such-program-here"), Trouble::Crashed { how, .. } if how == "exit code 127")
+        matches!(&found, Trouble::Start { why } if why.starts_with("exit code 127; it says: ")),
+        "{found}"
     );
+    assert!(
+        matches!(trouble("/dev/null"), Trouble::Start { why } if why.starts_with("exit code 126"))
+    );
+    // A program that has answered was there.
+    let found = trouble(&format!("{}; exit 127", answering(RIGHT)));
+    assert!(matches!(found, Trouble::Crashed { .. }), "{found}");
     // On one line, on lines of their own, and in answers that are right but for their size.
     for command in [
         "tr '\\0' x < /dev/zero",
@@ -118,6 +126,21 @@ fn crashes_floods_and_early_ends_have_names() {
         matches!(found, Trouble::Crashed { answered: 6, .. }),
         "{found}"
     );
+}
+
+#[test]
+fn a_program_that_cannot_start_ends_the_run() {
+    let verdict = run("no-such-program-here", Wire::Ndjson, 20.0, "*");
+    assert!(
+        verdict.cases.len() == 3 && verdict.not_run > 100,
+        "{verdict}"
+    );
+    let why = verdict.why().unwrap();
+    let first = "cases failed, first box/grid/0000 cannot be started: exit code 127";
+    assert!(why.starts_with("3 of ") && why.contains(first), "{why}");
+    // One that fails for another reason is asked again.
+    let verdict = run("exit 1", Wire::Ndjson, 20.0, "box/flat/*");
+    assert_eq!((verdict.cases.len(), verdict.not_run), (8, 0));
 }
 
 #[test]
@@ -194,7 +217,7 @@ fn a_program_may_skip_a_case_and_a_run_of_skipped_cases_is_no_pass() {
         assert_eq!(verdict.conclusion(), Conclusion::Incomplete);
         assert_eq!((verdict.judged(), verdict.asked()), (0, 4));
         assert!(
-            verdict.cases.len() == 4
+            verdict.cases.len() == 7
                 && verdict.cases.iter().all(
                     |case| matches!(&case.outcome, Outcome::Skipped { why } if why == "no swaps")
                 ),
@@ -256,7 +279,7 @@ fn a_failing_case_does_not_end_the_run() {
         .count();
     assert_eq!(
         (verdict.cases.len(), crashed, verdict.not_run),
-        (4, 1, 0),
+        (7, 1, 0),
         "{verdict}"
     );
 }

@@ -99,6 +99,17 @@ fn effects_and_culling_that_the_scene_cannot_have_are_refused() {
         "a.toml:8:11: gravity: an axis without a period | give the period in seconds, or leave the axis out"
     );
     assert_eq!(
+        with("[effects]\ngravity = -9.81\n"),
+        "a.toml:8:11: invalid type: floating point `-9.81`, expected an acceleration such as [0, 0, -9.81], or { acceleration = \
+         [0, 0, -9.81] }"
+    );
+    assert!(with("[effects]\ngravity = [0, -9.81]\n").starts_with("a.toml:8:11: invalid length 2"));
+    let unknown = with("[effects]\ngravity = { acceleratoin = [0, 0, -9.81] }\n");
+    assert!(
+        unknown.ends_with("did you mean `acceleration`?"),
+        "{unknown}"
+    );
+    assert_eq!(
         with("[cull]\ninterest = [2]\n"),
         "interest: body 2 of a scene of 2 | bodies are counted from 0"
     );

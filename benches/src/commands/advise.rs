@@ -1,7 +1,8 @@
 //! `sdop advise`: which volume and k to use for a scene.
 
 use miette::miette;
-use sdop_bench::tradeoff::advise::{Advice, Candidate, FRAMES, advise};
+use sdop::settings::{CullSettings, Strategy};
+use sdop_bench::tradeoff::advise::{Advice, Candidate, FRAMES, Tried, advise};
 
 use super::Outcome;
 use super::output::{Format, emit, rows};
@@ -10,11 +11,12 @@ use super::scene_args::{MachineArgs, SceneArgs};
 /// What a narrow-phase check is taken to cost when nothing is said of it, in nanoseconds.
 const CHECK: f64 = 1000.0;
 
-/// Which volume and k to use for a scene, in three lines
+/// Which volume, axes and finder to use for a scene, in three lines, with the settings to paste
 ///
-/// Times spheres, boxes, S-DOP at each k and hulls on the scene's first frames, counts the pairs
-/// that each leaves to the narrow phase, and adds both up. Every volume reports all pairs that
-/// meet: they differ in time and in false pairs.
+/// Times every finder, then spheres, boxes, S-DOP at each k along both kinds of axes, and hulls, on
+/// the scene's first frames, counts the pairs that each leaves to the narrow phase, and adds both
+/// up. Every volume reports all pairs that meet: they differ in time and in false pairs. --pairs
+/// and --axes narrow down what is tried.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop advise data/scenes/paper-500.toml --narrow-ns 200")]
 pub struct Args {
@@ -36,7 +38,11 @@ pub struct Args {
 /// A bad scene.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let file = args.scene.read()?;
-    let advice = advise(&file, 1e-9 * args.narrow_ns, args.machine.tier())?
+    let tried = Tried {
+        finder: args.scene.finder(),
+        axes: args.scene.axes(),
+    };
+    let advice = advise(&file, tried, 1e-9 * args.narrow_ns, args.machine.tier())?
         .ok_or_else(|| miette!("nothing could be timed"))?;
     match args.format {
         Format::Csv => emit(Format::Csv, &advice.candidates, |_| String::new())?,
@@ -66,9 +72,16 @@ fn text(advice: &Advice) -> String {
         )
     });
     let tied = match advice.tied.as_slice() {
-        [] => "Nothing else comes near: every other total is higher, and its interval says so."
+        [] => "No other is tied with it: every other total is higher by more than its interval."
             .to_owned(),
-        tied => format!("As good, as far as these times tell: {}.", tied.join("; ")),
+        tied => format!(
+            "Tied with it, since the interval of the difference covers zero: {}.",
+            tied.join("; ")
+        ),
+    };
+    let finders = match advice.tied_finders.as_slice() {
+        [] => String::new(),
+        tied => format!(" (tied with {})", tied.join(", ")),
     };
     let stretches: Vec<String> = advice
         .cheapest
@@ -78,6 +91,25 @@ fn text(advice: &Advice) -> String {
             from => format!("{} from {:.0} ns", stretch.name, 1e9 * from),
         })
         .collect();
+    let mut text = format!(
+        "Use {}{sum}.\n{tied}\nBy the price of a check: {}.\n\n{}\n{}: {} bodies, {} frames ({FRAMES} at most), pairs from {}{finders}\n{}\n\nFinders, for S-DOP\n{}",
+        advice.best,
+        stretches.join("; "),
+        to_paste(advice),
+        advice.scene,
+        advice.bodies,
+        advice.frames,
+        advice.cull.pairs,
+        table(&advice.candidates),
+        table(&advice.finders),
+    );
+    if let Some(warning) = advice.conditions.warning() {
+        text = format!("{text}\n{warning}");
+    }
+    text
+}
+
+fn table(candidates: &[Candidate]) -> String {
     let header = [
         "variant",
         "warm µs",
@@ -87,7 +119,7 @@ fn text(advice: &Advice) -> String {
         "above the best, µs",
         "±",
     ];
-    let numbers = rows(&header, &advice.candidates, |candidate: &Candidate| {
+    rows(&header, candidates, |candidate: &Candidate| {
         let us = |seconds: f64| format!("{:.1}", 1e6 * seconds);
         vec![
             candidate.name.clone(),
@@ -98,19 +130,40 @@ fn text(advice: &Advice) -> String {
             us(candidate.beyond.mean),
             us(candidate.beyond.half_width),
         ]
-    });
-    let mut text = format!(
-        "Use {}{sum}.\n{tied}\nBy the price of a check: {}.\n\n{}: {} bodies, {} frames (at most {FRAMES} are looked at)\n{numbers}",
-        advice.best,
-        stretches.join("; "),
-        advice.scene,
-        advice.bodies,
-        advice.frames,
+    })
+    .to_string()
+}
+
+/// The advice as a scene file's table, as flags, and as Rust.
+fn to_paste(advice: &Advice) -> String {
+    let CullSettings {
+        strategy,
+        pairs,
+        k,
+        axes,
+        overlap,
+        ..
+    } = &advice.cull;
+    let mut toml = format!("[cull]\nstrategy = \"{strategy}\"\npairs = \"{pairs}\"\n");
+    let mut flags = format!("--strategy {strategy} --pairs {pairs}");
+    let mut rust = format!(
+        "sdop::Culler::builder().strategy(sdop::Strategy::{strategy:?}).finder(sdop::Finder::{pairs:?})"
     );
-    if let Some(warning) = advice.conditions.warning() {
-        text = format!("{text}\n{warning}");
+    let mut shape = String::new();
+    if *strategy == Strategy::SDopSequential {
+        toml += &format!("k = {k}\naxes = \"{axes}\"\noverlap = \"{overlap}\"\n");
+        flags += &format!(" --k {k} --axes {axes} --overlap {overlap}");
+        rust += &format!(".overlap(sdop::Overlap::{overlap:?})");
+        shape = format!(
+            "    sdop::ShapeSpec {{ directions: sdop::DirectionSet::{k:?}, axes: sdop::Axes::{axes:?}, ..Default::default() }}\n"
+        );
     }
-    text
+    let hulls = if advice.hulls {
+        "Then test each reported pair by its convex hulls, which the library leaves to you.\n"
+    } else {
+        ""
+    };
+    format!("{toml}\nAs flags: {flags}\nIn Rust:\n{shape}    {rust}\n{hulls}")
 }
 
 fn nanoseconds(text: &str) -> Result<f64, String> {

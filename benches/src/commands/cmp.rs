@@ -13,8 +13,9 @@ use super::output::{csv_text, json_with_reason, print, rows};
 
 /// Compare two records: counts must be equal, times are ratios with intervals
 ///
-/// Counts that differ are named. Times are listed as the second over the first, the largest change
-/// first; "same" where the intervals of both meet, "?" where a record has no intervals.
+/// Rows that both have are compared; one line counts those that only one of them has. Counts that
+/// differ are named. Times are listed as the second over the first, the largest change first, the
+/// control last; "same" where the intervals of both meet, "?" where a record has no intervals.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop cmp data/record/epyc-2core-avx512/reproduce data/record/xeon-2core-avx512/reproduce\n         \
@@ -154,9 +155,12 @@ fn head(comparison: &Comparison) -> String {
     );
     out.push_str(&comparison.equal.join(", "));
     out.push('\n');
+    for warning in &comparison.warnings {
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "WARNING {warning}");
+    }
     for difference in &comparison.differences {
         let column = difference.column.as_deref().unwrap_or("row");
-        // Writing to a String cannot fail.
         let _ = writeln!(
             out,
             "DIFFERS {}: {}, {column}: {} and {}",

@@ -1,5 +1,7 @@
 //! `sdop cost`: the formula per strategy, predicted against measured.
 
+pub mod lines;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -8,13 +10,12 @@ use miette::miette;
 use sdop_bench::cost::calibrate::{self, Effort};
 use sdop_bench::cost::predict::Terms;
 use sdop_bench::cost::study::{Plan, Report, possible, study};
-use sdop_bench::cost::table::{Compared, Cost};
+use sdop_bench::cost::table::{Compared, Cost, PriceRow};
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::Estimate;
-use serde::Serialize;
 
 use super::files::write;
-use super::output::{Format, emit, progress, rows, table};
+use super::output::{Format, decimal, emit, progress, rows, table};
 use super::reproduce::draw_costs;
 use super::scene_args::{MachineArgs, SceneArgs};
 use super::{Outcome, prices};
@@ -52,19 +53,6 @@ pub struct Args {
     format: Format,
 }
 
-/// One number, as CSV has it.
-#[derive(Serialize)]
-struct Line<'a> {
-    scene: &'a str,
-    strategy: &'a str,
-    regime: Regime,
-    volume: &'a str,
-    term: &'static str,
-    unit: &'static str,
-    value: f64,
-    half_width: f64,
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -76,7 +64,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         write(path, &draw_costs(&report.scene, &warm)?)?;
     }
     match args.format {
-        Format::Csv => emit(Format::Csv, &lines(&report), |_| String::new())?,
+        Format::Csv => emit(Format::Csv, &lines::of_report(&report), |_| String::new())?,
         format => emit(format, &report, text)?,
     }
     Ok(Outcome::Passed)
@@ -156,6 +144,11 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
     }
     writeln!(
         out,
+        "\nCounts per warm frame, prices and terms, by volume\n{}",
+        volume_rows(report)
+    )?;
+    writeln!(
+        out,
         "\nWith construction: ms for all {frames} frames, warm\n{}",
         total_rows(report)
     )?;
@@ -169,7 +162,7 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
         "\nPrices for warm frames, from {} other scenes\n{}",
         calibrate::SCENES,
         rows(&prices::COLUMNS, &warm, |price| prices::cells(price, |e| {
-            hundredths(e.mean)
+            plus_minus(e.mean, e.half_width)
         }))
     )?;
     writeln!(
@@ -253,56 +246,58 @@ fn percents(residual: &Estimate) -> [String; 2] {
     ]
 }
 
-/// Every number of the table on a line of its own.
-fn lines(report: &Report) -> Vec<Line<'_>> {
-    let mut lines = Vec::new();
-    for cost in &report.costs {
-        let mut line = |volume, term, unit, value, half_width| {
-            lines.push(Line {
-                scene: &cost.scene,
-                strategy: &cost.variant,
-                regime: cost.regime,
-                volume,
-                term,
-                unit,
-                value,
-                half_width,
-            });
-        };
-        for terms in &cost.terms {
-            let volume = terms.volume.name();
-            line(volume, "Nu", "per frame", terms.updates, 0.0);
-            line(volume, "Nv", "per frame", terms.tests, 0.0);
-            line(volume, "hits", "per frame", terms.hits, 0.0);
-            line(volume, "Nu*Cu", "s per frame", terms.update, 0.0);
-            line(volume, "F", "s per frame", terms.finding, 0.0);
-            line(volume, "Nv*Cv", "s per frame", terms.test, 0.0);
-            line(volume, "Co", "s", terms.construct, 0.0);
-        }
-        for (names, unit, compared) in [
-            (["sum", "measured", "residual"], "s per frame", &cost.frame),
-            (
-                ["Co predicted", "Co measured", "Co residual"],
-                "s",
-                &cost.construct,
-            ),
-            (
-                ["T predicted", "T measured", "T residual"],
-                "s",
-                &cost.total,
-            ),
-        ] {
-            let Compared {
-                predicted,
-                measured,
-                residual,
-            } = compared;
-            line("", names[0], unit, predicted.mean, predicted.half_width);
-            line("", names[1], unit, measured.mean, measured.half_width);
-            line("", names[2], "1", residual.mean, residual.half_width);
+/// What each volume of each strategy counts, what one update and one test cost, and the terms that
+/// both make.
+fn volume_rows(report: &Report) -> Table {
+    let mut rows = table(&[
+        "strategy",
+        "volume",
+        "Nu",
+        "Cu, ns",
+        "Nu·Cu, µs",
+        "F, µs",
+        "Nv",
+        "hits",
+        "Cv hit, ns",
+        "Cv miss, ns",
+        "Nv·Cv, µs",
+    ]);
+    let warm = |price: &&PriceRow| price.regime == Regime::Warm;
+    for cost in of(report, Regime::Warm) {
+        for (terms, widths) in cost.terms.iter().zip(&cost.widths) {
+            let of =
+                |price: &&PriceRow| (&price.variant, price.volume) == (&cost.variant, terms.volume);
+            let price = report.prices.iter().filter(warm).find(of);
+            let ns = |price: Option<&Estimate>| {
+                price.map_or_else(String::new, |p| {
+                    plus_minus(1e9 * p.mean, 1e9 * p.half_width)
+                })
+            };
+            let us = |mean: f64, width: f64| plus_minus(1e6 * mean, 1e6 * width);
+            rows.add_row([
+                cost.variant.clone(),
+                terms.volume.to_string(),
+                decimal(terms.updates),
+                ns(price.map(|p| &p.update)),
+                us(terms.update, widths.update),
+                us(terms.finding, widths.finding),
+                decimal(terms.tests),
+                decimal(terms.hits),
+                ns(price.map(|p| &p.hit)),
+                ns(price.map(|p| &p.miss)),
+                us(terms.test, widths.test),
+            ]);
         }
     }
-    lines
+    rows
+}
+
+fn plus_minus(mean: f64, half_width: f64) -> String {
+    if half_width.is_finite() {
+        format!("{mean:.2} ± {half_width:.2}")
+    } else {
+        hundredths(mean)
+    }
 }
 
 fn hundredths(value: f64) -> String {

@@ -9,7 +9,7 @@ use sdop::mesh::topology::{Topology, without_area};
 use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};
 use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
 use sdop_bench::remedy::OrReport as _;
-use sdop_bench::tightness::Size;
+use sdop_bench::tightness::{Size, TURNS};
 use serde::Serialize;
 
 use super::files::ReadArgs;
@@ -209,6 +209,11 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
         rows.add_row([row.name.clone(), volume(row.volume, report), over_hull]);
     }
     writeln!(out, "{rows}")?;
+    writeln!(
+        out,
+        "aabb and k-dop are fitted anew when a body turns: means over {TURNS} rotations. obb is along the principal axes, \
+         not the smallest box."
+    )?;
     match &report.written {
         Some(path) => writeln!(out, "written to {path}"),
         None => Ok(()),

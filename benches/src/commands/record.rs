@@ -5,6 +5,7 @@ mod steps;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::{Duration, Instant};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_bench::measure::machine::Machine;
@@ -63,10 +64,18 @@ pub struct Args {
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     if args.experiments.is_empty() {
         let all: Vec<_> = experiments().collect();
-        let list = rows(&["experiment", "measures"], &all, |experiment| {
-            vec![experiment.name.to_owned(), experiment.about.to_owned()]
+        let header = ["experiment", "measures", "takes", "needs"];
+        let list = rows(&header, &all, |experiment| {
+            vec![
+                experiment.name.to_owned(),
+                experiment.about.to_owned(),
+                duration(&args.out, experiment),
+                experiment.needs(),
+            ]
         });
-        print(&list.to_string())?;
+        print(&format!(
+            "{list}\nAll need a checkout of the repository and run in its root. \"takes\" is from the latest record that says so."
+        ))?;
         return Ok(Outcome::Passed);
     }
     if args.adopt {
@@ -104,8 +113,33 @@ fn chosen(args: &Args) -> miette::Result<Vec<&'static Experiment>> {
     }
     for experiment in &chosen {
         further(args, experiment)?;
+        if let Some(file) = experiment.missing(Path::new(".")) {
+            return Err(miette!(
+                help = "run it in the root of a checkout of the repository",
+                "{} needs {}, and there is no such file here",
+                experiment.name,
+                file.display()
+            ));
+        }
     }
     Ok(chosen)
+}
+
+/// How long an experiment took, by the latest of its records that says so.
+fn duration(records: &Path, experiment: &Experiment) -> String {
+    let machines = std::fs::read_dir(records).into_iter().flatten().flatten();
+    let measured = machines.filter_map(|machine| {
+        let manifest = Manifest::read(&machine.path().join(experiment.name)).ok()?;
+        let seconds = manifest.seconds?;
+        Some((manifest.date, machine.file_name(), seconds))
+    });
+    match measured.max_by(|a, b| a.0.cmp(&b.0)) {
+        None => experiment.roughly().to_owned(),
+        Some((_, machine, seconds)) => {
+            let time = humantime::format_duration(Duration::from_secs(seconds.ceil() as u64));
+            format!("{time} ({})", machine.to_string_lossy())
+        }
+    }
 }
 
 fn place(args: &Args, experiment: &str) -> PathBuf {
@@ -142,8 +176,9 @@ fn say(directory: &Path) -> miette::Result<()> {
 /// Measures into a directory beside, and puts it in its place when it is whole.
 fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
     let part = prepare(directory)?;
-    let before = Load::now();
+    let (before, start) = (Load::now(), Instant::now());
     execute(args, experiment, &part)?;
+    let seconds = start.elapsed().as_secs_f64();
     let command = command_line(experiment, args);
     let mut manifest =
         Manifest::describe(&part, experiment.name, command, experiment.deterministic)?;
@@ -151,6 +186,7 @@ fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Re
     manifest.load = before
         .zip(Load::now())
         .map(|(before, after)| [before, after]);
+    manifest.seconds = Some(seconds);
     finish(args, experiment, manifest, directory)
 }
 
@@ -230,15 +266,11 @@ fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> 
 /// Runs the experiment's steps.
 fn execute(args: &Args, experiment: &Experiment, out: &Path) -> miette::Result<()> {
     for (index, step) in experiment.steps.iter().enumerate() {
-        if experiment.steps.len() > 1 {
-            eprintln!(
-                "{} {}/{}",
-                experiment.name,
-                index + 1,
-                experiment.steps.len()
-            );
-        }
         let (mut command, file) = complete(args, experiment, step, out)?;
+        let words = command.get_args().map(|word| word.to_string_lossy());
+        let line = words.collect::<Vec<_>>().join(" ");
+        let (name, of) = (experiment.name, experiment.steps.len());
+        eprintln!("{name} {}/{of}: {line}", index + 1);
         let said = steps::output(experiment, step, &mut command)?;
         if let Some(file) = file {
             write(&out.join(file), said)?;

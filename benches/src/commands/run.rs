@@ -8,6 +8,7 @@ use sdop::counters::{Counters, Seconds};
 use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
 use sdop_bench::domain::{BorderSeconds, RankLine};
 use sdop_bench::effects::EffectReport;
+use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::percentiles::Percentiles;
 use sdop_bench::remedy::OrReport as _;
 use sdop_bench::scene::Scene;
@@ -76,6 +77,8 @@ struct Report<'a> {
     counters: Map<String, Value>,
     seconds: Terms,
     frame_seconds: Percentiles,
+    /// What else the machine did.
+    conditions: Conditions,
     effects: Vec<EffectLine>,
     volumes_sha256: &'a str,
     pairs_sha256: Option<&'a str>,
@@ -132,6 +135,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     } else {
         None
     };
+    let before = Conditions::before();
     let bar = progress(scene.frames.into(), &scene.name);
     let threads = usize::from(args.threads);
     let simulation = Simulation::with_threads(&scene, tier, threads)?;
@@ -150,14 +154,21 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(recorder) = recorder {
         recorder.finish().or_report()?;
     }
-    print(args, &scene, &summary, None)?;
+    let conditions = before.after(std::iter::empty());
+    print(args, &scene, &summary, conditions, None)?;
     Ok(Outcome::Passed)
 }
 
 /// Prints what a run says of itself.
-fn print(args: &Args, scene: &Scene, summary: &Summary, shared: Shared<'_>) -> miette::Result<()> {
+fn print(
+    args: &Args,
+    scene: &Scene,
+    summary: &Summary,
+    conditions: Conditions,
+    shared: Shared<'_>,
+) -> miette::Result<()> {
     let (tier, threads) = (args.machine.tier(), args.threads.into());
-    let report = report(scene, (tier, threads), summary, shared);
+    let report = report(scene, (tier, threads), summary, conditions, shared);
     emit(args.format, &report, |report| text(report, scene, summary))
 }
 
@@ -165,6 +176,7 @@ fn report<'a>(
     scene: &'a Scene,
     (tier, threads): (Tier, usize),
     summary: &'a Summary,
+    conditions: Conditions,
     shared: Shared<'a>,
 ) -> Report<'a> {
     let CullSettings {
@@ -200,6 +212,7 @@ fn report<'a>(
             border: shared.map(|(border, _)| border),
         },
         frame_seconds: summary.frame_seconds,
+        conditions,
         effects: summary.effects.iter().map(effect_line).collect(),
         volumes_sha256: &summary.volumes_sha256,
         pairs_sha256: summary.pairs_sha256.as_deref(),
@@ -308,9 +321,12 @@ fn write_text(
     if let Some(digest) = report.pairs_digest {
         writeln!(out, "pairs digest   {digest}")?;
     }
-    match report.ranks {
+    if let Some(ranks) = report.ranks {
+        writeln!(out, "{}", rank_rows(ranks, report.frames))?;
+    }
+    match report.conditions.warning() {
         None => Ok(()),
-        Some(ranks) => writeln!(out, "{}", rank_rows(ranks, report.frames)),
+        Some(warning) => writeln!(out, "{warning}"),
     }
 }
 

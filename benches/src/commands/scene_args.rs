@@ -140,6 +140,16 @@ impl SceneArgs {
         self.frames
     }
 
+    /// The finder asked for, if any.
+    pub fn finder(&self) -> Option<Finder> {
+        self.cull.pairs
+    }
+
+    /// The axes asked for, if any.
+    pub fn axes(&self) -> Option<Axes> {
+        self.cull.axes
+    }
+
     /// The strategy asked for, if any.
     pub fn strategy(&self) -> Option<Strategy> {
         self.cull.strategy

@@ -2,6 +2,7 @@
 
 mod plot;
 mod tables;
+mod tidy;
 
 use std::path::{Path, PathBuf};
 
@@ -163,8 +164,8 @@ fn print(
     let why = (!failures.is_empty())
         .then(|| format!("true pairs were missed by: {}", failures.join("; ")));
     match format {
-        // A line a variant; the rest is in the other formats.
-        Format::Csv => emit(Format::Csv, &result.rows, |_| String::new())?,
+        // A line per number of a variant; the rest is in the other formats.
+        Format::Csv => emit(Format::Csv, &tidy::lines(result), |_| String::new())?,
         format => emit_with_reason(format, recorded, why.as_deref(), |recorded| {
             text(&recorded.result)
         })?,
@@ -209,9 +210,11 @@ fn read(path: &Path) -> miette::Result<Recorded> {
 fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Result<()> {
     let result = &recorded.result;
     let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
-    let csv = csv_text(serde_json::to_value(&result.rows).into_diagnostic()?)?;
+    let csv = csv_text(serde_json::to_value(tidy::lines(result)).into_diagnostic()?)?;
+    let seeds = csv_text(serde_json::to_value(tidy::seeds(result)).into_diagnostic()?)?;
     write(&numbers.join("tradeoff.json"), &json)?;
     write(&numbers.join("tradeoff.csv"), &csv)?;
+    write(&numbers.join("tradeoff-seeds.csv"), &seeds)?;
     let figures = paper.join("figures");
     write(&figures.join("tradeoff.svg"), &plot::precision(result)?)?;
     write(

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::VolumeCosts;
 use crate::measure::counts::{Counts, Volume};
+use crate::measure::estimate::{Estimate, or_infinite};
 
 /// Prices of one volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,6 +53,58 @@ pub struct Terms {
     pub finding: f64,
     /// Nv·Cv.
     pub test: f64,
+}
+
+/// Half-widths of the intervals over passes of one volume's [`Terms`], in the same units; infinite
+/// for one pass.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TermWidths {
+    /// The volume.
+    #[serde(rename = "name")]
+    pub volume: Volume,
+    /// Of Nu per frame.
+    #[serde(deserialize_with = "or_infinite")]
+    pub updates: f64,
+    /// Of Nv per frame.
+    #[serde(deserialize_with = "or_infinite")]
+    pub tests: f64,
+    /// Of the hits per frame.
+    #[serde(deserialize_with = "or_infinite")]
+    pub hits: f64,
+    /// Of Co.
+    #[serde(deserialize_with = "or_infinite")]
+    pub construct: f64,
+    /// Of Nu·Cu.
+    #[serde(deserialize_with = "or_infinite")]
+    pub update: f64,
+    /// Of F.
+    #[serde(deserialize_with = "or_infinite")]
+    pub finding: f64,
+    /// Of Nv·Cv.
+    #[serde(deserialize_with = "or_infinite")]
+    pub test: f64,
+}
+
+impl TermWidths {
+    /// Of one volume's terms, pass by pass in the order of time; `None` of none.
+    #[must_use]
+    pub fn of(passes: &[Terms]) -> Option<Self> {
+        let volume = passes.first()?.volume;
+        let over = |term: fn(&Terms) -> f64| {
+            let values: Vec<f64> = passes.iter().map(term).collect();
+            Estimate::in_order(&values).half_width
+        };
+        Some(Self {
+            volume,
+            updates: over(|t| t.updates),
+            tests: over(|t| t.tests),
+            hits: over(|t| t.hits),
+            construct: over(|t| t.construct),
+            update: over(|t| t.update),
+            finding: over(|t| t.finding),
+            test: over(|t| t.test),
+        })
+    }
 }
 
 impl Terms {
@@ -120,6 +173,33 @@ impl Prices {
 mod tests {
     use super::*;
     use sdop::counters::{Counters, VolumeCounters};
+
+    #[test]
+    fn widths_are_those_of_intervals_over_passes() {
+        let pass = |update: f64| Terms {
+            volume: Volume::Sphere,
+            updates: 3.0,
+            tests: 4.0,
+            hits: 1.0,
+            construct: 9.0,
+            update,
+            finding: 0.0,
+            test: 5.0,
+        };
+        // Student's quantile for one degree of freedom is 12.706; the standard error of 1 and 3 is
+        // 1.
+        let widths = TermWidths::of(&[pass(1.0), pass(3.0)]).map(|w| [w.update, w.test]);
+        let [update, test] = widths.unwrap_or_default();
+        assert!((update - 12.706).abs() < 1e-3 && test == 0.0, "{widths:?}");
+        assert!(TermWidths::of(&[]).is_none());
+        // JSON has no infinity: one pass reads back.
+        let one = TermWidths::of(&[pass(1.0)]);
+        let text = serde_json::to_string(&one).unwrap_or_default();
+        assert_eq!(
+            serde_json::from_str::<Option<TermWidths>>(&text).ok(),
+            Some(one)
+        );
+    }
 
     #[test]
     fn s_dop_pays_for_both_volumes_and_finds_pairs_once() {

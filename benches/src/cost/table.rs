@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::VolumeCosts;
 use super::pass::Pass;
-use super::predict::{Prices, Terms};
+use super::predict::{Prices, TermWidths, Terms};
 use crate::measure::counts::Volume;
 use crate::measure::estimate::Estimate;
 use crate::measure::turns::{Quartiles, Regime};
@@ -56,6 +56,9 @@ pub struct Cost {
     pub frames: u32,
     /// The terms of each volume, means over passes.
     pub terms: Vec<Terms>,
+    /// Half-widths of their intervals over passes; empty in earlier records.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub widths: Vec<TermWidths>,
     /// Seconds per frame without construction: the terms' sum, and the median over frames.
     pub frame: Compared,
     /// The frames' quartiles, means over passes.
@@ -110,7 +113,8 @@ pub fn cost(
         parts.push(terms);
     }
     let first = parts.first()?;
-    let volume = |at: usize| Terms::mean(&parts.iter().map(|terms| terms[at]).collect::<Vec<_>>());
+    let of_volume = |at: usize| parts.iter().map(|terms| terms[at]).collect::<Vec<_>>();
+    let volumes = || (0..first.len()).map(of_volume);
     Some(Cost {
         scene: scene.to_owned(),
         bodies,
@@ -118,7 +122,12 @@ pub fn cost(
         variant: variant.name.clone(),
         regime,
         frames: passes.first()?.culled.get(at)?.frames,
-        terms: (0..first.len()).filter_map(volume).collect(),
+        terms: volumes()
+            .filter_map(|passes| Terms::mean(&passes))
+            .collect(),
+        widths: volumes()
+            .filter_map(|passes| TermWidths::of(&passes))
+            .collect(),
         frame: Compared::of(&frame),
         quartiles: Quartiles::mean(&quartiles),
         construct: Compared::of(&construct),

@@ -5,17 +5,18 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use serde::Deserialize;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 
 use super::Start;
 use super::{Effect, Made, Velocities};
 use crate::number::{Positive, Real, vector};
 use sdop::bodies::Bodies;
 
-/// `gravity = { acceleration = [0, 0, -9.81] }`, for a turning one with `period` in seconds and an
-/// `axis`.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// `gravity = [0, 0, -9.81]`, or `gravity = { acceleration = [0, 0, -9.81] }`, for a turning one
+/// with `period` in seconds and an `axis`.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Acceleration at the start, world frame.
     pub acceleration: [Real; 3],
@@ -23,6 +24,54 @@ pub struct Settings {
     pub period: Option<Positive>,
     /// The axis about which it turns, right-handed; z when absent.
     pub axis: Option<[Real; 3]>,
+}
+
+/// The keys of the table.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Table {
+    acceleration: [Real; 3],
+    period: Option<Positive>,
+    axis: Option<[Real; 3]>,
+}
+
+impl<'de> Deserialize<'de> for Settings {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Either)
+    }
+}
+
+/// Reads an acceleration alone, or a table with it.
+struct Either;
+
+impl<'de> Visitor<'de> for Either {
+    type Value = Settings;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("an acceleration such as [0, 0, -9.81], or { acceleration = [0, 0, -9.81] }")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Settings, A::Error> {
+        let acceleration = Deserialize::deserialize(SeqAccessDeserializer::new(seq))?;
+        Ok(Settings {
+            acceleration,
+            period: None,
+            axis: None,
+        })
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Settings, A::Error> {
+        let Table {
+            acceleration,
+            period,
+            axis,
+        } = Deserialize::deserialize(MapAccessDeserializer::new(map))?;
+        Ok(Settings {
+            acceleration,
+            period,
+            axis,
+        })
+    }
 }
 
 struct Gravity {

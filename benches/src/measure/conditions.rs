@@ -68,13 +68,14 @@ impl Conditions {
         }
         let load =
             |load: Option<f64>| load.map_or("unknown".to_owned(), |load| format!("{load:.1}"));
+        let wide = match self.of {
+            0 => String::new(),
+            of => format!("; {} of {of} intervals above 10 %", self.wide),
+        };
         Some(format!(
-            "The machine did other work (load beside ours {} before, {} after; {} of {} intervals above 10 %): \
-             don't quote these times.",
+            "The machine did other work (load beside ours {} before, {} after{wide}): don't quote these times.",
             load(self.others[0]),
-            load(self.others[1]),
-            self.wide,
-            self.of
+            load(self.others[1])
         ))
     }
 }

@@ -78,7 +78,11 @@ pub(super) fn kinds(columns: &[String], a: &Table, b: &Table) -> Vec<Kind> {
             Kind::Found
         } else if NAMING.contains(&last) || cells().any(Value::is_string) {
             Kind::Name
-        } else if last.ends_with("_low") || last.ends_with("_high") || last == "half_width" {
+        } else if last.ends_with("_low")
+            || last.ends_with("_high")
+            || last == "half_width"
+            || name.split('.').any(|part| part == "widths")
+        {
             Kind::Interval
         } else if cells().any(Value::is_f64) {
             Kind::Measured
@@ -90,7 +94,7 @@ pub(super) fn kinds(columns: &[String], a: &Table, b: &Table) -> Vec<Kind> {
 }
 
 /// The interval of a measured cell, where its table has one: `x_low` and `x_high` next to `x`, or
-/// `x.half_width` next to `x.mean`.
+/// `x.half_width` next to `x.mean`, or `half_width` next to `value`.
 pub(super) fn interval(row: &serde_json::Map<String, Value>, column: &str) -> Option<[f64; 2]> {
     let number = |name: String| row.get(&name)?.as_f64();
     if let (Some(low), Some(high)) = (
@@ -99,10 +103,12 @@ pub(super) fn interval(row: &serde_json::Map<String, Value>, column: &str) -> Op
     ) {
         return Some([low, high]);
     }
-    let stem = column.strip_suffix(".mean")?;
-    let (mean, half) = (
-        number(column.to_owned())?,
-        number(format!("{stem}.half_width"))?,
-    );
+    // Tidy tables have a number per line: `value` with `half_width`.
+    let half = match column.strip_suffix(".mean") {
+        Some(stem) => format!("{stem}.half_width"),
+        None if column == "value" => "half_width".to_owned(),
+        None => return None,
+    };
+    let (mean, half) = (number(column.to_owned())?, number(half)?);
     Some([mean - half, mean + half])
 }

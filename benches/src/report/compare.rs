@@ -9,16 +9,18 @@ use serde_json::{Map, Value};
 use super::columns::{Kind, interval, kinds};
 use super::manifest::{Manifest, ManifestError};
 use super::table::{Table, TableError};
+use crate::measure::conditions::Conditions;
 use crate::measure::estimate::Estimate;
+use sdop::settings::Strategy;
 
-/// A count, or a whole row, that two records don't share.
+/// A count, or a whole file, that two records don't share.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Difference {
     /// The table.
     pub file: String,
     /// What names the row.
     pub row: String,
-    /// The column; absent where one record lacks the row or the file.
+    /// The column; absent where one record lacks the file.
     pub column: Option<String>,
     /// What the first record has.
     pub first: String,
@@ -60,6 +62,8 @@ pub struct Comparison {
     pub changes: Vec<Change>,
     /// What only one of the records has or says, without being a count that differs.
     pub notes: Vec<String>,
+    /// Which of the records should not be quoted for their times, and why.
+    pub warnings: Vec<String>,
 }
 
 /// Records that can't be compared.
@@ -103,6 +107,7 @@ pub fn compare(first: &Path, second: &Path) -> Result<Comparison, CompareError> 
         differences: Vec::new(),
         changes: Vec::new(),
         notes: Vec::new(),
+        warnings: manifests.iter().filter_map(disturbed).collect(),
     };
     for (name, digest) in &a.files {
         match b.files.get(name) {
@@ -127,11 +132,25 @@ pub fn compare(first: &Path, second: &Path) -> Result<Comparison, CompareError> 
     Ok(comparison)
 }
 
+/// What is to be said of a record that was measured while its machine did other work.
+fn disturbed(manifest: &Manifest) -> Option<String> {
+    let [before, after] = manifest.load?;
+    let conditions = Conditions {
+        // Our own single thread has been running all the time.
+        others: [before.one_minute, (after.one_minute - 1.0).max(0.0)].map(Some),
+        ..Conditions::default()
+    };
+    Some(format!("{}: {}", manifest.id(), conditions.warning()?))
+}
+
 impl Comparison {
-    /// What an interval tells from 1 first, then what it doesn't, then what has none; the largest
-    /// first in each.
+    /// What an interval tells from 1 first, then what it doesn't, then what has none, and last the
+    /// control, which culls nothing: its nanoseconds change the most and mean the least. The
+    /// largest first in each.
     fn rank(&mut self) {
+        let control = Strategy::None.name();
         let class = |change: &Change| match change.same {
+            _ if change.row.split(", ").any(|part| part == control) => 3,
             Some(false) => 0,
             Some(true) => 1,
             None => 2,
@@ -203,9 +222,6 @@ impl Comparison {
         for (name, row) in &ours {
             let Some(other) = others.remove(name) else {
                 lacking += 1;
-                if strict {
-                    self.differ(file, name, None, "the row", "no such row");
-                }
                 continue;
             };
             for (column, kind) in columns.iter().zip(&kinds) {
@@ -214,14 +230,19 @@ impl Comparison {
         }
         let raw = self.changes.split_off(before);
         self.changes.extend(over_seeds(raw));
-        if strict {
-            for name in others.keys() {
-                self.differ(file, name, None, "no such row", "the row");
-            }
-        } else if lacking + others.len() > 0 {
+        let (common, extra) = (ours.len() - lacking, others.len());
+        if strict && common == 0 && lacking + extra > 0 {
+            let rows = |count: usize| format!("{count} rows");
+            self.differ(
+                file,
+                "no row is in both",
+                None,
+                &rows(lacking),
+                &rows(extra),
+            );
+        } else if lacking + extra > 0 {
             self.notes.push(format!(
-                "{file}: {lacking} rows only in the first, {} only in the second",
-                others.len()
+                "{file}: {common} rows compared; {lacking} rows only in the first, {extra} only in the second"
             ));
         }
     }
@@ -334,7 +355,7 @@ fn row_name(row: &Map<String, Value>, columns: &[String], kinds: &[Kind]) -> Str
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-    use super::super::FILE;
+    use super::super::{FILE, Load};
     use super::*;
 
     fn record(counts: &str, times: &str) -> tempfile::TempDir {
@@ -409,20 +430,67 @@ mod tests {
         let comparison = compare(a.path(), c.path()).unwrap();
         assert!(comparison.differences.is_empty());
         assert!(
-            comparison.notes[0].contains("1 rows only in the first"),
+            comparison.notes[0].contains("1 rows compared; 1 rows only in the first"),
             "{:?}",
             comparison.notes
         );
     }
 
+    /// A quick run has fewer rows: those that both have are compared, all others are one line.
     #[test]
-    fn a_row_that_is_missing_is_named() {
-        let (a, b) = (record(COUNTS, TIMES), record("scene,hits\na,10\n", TIMES));
-        let differences = compare(a.path(), b.path()).unwrap().differences;
-        assert_eq!(
-            (differences[0].row.as_str(), differences[0].second.as_str()),
-            ("b", "no such row")
+    fn missing_rows_are_one_line() {
+        let rows = |from: u32, to: u32| -> String {
+            let row = |n: u32| format!("scene-{n},{n}\n");
+            format!("scene,hits\n{}", (from..to).map(row).collect::<String>())
+        };
+        let (a, b) = (record(&rows(0, 3000), TIMES), record(&rows(0, 30), TIMES));
+        let comparison = compare(a.path(), b.path()).unwrap();
+        assert!(
+            comparison.differences.is_empty(),
+            "{:?}",
+            comparison.differences
         );
+        assert_eq!(
+            comparison.notes,
+            ["counts.csv: 30 rows compared; 2970 rows only in the first, 0 only in the second"]
+        );
+        let wrong = rows(0, 30).replace("scene-7,7", "scene-7,8");
+        let comparison = compare(a.path(), record(&wrong, TIMES).path()).unwrap();
+        assert_eq!(comparison.differences.len(), 1);
+        // Nothing compared is nothing shown.
+        let others = record(&rows(4000, 4003), TIMES);
+        assert_eq!(
+            compare(a.path(), others.path()).unwrap().differences.len(),
+            1
+        );
+    }
+
+    #[test]
+    fn the_control_is_ranked_last() {
+        let times = |control: f64, s_dop: f64| {
+            format!("strategy,ms\nnone,{control}\ns-dop-batch,{s_dop}\n")
+        };
+        let a = record(COUNTS, &times(0.001, 1.0));
+        let b = record(COUNTS, &times(0.009, 1.5));
+        let comparison = compare(a.path(), b.path()).unwrap();
+        let rows: Vec<&str> = comparison.changes.iter().map(|c| c.row.as_str()).collect();
+        assert_eq!(rows, ["s-dop-batch", "none"]);
+    }
+
+    #[test]
+    fn a_loaded_machine_is_warned_of() {
+        let load = |one_minute: f64| Load {
+            one_minute,
+            five_minutes: 0.0,
+        };
+        let directory = record(COUNTS, TIMES);
+        let mut manifest =
+            Manifest::describe(directory.path(), "test", String::new(), &[]).unwrap();
+        manifest.load = Some([load(0.1), load(1.2)]);
+        assert_eq!(disturbed(&manifest), None);
+        manifest.load = Some([load(0.1), load(3.5)]);
+        let warning = disturbed(&manifest).unwrap();
+        assert!(warning.contains("2.5 after"), "{warning}");
     }
 
     #[test]

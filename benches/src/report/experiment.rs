@@ -91,7 +91,7 @@ const OWN: &[Experiment] = &[
         name: "tradeoff",
         about: "precision against time on the paper's 500 bodies",
         steps: &[Step::Sdop(&["tradeoff", "data/scenes/paper-500.toml"])],
-        deterministic: &[],
+        deterministic: &["tradeoff-seeds.csv"],
         scenes: PAPER_500,
     },
     Experiment {

@@ -40,6 +40,9 @@ pub struct Manifest {
     pub caches: Vec<String>,
     /// Load averages before and after.
     pub load: Option<[Load; 2]>,
+    /// Seconds that the measurement took.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
     /// What a reader should know besides, for example that the files are older than this manifest.
     #[serde(default)]
     pub note: Option<String>,
@@ -129,6 +132,7 @@ impl Manifest {
             machine: None,
             caches: caches(),
             load: None,
+            seconds: None,
             note: None,
             inputs: BTreeMap::new(),
             deterministic: deterministic
@@ -146,11 +150,7 @@ impl Manifest {
     /// # Errors
     /// A file that can't be read.
     pub fn add_inputs(&mut self, root: &Path, scenes: &[&str]) -> Result<(), ManifestError> {
-        let mut inputs: Vec<PathBuf> = scenes.iter().map(PathBuf::from).collect();
-        for mesh in ["spot", "teapot", "bunny-4k", "bunny"] {
-            inputs.push(Path::new("data/meshes").join(mesh).with_extension("tri"));
-        }
-        for input in inputs {
+        for input in inputs(scenes) {
             let path = root.join(&input);
             let bytes =
                 std::fs::read(&path).map_err(|source| ManifestError::Io { path, source })?;
@@ -240,6 +240,13 @@ impl Manifest {
         };
         sha256(serde_json::to_string(&open).unwrap_or_default().as_bytes())
     }
+}
+
+/// Some scenes and the meshes beside them, by their paths in the repository.
+pub(super) fn inputs(scenes: &[&str]) -> Vec<PathBuf> {
+    let meshes = ["spot", "teapot", "bunny-4k", "bunny"];
+    let meshes = meshes.map(|mesh| Path::new("data/meshes").join(mesh).with_extension("tri"));
+    scenes.iter().map(PathBuf::from).chain(meshes).collect()
 }
 
 /// SHA-256 in hexadecimal.

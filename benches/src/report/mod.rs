@@ -13,6 +13,7 @@ pub mod digits;
 mod engines;
 mod experiment;
 mod manifest;
+mod needs;
 pub mod pages;
 mod peers;
 mod provenance;

@@ -55,7 +55,7 @@ pub struct SceneSpec {
     #[serde(default)]
     pub effects: EffectsSpec,
     /// How it is culled.
-    #[serde(default = "CullSettings::all_pairs")]
+    #[serde(default)]
     pub cull: CullSettings,
 }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use sdop::volume::{Axes, DirectionSet, Hull, OrDop, Shape};
 
 /// Random rotations over which the volumes that are re-fitted each frame are averaged.
-const TURNS: u32 = 64;
+pub const TURNS: u32 = 64;
 
 /// The size of one bounding volume.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,25 +1,41 @@
-//! Which volume and k to use for one scene: every candidate timed and counted on it, without an
-//! exact truth.
+//! Which volume, axes and finder to use for one scene: every candidate timed and counted on it,
+//! without an exact truth.
 //!
 //! All variants report every pair that meets, so fewer reported pairs are fewer false ones: T +
-//! Np·Cp needs no truth.
+//! Np·Cp needs no truth. The finder is chosen first, since it takes the same part in every variant;
+//! `auto` is kept where nothing is surely faster.
 
 use serde::Serialize;
 
 use super::TradeoffError;
-use super::decide::choose_measured;
-use super::density::{lines, variants};
+use super::decide::{Choice, choose_measured};
+use super::density::{lines, lines_of_a_run};
 use super::pays::{Line, Stretch, envelope};
+use super::variant::{Variant, s_dops};
 use crate::measure::conditions::Conditions;
 use crate::measure::estimate::Estimate;
-use crate::scene::SceneFile;
+use crate::scene::{Scene, SceneFile};
+use sdop::settings::{Axes, CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
 
 /// The most frames of the scene that are looked at: enough to see its pairs, few enough for a
 /// minute.
 pub const FRAMES: u32 = 200;
+/// The fewest: a scene with fewer is simulated further, since the first frame of a run is cold.
+const FEWEST: u32 = 24;
 /// Sample frames among them.
 const SAMPLES: u32 = 10;
+/// The most bodies whose every pair is tried as a candidate, 50 million of them.
+const MOST_FOR_ALL_PAIRS: usize = 10_000;
+
+/// What is tried; `None` is everything.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tried {
+    /// This finder alone.
+    pub finder: Option<Finder>,
+    /// These axes alone.
+    pub axes: Option<Axes>,
+}
 
 /// What to use, and the numbers behind it.
 #[derive(Clone, Debug, Serialize)]
@@ -34,13 +50,21 @@ pub struct Advice {
     pub check: f64,
     /// The cheapest variant in total.
     pub best: String,
+    /// The settings of the cheapest variant.
+    pub cull: CullSettings,
+    /// Whether convex hulls are to be tested after them.
+    pub hulls: bool,
     /// Its total T + Np·Cp, seconds per frame.
     pub total: f64,
-    /// What can't be told from it.
+    /// What can't be told from it: the interval of the difference covers zero.
     pub tied: Vec<String>,
+    /// The finders that can't be told from the chosen one.
+    pub tied_finders: Vec<String>,
     /// The cheapest variant as a check grows dearer.
     pub cheapest: Vec<Stretch>,
-    /// Every candidate.
+    /// Every finder, with S-DOP as the scene has it.
+    pub finders: Vec<Candidate>,
+    /// Every variant, with the chosen finder.
     pub candidates: Vec<Candidate>,
     /// What else the machine did.
     pub conditions: Conditions,
@@ -49,7 +73,7 @@ pub struct Advice {
 /// One candidate.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
-    /// The variant.
+    /// The variant or finder.
     pub name: String,
     /// T, seconds per warm frame.
     pub time: Estimate,
@@ -65,17 +89,102 @@ pub struct Candidate {
 ///
 /// # Errors
 /// A scene that can't be built or run.
-pub fn advise(file: &SceneFile, check: f64, tier: Tier) -> Result<Option<Advice>, TradeoffError> {
+pub fn advise(
+    file: &SceneFile,
+    tried: Tried,
+    check: f64,
+    tier: Tier,
+) -> Result<Option<Advice>, TradeoffError> {
     let before = Conditions::before();
     let mut scene = file.build()?;
-    scene.frames = scene.frames.min(FRAMES);
-    let lines = lines(&scene, &variants(&scene.cull), tier, SAMPLES)?;
+    scene.frames = scene.frames.clamp(FEWEST, FRAMES);
+    let found = lines_of_a_run(&scene, &finders(&scene, tried.finder), tier)?;
+    let Some((finder, tied_finders)) = chosen_finder(&found) else {
+        return Ok(None);
+    };
+    scene.cull.pairs = finder;
+    let variants = variants(&scene.cull, tried.axes);
+    let lines = lines(&scene, &variants, tier, SAMPLES)?;
     let Some(choice) = choose_measured(&lines, check) else {
         return Ok(None);
     };
-    let Some(best) = lines.iter().find(|line| line.name == choice.best) else {
+    let Some(best) = lines.iter().position(|line| line.name == choice.best) else {
         return Ok(None);
     };
+    let finders = match found.iter().find(|line| line.name == finder.name()) {
+        Some(own) => candidates(&found, own, check),
+        None => Vec::new(),
+    };
+    let candidates = candidates(&lines, &lines[best], check);
+    Ok(Some(Advice {
+        scene: scene.name,
+        bodies: scene.bodies.len(),
+        frames: scene.frames,
+        check,
+        best: choice.best,
+        cull: variants[best].settings.clone(),
+        hulls: variants[best].hulls,
+        total: choice.total,
+        tied: choice.tied,
+        tied_finders,
+        cheapest: envelope(&lines),
+        conditions: before.after(candidates.iter().map(|candidate| candidate.time)),
+        finders,
+        candidates,
+    }))
+}
+
+/// S-DOP with the scene's own settings, by each finder.
+fn finders(scene: &Scene, only: Option<Finder>) -> Vec<Variant> {
+    let few = scene.bodies.len() <= MOST_FOR_ALL_PAIRS;
+    let is_tried = |finder: &Finder| match only {
+        Some(only) => *finder == only,
+        None => few || *finder != Finder::AllPairs,
+    };
+    let variant = |finder: Finder| {
+        let settings = CullSettings {
+            strategy: Strategy::SDopSequential,
+            pairs: finder,
+            ..scene.cull.clone()
+        };
+        Variant::of(finder.name().to_owned(), settings)
+    };
+    let all = Finder::ALL.iter().copied().filter(is_tried);
+    all.map(variant).collect()
+}
+
+/// The fastest finder, or `auto` where that can't be told from it, and those that can't be told
+/// from it either.
+fn chosen_finder(lines: &[Line]) -> Option<(Finder, Vec<String>)> {
+    let Choice { best, mut tied, .. } = choose_measured(lines, 0.0)?;
+    let auto = Finder::Auto.name();
+    let chosen = match tied.iter().position(|name| name == auto) {
+        Some(at) => {
+            tied[at] = best;
+            auto.to_owned()
+        }
+        None => best,
+    };
+    Some((chosen.parse().ok()?, tied))
+}
+
+/// Spheres, boxes, S-DOP at each k along both kinds of axes by the tests of sides, and hulls.
+fn variants(own: &CullSettings, axes: Option<Axes>) -> Vec<Variant> {
+    let boxes = CullSettings {
+        strategy: Strategy::Aabb,
+        ..own.clone()
+    };
+    let mut list = vec![Variant::spheres(own), Variant::of("aabb".into(), boxes)];
+    list.extend(s_dops(own).into_iter().filter(|variant| {
+        let settings = &variant.settings;
+        settings.overlap != Overlap::Full && axes.is_none_or(|axes| axes == settings.axes)
+    }));
+    list.push(Variant::hulls(own));
+    list
+}
+
+/// The numbers of each, cheapest first.
+fn candidates(lines: &[Line], best: &Line, check: f64) -> Vec<Candidate> {
     let candidate = |line: &Line| Candidate {
         name: line.name.clone(),
         time: Estimate::in_order(&line.times),
@@ -85,16 +194,58 @@ pub fn advise(file: &SceneFile, check: f64, tier: Tier) -> Result<Option<Advice>
     };
     let mut candidates: Vec<Candidate> = lines.iter().map(candidate).collect();
     candidates.sort_by(|a, b| a.total.total_cmp(&b.total));
-    Ok(Some(Advice {
-        scene: scene.name,
-        bodies: scene.bodies.len(),
-        frames: scene.frames,
-        check,
-        best: choice.best,
-        total: choice.total,
-        tied: choice.tied,
-        cheapest: envelope(&lines),
-        conditions: before.after(candidates.iter().map(|candidate| candidate.time)),
-        candidates,
-    }))
+    candidates
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(name: &str, times: [f64; 3]) -> Line {
+        Line {
+            name: name.into(),
+            decides: None,
+            ordop: None,
+            times: times.to_vec(),
+            pairs: 1.0,
+            construct: 0.0,
+        }
+    }
+
+    #[test]
+    fn auto_is_kept_unless_another_is_surely_faster() {
+        let grid = line("grid", [1.0, 1.1, 0.9]);
+        let near = [
+            line("all-pairs", [9.0, 9.1, 9.2]),
+            grid.clone(),
+            line("auto", [1.1, 1.0, 1.0]),
+        ];
+        assert_eq!(
+            chosen_finder(&near),
+            Some((Finder::Auto, vec!["grid".to_owned()]))
+        );
+        let far = [grid, line("auto", [5.0, 5.1, 4.9])];
+        assert_eq!(chosen_finder(&far), Some((Finder::Grid, vec![])));
+        assert_eq!(chosen_finder(&[]), None);
+    }
+
+    #[test]
+    fn both_axes_are_tried() {
+        let own = CullSettings::default();
+        let along = |axes: Axes, only| {
+            let list = variants(&own, only);
+            let s_dop = |v: &&Variant| v.settings.strategy == Strategy::SDopSequential;
+            let list = list.iter().filter(s_dop);
+            list.filter(|v| v.settings.axes == axes).count()
+        };
+        assert_eq!(
+            [Axes::Principal, Axes::Model].map(|a| along(a, None)),
+            [8, 8]
+        );
+        let model = Some(Axes::Model);
+        assert_eq!(
+            [Axes::Principal, Axes::Model].map(|a| along(a, model)),
+            [0, 8]
+        );
+    }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::Show;
-use super::show::{file_name, in_words};
+use super::show::{Focus, file_name, in_words};
 use sdop::settings::{Interest, Strategy};
 use sdop_judge::Claim;
 use sdop_judge::record::{EffectLine, OrDopLine, RecordError};
@@ -38,6 +38,8 @@ pub struct Header {
     /// Layers that are switched on at first.
     pub layers: Vec<&'static str>,
     pub effects: Option<Vec<EffectLine>>,
+    /// The missed pair of a counter-example.
+    pub focus: Option<Focus>,
     pub messages: Vec<String>,
     pub blocks: Vec<BlockHeader>,
 }
@@ -101,6 +103,7 @@ impl Header {
             meet: meet(show.claim),
             layers: layers(show.claim),
             effects: header.effects.clone(),
+            focus: show.focus.clone(),
             messages: show.messages.clone(),
             ..Self::default()
         }

@@ -14,7 +14,7 @@ mod show;
 mod terms;
 
 pub use page::{Page, PageError};
-pub use show::{Culled, Show};
+pub use show::{Culled, Focus, Show};
 
 use rayon::prelude::*;
 

@@ -87,6 +87,9 @@ impl Page {
         page.header.frames = show.frames.len();
         page.header.truth = show.frames.iter().all(|frame| frame.meets.is_some());
         page.put_poses(show)?;
+        if let Some(boxes) = &show.boxes {
+            page.put("boxes", boxes.concat().into_flattened())?;
+        }
         page.put_pairs(show, culled)?;
         page.put_shapes(show)?;
         for (side, culled) in culled.iter().enumerate() {

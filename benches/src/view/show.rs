@@ -1,6 +1,7 @@
 //! What is to be shown, whatever it comes from: shapes, bodies, frames, and who reported which
 //! pairs.
 
+use std::ops::Range;
 use std::path::Path;
 
 use crate::measure::counts::Volume;
@@ -13,7 +14,8 @@ use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 use sdop_judge::record::{FrameLine, Header, Reader, RecordError, VolumeLine};
-use sdop_judge::{Case, Claim, truth::Truth};
+use sdop_judge::{Case, Claim, WorldBox, truth::Truth};
+use serde::Serialize;
 
 /// A run in memory.
 #[derive(Clone, Debug)]
@@ -30,8 +32,23 @@ pub struct Show {
     pub frames: Vec<FrameLine>,
     /// What `meets` says of a frame's pairs.
     pub claim: Claim,
+    /// The boxes that a case gives with each frame, where its claim is about them.
+    pub boxes: Option<Vec<Vec<WorldBox>>>,
+    /// The missed pair that the page opens at.
+    pub focus: Option<Focus>,
     /// What the page has to say of them.
     pub messages: Vec<String>,
+}
+
+/// A missed pair of a case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Focus {
+    /// The frame's index.
+    pub frame: usize,
+    /// The two bodies.
+    pub bodies: [u32; 2],
+    /// A point that both share.
+    pub point: Option<[f64; 3]>,
 }
 
 /// The pairs that one strategy reported, frame by frame.
@@ -78,6 +95,8 @@ impl Show {
             bodies: reader.bodies().clone(),
             frames,
             claim: Claim::Mesh,
+            boxes: None,
+            focus: None,
             messages: Vec::new(),
         };
         if show.frames.iter().any(|frame| frame.translations.is_some()) {
@@ -120,6 +139,8 @@ impl Show {
             bodies: scene.bodies.clone(),
             frames,
             claim: Claim::Mesh,
+            boxes: None,
+            focus: None,
             messages: Vec::new(),
         })
     }
@@ -147,6 +168,8 @@ impl Show {
             header: Header::new(name, 0, &shapes, &bodies),
             frames: frames.iter().enumerate().map(line).collect(),
             claim: Claim::Mesh,
+            boxes: None,
+            focus: None,
             messages: Vec::new(),
             shapes,
             bodies,
@@ -163,57 +186,85 @@ impl Show {
     }
 
     /// A case of the judge, and the pairs that a program reported of each frame, sorted; none where
-    /// it wasn't asked. A pair meets when the claim holds of it.
+    /// it wasn't asked. A pair meets when the claim holds of it. Of a case whose set of bodies
+    /// changes, the frames with one set: that of the first miss.
     ///
     /// # Errors
-    /// In words: a set of bodies that changes, no frames, numbers that the exact reference refuses.
+    /// In words: no frames, numbers that the exact reference refuses.
     pub fn case(
         case: &Case,
         claim: Claim,
         reported: Option<Vec<Vec<[u32; 2]>>>,
         source: &Path,
     ) -> Result<Self, String> {
-        let bodies = case
-            .frames
-            .first()
-            .ok_or("it has no frames")?
-            .bodies
-            .clone();
-        if let Some(n) = case.frames.iter().position(|frame| frame.was.is_some()) {
-            return Err(format!(
-                "its bodies change in frame {n}, and a page shows one set"
-            ));
+        if case.frames.is_empty() {
+            return Err("it has no frames".to_owned());
         }
         let truth = Truth::new(claim, &case.shapes).map_err(|error| error.to_string())?;
+        let asked = reported.is_some();
+        let mut reported = reported.into_iter().flatten();
+        let (mut frames, mut focus) = (Vec::new(), None);
+        for (number, frame) in case.frames.iter().enumerate() {
+            let pairs = reported.next().unwrap_or_default();
+            let meets = truth.pairs(frame).map_err(|error| error.to_string())?;
+            let missed = meets.iter().find(|pair| asked && !pairs.contains(pair));
+            if let (None, Some(&bodies)) = (&focus, missed) {
+                let point = truth.common_point(frame, bodies);
+                focus = Some(Focus {
+                    frame: number,
+                    bodies,
+                    point: point.map(|point| point.decimals()),
+                });
+            }
+            frames.push(FrameLine {
+                frame: number as u32,
+                poses: FrameLine::poses(&frame.bodies),
+                translations: None,
+                pairs,
+                counters: None,
+                meets: Some(meets),
+            });
+        }
+        let shown = with_one_set(case, focus.as_ref().map_or(0, |focus| focus.frame));
+        let bodies = case.frames[shown.start].bodies.clone();
         let mut header = Header::new(&case.name, 0, &case.shapes, &bodies);
         header.program = Some("the program".to_owned());
-        if reported.is_none() {
+        if !asked {
             // Nobody was asked, so nothing is missed.
             header.cull = Some(CullSettings {
                 strategy: Strategy::None,
                 ..CullSettings::default()
             });
         }
-        let mut reported = reported.into_iter().flatten();
-        let mut frames = Vec::new();
-        for (number, frame) in case.frames.iter().enumerate() {
-            frames.push(FrameLine {
-                frame: number as u32,
-                poses: FrameLine::poses(&frame.bodies),
-                translations: None,
-                pairs: reported.next().unwrap_or_default(),
-                counters: None,
-                meets: Some(truth.pairs(frame).map_err(|error| error.to_string())?),
-            });
+        let mut messages = Vec::new();
+        if !case.flag.is_empty() {
+            messages.push(format!("The case aims at: {}.", case.flag));
         }
+        if shown.len() < case.frames.len() {
+            let (first, last) = (shown.start, shown.end - 1);
+            messages.push(format!(
+                "The set of bodies changes; these are frames {first} to {last} of {}.",
+                case.frames.len()
+            ));
+        }
+        let boxes = || {
+            case.frames[shown.clone()]
+                .iter()
+                .map(|frame| frame.boxes.clone())
+        };
         Ok(Self {
             source: file_name(source),
             header,
             shapes: case.shapes.clone(),
             bodies,
-            frames,
+            frames: frames.drain(shown.clone()).collect(),
             claim,
-            messages: Vec::from_iter((!case.flag.is_empty()).then(|| case.flag.clone())),
+            boxes: (claim == Claim::Aabb).then(|| boxes().collect()),
+            focus: focus.map(|focus| Focus {
+                frame: focus.frame - shown.start,
+                ..focus
+            }),
+            messages,
         })
     }
 
@@ -315,6 +366,14 @@ impl Show {
         };
         self.cull(&settings, Tier::detect())
     }
+}
+
+/// The frames about one of them that have the same set of bodies.
+fn with_one_set(case: &Case, frame: usize) -> Range<usize> {
+    let changes = |n: &usize| case.frames[*n].was.is_some();
+    let all = case.frames.len();
+    let start = (0..=frame).rev().find(changes).unwrap_or(0);
+    start..(frame + 1..all).find(changes).unwrap_or(all)
 }
 
 /// An error and its remedy.

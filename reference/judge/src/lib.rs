@@ -29,11 +29,13 @@
 //! ```
 
 pub mod answer;
+pub mod as_test;
 pub mod broadmark;
 pub mod case;
 pub mod catalogue;
 pub mod claim;
 pub mod contestant;
+pub mod counter_example;
 pub mod json;
 pub mod ours;
 pub mod process;

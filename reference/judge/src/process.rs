@@ -127,6 +127,11 @@ impl Running {
         };
         if !status.success() {
             let (how, said) = (ending(status), self.said());
+            // What the shell says of a command that it can't execute or find.
+            if answered == 0 && matches!(status.code(), Some(126 | 127)) {
+                let why = format!("{how}{said}");
+                return Err(Trouble::Start { why }.into());
+            }
             return Err(Trouble::Crashed {
                 how,
                 answered,

@@ -5,47 +5,83 @@ use std::fmt::Write as _;
 
 use super::claim::Claim;
 use super::score::Outcome;
+pub use super::shrink::STEM;
 use super::shrink::Smallest;
 use super::verdict::Verdict;
 use super::wire::ndjson;
 use sdop::bodies::Bodies;
-use sdop::mesh::{MeshFormat, TriangleMesh, write_bytes};
-use sdop::volume::Shape;
+use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes, write_bytes};
+use sdop::volume::{Axes, Origin, Shape, ShapeSpec};
 
 /// A file's name and what is in it.
 pub type Named = (String, Vec<u8>);
 
-/// The stem of a counter-example's files.
-pub const STEM: &str = "missed-pair";
-
 /// A counter-example as a case file (`.ndjson`, with the pairs that were reported, for `sdop view`
-/// and `sdop check`) and as a scene that `sdop run` takes (`.toml`, and its meshes).
+/// and `sdop check`) and, where a scene can state it, as one that `sdop run` takes (`.toml`, and
+/// its meshes).
 ///
 /// # Errors
 /// A mesh that can't be written: none that was read.
 pub fn counter_example(smallest: &Smallest, claim: Claim) -> std::io::Result<Vec<Named>> {
     let case = ndjson::encode(&smallest.case, claim, &smallest.pairs)?;
     let mut files = vec![(format!("{STEM}.ndjson"), case)];
+    let Some(axes) = axes_of_scene(smallest) else {
+        return Ok(files);
+    };
     let shapes = &smallest.case.shapes;
     files.push((
         format!("{STEM}.toml"),
-        scene(&smallest.case.frames[smallest.miss.frame].bodies, shapes).into_bytes(),
+        scene(&smallest.case.frames[0].bodies, shapes, axes).into_bytes(),
     ));
     for (number, shape) in shapes.iter().enumerate() {
-        let mesh = TriangleMesh {
-            name: shape.name.clone(),
-            vertices: shape.vertices.clone(),
-            triangles: shape.triangles.clone(),
-            ..TriangleMesh::default()
-        };
-        let bytes = write_bytes(&mesh, MeshFormat::Obj);
+        let bytes = write_bytes(&mesh_of(shape), MeshFormat::Obj);
         files.push((format!("{STEM}-{number}.obj"), bytes));
     }
     Ok(files)
 }
 
+/// The axes with which a scene has the case's volumes; `None` where no scene can state the miss:
+/// one about given boxes, one that takes a history, or one about volumes that aren't those of the
+/// meshes.
+fn axes_of_scene(smallest: &Smallest) -> Option<Axes> {
+    let case = &smallest.case;
+    if smallest.claim == Claim::Aabb || case.frames.len() != 1 {
+        return None;
+    }
+    let directions = case.shapes.first()?.ordop.directions;
+    let is_stated = |shape: &Shape, axes: Axes| {
+        let mesh = mesh_of(shape);
+        let text = write_bytes(&mesh, MeshFormat::Obj);
+        let read = read_bytes("shape.obj", MeshFormat::Obj, &text, &ReadOptions::default());
+        let spec = ShapeSpec {
+            origin: Origin::File,
+            radius: None,
+            directions,
+            axes,
+        };
+        let same = |built: Shape| match smallest.claim {
+            Claim::Sphere => built.ball == shape.ball,
+            Claim::OrDop => built.ordop == shape.ordop,
+            Claim::Hull | Claim::Mesh => built.vertices == shape.vertices,
+            Claim::Aabb => false,
+        };
+        read.is_ok_and(|read| Shape::build(&read, &spec).is_ok_and(same))
+    };
+    let all = |axes: &&Axes| case.shapes.iter().all(|shape| is_stated(shape, **axes));
+    Axes::ALL.iter().find(all).copied()
+}
+
+fn mesh_of(shape: &Shape) -> TriangleMesh {
+    TriangleMesh {
+        name: shape.name.clone(),
+        vertices: shape.vertices.clone(),
+        triangles: shape.triangles.clone(),
+        ..TriangleMesh::default()
+    }
+}
+
 /// A frame as a scene file. Formatting into a String cannot fail.
-fn scene(bodies: &Bodies, shapes: &[Shape]) -> String {
+fn scene(bodies: &Bodies, shapes: &[Shape], axes: Axes) -> String {
     let mut text = format!("name = \"{STEM}\"\nframes = 1\n");
     for i in 0..bodies.len() {
         let shape = bodies.shape[i] as usize;
@@ -58,7 +94,11 @@ fn scene(bodies: &Bodies, shapes: &[Shape]) -> String {
             !bodies.dynamic[i]
         );
     }
-    text.push_str("\n[cull]\nstrategy = \"s-dop-sequential\"\n");
+    let k = shapes[0].ordop.directions;
+    let _ = write!(
+        text,
+        "\n[cull]\nstrategy = \"s-dop-sequential\"\nk = {k}\naxes = \"{axes}\"\n"
+    );
     text
 }
 

@@ -46,6 +46,9 @@ pub enum JudgeError {
     },
 }
 
+/// Cases after which a program that could not be started for any of them is given up.
+const STARTS: usize = 3;
+
 /// What is run.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -217,8 +220,16 @@ pub fn examine(
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
         Ok(Some((case, verdict)))
     };
-    let ran: Vec<Option<(Case, CaseVerdict)>> =
-        jobs.par_iter().map(run).collect::<Result<_, _>>()?;
+    let (first, rest) = jobs.split_at(jobs.len().min(STARTS));
+    let mut ran: Vec<Option<(Case, CaseVerdict)>> =
+        first.par_iter().map(run).collect::<Result<_, _>>()?;
+    // A program that can't start here can't start anywhere.
+    let starts = |one: &Option<(Case, CaseVerdict)>| {
+        one.as_ref()
+            .is_none_or(|(_, verdict)| !verdict.is_without_start())
+    };
+    stop.fetch_or(!ran.iter().any(starts), Ordering::Relaxed);
+    ran.extend(rest.par_iter().map(run).collect::<Result<Vec<_>, _>>()?);
     Ok(conclude(subject, options, ran))
 }
 

@@ -12,10 +12,17 @@ use super::witness::Witness;
 use sdop::mesh::TriangleMesh;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 
+/// What a counter-example's files, and the case in them, are called.
+pub const STEM: &str = "missed-pair";
+
 /// A small case that shows a missed pair.
 #[derive(Clone, Debug)]
 pub struct Smallest {
-    /// The case.
+    /// The name of the case that it was made from.
+    pub from: String,
+    /// The claim that it breaks.
+    pub claim: Claim,
+    /// The case, under a name of its own.
     pub case: Case,
     /// What is reported of it, frame by frame, sorted.
     pub pairs: Vec<Vec<[u32; 2]>>,
@@ -51,11 +58,22 @@ pub fn shrink(
     search.fewer_shapes();
     search.fewer_triangles();
     search.fewer_digits();
+    let from = case.name.clone();
     let Search {
-        case, pairs, miss, ..
+        mut case,
+        pairs,
+        miss,
+        ..
     } = search;
+    // Other bodies than in the case of that name; a replayed counter-example has its own name
+    // already.
+    if !from.starts_with(STEM) {
+        case.name = format!("{STEM}/{from}");
+    }
     let witness = Witness::of(claim, &case.shapes, &case.frames[miss.frame], miss.pair);
     Some(Smallest {
+        from,
+        claim,
         case,
         pairs,
         miss,

@@ -62,6 +62,8 @@ groups! {
             churn_swap = "churn/swap";
             churn_teleport = "churn/teleport";
             churn_insert_remove = "churn/insert-remove";
+            churn_move = "churn/move";
+            churn_turn = "churn/turn";
             random_crowd = "random/crowd";
             random_moving = "random/moving";
             random_sizes = "random/sizes";

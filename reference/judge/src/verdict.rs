@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::answer::Trouble;
 use super::claim::Claim;
 use super::score::{Count, Miss, Outcome};
 use super::shrink::Smallest;
@@ -35,6 +36,16 @@ impl CaseVerdict {
             .rsplit_once('/')
             .map_or(&self.name, |(group, _)| group)
     }
+
+    /// Whether the program could not even be started.
+    #[must_use]
+    pub fn is_without_start(&self) -> bool {
+        let trouble = match &self.outcome {
+            Outcome::Error { trouble } => trouble,
+            _ => return false,
+        };
+        matches!(trouble, Trouble::Start { .. })
+    }
 }
 
 /// The name and what is wrong, if anything is.
@@ -43,7 +54,7 @@ impl fmt::Display for CaseVerdict {
         let name = &self.name;
         match &self.outcome {
             Outcome::Pass => write!(f, "{name} passed"),
-            Outcome::Fail { why } => write!(f, "{name} {why} [{}]", self.flag),
+            Outcome::Fail { why } => write!(f, "{name} {why}"),
             Outcome::Error { trouble } => write!(f, "{name} {trouble}"),
             Outcome::Skipped { why } => write!(f, "{name} ({why})"),
         }
@@ -291,6 +302,9 @@ impl fmt::Display for Verdict {
             .take(3)
         {
             writeln!(f, "{case}")?;
+            if matches!(case.outcome, Outcome::Fail { .. }) {
+                writeln!(f, "  case aims at: {}", case.flag)?;
+            }
         }
         let mut skipped = self
             .cases
@@ -302,41 +316,6 @@ impl fmt::Display for Verdict {
         self.smallest
             .as_ref()
             .map_or(Ok(()), |smallest| smallest.fmt(f))
-    }
-}
-
-impl fmt::Display for Smallest {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Miss {
-            frame,
-            pair: [i, j],
-        } = self.miss;
-        let bodies = self.case.frames[frame].bodies.len();
-        writeln!(
-            f,
-            "smallest: {bodies} bodies, {} frames; bodies {i} and {j} of frame {frame} share a point",
-            self.case.frames.len()
-        )?;
-        let Some(witness) = &self.witness else {
-            return Ok(());
-        };
-        let [x, y, z] = witness.decimals;
-        writeln!(f, "  ({x:?}, {y:?}, {z:?})")?;
-        if witness.point.iter().map(String::len).sum::<usize>() < 160 {
-            writeln!(f, "  exactly ({})", witness.point.join(", "))?;
-        }
-        match witness.depth_ulps {
-            Some(ulps) => writeln!(
-                f,
-                "  {ulps} ulp deep at most (an ulp is {:e} here)",
-                witness.ulp
-            ),
-            None => writeln!(
-                f,
-                "  deeper than 2^24 ulp (an ulp is {:e} here)",
-                witness.ulp
-            ),
-        }
     }
 }
 

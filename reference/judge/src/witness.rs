@@ -15,14 +15,17 @@ pub struct Witness {
     pub point: [String; 3],
     /// The same, rounded to f64.
     pub decimals: [f64; 3],
-    /// The least shift of the second body, of those tried, that parts the two, in units of `ulp`.
+    /// The least shift of the second body, of those tried, that parts the two, in the scene's unit
+    /// of length.
+    pub depth: Option<f64>,
+    /// The same in units of `ulp`.
     pub depth_ulps: Option<u64>,
     /// The spacing of f32 numbers at the pair's largest coordinate.
     pub ulp: f64,
 }
 
 /// The largest shift tried: beyond it, the bodies are anything but close to being apart.
-const DEEPEST: u64 = 1 << 24;
+pub(super) const DEEPEST: u64 = 1 << 24;
 
 impl Witness {
     /// The certificate for a pair of which the claim holds; `None` for any other.
@@ -43,6 +46,7 @@ impl Witness {
         Some(Self {
             point: point.fractions(),
             decimals: point.decimals(),
+            depth: depth.map(|ulps| ulps as f64 * ulp),
             depth_ulps: depth,
             ulp,
         })

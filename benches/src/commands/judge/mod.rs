@@ -10,6 +10,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::files::MAX_BYTES;
+use sdop_judge::as_test::{Language, unit_test};
 use sdop_judge::broadmark;
 use sdop_judge::process::Program;
 use sdop_judge::report::{STEM, counter_example};
@@ -84,6 +85,9 @@ pub struct Outside {
         help_heading = "Judging a program"
     )]
     extra_limit: Option<f64>,
+    /// Print the smallest scene of a miss as a unit test, and write it beside the scene
+    #[arg(long, value_name = "LANGUAGE", value_parser = one_of::<Language>(Language::NAMES), requires = "exec", help_heading = "Judging a program")]
+    as_test: Option<Language>,
 }
 
 /// Seconds above zero, and not more than a day.
@@ -218,29 +222,45 @@ fn save(
     );
     let mut lines = Vec::new();
     if let Some(smallest) = &verdict.smallest {
-        for (name, bytes) in counter_example(smallest, args.claims).into_diagnostic()? {
-            files::write(&out.join(name), &bytes)?;
+        let written = counter_example(smallest, args.claims).into_diagnostic()?;
+        for (name, bytes) in &written {
+            files::write(&out.join(name), bytes)?;
         }
         let stem = out.join(STEM);
+        let scene = if written.iter().any(|(name, _)| name.ends_with(".toml")) {
+            format!(
+                " and the scene {0}.toml (sdop run {0}.toml)",
+                stem.display()
+            )
+        } else {
+            String::new()
+        };
         lines.push(format!(
-            "written: {0}.toml (sdop run {0}.toml) and the case {0}.ndjson (sdop view {0}.ndjson)",
+            "written: the case {0}.ndjson (sdop view {0}.ndjson){scene}",
             stem.display()
         ));
+        if let Some(language) = args.as_test {
+            let path = stem.with_extension(language.extension());
+            let test = unit_test(smallest, language);
+            files::write(&path, &test)?;
+            lines.push(format!("as a unit test: {}\n{test}", path.display()));
+        }
         lines.push(format!(
             "again:   {base} --replay {}.ndjson",
             stem.display()
         ));
     }
-    if let Some(case) = verdict
+    let first = verdict
         .cases
         .iter()
-        .find(|case| verdict.counts_against(case))
-    {
-        let seed = case.name.rsplit_once('@').map_or_else(
+        .find(|case| verdict.counts_against(case));
+    let found = verdict.smallest.as_ref().map(|smallest| &smallest.from);
+    if let (Some(name), None) = (found.or(first.map(|case| &case.name)), &args.replay) {
+        let seed = name.rsplit_once('@').map_or_else(
             || " --no-fresh".to_owned(),
             |(_, seed)| format!(" --fresh {seed}"),
         );
-        lines.push(format!("as found: {base} --case '{}'{seed}", case.name));
+        lines.push(format!("as found: {base} --case '{name}'{seed}"));
     }
     match format {
         ReportFormat::Table if !lines.is_empty() => say(&lines.join("\n")),

@@ -86,6 +86,8 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
     }
 }
 
+/// The groups that have more to say than that they passed, the failed ones first; all others in one
+/// line.
 fn table(verdict: &Verdict) -> String {
     let header = [
         "cases", "passed", "failed", "errors", "skipped", "judged", "required", "missed", "extra",
@@ -97,5 +99,13 @@ fn table(verdict: &Verdict) -> String {
         let numbers = cases.into_iter().chain(pairs).map(|n| n.to_string());
         std::iter::once(group.name.clone()).chain(numbers).collect()
     };
-    rows(&header, &verdict.groups(), row).to_string()
+    let is_passed = |group: &GroupVerdict| group.failed + group.errors + group.skipped == 0;
+    let (passed, mut others): (Vec<_>, Vec<_>) = verdict.groups().into_iter().partition(is_passed);
+    others.sort_by_key(|group| std::cmp::Reverse((group.failed, group.errors)));
+    let mut text = String::new();
+    if !others.is_empty() {
+        text = format!("{}\n", rows(&header, &others, row));
+    }
+    let cases: u32 = passed.iter().map(|group| group.passed).sum();
+    text + &format!("{} groups passed all of their {cases} cases", passed.len())
 }

@@ -8,6 +8,7 @@ use sdop::bodies::Bodies;
 use sdop_bench::domain::{DomainError, DomainSummary, Rank};
 use sdop_bench::effects::Velocities;
 use sdop_bench::hash::volumes_sha256;
+use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::mpi::Ranks;
 use sdop_bench::network::{MpiNetwork, Network as _};
 use sdop_bench::scene::Scene;
@@ -83,7 +84,13 @@ fn tell(
         ranks,
     } = summary;
     match network.rank() {
-        0 => print(args, about, whole, Some((*border, ranks))),
+        0 => print(
+            args,
+            about,
+            whole,
+            Conditions::default(),
+            Some((*border, ranks)),
+        ),
         _ => Ok(()),
     }
 }

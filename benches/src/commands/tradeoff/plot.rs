@@ -20,18 +20,23 @@ const COLOURS: [RGBColor; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLA
 
 type Points = Vec<(f64, f64)>;
 
-/// Precision against time per frame: the Pareto front labelled at its points, with error bars; what
-/// is tied is grey.
+/// Precision against time per frame: the Pareto front with error bars, and world-aligned boxes,
+/// labelled at their points; what is tied is grey.
 pub fn precision(result: &Tradeoff) -> miette::Result<String> {
-    let at = |row: &VariantResult| (1e6 * row.seconds().mean, row.precision.mean);
-    let of = |standing| {
-        result
-            .rows
-            .iter()
-            .filter(move |row| row.standing == standing)
+    let front = front(result);
+    let is_drawn_as = |row: &VariantResult, standing| match row.standing {
+        Standing::Front => {
+            standing == Standing::Tied && !front.iter().any(|other| other.name == row.name)
+        }
+        own => own == standing,
     };
-    let mut front: Vec<&VariantResult> = of(Standing::Front).collect();
-    front.sort_by(|a, b| at(a).0.total_cmp(&at(b).0));
+    let boxes = result.rows.iter().find(|row| row.name == "aabb");
+    let labelled: Vec<&VariantResult> = match boxes {
+        Some(boxes) if !front.iter().any(|row| row.name == boxes.name) => {
+            front.iter().copied().chain([boxes]).collect()
+        }
+        _ => front.clone(),
+    };
     let times = span(result.rows.iter().map(|row| at(row).0));
     figure(|area| {
         let mut chart = ChartBuilder::on(&area)
@@ -43,6 +48,7 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
         chart
             .configure_mesh()
             .x_desc("time per warm frame, µs (log)")
+            .x_label_formatter(&|microseconds| format!("{microseconds}"))
             .y_desc("precision: true pairs / reported pairs")
             .label_style((FONT, 14))
             .light_line_style(TRANSPARENT)
@@ -52,7 +58,8 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
             (Standing::Beaten, RGBColor(190, 190, 190)),
             (Standing::Tied, GREY),
         ] {
-            let dots = of(standing).map(|row| Circle::new(at(row), 4, colour.filled()));
+            let rows = result.rows.iter().filter(|row| is_drawn_as(row, standing));
+            let dots = rows.map(|row| Circle::new(at(row), 4, colour.filled()));
             chart
                 .draw_series(dots)?
                 .label(standing.name())
@@ -60,21 +67,22 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
         }
         let steps = front.iter().map(|row| at(row));
         chart.draw_series(LineSeries::new(steps, BLUE.stroke_width(2)))?;
-        let points: Vec<(i32, i32)> = front
+        let points: Vec<(i32, i32)> = labelled
             .iter()
             .map(|row| chart.backend_coord(&at(row)))
             .collect();
-        for (row, offset) in front.iter().zip(label_offsets(&points)) {
+        for (place, (row, offset)) in labelled.iter().zip(label_offsets(&points)).enumerate() {
+            let colour = if place < front.len() { BLUE } else { GREY };
             let (time, precision) = at(row);
             let seconds = row.seconds();
             if seconds.half_width.is_finite() {
                 let [lo, hi] = seconds.interval().map(|s| (1e6 * s).max(times.start / 1.5));
                 let whisker =
-                    PathElement::new([(lo, precision), (hi, precision)], BLUE.stroke_width(2));
+                    PathElement::new([(lo, precision), (hi, precision)], colour.stroke_width(2));
                 chart.draw_series([whisker])?;
             }
             let mark = EmptyElement::at((time, precision))
-                + Circle::new((0, 0), 5, BLUE.filled())
+                + Circle::new((0, 0), 5, colour.filled())
                 + PathElement::new([(6, 0), (offset.0 - 3, offset.1 + 6)], GREY)
                 + Text::new(row.name.clone(), offset, (FONT, 13));
             chart.draw_series([mark])?;
@@ -88,6 +96,27 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
             .draw()?;
         Ok(())
     })
+}
+
+/// A variant's place: µs per warm frame, precision.
+fn at(row: &VariantResult) -> (f64, f64) {
+    (1e6 * row.seconds().mean, row.precision.mean)
+}
+
+/// The Pareto front as it is drawn, fastest first: without what another is drawn above and to the
+/// left of.
+fn front(result: &Tradeoff) -> Vec<&VariantResult> {
+    let is_beaten = |row: &VariantResult| {
+        let (time, precision) = at(row);
+        let mut others = result.rows.iter().map(at);
+        others.any(|other| other.0 <= time && other.1 >= precision && other != (time, precision))
+    };
+    let rows = result.rows.iter();
+    let mut front: Vec<&VariantResult> = rows
+        .filter(|row| row.standing == Standing::Front && !is_beaten(row))
+        .collect();
+    front.sort_by(|a, b| at(a).0.total_cmp(&at(b).0));
+    front
 }
 
 /// Where the names of points go, in pixels from each: to the right, the lowest point's first, each

@@ -34,6 +34,10 @@ pub enum Kind {
     Teleport,
     /// Bodies come and go.
     InsertRemove,
+    /// Bodies turn in place.
+    Turn,
+    /// Bodies move by a few times their size.
+    Move,
 }
 
 /// Draws a crowd.

@@ -6,6 +6,7 @@
 //! `touch/edge-edge/0017@42`: nobody can prepare for those.
 
 mod boxes;
+mod changes;
 mod contacts;
 mod crowds;
 mod exact;
@@ -63,6 +64,8 @@ enum Draw {
     CellBorder,
     /// Crowds and what happens to them.
     Crowd(crowds::Kind),
+    /// A few crowds, then as many changes along each axis.
+    Changes(crowds::Kind, u32),
     /// Boxes without bodies.
     Boxes(boxes::Kind),
     /// A file of the hard cases.
@@ -115,9 +118,11 @@ groups! {
     "buffer/hub", 2, Draw::Crowd(crowds::Kind::Hub), "a full buffer of one body's partners";
     "order/repeated", 4, Draw::Crowd(crowds::Kind::Repeated), "answers that depend on the frames before";
     "order/renumbered", 4, Draw::Crowd(crowds::Kind::Renumbered), "answers that depend on the bodies' numbers";
-    "churn/swap", 4, Draw::Crowd(crowds::Kind::Swap), "stale places of bodies that jump";
-    "churn/teleport", 4, Draw::Crowd(crowds::Kind::Teleport), "stale bounds of bodies that jump far";
-    "churn/insert-remove", 4, Draw::Crowd(crowds::Kind::InsertRemove), "stale bodies that were removed, new ones not taken up";
+    "churn/swap", 7, Draw::Changes(crowds::Kind::Swap, 4), "stale places of bodies that jump";
+    "churn/teleport", 7, Draw::Changes(crowds::Kind::Teleport, 4), "stale bounds of bodies that jump far";
+    "churn/insert-remove", 7, Draw::Changes(crowds::Kind::InsertRemove, 4), "stale bodies that were removed, new ones not taken up";
+    "churn/move", 3, Draw::Changes(crowds::Kind::Move, 0), "stale bounds of bodies that move";
+    "churn/turn", 3, Draw::Changes(crowds::Kind::Turn, 0), "stale bounds of bodies that turn in place";
     "random/crowd", 6, Draw::Crowd(crowds::Kind::Still), "anything";
     "random/moving", 6, Draw::Crowd(crowds::Kind::Moving), "caches kept for too long";
     "random/sizes", 6, Draw::Crowd(crowds::Kind::Sizes), "cells or trees for one size of body";
@@ -242,7 +247,9 @@ impl Group {
             )?,
             Draw::Exact(touch) => exact::touching(touch, number, 1, &mut rng)?,
             Draw::Boxes(kind) => boxes::boxes(kind, 2, &mut rng)?,
-            Draw::CellBorder | Draw::Crowd(_) | Draw::Hard(_) => return Ok(None),
+            Draw::CellBorder | Draw::Crowd(_) | Draw::Changes(..) | Draw::Hard(_) => {
+                return Ok(None);
+            }
         };
         Ok(Some(self.named(self.case_name(number, None), drawn)))
     }
@@ -279,6 +286,8 @@ impl Group {
             Draw::Exact(touch) => exact::touching(touch, number, 8, rng),
             Draw::CellBorder => grid::tips_across_borders(number, rng),
             Draw::Crowd(kind) => Ok(crowds::crowd(kind, rng)?),
+            Draw::Changes(kind, crowds) if number < crowds => Ok(crowds::crowd(kind, rng)?),
+            Draw::Changes(kind, crowds) => changes::along_an_axis(kind, number - crowds, rng),
             Draw::Boxes(kind) => boxes::boxes(kind, 48, rng),
             Draw::Hard(text) => hard_case(text, number, seed),
         }
@@ -308,7 +317,7 @@ fn key(name: &str) -> u64 {
 }
 
 /// Which cases: a group and a number each, in turns over the groups so that every bug is looked for
-/// early.
+/// early. Groups that are about this claim alone come first.
 ///
 /// # Errors
 /// As [`groups`].
@@ -317,7 +326,8 @@ pub fn select(
     pattern: &str,
     seed: Option<u64>,
 ) -> Result<Vec<(Group, u32)>, CatalogueError> {
-    let groups = groups()?;
+    let mut groups = groups()?;
+    groups.sort_by_key(|group| group.claims() != [claim]);
     let most = groups.iter().map(|group| group.cases).max().unwrap_or(0);
     let about = |group: &&Group| group.claims().contains(&claim);
     let all = (0..most).flat_map(|n| groups.iter().filter(about).map(move |group| (*group, n)));

@@ -6,7 +6,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 use sdop_bench::cost::table::Cost;
 use sdop_bench::reproduce::paper_name;
 
-use super::style::{PARTS, anchored, ends, label, legend, quiet, text, titled};
+use super::style::{PARTS, Part, anchored, ends, label, legend, quiet, text, titled};
 use super::{Area, Drawn};
 use crate::commands::reproduce::rows::Tables;
 
@@ -18,7 +18,7 @@ pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {
         area,
         "T without construction, warm, µs per frame: terms predicted from other scenes' prices, and measured (•, 95 %)",
     )?;
-    let body = keys(&body)?;
+    let body = keys(&body, &tables.costs.iter().collect::<Vec<_>>())?;
     let panels = body.split_evenly((2, 3));
     for (area, strategy) in panels.iter().zip(tables.strategies()) {
         let of = |cost: &&Cost| cost.strategy == strategy;
@@ -28,23 +28,57 @@ pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {
     Ok(())
 }
 
-/// One panel with a column a strategy: what `sdop cost` draws of one scene.
+/// A column per strategy: what `sdop cost` draws of one scene. Where some take far longer than
+/// others, they have a panel of their own, so that the terms of all can be seen.
 pub fn draw_strategies(area: &Area<'_>, scene: &str, costs: &[&Cost]) -> Drawn {
     let title = format!(
         "{scene}: where a warm frame's time goes, µs: predicted terms, and measured (•, 95 %)"
     );
-    let body = keys(&titled(area, &title)?)?;
-    panel(&body, "", costs, |cost| cost.variant.replace("s-dop-", ""))
+    let body = keys(&titled(area, &title)?, costs)?;
+    let name = |cost: &Cost| cost.variant.replace("s-dop-", "");
+    let (fast, slow) = apart(costs);
+    if slow.is_empty() {
+        return panel(&body, "", &fast, name);
+    }
+    let share = fast.len() as f64 / costs.len() as f64;
+    let left = (f64::from(body.dim_in_pixel().0) * share.clamp(0.25, 0.75)) as i32;
+    let (left, right) = body.split_horizontally(left);
+    panel(&left, "", &fast, name)?;
+    panel(&right, "on another scale", &slow, name)
 }
 
-/// The legend; returns what is left of the area.
-fn keys<'a>(area: &Area<'a>) -> Result<Area<'a>, super::Failure> {
-    let (keys, body) = area.split_vertically(30);
+/// Costs in two parts at the widest gap between neighbours by time, if the slower take three times
+/// the faster ones' or more; the order within each part stays.
+fn apart<'a>(costs: &[&'a Cost]) -> (Vec<&'a Cost>, Vec<&'a Cost>) {
+    let time = |cost: &Cost| cost.frame.measured.mean;
+    let mut times: Vec<f64> = costs.iter().map(|&cost| time(cost)).collect();
+    times.sort_by(f64::total_cmp);
+    let gap = times
+        .windows(2)
+        .max_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
+    let border = match gap {
+        Some(gap) if gap[1] >= 3.0 * gap[0] => gap[0],
+        _ => f64::INFINITY,
+    };
+    costs
+        .iter()
+        .copied()
+        .partition(|&cost| time(cost) <= border)
+}
+
+/// The legend of the terms that there are; returns what is left of the area.
+fn keys<'a>(area: &Area<'a>, costs: &[&Cost]) -> Result<Area<'a>, super::Failure> {
+    let there = |part: &&Part| costs.iter().any(|cost| (part.of)(&cost.terms) > 0.0);
     let parts: Vec<_> = PARTS
         .iter()
+        .filter(there)
         .map(|part| (part.name, part.colour, false))
         .collect();
-    legend(&keys, (14, 12), &parts)?;
+    let rows: Vec<_> = parts.chunks(5).collect();
+    let (keys, body) = area.split_vertically(10 + 20 * rows.len() as i32);
+    for (row, parts) in rows.iter().enumerate() {
+        legend(&keys, (14, 12 + 20 * row as i32), parts)?;
+    }
     Ok(body)
 }
 
@@ -53,7 +87,7 @@ fn scene_name(cost: &Cost) -> String {
     name.replace("crowded-500", "crowded")
 }
 
-fn panel(area: &Area<'_>, title: &str, costs: &[&Cost], name: fn(&Cost) -> String) -> Drawn {
+fn panel(area: &Area<'_>, title: &str, costs: &[&Cost], name: impl Fn(&Cost) -> String) -> Drawn {
     let highest = |cost: &&Cost| 1e6 * cost.frame.measured.mean.max(cost.frame.predicted.mean);
     let top = costs.iter().map(highest).fold(0.0, f64::max);
     let mut chart = ChartBuilder::on(area)
@@ -97,4 +131,59 @@ fn column(chart: &mut Chart<'_, '_>, x: f64, cost: &Cost, name: String) -> Drawn
     label(chart.plotting_area(), &top, (0, -8), value, above)?;
     let (foot, below) = ((middle, 0.0), anchored(12, HPos::Center, VPos::Top));
     label(chart.plotting_area(), &foot, (0, 8), name, below)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::svg;
+    use super::*;
+    use sdop::settings::Strategy;
+    use sdop_bench::cost::predict::Terms;
+    use sdop_bench::cost::table::Compared;
+    use sdop_bench::measure::counts::Volume;
+    use sdop_bench::measure::turns::{Quartiles, Regime};
+
+    fn cost(strategy: Strategy, volume: Volume, microseconds: f64) -> Cost {
+        let seconds = 1e-6 * microseconds;
+        let compared = Compared::of(&[[seconds, seconds]]);
+        Cost {
+            scene: "s".into(),
+            bodies: 1,
+            strategy,
+            variant: strategy.name().into(),
+            regime: Regime::Warm,
+            frames: 1,
+            terms: vec![Terms {
+                volume,
+                updates: 1.0,
+                tests: 1.0,
+                hits: 1.0,
+                construct: 0.0,
+                update: 0.5 * seconds,
+                finding: 0.25 * seconds,
+                test: 0.25 * seconds,
+            }],
+            widths: Vec::new(),
+            frame: compared,
+            quartiles: Quartiles::default(),
+            construct: compared,
+            total: compared,
+        }
+    }
+
+    #[test]
+    fn boxes_have_their_own_key_and_dear_strategies_their_own_panel() {
+        let sphere = cost(Strategy::Sphere, Volume::Sphere, 40.0);
+        let obb = cost(Strategy::Obb, Volume::Obb, 900.0);
+        let draw = |costs: &[&Cost]| {
+            let drawn = svg((1060, 480), |area| draw_strategies(area, "s", costs));
+            drawn.unwrap_or_default()
+        };
+        let both = draw(&[&sphere, &obb]);
+        assert!(both.contains("Nu·Cu aabb, k-dop, obb") && both.contains("on another scale"));
+        // No or-DOP, no key of or-DOPs.
+        assert!(!both.contains("or-DOPs"), "{both}");
+        let one = draw(&[&sphere]);
+        assert!(one.contains("Nu·Cu spheres") && !one.contains("obb") && !one.contains("scale"));
+    }
 }

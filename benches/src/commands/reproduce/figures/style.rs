@@ -11,7 +11,9 @@ use sdop_bench::measure::counts::Volume;
 use sdop_bench::reproduce::Estimate;
 
 use super::Area;
-use crate::commands::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};
+use crate::commands::palette::{
+    BLUE, FINDING, GREEN, GREY, ORANGE, PALE, SKY, TESTS, UPDATES, VERMILION,
+};
 
 /// A strategy's colour in every figure.
 pub fn colour(strategy: Strategy) -> RGBColor {
@@ -33,41 +35,59 @@ pub struct Part {
 }
 
 /// The formula's terms, from the bottom of the stack to its top.
-pub const PARTS: [Part; 5] = [
+pub const PARTS: [Part; 7] = [
     Part {
         name: "Nu·Cu spheres",
-        colour: BLUE,
-        of: |terms| of(terms, |t| t.update, true),
+        colour: UPDATES[0],
+        of: |terms| of(terms, |t| t.update, is_sphere),
     },
     Part {
         name: "Nu·Cu or-DOPs",
-        colour: PURPLE,
-        of: |terms| of(terms, |t| t.update, false),
+        colour: UPDATES[1],
+        of: |terms| of(terms, |t| t.update, is_ordop),
+    },
+    Part {
+        name: "Nu·Cu aabb, k-dop, obb",
+        colour: UPDATES[2],
+        of: |terms| of(terms, |t| t.update, is_other),
     },
     Part {
         name: "F pair finding",
-        colour: RGBColor(170, 170, 170),
-        of: |terms| terms.iter().map(|t| t.finding).sum(),
+        colour: FINDING,
+        of: |terms| of(terms, |t| t.finding, |_| true),
     },
     Part {
         name: "Nv·Cv spheres",
-        colour: SKY,
-        of: |terms| of(terms, |t| t.test, true),
+        colour: TESTS[0],
+        of: |terms| of(terms, |t| t.test, is_sphere),
     },
     Part {
         name: "Nv·Cv or-DOPs",
-        colour: ORANGE,
-        of: |terms| of(terms, |t| t.test, false),
+        colour: TESTS[1],
+        of: |terms| of(terms, |t| t.test, is_ordop),
+    },
+    Part {
+        name: "Nv·Cv aabb, k-dop, obb",
+        colour: TESTS[2],
+        of: |terms| of(terms, |t| t.test, is_other),
     },
 ];
 
-/// A term summed over the spheres, or over all other volumes.
-fn of(terms: &[Terms], term: fn(&Terms) -> f64, spheres: bool) -> f64 {
-    terms
-        .iter()
-        .filter(|t| (t.volume == Volume::Sphere) == spheres)
-        .map(term)
-        .sum()
+fn is_sphere(volume: Volume) -> bool {
+    volume == Volume::Sphere
+}
+
+fn is_ordop(volume: Volume) -> bool {
+    volume == Volume::OrDop
+}
+
+fn is_other(volume: Volume) -> bool {
+    !is_sphere(volume) && !is_ordop(volume)
+}
+
+/// A term summed over some volumes.
+fn of(terms: &[Terms], term: fn(&Terms) -> f64, which: fn(Volume) -> bool) -> f64 {
+    terms.iter().filter(|t| which(t.volume)).map(term).sum()
 }
 
 /// Text at a size, dark grey.

@@ -100,12 +100,13 @@ export class Camera {
     return (radius * this.widening) / Math.sin((this.lens.fov * Math.PI) / 360);
   }
 
-  /** Flies to a ball; jumps where the person wants less motion. */
-  flyTo(centre: Vector3, radius: number): void {
+  /** Flies to a ball; jumps if it is told to, or where the person wants less motion. */
+  flyTo(centre: Vector3, radius: number, jump = false): void {
     const away = this.back.normalize();
     const target = centre.clone();
     const position = target.clone().addScaledVector(away, this.distanceFor(Math.max(2.2 * radius, EXTENT / 200)));
-    if (reducedMotion()) {
+    if (jump || reducedMotion()) {
+      this.flight = null;
       this.controls.target.copy(target);
       this.lens.position.copy(position);
       this.controls.update();

@@ -70,6 +70,8 @@ export interface Header {
   /** Layers that are switched on at first. */
   layers: string[];
   effects: { name: string; on: boolean }[] | null;
+  /** The missed pair of a counter-example, by the frame's index, and a point that both bodies share in it. */
+  focus: { frame: number; bodies: [number, number]; point: [number, number, number] | null } | null;
   /** What the reader of the record had to say. */
   messages: string[];
   blocks: BlockHeader[];

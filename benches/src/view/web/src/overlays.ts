@@ -31,6 +31,9 @@ export interface Moment {
 /** Five lines close together: WebGL draws none thicker than a pixel. */
 const SEGMENT = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]].flatMap(([y, z]) => [-1, y, z, 1, y, z]);
 
+/** The radius of the ball about a shared point, as a part of its distance from the eye. */
+const POINT = 0.012;
+
 /** Half the thickness of a line, as a part of its distance from the eye. */
 const THIN = 7e-4;
 
@@ -79,6 +82,7 @@ export class Overlays extends Group {
     if (switches.boxes) this.addBoxes(moment);
     if (switches.cells) this.addCells(moment);
     this.addPairs(moment);
+    this.addSharedPoint(moment);
     for (const [body, colour] of marked) {
       const radius = 1.08 * this.bodies.radius(body);
       this.marks.put(this.bodies.placement(body).offset, UPRIGHT, [radius, radius, radius], colour);
@@ -111,14 +115,27 @@ export class Overlays extends Group {
     }
   }
 
-  /** World-aligned boxes, fitted to the posed hull's vertices. */
+  /** World-aligned boxes: those that were given with the frame, or else fitted to the posed hull's vertices. */
   private addBoxes(moment: Moment): void {
+    const given = this.run.boxesAt(moment.frame);
+    if (given) return this.addGivenBoxes(moment, given);
     for (const [body, colour] of this.shown(moment)) {
       const { turn, offset } = this.bodies.placement(body);
       const { low, high } = extent(this.hulls[this.run.shapeOf[body]], turn);
       const half = [0, 1, 2].map((axis) => ((high[axis] - low[axis]) / 2) * this.space.scale) as Triple;
       const centre = [0, 1, 2].map((axis) => ((high[axis] + low[axis]) / 2) * this.space.scale) as Triple;
       this.boxes.put(plus(offset, centre), UPRIGHT, half, colour);
+    }
+  }
+
+  private addGivenBoxes(moment: Moment, given: Float32Array): void {
+    const { space } = this;
+    for (const [body, colour] of this.shown(moment)) {
+      const corner = (at: number): Triple => [space.x(given[at]), space.y(given[at + 1]), space.z(given[at + 2])];
+      const [low, high] = [corner(6 * body), corner(6 * body + 3)];
+      const half = [0, 1, 2].map((axis) => (high[axis] - low[axis]) / 2) as Triple;
+      const centre = [0, 1, 2].map((axis) => (high[axis] + low[axis]) / 2) as Triple;
+      this.boxes.put(centre, UPRIGHT, half, colour);
     }
   }
 
@@ -147,6 +164,16 @@ export class Overlays extends Group {
       if (moment.picked !== null && i !== moment.picked && j !== moment.picked) continue;
       this.line(this.pairs, i, j, state === State.Spheres ? spheres : states[state], moment);
     }
+  }
+
+  /** Of a counter-example, a ball about the point that the missed pair shares, as large as it can be seen from anywhere. */
+  private addSharedPoint({ frame, eye, theme }: Moment): void {
+    const { focus } = this.run.header;
+    if (!focus?.point || frame !== focus.frame) return;
+    const [x, y, z] = focus.point;
+    const at: Triple = [this.space.x(x), this.space.y(y), this.space.z(z)];
+    const radius = POINT * Math.hypot(at[0] - eye.x, at[1] - eye.y, at[2] - eye.z);
+    this.marks.put(at, UPRIGHT, [radius, radius, radius], theme.states[State.Missed]);
   }
 
   private line(wires: Wires, i: number, j: number, colour: Color, { eye, theme }: Moment): void {

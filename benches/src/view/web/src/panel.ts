@@ -154,6 +154,11 @@ export class Panel {
   private buildLegend(): void {
     const states = [State.Idle, State.Reported];
     if (this.run.header.truth) states.push(State.Meets, State.Missed);
+    this.run.header.focus?.bodies.forEach((body, n) => {
+      const entry = create("li", `body ${body}`);
+      entry.prepend(create("i", "", { style: `background: var(--pair-${n})` }));
+      element("legend").append(entry);
+    });
     for (const state of states) {
       const entry = create("li");
       entry.append(create("i", "", { style: `background: ${STATE_COLOURS[state]}` }));

@@ -45,6 +45,8 @@ export class Run {
   private readonly flags: Uint8Array;
   private readonly counters: (Float64Array | null)[];
   private readonly terms: (Float64Array | null)[];
+  /** The boxes that a case gives with its frames, six numbers per body and frame: the lower corner, then the upper one. */
+  private readonly boxes: Float32Array | null;
   /** The poses of all bodies in the frame last asked for: q (x, y, z, w), then t. */
   private readonly posed: Float32Array;
   private posedFrame = -1;
@@ -71,6 +73,7 @@ export class Run {
     this.flags = block("flags", pairs);
     this.counters = runs.map((run, r) => (run.volumes ? block<Float64Array>(`counters-${r}`, 3 * run.volumes.length * frames) : null));
     this.terms = runs.map((run, r) => (run.construct === null ? null : block<Float64Array>(`terms-${r}`, 3 * frames)));
+    this.boxes = blocks.has("boxes") ? block<Float32Array>("boxes", 6 * bodies * frames) : null;
     this.posed = this.first.slice();
   }
 
@@ -89,6 +92,25 @@ export class Run {
       this.posedFrame = frame;
     }
     return this.posed;
+  }
+
+  /** The boxes that were given with a frame, six floats per body; null where none were. */
+  boxesAt(frame: number): Float32Array | null {
+    const length = 6 * this.header.bodies;
+    return this.boxes && this.boxes.subarray(frame * length, (frame + 1) * length);
+  }
+
+  /** A cube about a body, in the world: about its given box, or about its mesh in any rotation. */
+  cubeAbout(frame: number, body: number): { centre: [number, number, number]; half: number } {
+    const boxes = this.boxesAt(frame);
+    if (boxes) {
+      const ends = [0, 1, 2].map((axis) => [boxes[6 * body + axis], boxes[6 * body + axis + 3]]);
+      const centre = ends.map(([low, high]) => (low + high) / 2) as [number, number, number];
+      return { centre, half: Math.max(...ends.map(([low, high]) => (high - low) / 2)) };
+    }
+    const poses = this.posesAt(frame);
+    const p = 7 * body + 4;
+    return { centre: [poses[p], poses[p + 1], poses[p + 2]], half: this.header.shapes[this.shapeOf[body]].reach };
   }
 
   /** The frame's pairs: overlapping spheres, reported by a strategy, or truly meeting. */

@@ -18,7 +18,7 @@ export class Space {
   scale = 1;
 
   constructor(run: Run) {
-    const bounds = run.header.side ? { centre: this.origin, half: run.header.side / 2 } : boundsOf(run, 0);
+    const bounds = run.header.side ? { centre: this.origin, half: run.header.side / 2 } : boundsOfRun(run);
     this.origin = bounds.centre;
     this.scale = bounds.half > 0 && Number.isFinite(bounds.half) ? EXTENT / bounds.half : 1;
   }
@@ -44,19 +44,31 @@ export class Space {
   }
 }
 
-/** A cube about all bodies of a frame. */
-export function boundsOf(run: Run, frame: number): { centre: [number, number, number]; half: number } {
-  const poses = run.posesAt(frame);
+type Cube = { centre: [number, number, number]; half: number };
+
+/** The part of the picture below which a missed pair can't be made out. */
+const SMALL = 1 / 100;
+
+/** About the bodies of the first frame; of a counter-example, of the frame with the missed pair, or about that pair where it is small. */
+function boundsOfRun(run: Run): Cube {
+  const { focus } = run.header;
+  if (!focus) return boundsOf(run, 0);
+  const [all, pair] = [boundsOf(run, focus.frame), boundsOf(run, focus.frame, focus.bodies)];
+  return pair.half < SMALL * all.half ? { centre: pair.centre, half: pair.half / SMALL } : all;
+}
+
+/** A cube about all bodies of a frame, or about some. */
+export function boundsOf(run: Run, frame: number, bodies?: number[]): Cube {
   const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-  for (let body = 0; body < run.header.bodies; body++) {
-    const reach = run.header.shapes[run.shapeOf[body]].reach;
+  const count = bodies?.length ?? run.header.bodies;
+  if (count === 0) return { centre: [0, 0, 0], half: 1 };
+  for (let n = 0; n < count; n++) {
+    const { centre, half } = run.cubeAbout(frame, bodies ? bodies[n] : n);
     for (let axis = 0; axis < 3; axis++) {
-      const t = poses[7 * body + 4 + axis];
-      low[axis] = Math.min(low[axis], t - reach);
-      high[axis] = Math.max(high[axis], t + reach);
+      low[axis] = Math.min(low[axis], centre[axis] - half);
+      high[axis] = Math.max(high[axis], centre[axis] + half);
     }
   }
-  if (run.header.bodies === 0) return { centre: [0, 0, 0], half: 1 };
   const centre = [0, 1, 2].map((axis) => (low[axis] + high[axis]) / 2) as [number, number, number];
   const half = Math.max(...[0, 1, 2].map((axis) => (high[axis] - low[axis]) / 2));
   return { centre, half };

@@ -4,6 +4,7 @@ import {
   Color,
   DoubleSide,
   FrontSide,
+  type PerspectiveCamera,
   Raycaster,
   Scene,
   Vector2,
@@ -14,10 +15,11 @@ import { Bodies } from "./bodies.ts";
 import { Camera } from "./camera.ts";
 import { cubeLines } from "./figures.ts";
 import { Wires } from "./lines.ts";
+import { type Label, Labels } from "./labels.ts";
 import { type Moment, Overlays, type Switches } from "./overlays.ts";
 import { Pace } from "./quality.ts";
 import { type Run, State } from "./run.ts";
-import { Space } from "./space.ts";
+import { EXTENT, Space } from "./space.ts";
 import { reducedMotion, type Theme, theme } from "./theme.ts";
 
 /** What is to be seen. */
@@ -36,6 +38,10 @@ export interface Shown {
 /** The part of the picture's height under the strategies' names. */
 const TITLES = 0.12;
 
+/** How much of its colour a body loses that has nothing to do with the picked one. */
+const FADING = 0.75;
+const FADED = new Color();
+
 /** Half a period of the flashing of missed bodies, in milliseconds: slow enough for the photosensitive. */
 const FLASH = 350;
 
@@ -50,6 +56,7 @@ export class Stage {
   private readonly states: Uint8Array;
   private readonly related: Uint8Array;
   private readonly pace = new Pace();
+  private readonly labels: Labels;
   private flashing = false;
   private phase = -1;
   private still = false;
@@ -57,9 +64,11 @@ export class Stage {
   constructor(
     private readonly run: Run,
     private readonly canvas: HTMLCanvasElement,
+    labels: HTMLElement,
     changed: () => void,
     moved: () => void,
   ) {
+    this.labels = new Labels(labels);
     this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
     this.space = new Space(run);
     this.camera = new Camera(canvas, run.header.runs.length > 1 ? TITLES : 0, changed, moved);
@@ -110,8 +119,14 @@ export class Stage {
     this.phase = this.phaseAt(now);
     const bright = colours.dark ? new Color("#ffffff") : new Color("#ffd9c9");
     const colour = (body: number): Color => {
+      const own = stateColour(body);
+      // What has nothing to do with the picked body keeps its colour, faded.
+      return this.isAway(body, picked) ? FADED.copy(own).lerp(colours.ghost, FADING) : own;
+    };
+    const stateColour = (body: number): Color => {
       const state: State = this.states[body];
-      if (this.isAway(body, picked)) return colours.ghost;
+      const hue = this.hue(body, colours);
+      if (hue) return hue;
       if (state === State.Missed) return this.phase === 1 ? bright : colours.states[state];
       if (state >= State.Reported) return colours.states[state];
       return this.run.fixed[body] ? colours.fixed : colours.moving;
@@ -119,10 +134,33 @@ export class Stage {
     this.bodies.paint(colour);
     const overlay = (body: number): Color | null => {
       if (this.isAway(body, picked)) return null;
-      return this.states[body] >= State.Reported ? colours.states[this.states[body]] : colours.volumes;
+      const state: State = this.states[body];
+      return this.hue(body, colours) ?? (state >= State.Reported ? colours.states[state] : colours.volumes);
     };
     const moment: Moment = { frame, run: side, switches, picked, theme: colours, colour: overlay, eye: this.camera.lens.position };
     this.overlays.update(moment, this.marks(picked, colours));
+    this.label(shown, colours);
+  }
+
+  /** Of a counter-example, the colour of one of its two bodies. */
+  private hue(body: number, colours: Theme): Color | null {
+    return colours.pair[this.run.header.focus?.bodies.indexOf(body) ?? -1] ?? null;
+  }
+
+  /** Names the two bodies of a counter-example, and the point that they share. */
+  private label({ frame, sides }: Shown, colours: Theme): void {
+    const { focus } = this.run.header;
+    const { width, height } = this.canvas.getBoundingClientRect();
+    const labels: Label[] = [];
+    const put = (text: string, [x, y, z]: number[], colour: Color) => {
+      labels.push({ text, at: [this.space.x(x), this.space.y(y), this.space.z(z)], colour: `#${colour.getHexString()}` });
+    };
+    // Side by side there is no room for them.
+    if (focus && sides.length === 1) {
+      focus.bodies.forEach((body, n) => put(String(body), this.run.cubeAbout(frame, body).centre, colours.pair[n]));
+      if (focus.point && frame === focus.frame) put("shared point", focus.point, colours.states[State.Missed]);
+    }
+    this.labels.show(spread(labels, this.camera.lens), this.camera.lens, width, height);
   }
 
   /** With a picked body: which others could stand before it or what it meets, and aren't drawn. */
@@ -140,7 +178,7 @@ export class Stage {
     return picked !== null && body !== picked && this.related[body] === 0;
   }
 
-  /** Each body's state by its worst pair; with a picked body, by its pairs alone. */
+  /** Each body's state by its worst pair, and whether a pair of its is with the picked body. */
   private judge(frame: number, side: number, picked: number | null): void {
     this.states.fill(State.Idle);
     this.related.fill(0);
@@ -148,8 +186,7 @@ export class Stage {
       const state = this.run.state(flags, side);
       const own = picked === null || i === picked || j === picked;
       if (state === State.Missed) this.flashing = true;
-      if (!own && state !== State.Missed) continue;
-      this.related[i] = this.related[j] = 1;
+      if (own || state === State.Missed) this.related[i] = this.related[j] = 1;
       this.states[i] = Math.max(this.states[i], state);
       this.states[j] = Math.max(this.states[j], state);
     }
@@ -199,17 +236,41 @@ export class Stage {
     return this.bodies.pick(raycaster);
   }
 
-  /** Flies to bodies: one, or the two of a pair. */
-  flyTo(frame: number, bodies: number[]): void {
-    const poses = this.run.posesAt(frame);
-    const first = 7 * bodies[0] + 4;
-    const moved = this.space.rebase([poses[first], poses[first + 1], poses[first + 2]]);
+  /** Flies to bodies, one or the two of a pair, or jumps there. */
+  flyTo(frame: number, bodies: number[], jump = false): void {
+    const cubes = bodies.map((body) => this.run.cubeAbout(frame, body));
+    const moved = this.space.rebase(cubes[0].centre);
     if (moved) this.camera.shift(moved);
-    this.bodies.place(frame);
-    const places = bodies.map((body) => new Vector3(...this.bodies.placement(body).offset));
+    const { space } = this;
+    const places = cubes.map(({ centre: [x, y, z] }) => new Vector3(space.x(x), space.y(y), space.z(z)));
     const centre = new Vector3();
     for (const place of places) centre.addScaledVector(place, 1 / places.length);
-    const radii = bodies.map((body, n) => places[n].distanceTo(centre) + this.bodies.radius(body));
-    this.camera.flyTo(centre, Math.max(...radii));
+    const radii = cubes.map(({ half }, n) => places[n].distanceTo(centre) + half * space.scale);
+    this.camera.flyTo(centre, Math.max(...radii), jump);
   }
+
+  /** Looks at what a frame is opened for: the missed pair of a counter-example, or everything; where no body is near, at one. */
+  look(frame: number): void {
+    const { focus, bodies, side } = this.run.header;
+    if (focus?.frame === frame) return this.flyTo(frame, focus.bodies, true);
+    this.bodies.place(frame);
+    const isNear = (body: number) => this.bodies.placement(body).offset.every((x) => Math.abs(x) < 2 * EXTENT);
+    for (let body = 0; body < bodies; body++) if (isNear(body)) return this.camera.home();
+    if (bodies === 0 || side) return this.camera.home();
+    this.flyTo(frame, [focus?.bodies[0] ?? 0], true);
+  }
+}
+
+/** Labels that would hide one another are moved apart, up and down the picture. */
+function spread(labels: Label[], lens: PerspectiveCamera): Label[] {
+  const up = new Vector3(0, 1, 0).applyQuaternion(lens.quaternion);
+  const placed: Vector3[] = [];
+  return labels.map((label) => {
+    const at = new Vector3(...label.at);
+    const step = 0.05 * at.distanceTo(lens.position);
+    const hides = (other: Vector3) => other.distanceTo(at) < step;
+    while (placed.some(hides)) at.addScaledVector(up, -step);
+    placed.push(at);
+    return { ...label, at: at.toArray() };
+  });
 }

@@ -17,6 +17,8 @@ export interface Theme {
   spheres: Color;
   volumes: Color;
   cells: Color;
+  /** The two bodies of a counter-example. */
+  pair: [Color, Color];
 }
 
 const hex = (text: string): Color => new Color(text);
@@ -33,6 +35,7 @@ const LIGHT: Theme = {
   spheres: hex("#8f98a3"),
   volumes: hex("#30363d"),
   cells: hex("#009e73"),
+  pair: [hex("#1fa8a0"), hex("#8e3a9d")],
 };
 
 const DARK: Theme = {
@@ -47,6 +50,7 @@ const DARK: Theme = {
   spheres: hex("#6d7681"),
   volumes: hex("#c8d0d9"),
   cells: hex("#2fc79a"),
+  pair: [hex("#4fd6cc"), hex("#d58be0")],
 };
 
 const darkness = matchMedia("(prefers-color-scheme: dark)");

@@ -55,7 +55,7 @@ export class Viewer {
       this.dirty = true;
     };
     try {
-      this.stage = new Stage(run, element<HTMLCanvasElement>("picture"), changed, () => this.keepAddress());
+      this.stage = new Stage(run, element<HTMLCanvasElement>("picture"), element("labels"), changed, () => this.keepAddress());
     } catch {
       explain("No picture: this browser has no WebGL.", "The numbers, charts and lists work all the same.");
     }
@@ -305,10 +305,12 @@ export class Viewer {
 
   private readAddress(): void {
     const address = parse(location.hash);
+    const { focus } = this.run.header;
     if (address.frame !== null) this.player.seek(this.run.indexOf(address.frame));
+    else if (focus) this.player.seek(focus.frame);
     if (address.origin && this.stage) this.stage.space.origin = address.origin as [number, number, number];
     if (address.camera && this.stage) this.stage.camera.state = address.camera;
-    else this.stage?.camera.home();
+    else this.stage?.look(this.player.at);
     if (address.switches) Object.assign(this.switches, address.switches);
     this.picked = address.picked !== null && address.picked < this.run.header.bodies ? address.picked : null;
     if (this.run.header.runs.length > 1 && address.sides) this.sides = address.sides;

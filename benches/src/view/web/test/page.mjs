@@ -191,6 +191,50 @@ const tests = {
     assert.ok((await colours(browser, last, 800, 700)).red > 500, "and what is missed is red");
   },
 
+  async "a counter-example opens at its missed pair, in two hues with labels"(browser) {
+    const labels = (tab) => tab.read("[...document.querySelectorAll('#labels span')].map((label) => label.textContent)");
+    const tab = await open(browser, "counter.html");
+    assert.equal(await shown(tab, "frame"), 1);
+    assert.deepEqual(await labels(tab), ["0", "1", "shared point"]);
+    assert.match(await tab.read("location.hash"), /show=[a-z,]*boxes/);
+    assert.match(await tab.read("document.getElementById('legend').textContent"), /body 0.*body 1/);
+    const pictured = async (tab) => colours(browser, await tab.screenshot(), 800, 700);
+    const seen = await until(async () => {
+      const seen = await pictured(tab);
+      return seen.teal > 500 && seen.purple > 500 && seen;
+    }, "both bodies and their boxes have their own hues");
+    // What is red is the shared point, not the boxes.
+    assert.ok(seen.red > 20 && seen.red < seen.teal / 2, JSON.stringify(seen));
+    // A frame by its address, without the missed pair, is not empty, though the bodies are far apart there.
+    for (const frame of [0, 2]) {
+      const other = await open(browser, "counter.html", `#frame=${frame}`);
+      assert.equal(await shown(other, "frame"), frame);
+      await until(async () => {
+        const { teal, purple } = await pictured(other);
+        return teal + purple > 500;
+      }, `frame ${frame} shows a body`);
+    }
+  },
+
+  async "picking a body keeps colours and legend"(browser) {
+    const tab = await open(browser, "run.html", "#frame=10");
+    const legend = () => tab.read("document.getElementById('legend').textContent");
+    const before = await legend();
+    assert.match(before, /[1-9]/);
+    const seen = await until(async () => {
+      const seen = await colours(browser, await tab.screenshot(), 800, 700);
+      return seen.blue > 300 && seen;
+    }, "meeting bodies");
+    for (let body = 0; body < 5; body++) {
+      await tab.key("n");
+      await tab.settle();
+      assert.equal(await legend(), before, `legend with body ${body}`);
+    }
+    const picked = await colours(browser, await tab.screenshot(), 800, 700);
+    const tinted = ({ blue, orange }) => blue + orange;
+    assert.ok(tinted(picked) > tinted(seen) / 20, JSON.stringify([seen, picked]));
+  },
+
   async "broken and old records are explained in the page"(browser) {
     const message = (tab) => tab.read("document.getElementById('message').hidden ? '' : document.getElementById('message').textContent");
     const newer = await open(browser, "newer.html");
@@ -261,6 +305,10 @@ function makePages() {
   missed = { frame, pair: frames[frame].meets[0] };
   frames[frame].pairs = frames[frame].pairs.filter((pair) => String(pair) !== String(missed.pair));
   assert.equal(write("missed", [lines[0], ...frames.map((f) => JSON.stringify(f))].join("\n")), 0);
+  run("cases", "--claims", "aabb", "--case", "churn/teleport/0004", "--out", file("cases"));
+  const answers = [0, 1, 2, 3, 4, 5].map((frame) => JSON.stringify({ frame, pairs: [] }));
+  writeFileSync(file("answers.ndjson"), answers.join("\n"));
+  run("view", file("cases/churn/teleport/0004.ndjson"), "--answers", file("answers.ndjson"), "--no-prices", "--out", file("counter.html"));
   assert.equal(write("newer", lines.join("\n").replace('"version":1', '"version":2')), 2);
   assert.equal(write("cut", lines.join("\n").slice(0, -30)), 2);
   const old = lines.map((line) => {

@@ -7,7 +7,7 @@ import { extent, rotate, turnFromX } from "../src/figures.ts";
 import { Player } from "../src/player.ts";
 import { coefficients, halfSpaces, polytope, type Vec } from "../src/polytope.ts";
 import { Run, State } from "../src/run.ts";
-import { boundsOf, Space } from "../src/space.ts";
+import { boundsOf, EXTENT, Space } from "../src/space.ts";
 
 const IDENTITY = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
@@ -87,6 +87,7 @@ const header = (change: Partial<Header> = {}): Header => ({
   meet: "meshes",
   layers: [],
   effects: null,
+  focus: null,
   messages: [],
   blocks: [],
   ...change,
@@ -203,4 +204,25 @@ test("worlds of any size fill the picture, and far places are brought near", () 
   assert.equal(space.rebase([5, 5, 5]), null);
   assert.deepEqual(space.rebase([2 ** 40, 0, 0]), [5 * 2 ** 40 - 10, 0, 0]);
   assert.equal(space.x(2 ** 40), 0);
+});
+
+test("a case's boxes are those of each frame, and a picture is about them", () => {
+  const boxes = new Float32Array([...[0, 0, 0, 2, 2, 2], ...[5, 0, 0, 6, 1, 1], ...[0, 9, 0, 1, 10, 1], ...[1, 0, 0, 3, 2, 2], ...[3, 0, 0, 5, 4, 2], ...[0, 9, 0, 1, 10, 1]]);
+  const run = new Run(header(), new Map([...blocks(), ["boxes", boxes] as const]));
+  assert.deepEqual([...run.boxesAt(1)!.slice(0, 6)], [1, 0, 0, 3, 2, 2]);
+  assert.deepEqual(run.cubeAbout(1, 1), { centre: [4, 2, 1], half: 2 });
+  assert.deepEqual(boundsOf(run, 1, [0, 1]), { centre: [3.5, 2, 1], half: 2.5 });
+  assert.equal(new Run(header(), blocks()).boxesAt(0), null);
+  assert.throws(() => new Run(header(), new Map([...blocks(), ["boxes", boxes.slice(1)] as const])), /block boxes has 35 numbers, not 36/);
+});
+
+test("a counter-example's picture is about its frame, and about its pair where that is small", () => {
+  const focus = (bodies: [number, number]) => header({ focus: { frame: 1, bodies, point: null } });
+  // In the second frame body 1 is at (7, 8, 9), the others at (1, 0, 0) and (3, 0, 0), each of reach 1.
+  assert.deepEqual(new Space(new Run(focus([0, 2]), blocks())).origin, [4, 4, 4.5]);
+  const far = blocks();
+  (far.get("poses") as Float32Array).set([1e6, 1e6, 1e6], 11);
+  const space = new Space(new Run(focus([0, 2]), far));
+  assert.deepEqual(space.origin, [2, 0, 0]);
+  assert.ok(Math.abs(space.x(4) - EXTENT / 100) < 1e-9, String(space.x(4)));
 });

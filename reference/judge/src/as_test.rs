@@ -1,0 +1,293 @@
+//! A counter-example as a unit test for the suite of the culler that misses the pair. It names one
+//! function that its user supplies, `your_culler`, and needs nothing else.
+
+use std::fmt::Write as _;
+
+use super::case::Frame;
+use super::claim::Claim;
+use super::shrink::Smallest;
+use sdop::choice::choices;
+use sdop::volume::Shape;
+
+choices! {
+    /// The language of a unit test.
+    Language, "language", {
+        /// A function with `#[test]`.
+        Rust = "rust",
+        /// A function that asserts.
+        Cpp = "cpp",
+        /// A function for pytest.
+        Python = "python",
+    }
+}
+
+impl Language {
+    /// The ending of its files.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Rust => "rs",
+            Self::Cpp => "cpp",
+            Self::Python => "py",
+        }
+    }
+}
+
+/// Numbers in nested lists; every list of one depth holds items of one kind.
+enum Data {
+    Float(f32),
+    Integer(i64),
+    Truth(bool),
+    List(Vec<Data>),
+    /// Numbers of a fixed count, such as a box.
+    Row(Vec<f32>),
+}
+
+/// One argument of the culler.
+struct Argument {
+    name: &'static str,
+    meaning: &'static str,
+    /// The type in Rust and in C++.
+    types: [&'static str; 2],
+    data: Data,
+}
+
+/// The test.
+#[must_use]
+pub fn unit_test(smallest: &Smallest, language: Language) -> String {
+    let arguments = arguments(smallest);
+    let names: Vec<&str> = arguments.iter().map(|argument| argument.name).collect();
+    let call = names.join(", ");
+    let [i, j] = smallest.miss.pair;
+    let comment = |mark: &str| {
+        let mut text = format!(
+            "{mark} The smallest scene of {} in which the pair [{i}, {j}] was missed (claim {}).\n",
+            smallest.from, smallest.claim
+        );
+        for line in smallest.reasons() {
+            let _ = writeln!(text, "{mark} {line}");
+        }
+        let _ = writeln!(
+            text,
+            "{mark} `your_culler` culls the frames in turn and returns the pairs [i, j], i < j, of the last one."
+        );
+        text
+    };
+    let name = format!("reports_{i}_{j}_of_{}", identifier(&smallest.from));
+    let declared: String = arguments
+        .iter()
+        .map(|argument| argument.declared(language))
+        .collect();
+    match language {
+        Language::Rust => format!(
+            "{}#[test]\nfn {name}() {{\n{declared}    let pairs = your_culler({});\n    assert!(pairs.contains(&[{i}, {j}]), \"{{pairs:?}}\");\n}}\n",
+            comment("///"),
+            names
+                .iter()
+                .map(|name| format!("&{name}"))
+                .collect::<Vec<_>>()
+                .join(", ")
+        ),
+        Language::Cpp => format!(
+            "#undef NDEBUG\n#include <algorithm>\n#include <array>\n#include <cassert>\n#include <vector>\n\n{}void {name}() {{\n{declared}    \
+             const std::vector<std::array<unsigned, 2>> pairs = your_culler({call});\n    \
+             assert((std::find(pairs.begin(), pairs.end(), std::array<unsigned, 2>{{{i}, {j}}}) != pairs.end()));\n}}\n",
+            comment("//")
+        ),
+        Language::Python => format!(
+            "{}def test_{name}():\n{declared}    pairs = your_culler({call})\n    assert [{i}, {j}] in [list(pair) for pair in pairs], pairs\n",
+            comment("#")
+        ),
+    }
+}
+
+/// A case's name as a part of a function's.
+fn identifier(name: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    name.chars().map(plain).collect()
+}
+
+/// What the culler needs for the claim.
+fn arguments(smallest: &Smallest) -> Vec<Argument> {
+    let frames = &smallest.case.frames[..=smallest.miss.frame];
+    let mut arguments = Vec::new();
+    let by_body = |of: &dyn Fn(&Frame, usize) -> Data| {
+        let frame = |frame: &Frame| (0..frame.bodies.len()).map(|i| of(frame, i)).collect();
+        Data::List(frames.iter().map(|f| Data::List(frame(f))).collect())
+    };
+    if smallest.claim == Claim::Aabb {
+        arguments.push(Argument {
+            name: "boxes",
+            meaning: "of each frame and body: lower corner x, y, z, then the upper one",
+            types: [
+                "Vec<Vec<[f32; 6]>>",
+                "std::vector<std::vector<std::array<float, 6>>>",
+            ],
+            data: by_body(&|frame, i| Data::Row(frame.boxes[i].to_vec())),
+        });
+    } else {
+        arguments.extend(of_shapes(smallest.claim, &smallest.case.shapes));
+        arguments.push(Argument {
+            name: "shape",
+            meaning: "of each frame and body: the number of its shape",
+            types: ["Vec<Vec<usize>>", "std::vector<std::vector<std::size_t>>"],
+            data: by_body(&|frame, i| Data::Integer(frame.bodies.shape[i].into())),
+        });
+        arguments.push(Argument {
+            name: "poses",
+            meaning: "of each frame and body: quaternion x, y, z, w of any norm, then the translation",
+            types: [
+                "Vec<Vec<[f32; 7]>>",
+                "std::vector<std::vector<std::array<float, 7>>>",
+            ],
+            data: by_body(&|frame, i| {
+                let (q, t) = (frame.bodies.rotation[i], frame.bodies.translation[i]);
+                Data::Row([&q[..], &t].concat())
+            }),
+        });
+    }
+    arguments.push(Argument {
+        name: "is_static",
+        meaning: "of each frame and body: two static bodies are no pair",
+        types: ["Vec<Vec<bool>>", "std::vector<std::vector<bool>>"],
+        data: by_body(&|frame, i| Data::Truth(!frame.bodies.dynamic[i])),
+    });
+    if frames.iter().any(|frame| frame.was.is_some()) {
+        let former = |frame: &Frame, i: usize| match &frame.was {
+            Some(was) => was[i].map_or(-1, i64::from),
+            None => i as i64, // a few bodies
+        };
+        arguments.push(Argument {
+            name: "was",
+            meaning: "of each frame and body: its number in the frame before, -1 for a new body",
+            types: ["Vec<Vec<i64>>", "std::vector<std::vector<long>>"],
+            data: by_body(&|frame, i| Data::Integer(former(frame, i))),
+        });
+    }
+    arguments
+}
+
+/// What a posed claim is about.
+fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
+    let list = |of: &dyn Fn(&Shape) -> Data| Data::List(shapes.iter().map(of).collect());
+    let floats = |numbers: &[f32]| Data::List(numbers.iter().map(|&x| Data::Float(x)).collect());
+    match claim {
+        Claim::Sphere => vec![Argument {
+            name: "balls",
+            meaning: "of each shape, in the body frame: centre x, y, z and radius",
+            types: ["Vec<[f32; 4]>", "std::vector<std::array<float, 4>>"],
+            data: list(&|shape| {
+                let [x, y, z] = shape.ball.centre;
+                Data::Row(vec![x, y, z, shape.ball.radius])
+            }),
+        }],
+        Claim::OrDop => vec![
+            Argument {
+                name: "basis",
+                meaning: "of each shape: the or-DOP's three basis vectors, one after the other",
+                types: ["Vec<[f32; 9]>", "std::vector<std::array<float, 9>>"],
+                data: list(&|shape| {
+                    let columns = shape.ordop.basis.columns;
+                    Data::Row(columns.as_flattened().to_vec())
+                }),
+            },
+            Argument {
+                name: "lo",
+                meaning: "of each shape: the lower ends of its slabs",
+                types: ["Vec<Vec<f32>>", "std::vector<std::vector<float>>"],
+                data: list(&|shape| floats(&shape.ordop.lo)),
+            },
+            Argument {
+                name: "hi",
+                meaning: "of each shape: the upper ends of its slabs",
+                types: ["Vec<Vec<f32>>", "std::vector<std::vector<float>>"],
+                data: list(&|shape| floats(&shape.ordop.hi)),
+            },
+        ],
+        Claim::Aabb => Vec::new(),
+        Claim::Hull | Claim::Mesh => {
+            let corners = |shape: &Shape| {
+                let triangle = |t: &[u32; 3]| Data::List(t.map(|v| Data::Integer(v.into())).into());
+                Data::List(shape.triangles.iter().map(triangle).collect())
+            };
+            vec![
+                Argument {
+                    name: "vertices",
+                    meaning: "of each shape, in the body frame",
+                    types: [
+                        "Vec<Vec<[f32; 3]>>",
+                        "std::vector<std::vector<std::array<float, 3>>>",
+                    ],
+                    data: list(&|shape| {
+                        let vertex = |v: &[f32; 3]| Data::Row(v.to_vec());
+                        Data::List(shape.vertices.iter().map(vertex).collect())
+                    }),
+                },
+                Argument {
+                    name: "triangles",
+                    meaning: "of each shape: three vertices each",
+                    types: [
+                        "Vec<Vec<Vec<usize>>>",
+                        "std::vector<std::vector<std::vector<std::size_t>>>",
+                    ],
+                    data: list(&corners),
+                },
+            ]
+        }
+    }
+}
+
+impl Argument {
+    fn declared(&self, language: Language) -> String {
+        let (name, meaning, data) = (self.name, self.meaning, self.data.text(language));
+        match language {
+            Language::Rust => format!(
+                "    // {meaning}\n    let {name}: {} = {data};\n",
+                self.types[0]
+            ),
+            Language::Cpp => format!(
+                "    // {meaning}\n    const {} {name}{data};\n",
+                self.types[1]
+            ),
+            Language::Python => format!("    # {meaning}\n    {name} = {data}\n"),
+        }
+    }
+}
+
+impl Data {
+    fn text(&self, language: Language) -> String {
+        let joined = |items: &[String], [open, close]: [&str; 2]| {
+            format!("{open}{}{close}", items.join(", "))
+        };
+        let number = |x: f32| match language {
+            Language::Rust => format!("{x:?}"),
+            // Read as a double, it has to be the same number.
+            Language::Python => format!("{:?}", f64::from(x)),
+            Language::Cpp => format!("{x:?}f"),
+        };
+        match (self, language) {
+            (Self::Float(x), _) => number(*x),
+            (Self::Integer(n), _) => n.to_string(),
+            (Self::Truth(true), Language::Python) => "True".to_owned(),
+            (Self::Truth(false), Language::Python) => "False".to_owned(),
+            (Self::Truth(truth), _) => truth.to_string(),
+            (Self::List(items), _) => {
+                let items: Vec<String> = items.iter().map(|item| item.text(language)).collect();
+                let brackets = match language {
+                    Language::Rust => ["vec![", "]"],
+                    Language::Cpp => ["{", "}"],
+                    Language::Python => ["[", "]"],
+                };
+                joined(&items, brackets)
+            }
+            (Self::Row(row), _) => {
+                let items: Vec<String> = row.iter().map(|&x| number(x)).collect();
+                let brackets = match language {
+                    Language::Cpp => ["{{", "}}"],
+                    Language::Rust | Language::Python => ["[", "]"],
+                };
+                joined(&items, brackets)
+            }
+        }
+    }
+}

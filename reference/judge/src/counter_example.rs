@@ -1,0 +1,190 @@
+//! A counter-example in words: what meets, where, and how deep, in the scene's own unit of length.
+
+use std::fmt;
+
+use super::claim::Claim;
+use super::score::Miss;
+use super::shrink::Smallest;
+use super::witness::DEEPEST;
+use crate::contestant::WorldBox;
+
+impl Smallest {
+    /// The boxes of the missed pair, for the claim that is about boxes.
+    #[must_use]
+    pub fn boxes(&self) -> Option<[WorldBox; 2]> {
+        let Miss { frame, pair } = self.miss;
+        let boxes = &self.case.frames[frame].boxes;
+        (self.claim == Claim::Aabb).then(|| pair.map(|body| boxes[body as usize]))
+    }
+
+    /// Why the missed pair meets, a line each.
+    #[must_use]
+    pub fn reasons(&self) -> Vec<String> {
+        let pair = self.miss.pair;
+        let mut lines = Vec::new();
+        if let Some(boxes) = self.boxes() {
+            let [first, second] = boxes.map(|ends| corners(&ends));
+            lines.push(format!("box {}: {first}", pair[0]));
+            lines.push(format!("box {}: {second}", pair[1]));
+            lines.extend(axes(&boxes, pair));
+        }
+        let Some(witness) = &self.witness else {
+            return lines;
+        };
+        let point = witness.decimals.map(length).join(", ");
+        lines.push(format!("shared point: ({point})"));
+        if witness.point.iter().any(|x| x.contains('/')) {
+            let exact = witness.point.join(", ");
+            if exact.len() < 160 {
+                lines.push(format!("exactly ({exact})"));
+            }
+        }
+        if self.claim != Claim::Aabb {
+            lines.push(match witness.depth {
+                Some(depth) => format!(
+                    "depth: {} or less, which is {} of the f32 steps there",
+                    length(depth),
+                    witness.depth_ulps.unwrap_or_default()
+                ),
+                None => format!("depth: more than {}", length(DEEPEST as f64 * witness.ulp)),
+            });
+        }
+        lines
+    }
+}
+
+impl fmt::Display for Smallest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Miss {
+            frame,
+            pair: [i, j],
+        } = self.miss;
+        writeln!(
+            f,
+            "smallest: {}, {}, from {}; bodies {i} and {j} share a point in frame {frame}",
+            counted(self.case.frames[frame].bodies.len(), "body", "bodies"),
+            counted(self.case.frames.len(), "frame", "frames"),
+            self.from
+        )?;
+        self.reasons()
+            .iter()
+            .try_for_each(|line| writeln!(f, "  {line}"))
+    }
+}
+
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// A box by two corners.
+fn corners(ends: &WorldBox) -> String {
+    let corner = |at: usize| [at, at + 1, at + 2].map(|n| coordinate(ends[n])).join(", ");
+    format!("({}) to ({})", corner(0), corner(3))
+}
+
+/// How far two boxes overlap along an axis, in real arithmetic rounded once, and which of them ends
+/// there.
+struct Along {
+    axis: usize,
+    depth: f64,
+    /// The box that ends and the one that starts, as 0 or 1.
+    ends: usize,
+}
+
+impl Along {
+    fn of(boxes: &[WorldBox; 2], axis: usize) -> Self {
+        let between = |ends: usize| {
+            let (end, start) = (boxes[ends][axis + 3], boxes[1 - ends][axis]);
+            f64::from(end) - f64::from(start)
+        };
+        let ends = usize::from(between(1) < between(0));
+        Self {
+            axis,
+            depth: between(ends),
+            ends,
+        }
+    }
+
+    fn line(&self, boxes: &[WorldBox; 2], pair: [u32; 2]) -> String {
+        let (axis, ends, starts) = (self.axis, self.ends, 1 - self.ends);
+        let meeting = if self.depth == 0.0 {
+            "touching".to_owned()
+        } else {
+            format!("overlapping by {}", length(self.depth))
+        };
+        format!(
+            "{}: box {} ends at {}, box {} starts at {}: {meeting}",
+            ["x", "y", "z"][axis],
+            pair[ends],
+            coordinate(boxes[ends][axis + 3]),
+            pair[starts],
+            coordinate(boxes[starts][axis])
+        )
+    }
+}
+
+/// Every axis on which two boxes only touch, or the one on which they overlap least.
+fn axes(boxes: &[WorldBox; 2], pair: [u32; 2]) -> Vec<String> {
+    let mut all = [0, 1, 2].map(|axis| Along::of(boxes, axis));
+    all.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+    let touching = all.iter().filter(|along| along.depth == 0.0).count();
+    let shown = all.iter().take(touching.max(1));
+    shown.map(|along| along.line(boxes, pair)).collect()
+}
+
+/// An f32 as the shortest text that reads back to it.
+fn coordinate(x: f32) -> String {
+    match x.abs() {
+        0.0 => "0".to_owned(),
+        size if (1e-4..1e7).contains(&size) => format!("{x}"),
+        _ => format!("{x:e}"),
+    }
+}
+
+/// A length, to a person's precision: seven digits.
+fn length(x: f64) -> String {
+    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
+    match x.abs() {
+        0.0 => "0".to_owned(),
+        size if (1e-4..1e7).contains(&size) => format!("{rounded}"),
+        _ => format!("{rounded:e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_name_the_ends_that_meet() {
+        let first = [0.0, 0.0, 0.0, 4.0, 2.0, 4.0];
+        let pair = [3, 7];
+        let touching = [first, [1.0, 2.0, 1.0, 3.0, 5.0, 3.0]];
+        assert_eq!(
+            axes(&touching, pair),
+            ["y: box 3 ends at 2, box 7 starts at 2: touching"]
+        );
+        let overlapping = [first, [-3.0, -1.0, -2.0, 0.5, 1.0, 2.0]];
+        assert_eq!(
+            axes(&overlapping, pair),
+            ["x: box 7 ends at 0.5, box 3 starts at 0: overlapping by 0.5"]
+        );
+        let corner = [first, [4.0, 2.0, 4.0, 5.0, 3.0, 5.0]];
+        assert_eq!(axes(&corner, pair).len(), 3);
+        // One ulp of overlap is an overlap.
+        let ulp = [first, [1.0, 2.0_f32.next_down(), 1.0, 3.0, 5.0, 3.0]];
+        assert_eq!(
+            axes(&ulp, pair),
+            ["y: box 3 ends at 2, box 7 starts at 1.9999999: overlapping by 1.192093e-7"]
+        );
+    }
+
+    #[test]
+    fn numbers_have_an_exponent_where_zeros_would_hide_them() {
+        assert_eq!(coordinate(-0.0), "0");
+        assert_eq!(coordinate(1e-45), "1e-45");
+        assert_eq!(coordinate(2.5e17), "2.5e17");
+        assert_eq!(length(131_072.0), "131072");
+        assert_eq!(length(1.0 / 3.0), "0.3333333");
+    }
+}
