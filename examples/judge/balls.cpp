@@ -1,7 +1,7 @@
 // A culler of bounding balls in f32, judged with
 //
 //     c++ -O2 -std=c++17 -o balls examples/judge/balls.cpp
-//     sdop verify --exec ./balls --wire text --claims sphere
+//     sdop judge ./balls --wire text --claims sphere
 //
 // Compiled with -DNO_MARGIN, it compares without room for its own rounding.
 #include <algorithm>

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A culler of given boxes, judged with
 
-    sdop verify --exec 'python3 examples/judge/boxes.py' --claims aabb
+    sdop judge 'python3 examples/judge/boxes.py' --claims aabb
 
 With --full-buffer it keeps at most 16 pairs for each body, and drops the rest.
 """

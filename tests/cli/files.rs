@@ -136,7 +136,7 @@ fn a_link_to_an_endless_device_ends_at_the_limit() {
         &["check", text(&record)][..],
         &["check", text(&boxes)],
         &["check", text(&case), "--pairs", text(&answers)],
-        &["verify", "--exec", "true", "--replay", text(&record)],
+        &["judge", "true", "--replay", text(&record)],
     ] {
         let message = refusal(&[args, &["--max-file-size", "1"]].concat());
         assert!(message.contains("1048576 bytes"), "{message}");

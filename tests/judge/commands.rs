@@ -43,7 +43,7 @@ fn the_python_example_passes_and_its_full_buffer_is_found_with_a_small_scene_tha
     let run = |command: &str, more: &[&str]| {
         sdop(
             directory.path(),
-            &[&["verify", "--exec", command], &cases[..], more].concat(),
+            &[&["judge", command], &cases[..], more].concat(),
         )
     };
     let (output, text) = run(&right, &[]);
@@ -59,7 +59,7 @@ fn the_python_example_passes_and_its_full_buffer_is_found_with_a_small_scene_tha
     assert!(case.matches("\"static\"").count() < 96, "{case}");
     // No scene can state boxes.
     assert!(!directory.path().join("missed-pair.toml").exists());
-    // The counter-example fails again by the command that was printed.
+    // The counter-example fails again, by the command's former name as well.
     let command = format!("{right} --full-buffer");
     let again = [
         "verify",
@@ -75,8 +75,7 @@ fn the_python_example_passes_and_its_full_buffer_is_found_with_a_small_scene_tha
     assert_eq!(sdop(directory.path(), &again).0.status.code(), Some(1));
     // And the right program passes it.
     let again = [
-        "verify",
-        "--exec",
+        "judge",
         &right,
         "--claims",
         "aabb",
@@ -92,7 +91,7 @@ fn the_python_example_passes_and_its_full_buffer_is_found_with_a_small_scene_tha
 /// person reads.
 fn silence(directory: &Path, more: &[&str]) -> (Output, String) {
     let silent = answering(RIGHT);
-    let arguments = ["verify", "--exec", &silent, "--timeout", "60", "--no-fresh"];
+    let arguments = ["judge", &silent, "--timeout", "60", "--no-fresh"];
     sdop(directory, &[&arguments[..], more].concat())
 }
 
@@ -278,10 +277,7 @@ fn a_list_of_known_failures_cannot_go_stale() {
             "--format",
             format,
         ];
-        sdop(
-            directory.path(),
-            &[&["verify", "--exec", &silent], &case[..]].concat(),
-        )
+        sdop(directory.path(), &[&["judge", &silent], &case[..]].concat())
     };
     let all: String = (0..8)
         .map(|n| format!("box/grid/000{n} # says nothing\n"))
@@ -421,7 +417,7 @@ fn no_success_without_a_reason() {
     ] {
         let case = ["--claims", "aabb", "--case", "box/grid/*", "--no-fresh"];
         let more = ["--timeout", "60", "--format", "json"];
-        let run = [&["verify", "--exec", program], &case[..], &more].concat();
+        let run = [&["judge", program], &case[..], &more].concat();
         let (output, text) = sdop(directory.path(), &run);
         assert_eq!(output.status.code(), Some(code), "{text}");
         let (why, found): (_, serde_json::Value) =

@@ -30,6 +30,7 @@ mod tradeoff;
 mod verify;
 mod view;
 
+use std::ffi::OsString;
 use std::io::Write as _;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -59,6 +60,7 @@ enum Command {
     Mesh(mesh::Args),
     Tradeoff(tradeoff::Args),
     Verify(verify::Args),
+    Judge(judge::Args),
     Merge(merge::Args),
     Cases(cases::Args),
     Check(check::Args),
@@ -83,6 +85,7 @@ impl Command {
             | Self::Cost(_)
             | Self::Advise(_)
             | Self::Mesh(_)
+            | Self::Judge(_)
             | Self::Merge(_)
             | Self::Cases(_)
             | Self::Check(_)
@@ -145,6 +148,7 @@ impl Cli {
             Command::Mesh(args) => mesh::run(&args),
             Command::Tradeoff(args) => tradeoff::run(&args),
             Command::Verify(args) => verify::run(&args),
+            Command::Judge(args) => judge::run(&args),
             Command::Merge(args) => merge::run(&args),
             Command::Cases(args) => cases::run(&args),
             Command::Check(args) => check::run(&args),
@@ -160,10 +164,10 @@ impl Cli {
 }
 
 /// Runs the program with these arguments, its own name first, and returns its exit code.
-pub fn main(arguments: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>) -> u8 {
+pub fn main(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> u8 {
     report_errors_whole();
     let ending = mpi::Ending;
-    let cli = match Cli::try_parse_from(arguments) {
+    let cli = match Cli::try_parse_from(by_present_names(arguments)) {
         Ok(cli) => cli,
         Err(told) => {
             // Nobody may be listening: that is no reason to panic.
@@ -187,6 +191,16 @@ pub fn main(arguments: impl IntoIterator<Item = impl Into<std::ffi::OsString> + 
             BAD_INPUT
         }
     }
+}
+
+/// `sdop verify --exec CMD` is now `sdop judge CMD`.
+fn by_present_names(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> Vec<OsString> {
+    let mut arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let is_exec = |argument: &OsString| argument.as_encoded_bytes().starts_with(b"--exec");
+    if arguments.get(1).is_some_and(|name| name == "verify") && arguments.iter().any(is_exec) {
+        arguments[1] = "judge".into();
+    }
+    arguments
 }
 
 impl Outcome {

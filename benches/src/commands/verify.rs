@@ -20,7 +20,6 @@ use sdop_judge::ours::rounds::{Failure, Ledger};
 
 use super::Outcome;
 use super::files::{self, ReadArgs};
-use super::judge::{self, ReportFormat};
 use super::output::{Format, emit_with_reason, print, progress};
 use super::sweep::{self, SweepArgs};
 use report::Report;
@@ -71,17 +70,15 @@ pub struct Args {
     files: ReadArgs,
     /// How the result is printed
     #[arg(long, value_enum, default_value_t)]
-    format: ReportFormat,
+    format: Format,
     #[command(flatten)]
     sweep: SweepArgs,
-    #[command(flatten)]
-    outside: judge::Outside,
 }
 
 impl Args {
     /// Whether its work is cut into units, which many can share.
     pub fn is_sweep(&self) -> bool {
-        self.record_hard_cases.is_none() && self.outside.exec.is_none()
+        self.record_hard_cases.is_none()
     }
 }
 
@@ -93,25 +90,14 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(directory) = &args.record_hard_cases {
         return record(directory);
     }
-    if let Some(command) = &args.outside.exec {
-        return judge::run(
-            &args.outside,
-            command,
-            &args.files,
-            args.time,
-            &args.out,
-            args.format,
-        );
-    }
     sweep::enter(&args.sweep)?;
-    let format = args.format.plain()?;
     let run = verification(args)?;
     let mut taken = Taken::default();
     let mut take = |unit, result: &str| taken.take(&run, unit, result);
     let Some(seconds) = args.sweep.run(&run, &args.out, &mut take)? else {
         return Ok(Outcome::Passed);
     };
-    taken.report(&run, seconds, format, &args.out)
+    taken.report(&run, seconds, args.format, &args.out)
 }
 
 /// The report of merged shards. A scene whose frames show a failure is read again, if it is where

@@ -24,7 +24,7 @@ use input::Input;
 #[derive(clap::Args)]
 #[command(
     mut_arg("scene", |arg| arg.value_name("SCENE|RECORD|CASE").help(
-        "A scene file (TOML), a record (as `sdop run --record` writes it), a case of the judge (as `sdop cases` and a miss of `sdop verify --exec` are written), or a group of hard cases (data/hard_cases/*.toml)"
+        "A scene file (TOML), a record (as `sdop run --record` writes it), a case of the judge (as `sdop cases` and a miss of `sdop judge` are written), or a group of hard cases (data/hard_cases/*.toml)"
     )),
     after_help = "Examples: sdop view data/scenes/paper-500.toml --open\n          sdop run data/scenes/paper-50.toml --record run.ndjson && sdop view run.ndjson --beside sphere"
 )]

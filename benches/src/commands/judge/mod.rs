@@ -1,4 +1,4 @@
-//! `sdop verify --exec`: any program against the exact reference.
+//! `sdop judge CMD`: any program against the exact reference.
 
 mod print;
 
@@ -22,72 +22,67 @@ use super::output::{print as say, progress};
 use super::{Outcome, files, one_of};
 pub use print::{ReportFormat, emit as emit_verdict};
 
-/// The choices for judging a program.
+/// Judge a culler of your own, in any language, by the exact reference
+///
+/// The program reads cases on standard input and answers with pairs on standard output. Every
+/// answer is compared with the exact one: a missed pair fails, an extra pair is counted. The first
+/// miss ends as the smallest case that shows it. How to write the program:
+/// `examples/judge/README.md`.
 #[derive(clap::Args)]
-pub struct Outside {
-    /// Judge this program in place of the own culler: a line for the shell that reads cases and
-    /// answers with pairs
-    #[arg(long, value_name = "CMD", help_heading = "Judging a program")]
-    pub exec: Option<String>,
+#[command(
+    after_help = "Examples: sdop judge ./my-culler --claims aabb\n          sdop judge 'python3 boxes.py' --claims aabb --no-fresh\n          sdop judge ./my-culler --replay missed-pair.ndjson"
+)]
+pub struct Args {
+    /// The program, as a line for the shell
+    #[arg(value_name = "CMD", required_unless_present = "exec")]
+    command: Option<String>,
+    /// The former name of CMD
+    #[arg(long, value_name = "CMD", hide = true, conflicts_with = "command")]
+    exec: Option<String>,
     /// What it claims never to miss
-    #[arg(long, value_name = "CLAIM", default_value_t = Claim::Mesh, value_parser = one_of::<Claim>(Claim::NAMES), requires = "exec", help_heading = "Judging a program")]
+    #[arg(long, value_name = "CLAIM", default_value_t = Claim::Mesh, value_parser = one_of::<Claim>(Claim::NAMES))]
     claims: Claim,
     /// How cases are written for it
-    #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES), requires = "exec", help_heading = "Judging a program")]
+    #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES))]
     wire: Wire,
     /// Seconds that it has for a case, and one more for each megabyte of it
-    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = seconds, requires = "exec", help_heading = "Judging a program")]
+    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = seconds)]
     timeout: f64,
     /// Cases of these names only: * stands for any text, ? for one character
-    #[arg(
-        long,
-        value_name = "GLOB",
-        default_value = "*",
-        requires = "exec",
-        help_heading = "Judging a program"
-    )]
+    #[arg(long, value_name = "GLOB", default_value = "*")]
     case: String,
     /// The seed of the fresh cases, in place of the clock's
-    #[arg(
-        long,
-        value_name = "SEED",
-        requires = "exec",
-        help_heading = "Judging a program"
-    )]
+    #[arg(long, value_name = "SEED")]
     fresh: Option<u64>,
     /// Published cases only
-    #[arg(
-        long,
-        conflicts_with = "fresh",
-        requires = "exec",
-        help_heading = "Judging a program"
-    )]
+    #[arg(long, conflicts_with = "fresh")]
     no_fresh: bool,
     /// A case from a file in place of the catalogue's
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["case", "fresh", "no_fresh"], requires = "exec", help_heading = "Judging a program")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["case", "fresh", "no_fresh"])]
     replay: Option<PathBuf>,
     /// A file with a case's name a line: these fail, and it is an error when one of them passes
-    #[arg(
-        long,
-        value_name = "FILE",
-        requires = "exec",
-        help_heading = "Judging a program"
-    )]
+    #[arg(long, value_name = "FILE")]
     known: Option<PathBuf>,
     /// Start no case after the first that fails
-    #[arg(long, requires = "exec", help_heading = "Judging a program")]
+    #[arg(long)]
     fail_fast: bool,
     /// The most extra pairs for each required one; without it they are counted only
-    #[arg(
-        long,
-        value_name = "RATIO",
-        requires = "exec",
-        help_heading = "Judging a program"
-    )]
+    #[arg(long, value_name = "RATIO")]
     extra_limit: Option<f64>,
     /// Print the smallest scene of a miss as a unit test, and write it beside the scene
-    #[arg(long, value_name = "LANGUAGE", value_parser = one_of::<Language>(Language::NAMES), requires = "exec", help_heading = "Judging a program")]
+    #[arg(long, value_name = "LANGUAGE", value_parser = one_of::<Language>(Language::NAMES))]
     as_test: Option<Language>,
+    /// Start no case after so many seconds
+    #[arg(long, value_name = "S")]
+    time: Option<u64>,
+    /// Where the case that shows a missed pair is written
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+    #[command(flatten)]
+    files: files::ReadArgs,
+    /// How the verdict is printed
+    #[arg(long, value_enum, default_value_t)]
+    format: ReportFormat,
 }
 
 /// Seconds above zero, and not more than a day.
@@ -102,14 +97,9 @@ fn seconds(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// A file that can't be read, no case of that name.
-pub fn run(
-    args: &Outside,
-    command: &str,
-    files: &files::ReadArgs,
-    time: Option<u64>,
-    out: &Path,
-    format: ReportFormat,
-) -> miette::Result<Outcome> {
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let command = args.command.as_ref().or(args.exec.as_ref());
+    let command = command.map_or("", String::as_str);
     let program = Program {
         command: command.to_owned(),
         wire: args.wire,
@@ -119,7 +109,7 @@ pub fn run(
         claim: args.claims,
         pattern: args.case.clone(),
         seed: args.seed(),
-        time: time.map(Duration::from_secs),
+        time: args.time.map(Duration::from_secs),
         fail_fast: args.fail_fast,
         extra_limit: args.extra_limit,
         known: args
@@ -130,7 +120,7 @@ pub fn run(
     };
     let verdict = match &args.replay {
         Some(path) => {
-            let case = read_case(path, files.max_bytes())?.case;
+            let case = read_case(path, args.files.max_bytes())?.case;
             examine_given(&program, &options, vec![case]).into_diagnostic()?
         }
         None => {
@@ -144,12 +134,12 @@ pub fn run(
             verdict
         }
     };
-    print::emit(format, &verdict)?;
-    save(args, command, &verdict, out, format)?;
+    print::emit(args.format, &verdict)?;
+    save(args, command, &verdict)?;
     Ok(Outcome::from(&verdict))
 }
 
-impl Outside {
+impl Args {
     /// The seed of the fresh cases: nobody can prepare for the clock's.
     fn seed(&self) -> Option<u64> {
         if self.no_fresh || self.replay.is_some() {
@@ -207,15 +197,10 @@ fn known(path: &Path) -> miette::Result<BTreeSet<String>> {
 }
 
 /// Writes the counter-example and says how to see the failure again.
-fn save(
-    args: &Outside,
-    command: &str,
-    verdict: &Verdict,
-    out: &Path,
-    format: ReportFormat,
-) -> miette::Result<()> {
+fn save(args: &Args, command: &str, verdict: &Verdict) -> miette::Result<()> {
+    let out = &args.out;
     let base = format!(
-        "sdop verify --exec '{}' --claims {} --wire {}",
+        "sdop judge '{}' --claims {} --wire {}",
         command.replace('\'', "'\\''"),
         args.claims,
         args.wire
@@ -262,7 +247,7 @@ fn save(
         );
         lines.push(format!("as found: {base} --case '{name}'{seed}"));
     }
-    match format {
+    match args.format {
         ReportFormat::Table if !lines.is_empty() => say(&lines.join("\n")),
         _ => {
             lines.iter().for_each(|line| eprintln!("{line}"));

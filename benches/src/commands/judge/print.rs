@@ -1,7 +1,6 @@
 //! A verdict printed: a table for people, JSON, CSV or JUnit's XML for programs.
 
 use clap::ValueEnum;
-use miette::miette;
 use sdop_judge::report::junit;
 use sdop_judge::verdict::GroupVerdict;
 use sdop_judge::{Conclusion, Verdict};
@@ -19,26 +18,8 @@ pub enum ReportFormat {
     Json,
     /// A header, then one line a record.
     Csv,
-    /// JUnit's XML, of a judged program alone.
+    /// JUnit's XML.
     Junit,
-}
-
-impl ReportFormat {
-    /// The format of other results than a judged program's.
-    ///
-    /// # Errors
-    /// JUnit's XML, which has no place for them.
-    pub fn plain(self) -> miette::Result<Format> {
-        match self {
-            Self::Table => Ok(Format::Table),
-            Self::Json => Ok(Format::Json),
-            Self::Csv => Ok(Format::Csv),
-            Self::Junit => Err(miette!(
-                help = "use --format json, or judge a program with --exec",
-                "JUnit's XML is for judged programs"
-            )),
-        }
-    }
 }
 
 /// All of a verdict, for programs.

@@ -52,7 +52,7 @@ pub fn read(
     }
     if answers.is_some() {
         return Err(miette!(
-            help = "cases are written by `sdop cases` and, for a miss, by `sdop verify --exec`",
+            help = "cases are written by `sdop cases` and, for a miss, by `sdop judge`",
             "--answers is for a case or record (.ndjson); {} is none",
             path.display()
         ));
