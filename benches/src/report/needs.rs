@@ -42,12 +42,7 @@ impl Step {
     fn needs(&self) -> &'static [&'static str] {
         match self {
             Self::Sdop(_) | Self::SdopPrints(..) => &[],
-            Self::Peers(_) => &[
-                "cargo",
-                "g++",
-                "libembree-dev",
-                "libbullet-dev",
-            ],
+            Self::Peers(_) => &["cargo", "g++", "libembree-dev", "libbullet-dev"],
             Self::Bullet(..) => &["cargo", "g++", "libbullet-dev"],
             Self::Rapier(..) | Self::Bench(..) | Self::Estimates(..) => &["cargo"],
             Self::Script(_, [".ci/instructions", ..]) => &["cargo", "valgrind"],
