@@ -179,6 +179,10 @@ fn nanoseconds(text: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        unused_qualifications,
+        reason = "pasted code has whole paths, for who has imported nothing"
+    )]
     use super::*;
     use sdop::settings::{Axes, DirectionSet, Finder, Overlap};
 
