@@ -63,7 +63,7 @@ type Missed = (String, Py<PyArray2<f32>>, Vec<(String, Vec<u8>)>);
 fn missed(py: Python<'_>, smallest: &Smallest, claim: Claim) -> PyResult<Missed> {
     let boxes = &smallest.case.frames[smallest.miss.frame].boxes;
     let data = serde_json::json!({
-        "case": smallest.case.name,
+        "case": smallest.from,
         "frame": smallest.miss.frame,
         "pair": smallest.miss.pair,
         "point": smallest.witness.as_ref().map(|witness| witness.decimals),

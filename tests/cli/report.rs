@@ -5,7 +5,7 @@ use std::path::Path;
 
 use sdop_bench::report::{Experiment, Store};
 
-use super::{command, sdop, text};
+use super::{command, sdop, stdout, text};
 
 const PAGE: &str = "# Page\n<!-- BEGIN frame -->\nA frame takes 1.5 ms.\n<!-- END frame -->\n";
 
@@ -383,5 +383,27 @@ fn a_record_names_the_level_that_ran() {
         assert_eq!(run.status.code(), Some(2));
         let error = String::from_utf8_lossy(&run.stderr);
         assert!(error.contains(told), "{error}");
+    }
+}
+
+/// Without a name the experiments are listed; outside of a checkout, what is missing is named.
+#[test]
+fn records_say_what_they_need() {
+    let list = stdout(&["record"]);
+    let head = list.lines().find(|line| line.contains("experiment"));
+    assert!(
+        head.is_some_and(|line| line.contains("takes") && line.contains("needs")),
+        "{list}"
+    );
+    assert!(list.contains("valgrind"), "{list}");
+    let elsewhere = tempfile::tempdir().unwrap();
+    let output = command(&["record", "reproduce", "--name", "here"])
+        .current_dir(elsewhere.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    for words in ["needs data/scenes/paper-50.toml", "root of a checkout"] {
+        assert!(said.contains(words), "{said}");
     }
 }

@@ -165,7 +165,7 @@ fn cost_covers_every_strategy_that_the_scene_has_settings_for() {
     assert_eq!(csv.lines().next(), Some(header));
     let mut rows: Vec<&str> = csv
         .lines()
-        .skip(1)
+        .filter(|line| line.contains(",sum,"))
         .filter_map(|line| line.split(',').nth(1))
         .collect();
     rows.dedup();
@@ -180,6 +180,15 @@ fn cost_covers_every_strategy_that_the_scene_has_settings_for() {
         "obb",
     ];
     assert_eq!(rows, expected, "{csv}");
+    // Counts, terms and prices.
+    for part in [
+        ",s-dop-batch,warm,or-dop,Nu,",
+        ",s-dop-batch,warm,or-dop,Nv*Cv,",
+        ",s-dop-batch,cold,or-dop,price Cv hit,",
+        ",obb,warm,obb,price Cu,",
+    ] {
+        assert!(csv.contains(part), "{part} in {csv}");
+    }
 }
 
 #[test]
@@ -197,6 +206,7 @@ fn cost_draws_where_the_time_goes() {
         text(&plot),
     ]);
     assert!(table.contains("1 passes of 9 frames") && table.contains("Cold frames"));
+    assert!(table.contains("Cu, ns") && table.contains("Cv hit, ns"));
     let svg = std::fs::read_to_string(&plot).unwrap();
     assert!(svg.starts_with("<svg ") && svg.contains("F pair finding"));
 }

@@ -27,7 +27,7 @@ fn json_is_the_documented_object() {
     #[rustfmt::skip]
     assert_eq!(keys(&report), [
         "scene", "seed", "bodies", "frames", "strategy", "pairs", "finder", "k", "axes", "overlap", "updates", "interest", "budget",
-        "simd", "threads", "counters", "seconds", "frame_seconds", "effects", "volumes_sha256", "pairs_sha256",
+        "simd", "threads", "counters", "seconds", "frame_seconds", "conditions", "effects", "volumes_sha256", "pairs_sha256",
         "pairs_digest",
     ]);
     #[rustfmt::skip]
@@ -46,6 +46,9 @@ fn json_is_the_documented_object() {
     assert_eq!(keys(&report["seconds"]), stages);
     assert_eq!(keys(&report["frame_seconds"]), ["p50", "p99", "most"]);
     assert_eq!(keys(&report["effects"][0]), ["name", "steps", "seconds"]);
+    // What else the machine did, as `cost` says it: no interval, no count of wide ones.
+    assert_eq!(keys(&report["conditions"]), ["others", "wide", "of"]);
+    assert_eq!(report["conditions"]["of"], 0);
     assert_eq!(report["scene"], "paper-50");
     assert_eq!(report["frames"], 20);
     assert_eq!(report["pairs_sha256"].as_str().unwrap().len(), 64);

@@ -95,7 +95,7 @@ fn text(advice: &Advice) -> String {
         "Use {}{sum}.\n{tied}\nBy the price of a check: {}.\n\n{}\n{}: {} bodies, {} frames ({FRAMES} at most), pairs from {}{finders}\n{}\n\nFinders, for S-DOP\n{}",
         advice.best,
         stretches.join("; "),
-        to_paste(advice),
+        to_paste(&advice.cull, advice.hulls),
         advice.scene,
         advice.bodies,
         advice.frames,
@@ -135,7 +135,7 @@ fn table(candidates: &[Candidate]) -> String {
 }
 
 /// The advice as a scene file's table, as flags, and as Rust.
-fn to_paste(advice: &Advice) -> String {
+fn to_paste(cull: &CullSettings, hulls: bool) -> String {
     let CullSettings {
         strategy,
         pairs,
@@ -143,7 +143,7 @@ fn to_paste(advice: &Advice) -> String {
         axes,
         overlap,
         ..
-    } = &advice.cull;
+    } = cull;
     let mut toml = format!("[cull]\nstrategy = \"{strategy}\"\npairs = \"{pairs}\"\n");
     let mut flags = format!("--strategy {strategy} --pairs {pairs}");
     let mut rust = format!(
@@ -158,7 +158,7 @@ fn to_paste(advice: &Advice) -> String {
             "    sdop::ShapeSpec {{ directions: sdop::DirectionSet::{k:?}, axes: sdop::Axes::{axes:?}, ..Default::default() }}\n"
         );
     }
-    let hulls = if advice.hulls {
+    let hulls = if hulls {
         "Then test each reported pair by its convex hulls, which the library leaves to you.\n"
     } else {
         ""
@@ -174,5 +174,71 @@ fn nanoseconds(text: &str) -> Result<f64, String> {
         Ok(value)
     } else {
         Err("expected a finite number of nanoseconds, 0 or more".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(
+        unused_qualifications,
+        reason = "pasted code has whole paths, for who has imported nothing"
+    )]
+    use super::*;
+    use sdop::settings::{Axes, DirectionSet, Finder, Overlap};
+
+    /// What is printed is code that compiles: this text is compiled here.
+    macro_rules! compiled {
+        ($($code:tt)*) => {{
+            let _ = $($code)*;
+            stringify!($($code)*)
+        }};
+    }
+
+    /// Whether a text has this code, whatever the white space in both.
+    fn has(text: &str, code: &str) -> bool {
+        let dense = |text: &str| text.split_whitespace().collect::<String>();
+        dense(text).contains(&dense(code))
+    }
+
+    #[test]
+    fn pasted_code_compiles() {
+        let s_dop = CullSettings {
+            strategy: Strategy::SDopSequential,
+            pairs: Finder::Neighbours,
+            k: DirectionSet::K26,
+            axes: Axes::Model,
+            overlap: Overlap::OneSided,
+            ..CullSettings::default()
+        };
+        let text = to_paste(&s_dop, true);
+        for code in [
+            compiled!(sdop::ShapeSpec {
+                directions: sdop::DirectionSet::K26,
+                axes: sdop::Axes::Model,
+                ..Default::default()
+            }),
+            compiled!(
+                sdop::Culler::builder()
+                    .strategy(sdop::Strategy::SDopSequential)
+                    .finder(sdop::Finder::Neighbours)
+                    .overlap(sdop::Overlap::OneSided)
+            ),
+        ] {
+            assert!(has(&text, code), "{text}\n{code}");
+        }
+        assert!(text.contains("--k 26 --axes model --overlap one-sided"));
+        assert!(text.contains("convex hulls"));
+        let boxes = CullSettings {
+            strategy: Strategy::Aabb,
+            ..CullSettings::default()
+        };
+        let text = to_paste(&boxes, false);
+        let code = compiled!(
+            sdop::Culler::builder()
+                .strategy(sdop::Strategy::Aabb)
+                .finder(sdop::Finder::Auto)
+        );
+        assert!(has(&text, code), "{text}");
+        assert!(!text.contains("k =") && !text.contains("hulls"), "{text}");
     }
 }

@@ -122,11 +122,11 @@ pub fn compare(first: &Path, second: &Path) -> Result<Comparison, CompareError> 
                 comparison.differ(name, "", None, digest, &b.files[name]);
             }
             Some(_) => {}
-            None => comparison.missing(name, &a.deterministic, ["the file", "no such file"]),
+            None => comparison.missing(name, [a, b], ["the file", "no such file"]),
         }
     }
     for name in b.files.keys().filter(|name| !a.files.contains_key(*name)) {
-        comparison.missing(name, &b.deterministic, ["no such file", "the file"]);
+        comparison.missing(name, [b, a], ["no such file", "the file"]);
     }
     comparison.rank();
     Ok(comparison)
@@ -184,9 +184,11 @@ impl Comparison {
         });
     }
 
-    /// A file that one record lacks.
-    fn missing(&mut self, file: &str, deterministic: &[String], [first, second]: [&str; 2]) {
-        if deterministic.iter().any(|name| name == file) {
+    /// A file that one record has and the other lacks. Earlier versions wrote records without any
+    /// file of counts; those don't lack one.
+    fn missing(&mut self, file: &str, [has, lacks]: [&Manifest; 2], [first, second]: [&str; 2]) {
+        let is_counted = has.deterministic.iter().any(|name| name == file);
+        if is_counted && !lacks.deterministic.is_empty() {
             self.differ(file, "", None, first, second);
         } else {
             self.notes.push(format!("{file}: {first}, {second}"));
@@ -463,6 +465,27 @@ mod tests {
             compare(a.path(), others.path()).unwrap().differences.len(),
             1
         );
+    }
+
+    #[test]
+    fn older_records_lack_no_counts() {
+        let older = record(COUNTS, TIMES);
+        std::fs::remove_file(older.path().join("counts.csv")).unwrap();
+        let write = |deterministic: &[&str]| {
+            let manifest = Manifest::describe(older.path(), "test", String::new(), deterministic);
+            std::fs::write(older.path().join(FILE), manifest.unwrap().text()).unwrap();
+        };
+        let newer = record(COUNTS, TIMES);
+        write(&[]);
+        let comparison = compare(older.path(), newer.path()).unwrap();
+        assert!(comparison.differences.is_empty());
+        assert_eq!(comparison.notes, ["counts.csv: no such file, the file"]);
+        // One that counts other things does lack it.
+        write(&["times.csv"]);
+        for [a, b] in [[&older, &newer], [&newer, &older]] {
+            let comparison = compare(a.path(), b.path()).unwrap();
+            assert_eq!(comparison.differences[0].file, "counts.csv");
+        }
     }
 
     #[test]

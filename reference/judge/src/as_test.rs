@@ -291,3 +291,24 @@ impl Data {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever the language reads, it is the f32 of the case.
+    #[test]
+    fn numbers_stay_the_same() {
+        let row = Data::List(vec![Data::Row(vec![0.1, -0.0, 1e-45, 16_777_216.0])]);
+        for (language, text) in [
+            (Language::Rust, "vec![[0.1, -0.0, 1e-45, 16777216.0]]"),
+            (Language::Cpp, "{{{0.1f, -0.0f, 1e-45f, 16777216.0f}}}"),
+            (
+                Language::Python,
+                "[[0.10000000149011612, -0.0, 1.401298464324817e-45, 16777216.0]]",
+            ),
+        ] {
+            assert_eq!(row.text(language), text);
+        }
+    }
+}
