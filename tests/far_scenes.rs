@@ -5,10 +5,11 @@
 use std::fmt::Write as _;
 
 use miette::Diagnostic;
-use sdop::settings::{Interest, Strategy};
+use sdop::settings::{Interest, Strategy, ViewCone};
 use sdop::simd::Tier;
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::simulate::{Simulation, SimulationError, Summary, run};
+use sdop_bench::tradeoff::truth::Judge;
 use sdop_judge::record::{FrameLine, Reader, Recorder};
 use sdop_judge::report::pose_in_text;
 use tempfile::TempDir;
@@ -86,6 +87,47 @@ fn bodies_of_interest_keep_their_numbers() {
             scene.cull.interest = Some(Interest::Bodies(vec![body]));
         }
         assert_eq!(pairs(&far), pairs(&near), "body {body}");
+    }
+}
+
+/// Looking along x, the first body sees the centre of the second, 1.135 away, and not its own.
+/// Rounded to f32, the two would be 64 apart. Pairs with a body of interest are refined.
+#[test]
+fn cones_see_exact_places() {
+    let near = ["31.5", "32.2", "33.3"];
+    for (range, expected) in [(1.0, &[[0, 1], [1, 2]][..]), (1.2, &[[0, 1]])] {
+        for places in [FAR, near] {
+            let mut scene = tetrahedra(&places, "");
+            scene.cull.strategy = Strategy::SDopObjectOfInterest;
+            scene.cull.interest = Some(Interest::Cone(ViewCone {
+                body: Some(0),
+                apex: None,
+                direction: [1.0, 0.0, 0.0],
+                half_angle: 30.0,
+                range: Some(range),
+            }));
+            assert_eq!(pairs(&scene), expected, "{places:?} to {range}");
+        }
+    }
+}
+
+/// The exact reference decides at the f64 places: rounded to f32, the last two would meet instead.
+#[test]
+fn truth_is_of_exact_places() {
+    let scene = tetrahedra(&FAR, "");
+    let judge = Judge::new(&scene.shapes).unwrap();
+    let translations = scene.fine.of(&scene.bodies);
+    let meets = |translations| judge.meetings(&scene.bodies, translations).unwrap();
+    assert_eq!(meets(translations.as_deref()), [[0, 1]]);
+    assert_eq!(meets(None), [[1, 2]]);
+    // The nearest translations at which they touch, and at which they don't.
+    for (x, pairs) in [
+        (1_000_000_032.5, &[[0, 1]][..]),
+        (1_000_000_032.5_f64.next_up(), &[]),
+    ] {
+        let mut places = translations.clone().unwrap();
+        (places[1][0], places[2][0]) = (x, 0.0);
+        assert_eq!(meets(Some(&places)), pairs, "{x}");
     }
 }
 

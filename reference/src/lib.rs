@@ -54,6 +54,9 @@ pub enum InvalidInput {
     /// A coordinate is NaN or infinite.
     #[error("{0} has a NaN or infinite number: give finite ones")]
     NotFinite(&'static str),
+    /// A coordinate of a translation that is larger than any f32, or smaller and not 0.
+    #[error("a number of the translation is beyond the range of f32: give 0, or 2⁻¹⁴⁹ to 2¹²⁸")]
+    Translation,
     /// The quaternion (0, 0, 0, 0) names no rotation.
     #[error("the quaternion is zero: give any other norm")]
     ZeroQuaternion,

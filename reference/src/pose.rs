@@ -3,11 +3,11 @@
 use crate::InvalidInput;
 use crate::linear::{Matrix, Vector, apply, norm_squared, rotation, sub};
 
-/// Where a body is: f32 numbers as given, never renormalised.
+/// Where a body is: an f32 quaternion and an f64 translation as given, never renormalised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     q: [f32; 4],
-    t: [f32; 3],
+    t: Vector<f64>,
 }
 
 impl Pose {
@@ -22,11 +22,26 @@ impl Pose {
     /// # Errors
     /// When a number is not finite or the quaternion is zero.
     pub fn new(q: [f32; 4], t: [f32; 3]) -> Result<Self, InvalidInput> {
+        Self::from_f64(q, t.map(f64::from))
+    }
+
+    /// The same with a translation that f32 may not hold. Its numbers are of f32's range, so that
+    /// what is shown of f64's range for f32 input holds.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and when a number of the translation is beyond f32's largest or, other
+    /// than 0, below its smallest.
+    pub fn from_f64(q: [f32; 4], t: Vector<f64>) -> Result<Self, InvalidInput> {
         if !q.iter().all(|x| x.is_finite()) {
             return Err(InvalidInput::NotFinite("the quaternion"));
         }
         if !t.iter().all(|x| x.is_finite()) {
             return Err(InvalidInput::NotFinite("the translation"));
+        }
+        let smallest = f64::from(f32::from_bits(1));
+        let range = smallest..=f64::from(f32::MAX);
+        if !t.iter().all(|x| *x == 0.0 || range.contains(&x.abs())) {
+            return Err(InvalidInput::Translation);
         }
         if q == [0.0; 4] {
             return Err(InvalidInput::ZeroQuaternion);
@@ -41,7 +56,7 @@ impl Pose {
 
     /// The translation as given.
     pub fn translation(&self) -> Vector<f64> {
-        self.t.map(f64::from)
+        self.t
     }
 
     /// R(q)/|q|².

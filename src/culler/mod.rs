@@ -22,6 +22,9 @@ mod replace;
 mod shapes;
 
 #[cfg(feature = "shapes")]
+#[doc(hidden)]
+pub use crate::strategy::PlacedCone;
+#[cfg(feature = "shapes")]
 pub use builder::CullerBuilder;
 #[cfg(feature = "shapes")]
 pub(crate) use check::FAR_SHAPE_HELP;

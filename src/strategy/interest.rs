@@ -22,9 +22,13 @@ pub(crate) fn mark(
             }
         }
         Interest::Cone(cone) => {
-            let cone = PlacedCone::new(cone, bodies);
+            let pose = |body: usize| {
+                let translation = bodies.translation[body].map(f64::from);
+                (bodies.rotation[body], translation)
+            };
+            let cone = PlacedCone::new(cone, cone.body.map(|body| pose(body as usize)));
             for (body, mark) in marks.iter_mut().enumerate() {
-                *mark = cone.sees(centre(body));
+                *mark = cone.sees(centre(body).map(f64::from));
             }
         }
     }
@@ -75,7 +79,8 @@ impl InterestFilter<'_> {
 const CONE_SLACK: f64 = exp2(-48);
 
 /// A view cone in the world frame.
-struct PlacedCone {
+#[derive(Debug)]
+pub struct PlacedCone {
     apex: [f64; 3],
     direction: [f64; 3],
     cosine: f64,
@@ -83,21 +88,17 @@ struct PlacedCone {
 }
 
 impl PlacedCone {
-    fn new(cone: &ViewCone, bodies: &Bodies) -> Self {
+    /// Places a cone; `pose` is that of the body that looks, if one does.
+    #[must_use]
+    pub fn new(cone: &ViewCone, pose: Option<([f32; 4], [f64; 3])>) -> Self {
         let given = cone.direction.map(f64::from);
-        let (apex, turned) = match cone.body {
-            Some(body) => {
-                let turn = rotation(bodies.rotation[body as usize]);
-                (
-                    bodies.translation[body as usize],
-                    turn.map(|row| dot(row, given)),
-                )
-            }
-            None => (cone.apex.unwrap_or_default(), given),
+        let (apex, turned) = match pose {
+            Some((q, t)) => (t, rotation(q).map(|row| dot(row, given))),
+            None => (cone.apex.unwrap_or_default().map(f64::from), given),
         };
         let length = dot(turned, turned).sqrt();
         Self {
-            apex: apex.map(f64::from),
+            apex,
             direction: turned.map(|x| x / length),
             cosine: libm::cos(f64::from(cone.half_angle).to_radians()) - CONE_SLACK,
             range: cone.range.map_or(f64::INFINITY, f64::from),
@@ -106,8 +107,9 @@ impl PlacedCone {
 
     /// The apex itself is in the cone, so a body that looks is of interest when its sphere's centre
     /// is its origin; elsewhere the centre counts, as for others.
-    fn sees(&self, centre: [f32; 3]) -> bool {
-        let way: [f64; 3] = std::array::from_fn(|i| f64::from(centre[i]) - self.apex[i]);
+    #[must_use]
+    pub fn sees(&self, centre: [f64; 3]) -> bool {
+        let way: [f64; 3] = std::array::from_fn(|i| centre[i] - self.apex[i]);
         let distance = dot(way, way).sqrt();
         distance <= self.range && dot(way, self.direction) >= self.cosine * distance
     }

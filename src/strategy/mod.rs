@@ -27,6 +27,8 @@ mod time_critical;
 #[cfg(feature = "shapes")]
 pub(crate) use frame::{Inputs, Scratch, cull, makes_rows};
 #[cfg(feature = "shapes")]
+pub use interest::PlacedCone;
+#[cfg(feature = "shapes")]
 pub(crate) use interest::mark;
 pub(crate) use listing::{BoxInputs, BoxTest, list_boxes};
 pub(crate) use output::Output;

@@ -165,6 +165,40 @@ fn a_figure_of_a_record_is_its_copy() {
     assert!(said.contains("paper/figures/costs.svg"), "{said}");
 }
 
+/// The figure and its part of a page appear with the record.
+#[test]
+fn a_figure_is_drawn_from_its_table() {
+    let root = repository();
+    let path = |name: &str| root.path().join(name);
+    std::fs::write(path("data/record/quoted.toml"), "machine = \"box\"\n").unwrap();
+    let part = "{% if is_recorded(\"kernels/far/far.csv\") %}far{% else %}near{% endif %}\n";
+    template(root.path(), "pages/PAGE.md", part);
+    let page = |expected: &str| {
+        let rendered = sdop(&["report", "--root", text(root.path())]);
+        let said = String::from_utf8_lossy(&rendered.stderr);
+        assert_eq!(rendered.status.code(), Some(0), "{said}");
+        assert_eq!(std::fs::read_to_string(path("PAGE.md")).unwrap(), expected);
+    };
+    page("near\n");
+    let record = path("data/record/box/kernels/far");
+    std::fs::create_dir_all(&record).unwrap();
+    let table = "series,distance,pairs,lost,extra,ns_per_body\n\"f32\",0e0,900,0,0,80.5\n\
+        \"f32\",1e7,700,300,100,70.0\n\"f64\",0e0,900,0,0,90.5\n\"f64\",1e11,901,0,1,91.0\n";
+    std::fs::write(record.join("far.csv"), table).unwrap();
+    adopt(root.path(), "kernels/far", "box");
+    page("far\n");
+    let figure = path("paper/figures/far.svg");
+    let svg = std::fs::read_to_string(&figure).unwrap();
+    for word in ["f32", "f64", "1e11", "ns per body"] {
+        assert!(svg.contains(word), "{word}: {svg}");
+    }
+    assert_eq!(check(root.path()).0, Some(0));
+    edit(&figure, "ns per body", "ms per body");
+    let (code, said) = check(root.path());
+    assert_eq!(code, Some(1));
+    assert!(said.contains("paper/figures/far.svg"), "{said}");
+}
+
 /// Runs git in a repository of its own.
 fn git(root: &Path, arguments: &[&str]) {
     let status = std::process::Command::new("git")

@@ -126,6 +126,33 @@ fn shards_merged_are_the_whole() {
     }
 }
 
+/// A pass is about all that was asked for.
+#[test]
+fn a_run_cut_short_is_incomplete() {
+    let place = Place::new();
+    let whole = report(&place.verify(&[]));
+    assert_eq!(whole["conclusion"], "pass");
+    assert_eq!(whole["judged"], whole["asked"]);
+    assert_eq!(whole["why"], Value::Null);
+
+    let output = place.verify(&["--time", "0"]);
+    assert_eq!(output.status.code(), Some(3));
+    let short: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(short["conclusion"], "incomplete");
+    assert_eq!(short["asked"], whole["asked"]);
+    let [asked, judged] = ["asked", "judged"].map(|key| short[key].as_u64().unwrap());
+    assert!(0 < judged && judged < asked, "{judged} of {asked}");
+    let left = asked - judged;
+    let why = format!("{judged} of {asked} units were judged: --time left no room for {left}");
+    assert_eq!(short["why"], why);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.ends_with(&format!("sdop: {why}\n")), "{said}");
+    let table = sdop(&[&VERIFY[..11], &["--time", "0"]].concat());
+    assert_eq!(table.status.code(), Some(3));
+    let said = String::from_utf8_lossy(&table.stdout);
+    assert!(said.contains("INCOMPLETE: "), "{said}");
+}
+
 #[test]
 fn shards_of_different_work_are_not_merged() {
     let place = Place::new();

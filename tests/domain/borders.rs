@@ -37,7 +37,7 @@ fn judge(what: &str, shapes: &[Shape], frames: &[Bodies]) {
     let judge = Judge::new(shapes).unwrap();
     let truth: Vec<_> = frames
         .iter()
-        .map(|poses| judge.meetings(poses).unwrap())
+        .map(|poses| judge.meetings(poses, None).unwrap())
         .collect();
     // Every strategy and finder on eight ranks, and each on one more number of them in turn.
     let mut others = [2, 13, 3, 1].into_iter().cycle();

@@ -239,7 +239,7 @@ fn what_needs_one_order_over_all_pairs_is_refused_on_many_ranks() {
     let fine = fine.build_exact().unwrap();
     assert_eq!(
         refusal(&fine),
-        "translations that f32 doesn't hold on 2 ranks"
+        "`poses` with the translation [0.1, 0.0, 0.0], whose nearest f32 is [0.1, 0.0, 0.0], on 2 ranks"
     );
 }
 

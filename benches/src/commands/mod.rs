@@ -204,6 +204,16 @@ fn by_present_names(arguments: impl IntoIterator<Item = impl Into<OsString>>) ->
 }
 
 impl Outcome {
+    /// The outcome of a verdict, and why it is not [`Conclusion::Pass`].
+    fn new(conclusion: Conclusion, why: Option<String>) -> Self {
+        let why = why.unwrap_or_default();
+        match conclusion {
+            Conclusion::Pass => Self::Passed,
+            Conclusion::Incomplete => Self::Incomplete(why),
+            Conclusion::NotPassed => Self::Failed(why),
+        }
+    }
+
     /// The exit code. Why it is 1 or 3 goes to standard error, on one line.
     fn into_code(self) -> u8 {
         let (code, why) = match self {
@@ -221,12 +231,7 @@ impl Outcome {
 
 impl From<&Verdict> for Outcome {
     fn from(verdict: &Verdict) -> Self {
-        let why = verdict.why().unwrap_or_default();
-        match verdict.conclusion() {
-            Conclusion::Pass => Self::Passed,
-            Conclusion::Incomplete => Self::Incomplete(why),
-            Conclusion::NotPassed => Self::Failed(why),
-        }
+        Self::new(verdict.conclusion(), verdict.why())
     }
 }
 

@@ -1,6 +1,8 @@
 //! `sdop report`: renders every page's numbers from the records, or checks that they are what the
 //! records say.
 
+mod far;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -55,6 +57,9 @@ const FIGURES: [(&str, &str); 8] = [
         "paper/figures/tradeoff-budget.svg",
     ),
 ];
+
+/// The table that a figure is drawn from, and the figure.
+const FAR: (&str, &str) = ("kernels/far/far.csv", "paper/figures/far.svg");
 
 /// Macros that pages share.
 const MACROS: &str = "paper/quantities.jinja";
@@ -112,7 +117,15 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         }
     }
     for (from, to) in FIGURES {
-        problems.extend(copy(args, &whole, from, to)?);
+        if let Ok(text) = whole.text(from) {
+            problems.extend(figure(args, &whole.place(from), &text, to)?);
+        }
+    }
+    if let (table, to) = FAR
+        && whole.is_recorded(table)
+    {
+        let text = far::draw(&whole.table(table)?)?;
+        problems.extend(figure(args, &whole.place(table), &text, to)?);
     }
     let quantities = Arc::new(Quantities::default());
     let macros = std::fs::read_to_string(args.root.join(MACROS)).unwrap_or_default();
@@ -212,18 +225,13 @@ fn list(quantities: &Quantities) -> miette::Result<()> {
     print(&table.to_string())
 }
 
-/// Copies a figure out of the record that is quoted, or says that the copy differs. A record
-/// without it has none.
-fn copy(args: &Args, store: &Store, from: &str, to: &str) -> miette::Result<Option<String>> {
-    let Ok(text) = store.text(from) else {
-        return Ok(None);
-    };
+/// Writes a figure of the record that is quoted, or says that the one which is there differs.
+fn figure(args: &Args, from: &str, text: &str, to: &str) -> miette::Result<Option<String>> {
     let path = args.root.join(to);
     if std::fs::read_to_string(&path).is_ok_and(|copy| copy == text) {
         return Ok(None);
     }
     if args.check {
-        let from = store.place(from);
         return Ok(Some(format!("{to}: differs from {from}; run sdop report")));
     }
     write(&path, text)?;

@@ -125,12 +125,6 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         None => None,
     };
     let judge = if args.truth {
-        if !scene.fine.is_empty() {
-            miette::bail!(
-                help = "leave --truth out, or round the translations to f32",
-                "--truth, and translations that f32 doesn't hold: the exact reference reads f32 poses"
-            );
-        }
         Some(Judge::new(&scene.shapes).map_err(TradeoffError::from)?)
     } else {
         None
@@ -143,7 +137,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         if let Some(recorder) = &mut recorder {
             let mut line = sdop_bench::record::frame_line(frame, scene.cull.strategy);
             if let Some(judge) = &judge {
-                line.meets = Some(judge.meetings(frame.bodies).map_err(TradeoffError::from)?);
+                let meets = judge.meetings(frame.bodies, line.translations.as_deref());
+                line.meets = Some(meets.map_err(TradeoffError::from)?);
             }
             recorder.frame(&line).or_report()?;
         }

@@ -32,7 +32,7 @@ use report::Report;
 /// matrix at the end says how often. Each list is held against the exact answers and against that
 /// of all-pairs. Given boxes are held against their definition. A missed pair, a list that differs
 /// from all-pairs' and an empty cell of the matrix end in exit code 1, the first two with the
-/// smallest scene that shows it.
+/// smallest scene that shows it. A run that --time cuts short is INCOMPLETE: exit code 3.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100\n          \
@@ -51,7 +51,8 @@ pub struct Args {
     /// The first seed
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     first_seed: u64,
-    /// Start no round after so many seconds
+    /// Start no round after so many seconds; without all rounds the result is INCOMPLETE, exit code
+    /// 3
     #[arg(long, value_name = "S", conflicts_with = "shard")]
     time: Option<u64>,
     /// Frames of each scene
@@ -150,6 +151,8 @@ fn verification(args: &Args) -> miette::Result<Verification> {
 /// What units have given.
 #[derive(Default)]
 struct Taken {
+    /// How many.
+    units: usize,
     ledgers: BTreeMap<Origin, Ledger>,
     /// The first unit of each that knows of a failure.
     failed: BTreeMap<Origin, usize>,
@@ -157,6 +160,7 @@ struct Taken {
 
 impl Taken {
     fn take(&mut self, run: &Verification, unit: usize, result: &str) -> miette::Result<()> {
+        self.units += 1;
         for (origin, ledger, failed) in run.take(unit, result)? {
             self.ledgers.entry(origin).or_default().add(ledger);
             if failed {
@@ -189,12 +193,11 @@ impl Taken {
         }
         let none = Ledger::default();
         let boxes = self.ledgers.get(&Origin::Boxes).unwrap_or(&none);
-        report.finish(seconds, &boxes.boxes, run.rotation());
+        let units = [run.units(), self.units];
+        report.finish(units, seconds, &boxes.boxes, run.rotation());
         let why = report.why();
         emit_with_reason(format, &report, why.as_deref(), Report::tables)?;
-        let Some(why) = why else {
-            return Ok(Outcome::Passed);
-        };
+        let outcome = Outcome::new(report.conclusion(), why);
         if let Some((origin, &unit)) = self.failed.first_key_value() {
             let judged = run.judge(unit)?.into_iter().filter(|(of, _)| of == origin);
             let ledger = judged.map(|(_, ledger)| ledger).next().unwrap_or_default();
@@ -204,7 +207,7 @@ impl Taken {
                 (None, None) => print("the failure doesn't show on this machine")?,
             }
         }
-        Ok(Outcome::Failed(why))
+        Ok(outcome)
     }
 }
 

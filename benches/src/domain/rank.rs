@@ -279,9 +279,12 @@ fn decider(balls: &Balls, [i, j]: [u32; 2]) -> usize {
 fn supported(scene: &Scene, ranks: usize) -> Result<(), DomainError> {
     let refuse = |what: String, hint| Err(DomainError::Unsupported { what, ranks, hint });
     let strategy = scene.cull.strategy;
-    if !scene.fine.is_empty() {
-        let hint = "ranks exchange f32 poses: take one process, or round the translations to f32";
-        return refuse("translations that f32 doesn't hold".to_owned(), hint);
+    if let Some((exact, nearest)) = scene.fine.first() {
+        let hint =
+            "ranks exchange f32 poses: leave mpirun out, or write the nearest f32 into `poses`";
+        let what =
+            format!("`poses` with the translation {exact:?}, whose nearest f32 is {nearest:?},");
+        return refuse(what, hint);
     }
     if ranks > 1 && strategy.scheme().has_budget() {
         let hint =

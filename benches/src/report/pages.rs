@@ -11,6 +11,7 @@
 //! | `csv("experiment/file.csv")` | rows, objects of cells; a column `a.b` is `row.a.b` |
 //! | `md("experiment/file.md", n)` | the same of the table that comes n-th in a Markdown file, from 0 |
 //! | `json("experiment/file.json")`, `text(…)` | the value; the file as it is |
+//! | `is_recorded("experiment/file.csv")` | whether the file is there: a part of a page may wait for its record |
 //! | `record("experiment")`, `records(…)` | the manifest, with `id` and `place`; every machine's |
 //! | `rows \| where(column=value, …)`, `rows \| one(column=value, …)` | the rows with these cells; the only one, or an error |
 //! | `x \| fixed(2)`, `x \| sig(3)`, `n \| thousands`, `x \| percent(1)` | digits behind the point; digits that count; 12,345; 12.3 |
@@ -208,6 +209,8 @@ fn add_readers(environment: &mut Environment<'_>, store: &Arc<Store>) {
     });
     let from = store.clone();
     environment.add_function("text", move |path: &str| from.text(path).map_err(lost));
+    let from = store.clone();
+    environment.add_function("is_recorded", move |path: &str| from.is_recorded(path));
     let from = store.clone();
     environment.add_function("record", move |name: &str| described(&from, name));
     let from = store.clone();

@@ -31,6 +31,12 @@ impl FineTranslations {
         self.0.is_empty()
     }
 
+    /// The first that f32 doesn't hold, in f64 and in the nearest f32.
+    #[must_use]
+    pub fn first(&self) -> Option<([f64; 3], [f32; 3])> {
+        self.0.first().map(|&(_, t)| (t, rounded(t)))
+    }
+
     /// All translations in f64, if f32 doesn't hold some of them.
     #[must_use]
     pub fn of(&self, bodies: &Bodies) -> Option<Vec<[f64; 3]>> {

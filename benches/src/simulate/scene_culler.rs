@@ -6,10 +6,12 @@ use super::SimulationError;
 use crate::scene::Scene;
 use sdop::bodies::Bodies;
 use sdop::counters::{Counters, Seconds};
-use sdop::culler::{CullError, Culler};
+use sdop::culler::{Culler, PlacedCone};
 use sdop::pairs::PairList;
-use sdop::settings::{CullSettings, Finder, Interest, SettingsError};
+use sdop::rounding::pose::{rotate_of, rotation};
+use sdop::settings::{CullSettings, Finder, Interest, ViewCone};
 use sdop::simd::Tier;
+use sdop::volume::Shape;
 use sdop::world::{Body, BodyId, World};
 
 /// Culls a scene's bodies, frame by frame.
@@ -24,6 +26,8 @@ pub(super) enum SceneCuller {
 pub(super) struct FineCuller {
     world: World,
     ids: Vec<BodyId>,
+    /// From each body's origin to its sphere's centre, in the body frame; empty without a cone.
+    centres: Vec<[f64; 3]>,
     pairs: PairList,
     /// Seconds that passed outside of the culler, for poses and origins.
     placing: f64,
@@ -53,11 +57,23 @@ impl SceneCuller {
         let ids = bodies
             .map(|body| world.insert(body))
             .collect::<Result<Vec<_>, _>>()?;
-        world.set_interest(&interest(&scene.cull, &ids)?)?;
+        let mut centres = Vec::new();
+        match &scene.cull.interest {
+            None => (),
+            Some(Interest::Bodies(list)) => {
+                let listed: Vec<_> = list.iter().map(|&body| ids[body as usize]).collect();
+                world.set_interest(&listed)?;
+            }
+            Some(Interest::Cone(_)) => {
+                let shape = |&shape: &u32| centre(&scene.shapes[shape as usize]);
+                centres = scene.bodies.shape.iter().map(shape).collect();
+            }
+        }
         Ok(Self::World(Box::new(FineCuller {
             placing: (start.elapsed().as_secs_f64() - world.seconds().construct).max(0.0),
             world,
             ids,
+            centres,
             pairs: PairList::default(),
         })))
     }
@@ -66,7 +82,7 @@ impl SceneCuller {
     pub fn cull(&mut self, scene: &Scene, bodies: &Bodies) -> Result<(), SimulationError> {
         match self {
             Self::Columns(culler) => culler.cull(bodies).map(|_| ())?,
-            Self::World(fine) => fine.cull(bodies, scene.fine.of(bodies).as_deref())?,
+            Self::World(fine) => fine.cull(scene, bodies)?,
         }
         Ok(())
     }
@@ -113,18 +129,19 @@ impl SceneCuller {
 }
 
 impl FineCuller {
-    fn cull(
-        &mut self,
-        bodies: &Bodies,
-        translations: Option<&[[f64; 3]]>,
-    ) -> Result<(), SimulationError> {
+    fn cull(&mut self, scene: &Scene, bodies: &Bodies) -> Result<(), SimulationError> {
         let (start, before) = (Instant::now(), self.world.seconds().total);
+        let translations = scene.fine.of(bodies);
+        let translations = translations.as_deref();
         for (body, &id) in self.ids.iter().enumerate() {
             // Static bodies stay where they were inserted.
             if bodies.dynamic[body] {
                 let posed = posed(bodies, translations, body);
                 self.world.set_pose(id, posed.rotation, posed.translation)?;
             }
+        }
+        if let Some(Interest::Cone(cone)) = &scene.cull.interest {
+            self.look(cone, bodies, translations)?;
         }
         let pairs = self.world.cull()?;
         self.pairs = pairs
@@ -135,6 +152,41 @@ impl FineCuller {
         self.placing += (start.elapsed().as_secs_f64() - culling).max(0.0);
         Ok(())
     }
+
+    /// Of interest are the bodies whose spheres' centres lie in the cone, both in f64.
+    fn look(
+        &mut self,
+        cone: &ViewCone,
+        bodies: &Bodies,
+        translations: Option<&[[f64; 3]]>,
+    ) -> Result<(), SimulationError> {
+        let pose = |body: usize| {
+            let Body {
+                rotation,
+                translation,
+                ..
+            } = posed(bodies, translations, body);
+            (rotation, translation)
+        };
+        let cone = PlacedCone::new(cone, cone.body.map(|body| pose(body as usize)));
+        let is_seen = |body: usize| {
+            let (q, t) = pose(body);
+            let centre = rotate_of(&rotation(q), self.centres[body]);
+            cone.sees([0, 1, 2].map(|axis| centre[axis] + t[axis]))
+        };
+        let ids = self.ids.iter().enumerate();
+        let seen: Vec<_> = ids
+            .filter(|&(body, _)| is_seen(body))
+            .map(|(_, &id)| id)
+            .collect();
+        Ok(self.world.set_interest(&seen)?)
+    }
+}
+
+/// A sphere's centre as seen from the origin that poses place.
+fn centre(shape: &Shape) -> [f64; 3] {
+    let (offset, centre) = (shape.pose_offset, shape.ball.centre);
+    [0, 1, 2].map(|axis| offset[axis] + f64::from(centre[axis]))
 }
 
 /// A body of the first shape at its pose, with its translation in f64.
@@ -142,17 +194,4 @@ fn posed(bodies: &Bodies, translations: Option<&[[f64; 3]]>, body: usize) -> Bod
     let rounded = || bodies.translation[body].map(f64::from);
     let translation = translations.map_or_else(rounded, |all| all[body]);
     Body::at(0, bodies.rotation[body], translation)
-}
-
-/// The bodies of interest in a world.
-fn interest(settings: &CullSettings, ids: &[BodyId]) -> Result<Vec<BodyId>, CullError> {
-    match &settings.interest {
-        None => Ok(Vec::new()),
-        Some(Interest::Bodies(list)) => Ok(list.iter().map(|&body| ids[body as usize]).collect()),
-        Some(Interest::Cone(_)) => Err(SettingsError::Interest {
-            problem: "a view cone, and translations that f32 doesn't hold".to_owned(),
-            hint: "list the bodies of interest, or round the translations to f32",
-        }
-        .into()),
-    }
 }

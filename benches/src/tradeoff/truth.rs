@@ -129,7 +129,7 @@ impl Judge {
         }
         let truth = samples
             .par_iter()
-            .map(|sample| self.meetings(&sample.bodies))
+            .map(|sample| self.meetings(&sample.bodies, None))
             .collect::<Result<Truth, _>>()?;
         if let Some(file) = file {
             write(&file, samples, &truth)
@@ -138,13 +138,23 @@ impl Judge {
         Ok(truth)
     }
 
-    /// The pairs, not both static, whose meshes meet.
+    /// The pairs, not both static, whose meshes meet. `translations` are those of all bodies, where
+    /// f32 doesn't hold them all.
     ///
     /// # Errors
     /// A pose that the reference refuses.
-    pub fn meetings(&self, bodies: &Bodies) -> Result<Vec<[u32; 2]>, InvalidInput> {
-        let poses = poses(bodies)?;
-        let mut pairs = self.candidates(bodies);
+    pub fn meetings(
+        &self,
+        bodies: &Bodies,
+        translations: Option<&[[f64; 3]]>,
+    ) -> Result<Vec<[u32; 2]>, InvalidInput> {
+        let poses = match translations {
+            None => poses(bodies)?,
+            Some(all) => (bodies.rotation.iter().zip(all))
+                .map(|(q, t)| Pose::from_f64(*q, *t))
+                .collect::<Result<_, _>>()?,
+        };
+        let mut pairs = self.candidates(bodies, &poses);
         pairs.retain(|&[i, j]| self.meet(bodies, &poses, i as usize, j as usize));
         Ok(pairs)
     }
@@ -152,8 +162,8 @@ impl Judge {
     /// The pairs i < j, sorted, that [`Self::near`] can't exclude and that aren't both static.
     /// Bodies are swept in the order of their x, so that ten thousand of them don't make fifty
     /// million pairs.
-    fn candidates(&self, bodies: &Bodies) -> Vec<[u32; 2]> {
-        let x = |body: usize| f64::from(bodies.translation[body][0]);
+    fn candidates(&self, bodies: &Bodies, poses: &[Pose]) -> Vec<[u32; 2]> {
+        let x = |body: usize| poses[body].translation()[0];
         let reach = |body: usize| self.reaches[bodies.shape[body] as usize];
         let farthest = (0..bodies.len()).map(reach).fold(0.0, f64::max);
         let mut order: Vec<usize> = (0..bodies.len()).collect();
@@ -164,7 +174,7 @@ impl Judge {
             let end = 1.000_002 * (reach(i) + farthest);
             for &j in order[at + 1..].iter().take_while(|&&j| x(j) - x(i) <= end) {
                 let moving = bodies.dynamic[i] || bodies.dynamic[j];
-                if moving && self.near(bodies, i, j) {
+                if moving && self.near(bodies, poses, i, j) {
                     pairs.push([i.min(j) as u32, i.max(j) as u32]);
                 }
             }
@@ -237,8 +247,8 @@ impl Judge {
 
     /// Both meshes lie within their reaches of the body origins; the slack is far above f64's
     /// rounding.
-    fn near(&self, bodies: &Bodies, i: usize, j: usize) -> bool {
-        let [a, b] = [i, j].map(|body| bodies.translation[body].map(f64::from));
+    fn near(&self, bodies: &Bodies, poses: &[Pose], i: usize, j: usize) -> bool {
+        let [a, b] = [i, j].map(|body| poses[body].translation());
         let squared: f64 = a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum();
         let reach: f64 = [i, j]
             .iter()
@@ -333,6 +343,8 @@ fn hash(samples: &[Sample], truth: &Truth) -> String {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
     use super::*;
     use crate::random::Stream;
 
@@ -350,16 +362,17 @@ mod tests {
             let shape = if body == 150 { 2 } else { body % 2 };
             bodies.push(shape, body % 3 > 0, [0.0, 0.0, 0.0, 1.0], at);
         }
+        let poses = poses(&bodies).unwrap();
         let mut all = Vec::new();
         for i in 0..bodies.len() {
             for j in i + 1..bodies.len() {
                 let moving = bodies.dynamic[i] || bodies.dynamic[j];
-                if moving && judge.near(&bodies, i, j) {
+                if moving && judge.near(&bodies, &poses, i, j) {
                     all.push([i as u32, j as u32]);
                 }
             }
         }
         assert!((30..3000).contains(&all.len()), "{}", all.len());
-        assert_eq!(judge.candidates(&bodies), all);
+        assert_eq!(judge.candidates(&bodies, &poses), all);
     }
 }

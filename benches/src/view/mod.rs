@@ -24,8 +24,7 @@ use sdop::bodies::Bodies;
 use sdop_judge::record::FrameLine;
 
 /// Has every frame know which meshes meet, in exact arithmetic; frames that know it already stay as
-/// they are, and so do those with translations that f32 doesn't hold, which the exact reference
-/// doesn't read. `done` is called once per frame, from any thread.
+/// they are. `done` is called once per frame, from any thread.
 ///
 /// # Errors
 /// Numbers that the exact reference refuses; none that a reader of records let through.
@@ -33,10 +32,10 @@ pub fn decide_truth(show: &mut Show, done: impl Fn() + Sync) -> Result<(), Trade
     let judge = Judge::new(&show.shapes)?;
     let bodies = &show.bodies;
     let decide = |frame: &mut FrameLine| -> Result<(), TradeoffError> {
-        if frame.meets.is_none() && frame.translations.is_none() {
+        if frame.meets.is_none() {
             let mut posed: Bodies = bodies.clone();
             frame.pose(&mut posed);
-            frame.meets = Some(judge.meetings(&posed)?);
+            frame.meets = Some(judge.meetings(&posed, frame.translations.as_deref())?);
         }
         done();
         Ok(())

@@ -156,10 +156,15 @@ pub fn quaternions() -> impl Strategy<Value = [f32; 4]> {
     prop::array::uniform4(-1.0f32..1.0).prop_filter("non-zero", |q| q.iter().any(|x| x.abs() > 0.1))
 }
 
-/// Poses whose translation is within `reach` in each coordinate.
+/// Poses whose translation is within `reach` in each coordinate, most of them of f64.
 pub fn poses(reach: f32) -> impl Strategy<Value = Pose> {
-    let translations = prop::array::uniform3(-reach..reach);
-    (quaternions(), translations).prop_map(|(q, t)| Pose::new(q, t).unwrap())
+    let reach = f64::from(reach);
+    let coordinate = prop_oneof![
+        1 => (-reach..reach).prop_map(|x| f64::from(x as f32)),
+        2 => -reach..reach,
+    ];
+    let translations = prop::array::uniform3(coordinate);
+    (quaternions(), translations).prop_map(|(q, t)| Pose::from_f64(q, t).unwrap())
 }
 
 /// Seeded draws (SplitMix64) for suites that count, where shrinking means nothing.

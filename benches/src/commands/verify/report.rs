@@ -3,6 +3,7 @@
 
 mod coverage;
 
+use sdop_judge::Conclusion;
 use sdop_judge::ours::Predicate;
 use sdop_judge::ours::boxes::BoxLedger;
 use sdop_judge::ours::matrix::Matrix;
@@ -16,6 +17,12 @@ use coverage::Coverage;
 /// The result of `sdop verify`.
 #[derive(Serialize)]
 pub struct Report {
+    /// The verdict in one word.
+    conclusion: Conclusion,
+    /// Units of work that were asked for.
+    asked: usize,
+    /// Those that were judged: `--time` may have left no room for the others.
+    judged: usize,
     /// Tiers that took part.
     simd: Vec<String>,
     /// Wall time.
@@ -73,6 +80,9 @@ struct StrategyReport {
 impl Report {
     pub fn new(tiers: &[String]) -> Self {
         Self {
+            conclusion: Conclusion::Incomplete,
+            asked: 0,
+            judged: 0,
             simd: tiers.to_vec(),
             seconds: 0.0,
             missed: 0,
@@ -105,26 +115,60 @@ impl Report {
         });
     }
 
-    pub fn finish(&mut self, seconds: f64, boxes: &BoxLedger, rotation: &Rotation) {
+    /// Concludes, once all sources are there: so many units were asked for, and so many judged.
+    pub fn finish(
+        &mut self,
+        [asked, judged]: [usize; 2],
+        seconds: f64,
+        boxes: &BoxLedger,
+        rotation: &Rotation,
+    ) {
+        [self.asked, self.judged] = [asked, judged];
         self.seconds = seconds;
         self.differ += boxes.wrong();
         self.coverage = Coverage::of(&self.matrix, boxes, rotation);
+        self.conclusion = self.conclude();
     }
 
-    /// What is wrong, if anything is: a pair is missed, a finder disagrees with all-pairs, or a
-    /// cell of the matrix is empty.
-    pub fn why(&self) -> Option<String> {
-        if self.missed > 0 {
-            Some(format!("{} pairs were missed", self.missed))
-        } else if self.differ > 0 {
-            Some(format!(
-                "lists differ from all-pairs' in {} pairs",
-                self.differ
-            ))
-        } else if !self.coverage.is_full() {
-            Some("a cell of the matrix is empty".to_owned())
+    /// What units left out would have filled may be empty.
+    fn conclude(&self) -> Conclusion {
+        if self.missed > 0 || self.differ > 0 {
+            Conclusion::NotPassed
+        } else if self.judged < self.asked {
+            Conclusion::Incomplete
+        } else if self.coverage.is_full() {
+            Conclusion::Pass
         } else {
-            None
+            Conclusion::NotPassed
+        }
+    }
+
+    /// The verdict.
+    pub fn conclusion(&self) -> Conclusion {
+        self.conclusion
+    }
+
+    /// Why it is not [`Conclusion::Pass`]: a pair is missed, a finder disagrees with all-pairs,
+    /// units were not run, or a cell of the matrix is empty.
+    pub fn why(&self) -> Option<String> {
+        let &Self {
+            missed,
+            differ,
+            asked,
+            judged,
+            ..
+        } = self;
+        match self.conclusion {
+            Conclusion::Pass => None,
+            Conclusion::Incomplete => Some(format!(
+                "{judged} of {asked} units were judged: --time left no room for {}",
+                asked - judged
+            )),
+            Conclusion::NotPassed if missed > 0 => Some(format!("{missed} pairs were missed")),
+            Conclusion::NotPassed if differ > 0 => {
+                Some(format!("lists differ from all-pairs' in {differ} pairs"))
+            }
+            Conclusion::NotPassed => Some("a cell of the matrix is empty".to_owned()),
         }
     }
 
@@ -174,8 +218,11 @@ impl Report {
             text += &format!("{}\n{answers}\n{lists}\n\n", source.name);
         }
         text + &format!(
-            "{}\n\n{} missed, {} differ from all-pairs, in {:.0} s on {}",
+            "{}\n\n{}: {} of {} units judged, {} missed, {} differ from all-pairs, in {:.0} s on {}",
             self.coverage.tables(),
+            self.conclusion,
+            self.judged,
+            self.asked,
             self.missed,
             self.differ,
             self.seconds,
@@ -199,5 +246,32 @@ fn strategy((row, count): (&Judged, &sdop_judge::ours::Count)) -> StrategyReport
         margin_per_million: rate(count.margin, count.judged).filter(|_| !budgeted),
         bound_per_million: rate(count.bound, count.judged).filter(|_| !budgeted),
         looseness_per_million: rate(count.loose, count.meshes_judged),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sdop::Tier;
+
+    use super::*;
+
+    #[test]
+    fn a_failure_outweighs_missing_units() {
+        use Conclusion::{Incomplete, NotPassed};
+        let short = "3 of 4 units were judged: --time left no room for 1";
+        let differ = "lists differ from all-pairs' in 5 pairs";
+        for (wrong, judged, conclusion, why) in [
+            ([0, 0], 3, Incomplete, short),
+            ([2, 5], 3, NotPassed, "2 pairs were missed"),
+            ([0, 5], 3, NotPassed, differ),
+            ([0, 0], 4, NotPassed, "a cell of the matrix is empty"),
+        ] {
+            let mut report = Report::new(&[]);
+            [report.missed, report.differ] = wrong;
+            let rotation = Rotation::new(&[Tier::detect()]);
+            report.finish([4, judged], 1.0, &BoxLedger::default(), &rotation);
+            assert_eq!(report.conclusion(), conclusion);
+            assert_eq!(report.why().as_deref(), Some(why));
+        }
     }
 }

@@ -1,0 +1,122 @@
+//! The figure of the record `kernels/far`: wrong pairs and time against distance from the origin.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::ops::Range;
+
+use miette::miette;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use sdop_bench::report::Table;
+use serde_json::{Map, Value};
+
+use crate::commands::palette::{BLUE, GREEN, PALE, VERMILION};
+
+const FONT: &str = "sans-serif";
+/// Where the axis of distances, which is logarithmic, has the origin.
+const ORIGIN: f64 = 100.0;
+const COLOURS: [RGBColor; 3] = [VERMILION, BLUE, GREEN];
+
+/// Points of each series, by its name.
+type Curves = BTreeMap<String, Vec<(f64, f64)>>;
+type Drawn = Result<(), Box<dyn Error>>;
+
+/// The figure, as SVG.
+///
+/// # Errors
+/// A table without these columns.
+pub fn draw(table: &Table) -> miette::Result<String> {
+    let (mut wrong, mut time) = (Curves::new(), Curves::new());
+    for row in &table.rows {
+        let (name, distance, [share, nanoseconds]) = point(row).ok_or_else(|| {
+            miette!("`kernels/far` has not the columns of `cargo bench --bench far`")
+        })?;
+        let add = |curves: &mut Curves, y| {
+            let points = curves.entry(name.to_owned()).or_default();
+            points.push((distance.max(ORIGIN), y));
+        };
+        add(&mut wrong, 100.0 * share);
+        add(&mut time, nanoseconds);
+    }
+    let most = |curves: &Curves| {
+        let all = curves.values().flatten();
+        1.1 * all.map(|point| point.1).fold(f64::MIN_POSITIVE, f64::max)
+    };
+    let mut text = String::new();
+    let area = SVGBackend::with_string(&mut text, (960, 720)).into_drawing_area();
+    let panels = |area: &DrawingArea<SVGBackend<'_>, Shift>| -> Drawn {
+        area.fill(&WHITE)?;
+        let (upper, lower) = area.split_vertically(360);
+        let y = "pairs lost or gained, % (log)";
+        // A share of nothing at all is drawn at the lower end.
+        let shares = 1e-3..most(&wrong).max(1.0);
+        panel(&upper, &wrong, y, shares.log_scale())?;
+        panel(&lower, &time, "ns per body and frame", 0.0..most(&time))?;
+        Ok(area.present()?)
+    };
+    let drawn = panels(&area);
+    drop(area);
+    drawn.map_err(|error| miette!("cannot draw: {error}"))?;
+    Ok(text)
+}
+
+/// A row's series, its distance, and the share of wrong pairs and nanoseconds per body.
+fn point(row: &Map<String, Value>) -> Option<(&str, f64, [f64; 2])> {
+    let number = |column: &str| row.get(column)?.as_f64();
+    let [pairs, lost, extra] = ["pairs", "lost", "extra"].map(number);
+    let (pairs, lost, extra) = (pairs?, lost?, extra?);
+    let wanted = pairs - extra + lost;
+    let share = (lost + extra) / wanted.max(1.0);
+    let series = row.get("series")?.as_str()?;
+    Some((series, number("distance")?, [share, number("ns_per_body")?]))
+}
+
+/// One quantity against distance, a curve a series.
+fn panel<Y>(
+    area: &DrawingArea<SVGBackend<'_>, Shift>,
+    curves: &Curves,
+    title: &str,
+    values: Y,
+) -> Drawn
+where
+    Y: plotters::coord::ranged1d::AsRangedCoord<Value = f64>,
+    Y::CoordDescType: plotters::coord::ranged1d::ValueFormatter<f64>,
+{
+    let points = curves.values().flatten();
+    let farthest = points.map(|point| point.0).fold(10.0 * ORIGIN, f64::max);
+    let distances: Range<f64> = ORIGIN..farthest;
+    let mut chart = ChartBuilder::on(area)
+        .margin(14)
+        .x_label_area_size(46)
+        .y_label_area_size(70)
+        .build_cartesian_2d(distances.log_scale(), values)?;
+    let distance = |x: &f64| match x {
+        x if *x <= ORIGIN => "0".to_owned(),
+        x => format!("{x:e}"),
+    };
+    chart
+        .configure_mesh()
+        .x_desc("distance along each axis, radii (log)")
+        .y_desc(title)
+        .x_label_formatter(&distance)
+        .label_style((FONT, 14))
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(PALE)
+        .draw()?;
+    for ((name, points), colour) in curves.iter().zip(COLOURS.into_iter().cycle()) {
+        let style = colour.stroke_width(3);
+        let line = LineSeries::new(points.iter().copied(), style).point_size(3);
+        chart
+            .draw_series(line)?
+            .label(name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], style));
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .border_style(RGBColor(200, 200, 200))
+        .background_style(WHITE)
+        .label_font((FONT, 12))
+        .draw()?;
+    Ok(())
+}
