@@ -145,3 +145,7 @@ Qed.
 Lemma not_greater (x y : R) : 0 <= x <= y -> greater m x y = false.
 Proof. intro H. apply Rlt_bool_false. now apply read_monotone. Qed.
 End Operations.
+
+(* The sphere test leaves room for 2^-116, and posing a ball moves it by no more than half of that
+   where numbers are read as zero. *)
+Definition slack : R := 1024 * tiny.

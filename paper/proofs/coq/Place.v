@@ -416,3 +416,206 @@ Proof.
   apply Rabs_le_inv in E. pose proof tiny64_dust. pose proof tiny64_value as [T0 _].
   set (y := sqrt s4) in *. unfold v in *. lra.
 Qed.
+
+Lemma mul64_below (x y : R) :
+  tiny64 <= x -> x <= 2 -> 0 <= y -> x * y * (1 - v) - dust <= mul64 m64 x y.
+Proof.
+  intros Hx Hx2 Hy. pose proof tiny64_value as [T0 _]. pose proof tiny64_dust as T.
+  pose proof v_value as V. unfold mul64.
+  destruct (read64_cases m64 x) as [-> | [A _]]; [| rewrite Rabs_pos_eq in A; lra].
+  pose proof (read64_error m64 y) as E. apply Rabs_le_inv in E.
+  pose proof (read64_nonneg y Hy) as N. set (y' := read64 m64 y) in *.
+  assert (P : 0 <= x * y') by (apply Rmult_le_pos; lra).
+  pose proof (fl64_error m64 Hm64 (x * y')) as F. rewrite (Rabs_pos_eq (x * y')) in F by exact P.
+  apply Rabs_le_inv in F.
+  assert (L : x * y - 2 * tiny64 <= x * y').
+  { assert (x * (y - y') <= 2 * tiny64).
+    { apply Rle_trans with (x * tiny64); [apply Rmult_le_compat_l; lra |].
+      apply Rmult_le_compat_r; lra. }
+    lra. }
+  set (p := x * y') in *. set (w := x * y) in *. unfold v in *. lra.
+Qed.
+
+Lemma stretch_bounds : 1.00009 <= stretch <= 2.
+Proof.
+  unfold stretch. set (none := {| threshold64 := 0; reads_zero64 := false |}).
+  assert (Hnone : valid64 none).
+  { unfold valid64, none. cbn. pose proof tiny64_value as [T0 _]. lra. }
+  pose proof (fl64_error none Hnone 1.0001) as E. unfold fl64 in E. cbn in E.
+  rewrite Rlt_bool_false in E by apply Rabs_pos.
+  rewrite (Rabs_pos_eq 1.0001) in E by lra. apply Rabs_le_inv in E.
+  pose proof tiny64_dust. pose proof (proj1 tiny64_value).
+  assert (dust <= v).
+  { unfold dust, v. apply Rinv_le_contravar; [lra | now apply IZR_le]. }
+  unfold v in *. lra.
+Qed.
+
+Lemma fl_error (x : R) : Rabs (fl m x - x) <= u * Rabs x + tiny.
+Proof.
+  pose proof Hm as Ht. unfold valid in Ht. pose proof (Rabs_pos x).
+  pose proof half_step_value. pose proof u_value.
+  assert (0 <= u * Rabs x) by (apply Rmult_le_pos; lra).
+  unfold fl. case Rlt_bool_spec; intro H'.
+  - rewrite Rminus_0_l, Rabs_Ropp. lra.
+  - pose proof (nearest32_error x). lra.
+Qed.
+
+Lemma largest_bounds (p t : point) (limit : R) :
+  within limit p -> within limit t -> let size := largest p t in
+  0 <= size <= limit /\ within size p /\ within size t.
+Proof.
+  intros (Px & Py & Pz) (Tx & Ty & Tz) size. unfold size, largest, within. cbn.
+  pose proof (Rabs_pos (px p)).
+  repeat match goal with |- context [Rmax ?a ?b] =>
+    pose proof (Rmax_l a b); pose proof (Rmax_r a b);
+    assert (Rmax a b <= limit) by (apply Rmax_lub; lra);
+    set (Rmax a b) in *
+  end.
+  repeat split; lra.
+Qed.
+
+(* src/rounding/mod.rs: LIMIT *)
+Definition limit : R := IZR (2 ^ 60).
+
+Lemma limit_value : 1 <= limit /\ 16 * limit = far.
+Proof.
+  unfold limit, far. split; [now apply IZR_le |].
+  change (2 ^ 64)%Z with (16 * 2 ^ 60)%Z. now rewrite mult_IZR.
+Qed.
+
+Lemma read_within (size : R) (p : point) :
+  within size p -> within size (read_point p) /\ within tiny (minus (read_point p) p).
+Proof.
+  intros (Hx & Hy & Hz). unfold within, read_point, minus, pt. cbn [px py pz].
+  repeat split; try apply read_error;
+    (eapply Rle_trans; [apply read_abs | assumption]).
+Qed.
+
+Lemma origin_near (q : quaternion) (t c : point) :
+  sound_quaternion q -> is_origin c = true -> distance (posed q t c) t <= 4.8 * tiny.
+Proof.
+  intros Hq H. pose proof tiny_value as T. set (o := pt 0 0 0).
+  assert (E : posed q t o = t).
+  { unfold posed, apply, plus, dot, o, pt. cbn [px py pz]. destruct t. cbn. f_equal; ring. }
+  assert (D : distance (posed q t c) (posed q t o) <= 4.8 * tiny); [| now rewrite E in D].
+  apply posed_moved; [exact Hq | |].
+  - unfold within, minus. cbn [px py pz]. rewrite !Rminus_diag_eq, Rabs_R0 by reflexivity. lra.
+  - unfold is_origin in H. apply andb_prop in H. destruct H as [H Hz].
+    apply andb_prop in H. destruct H as [Hx Hy].
+    assert (Z : forall x, Req_bool (read m x) 0 = true -> Rabs (0 - x) <= tiny).
+    { intros x Hxx. revert Hxx. case Req_bool_spec; [| discriminate]. intros R0 _.
+      rewrite <- R0. apply read_error. }
+    unfold within, minus, o, pt. cbn [px py pz]. repeat split; now apply Z.
+Qed.
+
+Lemma cast_near (e : point) (d : R) :
+  within d e ->
+  within (u * d + 2 * tiny) (minus e (read_point (cast_point e))) /\
+  distance (read_point (cast_point e)) (cast_point e) <= 2 * tiny.
+Proof.
+  intros (Hx & Hy & Hz). pose proof tiny_value as T. pose proof u_value as U. split.
+  - assert (C : forall x, Rabs x <= d -> Rabs (x - read m (fl m x)) <= u * d + 2 * tiny).
+    { intros x H. pose proof (fl_error x) as F. pose proof (read_error m (fl m x)) as E.
+      rewrite Rabs_minus_sym.
+      replace (read m (fl m x) - x) with ((read m (fl m x) - fl m x) + (fl m x - x)) by ring.
+      apply Rle_trans with (1 := Rabs_triang _ _).
+      assert (u * Rabs x <= u * d) by (apply Rmult_le_compat_l; lra). lra. }
+    unfold within, minus, read_point, cast_point, pt. cbn [px py pz].
+    repeat split; apply C; assumption.
+  - unfold distance. apply Rle_trans with (1.73206 * tiny); [| lra].
+    apply norm_of_coordinates. unfold within, minus, read_point, cast_point, pt. cbn [px py pz].
+    repeat split; rewrite Rabs_minus_sym; apply read_error.
+Qed.
+
+(* What is written is no less than what it stands for. *)
+Lemma written_radius (r k size : R) :
+  0 <= r -> 0 <= k -> 0 <= size <= limit ->
+  let sum := add64 m64 (add64 m64 (add64 m64 r (mul64 m64 stretch k)) (mul64 m64 centre_error size))
+    centre_floor in
+  0 <= up sum /\ r + k * 1.00008 + 64 * v * size - 3 * tiny <= up sum.
+Proof.
+  intros Hr Hk Hs sum. pose proof v_value as V. pose proof tiny_value as T.
+  pose proof dust_root_value as (R0 & R1 & R2 & R3). pose proof stretch_bounds as S.
+  pose proof (proj1 tiny64_value) as T0. pose proof tiny64_dust as T1. pose proof dust_value as D.
+  assert (V64 : tiny64 <= centre_error <= 2).
+  { assert (dust <= v).
+    { unfold dust, v. apply Rinv_le_contravar; [lra | now apply IZR_le]. }
+    unfold centre_error, v in *. lra. }
+  assert (Dv : dust <= 1).
+  { unfold dust. apply Rle_trans with (/ 1); [| lra].
+    apply Rinv_le_contravar; [lra | now apply IZR_le]. }
+  pose proof (mul64_below stretch k ltac:(lra) ltac:(lra) Hk) as M1.
+  pose proof (mul64_nonneg stretch k ltac:(lra) Hk) as N1.
+  pose proof (mul64_below centre_error size (proj1 V64) (proj2 V64) (proj1 Hs)) as M2.
+  pose proof (mul64_nonneg centre_error size ltac:(lra) (proj1 Hs)) as N2.
+  pose proof (add64_below _ _ Hr N1) as A1. pose proof (add64_nonneg _ _ Hr N1) as P1.
+  pose proof (add64_below _ _ P1 N2) as A2. pose proof (add64_nonneg _ _ P1 N2) as P2.
+  assert (F : 0 <= centre_floor) by (unfold centre_floor; lra).
+  pose proof (add64_below _ _ P2 F) as A3. pose proof (add64_nonneg _ _ P2 F) as P3.
+  fold sum in A3, P3. pose proof (up_above sum P3) as U.
+  split.
+  { unfold up. rewrite succ_eq_pos by now apply fl_nonneg. pose proof (fl_nonneg m sum P3).
+    pose proof (ulp_ge_0 radix2 (FLT_exp (-149) 24) (fl m sum)). lra. }
+  assert (K1 : k * 1.00009 <= stretch * k) by (rewrite Rmult_comm; apply Rmult_le_compat_r; lra).
+  set (sk := stretch * k) in *. unfold centre_error, centre_floor in *.
+  unfold v in *. lra.
+Qed.
+
+Definition readable (q : quaternion) : Prop := read_quaternion q = q.
+
+(* The posed ball lies in the world ball, but for numbers that are read as zero. *)
+Theorem world_ball_contains (q : quaternion) (t c : point) (r : R) :
+  sound_quaternion q -> readable q -> within limit t -> within limit c -> 0 <= r ->
+  let b := world_ball q t c r in
+  0 <= radius b /\ distance (posed q t c) (centre b) + r <= radius b + slack / 2.
+Proof.
+  intros Hq Hread Ht Hc Hr. unfold world_ball. pose proof tiny_value as T.
+  destruct (is_origin c) eqn:O; cbn [centre radius].
+  - pose proof (origin_near q t c Hq O). unfold slack. lra.
+  - rewrite Hread.
+    destruct (read_within _ _ Ht) as [Ht' Mt]. destruct (read_within _ _ Hc) as [Hc' Mc].
+    set (t' := read_point t) in *. set (c' := read_point c) in *.
+    destruct (largest_bounds c' t' limit Hc' Ht') as (Hs & Sc & St).
+    set (size := largest c' t') in *.
+    pose proof limit_value as [L0 L1]. pose proof far_value as F. pose proof v_value as V.
+    pose proof dust_root_value as (R0 & R1 & R2 & R3). pose proof dust_value as D.
+    pose proof (transform_error m64 q t' c' size Hm64 Hq ltac:(lra) St Sc) as E1.
+    set (e := transform m64 (rotation_of m64 q) c' t') in *.
+    pose proof (posed_moved q t t' c c' tiny Hq Mt Mc) as E2.
+    assert (We : within (4 * limit) e).
+    { pose proof (posed_within q t' c' size size Hq St Sc) as P.
+      pose proof (coordinates_of_norm _ _ E1) as Q.
+      unfold within, distance, minus in *. cbn [px py pz] in Q.
+      assert (W : forall a b d f, Rabs b <= d -> Rabs (a - b) <= f -> Rabs a <= d + f).
+      { intros a b d f Hb Hd. replace a with (b + (a - b)) by ring.
+        apply Rle_trans with (1 := Rabs_triang _ _). lra. }
+      assert (B : 1.73206 * size + size + (61.15 * v * size + 40 * dust) <= 4 * limit).
+      { assert (v * size <= v * limit) by (apply Rmult_le_compat_l; lra).
+        assert (tiny <= 1 / 1000) by (unfold tiny; lra). unfold v in *. lra. }
+      destruct P as (P0 & P1 & P2). destruct Q as (Q0 & Q1 & Q2).
+      exact (conj (Rle_trans _ _ _ (W _ _ _ _ P0 Q0) B)
+        (conj (Rle_trans _ _ _ (W _ _ _ _ P1 Q1) B) (Rle_trans _ _ _ (W _ _ _ _ P2 Q2) B))). }
+    destruct (cast_near e _ We) as [C1 C2].
+    assert (Tf : tiny <= 1 / 1000) by (unfold tiny; lra).
+    assert (Wd : within far (minus e (read_point (cast_point e)))).
+    { destruct C1 as (C1x & C1y & C1z). repeat split;
+        (eapply Rle_trans; [eassumption |]); unfold u in *; lra. }
+    destruct (moved_below _ _ Wd) as [K0 K1].
+    assert (R' : 0 <= read m r) by now apply read_nonneg.
+    pose proof (read_error m r) as Rr. apply Rabs_le_inv in Rr.
+    destruct (written_radius (read m r) _ size R' K0 Hs) as [U0 U1].
+    split; [exact U0 |].
+    set (w := cast_point e) in *. set (k := moved e (read_point w)) in *.
+    pose proof (distance_triangle (posed q t c) (posed q t' c') w).
+    pose proof (distance_triangle (posed q t' c') e w).
+    pose proof (distance_triangle e (read_point w) w).
+    rewrite (distance_symmetric e (read_point w)) in *.
+    set (total := up _) in *.
+    pose proof (norm_nonneg (minus e (read_point w))) as N. fold (distance (read_point w) e) in N.
+    assert (0 <= v * size) by (apply Rmult_le_pos; lra).
+    set (vs := v * size) in *.
+    replace (61.15 * v * size) with (61.15 * vs) in E1 by (unfold vs; ring).
+    replace (64 * v * size) with (64 * vs) in U1 by (unfold vs; ring).
+    unfold slack, v in *. lra.
+Qed.
+End WorldBall.

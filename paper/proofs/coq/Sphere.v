@@ -80,10 +80,6 @@ Proof.
   unfold u in *. lra.
 Qed.
 
-(* Centres may be farther apart than the radii add up to, by as much as operands of poses that are
-   read as zero can move balls: 2^-116. *)
-Definition slack : R := 1024 * tiny.
-
 Lemma difference_above (m : mode) (a b : R) :
   Rabs (sub m a b) <= (Rabs (a - b) + 3 * tiny) * (1 + u).
 Proof.
