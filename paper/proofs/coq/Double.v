@@ -1,5 +1,5 @@
 (* The machine's f64 operations as functions of real numbers, with one error bound each. *)
-From Coq Require Import Reals ZArith Bool Lra Lia Psatz.
+From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core Relative.
 From Sdop Require Import Format.
 Open Scope R_scope.

@@ -1,5 +1,5 @@
 (* Points, the Euclidean norm and balls. *)
-From Coq Require Import Reals Lra Psatz.
+From Coq Require Import Reals Lra.
 Open Scope R_scope.
 
 Record point := { px : R; py : R; pz : R }.
@@ -17,7 +17,10 @@ Definition distance (a b : point) : R := norm (minus b a).
 Definition in_ball (p : point) (b : ball) : Prop := distance p (centre b) <= radius b.
 
 Lemma square_nonneg (a : point) : 0 <= square a.
-Proof. unfold square. nra. Qed.
+Proof.
+  pose proof (Rle_0_sqr (px a)). pose proof (Rle_0_sqr (py a)). pose proof (Rle_0_sqr (pz a)).
+  unfold square, Rsqr in *. lra.
+Qed.
 
 Lemma norm_nonneg (a : point) : 0 <= norm a.
 Proof. apply sqrt_pos. Qed.

@@ -1,5 +1,5 @@
 (* World balls: the posed ball lies in the ball that is stored for it, but for `slack`. *)
-From Coq Require Import Reals ZArith Bool List Lra Lia Psatz.
+From Coq Require Import Reals ZArith Bool List Lra Lia.
 From Flocq Require Import Core.
 From Sdop Require Import Format Geometry Double Pose.
 Open Scope R_scope.

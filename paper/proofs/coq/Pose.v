@@ -1,5 +1,5 @@
 (* Poses: the point R(q) x + t as f64 arithmetic finds it, and how far it is from the exact one. *)
-From Coq Require Import Reals ZArith Bool Lra Lia Psatz.
+From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core.
 From Sdop Require Import Format Geometry Double.
 Open Scope R_scope.

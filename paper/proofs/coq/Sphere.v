@@ -1,5 +1,5 @@
 (* Theorem S for stored balls: the sphere test rejects no two balls that meet. *)
-From Coq Require Import Reals ZArith Bool Lra Lia Psatz.
+From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core.
 From Sdop Require Import Format Geometry.
 Open Scope R_scope.
