@@ -108,15 +108,15 @@ Proof.
 Qed.
 End Rule.
 
-(* (2) A cell size c of at least 2 w (1 + 2^-16), w being the radius of the widest ball or more; at
-   most 2^29 cells along an axis (Cells::fit). *)
+(* (2) A cell size of hardly less than 2 w (1 + 2^-16), w being the radius of the widest ball or
+   more, and hardly more than 2^29 cells along an axis: fit_size in Grid.v. *)
 Section Level.
 Variable m : mode64.
 Hypothesis Hm : valid64 m.
 Variables origin size : R.
 Hypothesis Hsize : / IZR (2 ^ 100) <= size <= IZR (2 ^ 100).
 
-Definition most_cells : R := IZR (2 ^ 29).
+Definition most_cells : R := 536870913.
 
 Let inverse := div64 m 1 size.
 Let quotient (x : R) : R := mul64 m (sub64 m x origin) inverse.
@@ -145,11 +145,11 @@ Proof.
   assert (Hi : 0 < / size <= IZR (2 ^ 100)).
   { split; [apply Rinv_0_lt_compat; lra |].
     rewrite <- (Rinv_inv (IZR (2 ^ 100))). apply Rinv_le_contravar; lra. }
-  set (k := X / size). assert (Hk : 0 <= k <= 536870912).
+  set (k := X / size). assert (Hk : 0 <= k <= 536870913).
   { unfold k, Rdiv. split; [apply Rmult_le_pos; lra |].
     apply Rmult_le_reg_r with size; [lra |]. rewrite Rmult_assoc, Rinv_l by lra.
     unfold most_cells in H. lra. }
-  assert (Xb : X <= IZR (2 ^ 129)).
+  assert (Xb : X <= IZR (2 ^ 130)).
   { apply Rle_trans with (most_cells * IZR (2 ^ 100)).
     - apply Rle_trans with (1 := proj2 H). apply Rmult_le_compat_l; [now apply IZR_le | lra].
     - unfold most_cells. rewrite <- mult_IZR. now apply IZR_le. }
@@ -179,8 +179,8 @@ Proof.
     unfold v in *. lra. }
   assert (Bd : Rabs d <= big).
   { replace d with (X + (d - X)) by ring. apply Rle_trans with (1 := Rabs_triang _ _).
-    rewrite (Rabs_pos_eq X) by lra. apply Rle_trans with (2 * IZR (2 ^ 129)).
-    - assert (1 <= IZR (2 ^ 129)) by now apply IZR_le. unfold v in *. lra.
+    rewrite (Rabs_pos_eq X) by lra. apply Rle_trans with (2 * IZR (2 ^ 130)).
+    - assert (1 <= IZR (2 ^ 130)) by now apply IZR_le. unfold v in *. lra.
     - unfold big. rewrite <- mult_IZR. now apply IZR_le. }
   assert (Bi : Rabs inverse <= big).
   { replace inverse with (/ size + (inverse - / size)) by ring.
@@ -195,7 +195,7 @@ Qed.
 (* Centres x and y of a level, no farther apart than twice the widest radius w. *)
 Theorem neighbouring_cells (x y w : R) :
   origin <= y <= x -> x - origin <= most_cells * size ->
-  2 * w * (1 + / 65536) <= size -> x - y <= 2 * w ->
+  2 * w * (1 + / 65537) <= size -> x - y <= 2 * w ->
   (0 <= number (cell m origin inverse x) - number (cell m origin inverse y) <= 1)%Z.
 Proof.
   intros [Hy Hx] Hmost Hw Hxy.
@@ -205,7 +205,7 @@ Proof.
   assert (Share : (x - origin) / size - (y - origin) / size <= 1 - / 100000).
   { replace ((x - origin) / size - (y - origin) / size) with ((x - y) / size) by (field; lra).
     apply Rmult_le_reg_r with size; [lra |]. unfold Rdiv. rewrite Rmult_assoc, Rinv_l; lra. }
-  assert (Bound : forall z, origin <= z <= x -> 0 <= (z - origin) / size <= 536870912).
+  assert (Bound : forall z, origin <= z <= x -> 0 <= (z - origin) / size <= 536870913).
   { intros z Hz. unfold Rdiv. pose proof (Rinv_0_lt_compat size ltac:(lra)) as Pi.
     split; [apply Rmult_le_pos; lra |]. apply Rmult_le_reg_r with size; [lra |].
     rewrite Rmult_assoc, Rinv_l by lra. unfold most_cells in Hmost. lra. }
@@ -238,3 +238,58 @@ Proof.
     apply lt_IZR in L. lia.
 Qed.
 End Level.
+
+(* (3) What a body of another level looks at: the cells from that of x - reach to that of x + reach,
+   clamped to the table. They hold that of each centre within reach. *)
+Section Around.
+Variable m : mode64.
+Hypothesis Hm : valid64 m.
+Variables origin inverse : R.
+Hypothesis Hi : 0 <= inverse.
+
+(* An f64 that is zero or not below 2^-1022, as each f32 is. *)
+Definition normal64 (x : R) : Prop :=
+  generic_format radix2 (FLT_exp (-1074) 53) x /\ (x = 0 \/ tiny64 <= Rabs x).
+
+Lemma read64_normal (x : R) : normal64 x -> read64 m x = x.
+Proof.
+  intros [_ H]. destruct (read64_cases m x) as [-> | [A ->]]; [reflexivity |].
+  destruct H as [-> | H]; [reflexivity | lra].
+Qed.
+
+Lemma fl64_normal (x : R) : normal64 x -> fl64 m x = x.
+Proof.
+  intros [F H]. pose proof Hm as Ht. unfold valid64 in Ht. unfold fl64. case Rlt_bool_spec; intro A.
+  - destruct H as [-> | H]; [reflexivity | lra].
+  - unfold nearest64. apply round_generic; [typeclasses eauto | exact F].
+Qed.
+
+(* src/broad_phase/grid/cells.rs: Cells::around, one axis; `last` is the cell of the farthest
+   centre. *)
+Definition around (x reach last : R) : option (R * R) :=
+  let (lo, hi) := (cell m origin inverse (sub64 m x reach), cell m origin inverse (add64 m x reach)) in
+  if Rlt_bool last lo || Rlt_bool hi to_integer then None
+  else Some (Rmin (Rmax lo to_integer) last, Rmin (Rmax hi to_integer) last).
+
+Theorem around_covers (x y reach last : R) :
+  normal64 x -> normal64 y -> normal64 reach -> Rabs (y - x) <= reach ->
+  to_integer <= cell m origin inverse y <= last ->
+  exists lo hi, around x reach last = Some (lo, hi) /\
+    (number lo <= number (cell m origin inverse y) <= number hi)%Z.
+Proof.
+  intros Nx Ny Nr Hr [Hy0 Hy1]. apply Rabs_le_inv in Hr.
+  assert (L : sub64 m x reach <= y).
+  { unfold sub64. rewrite (read64_normal x Nx), (read64_normal reach Nr).
+    rewrite <- (fl64_normal y Ny). apply fl64_monotone. lra. }
+  assert (U : y <= add64 m x reach).
+  { unfold add64. rewrite (read64_normal x Nx), (read64_normal reach Nr).
+    rewrite <- (fl64_normal y Ny) at 1. apply fl64_monotone. lra. }
+  apply (cell_monotone m origin inverse _ _ Hi) in L, U.
+  unfold around. set (lo := cell m origin inverse (sub64 m x reach)) in *.
+  set (hi := cell m origin inverse (add64 m x reach)) in *.
+  rewrite !Rlt_bool_false by lra. cbn. eexists. eexists. split; [reflexivity |].
+  unfold number. split; apply Z.sub_le_mono_r, Zfloor_le.
+  - apply Rle_trans with (1 := Rmin_l _ _). now apply Rmax_lub; lra.
+  - apply Rmin_glb; [| exact Hy1]. apply Rle_trans with (1 := U). apply Rmax_l.
+Qed.
+End Around.
