@@ -389,7 +389,7 @@ fn a_case_is_shown_with_the_answers_to_it() {
 
 /// A case of boxes, of which a program reports nothing in the frames from `missed` on; the header
 /// of its page.
-fn silent_from(missed: u64, name: &str) -> serde_json::Value {
+fn silent_from(missed: u64, name: &str) -> Value {
     let directory = tempfile::tempdir().unwrap();
     let cases = directory.path().join("cases");
     let arguments = ["cases", "--claims", "aabb", "--case", name, "--out"];
@@ -398,7 +398,7 @@ fn silent_from(missed: u64, name: &str) -> serde_json::Value {
     let [answers, page] = ["answers", "page.html"].map(|name| directory.path().join(name));
     let lines = std::fs::read_to_string(&case).unwrap();
     let bodies = |line: &str| {
-        let line: serde_json::Value = serde_json::from_str(line).unwrap();
+        let line: Value = serde_json::from_str(line).unwrap();
         line["poses"].as_array().unwrap().len()
     };
     let answer = |(frame, line): (u64, &str)| {

@@ -11,7 +11,7 @@ use super::scene_args::{MachineArgs, SceneArgs};
 /// What a narrow-phase check is taken to cost when nothing is said of it, in nanoseconds.
 const CHECK: f64 = 1000.0;
 
-/// Which volume, axes and finder to use for a scene, in three lines, with the settings to paste
+/// Which volume, axes and finder to use for a scene, with the settings to paste
 ///
 /// Times every finder, then spheres, boxes, S-DOP at each k along both kinds of axes, and hulls, on
 /// the scene's first frames, counts the pairs that each leaves to the narrow phase, and adds both
