@@ -117,7 +117,8 @@ fn truth_is_of_exact_places() {
     let scene = tetrahedra(&FAR, "");
     let judge = Judge::new(&scene.shapes).unwrap();
     let translations = scene.fine.of(&scene.bodies);
-    let meets = |translations| judge.meetings(&scene.bodies, translations).unwrap();
+    let meets =
+        |translations: Option<&[[f64; 3]]>| judge.meetings(&scene.bodies, translations).unwrap();
     assert_eq!(meets(translations.as_deref()), [[0, 1]]);
     assert_eq!(meets(None), [[1, 2]]);
     // The nearest translations at which they touch, and at which they don't.
