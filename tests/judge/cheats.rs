@@ -134,7 +134,7 @@ fn answers_to_other_frames_fail() {
             let unnoticed = unnoticed(&verdict);
             // Only one group has bodies that come and go.
             let wanted: &[&str] = match cheat {
-                Cheat::FirstBodies => &["churn/swap", "churn/teleport"],
+                Cheat::FirstBodies => &["churn/swap", "churn/teleport", "churn/move", "churn/turn"],
                 _ => &[],
             };
             assert_eq!(unnoticed, wanted, "{cheat:?}, {claim}: {verdict}");
