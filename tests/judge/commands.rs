@@ -109,7 +109,7 @@ fn a_miss_of_boxes_names_the_ends_that_meet() {
         " ends at ",
         " starts at ",
         "\n  shared point: (",
-        "sdop view missed-pair.ndjson",
+        "(sdop view ./missed-pair.ndjson)",
     ] {
         assert!(text.contains(words), "{words:?} in {text}");
     }

@@ -32,6 +32,7 @@ const ALONG: [[f32; 4]; 3] = [[0.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0], UNTUR
 pub fn along_an_axis(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
     let shapes = vec![cube(rng)?, needle()?];
     let axis = number as usize % 3;
+    let early = [0, 1].map(|side| 2 * rng.random_range(0..ROWS / 2) + side);
     let place = |row: usize| {
         let mut place: [f32; 3] = std::array::from_fn(|_| rng.random_range(-0.5..0.5));
         place[(axis + 1) % 3] += 16.0 * row as f32; // few rows
@@ -40,10 +41,11 @@ pub fn along_an_axis(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Draw
     let rows = Rows {
         axis,
         places: (0..ROWS).map(place).collect(),
+        early,
     };
     let frames = (0..FRAMES).map(|n| match kind {
         Kind::InsertRemove => rows.with_another_set(n, &shapes),
-        _ => Frame::fitted(rows.changed(kind, n % 2 == 1), &shapes),
+        _ => Frame::fitted(rows.changed(kind, n), &shapes),
     });
     let frames = frames.collect();
     Ok(Drawn { shapes, frames })
@@ -84,6 +86,8 @@ struct Rows {
     axis: usize,
     /// Where the static bodies are.
     places: Vec<[f32; 3]>,
+    /// The rows, one on each side, whose bodies meet when those of the others don't.
+    early: [usize; 2],
 }
 
 impl Rows {
@@ -98,11 +102,13 @@ impl Rows {
         place
     }
 
-    /// The bodies before a change, and after it, when pairs meet.
-    fn changed(&self, kind: Kind, after: bool) -> Bodies {
+    /// The bodies of the frame of this number. Each row's pair meets in every other frame, after a
+    /// change.
+    fn changed(&self, kind: Kind, frame: usize) -> Bodies {
         let mut bodies = Bodies::default();
         for (row, &place) in self.places.iter().enumerate() {
             bodies.push(0, false, UNTURNED, place);
+            let after = (frame % 2 == 1) != self.early.contains(&row);
             let mut push = |shape, turn, distance| {
                 bodies.push(shape, true, turn, self.beside(row, distance));
             };
