@@ -179,14 +179,14 @@ fn a_figure_is_drawn_from_its_table() {
         assert_eq!(rendered.status.code(), Some(0), "{said}");
         assert_eq!(std::fs::read_to_string(path("PAGE.md")).unwrap(), expected);
     };
-    page("near\n");
+    page("near");
     let record = path("data/record/box/kernels/far");
     std::fs::create_dir_all(&record).unwrap();
     let table = "series,distance,pairs,lost,extra,ns_per_body\n\"f32\",0e0,900,0,0,80.5\n\
         \"f32\",1e7,700,300,100,70.0\n\"f64\",0e0,900,0,0,90.5\n\"f64\",1e11,901,0,1,91.0\n";
     std::fs::write(record.join("far.csv"), table).unwrap();
     adopt(root.path(), "kernels/far", "box");
-    page("far\n");
+    page("far");
     let figure = path("paper/figures/far.svg");
     let svg = std::fs::read_to_string(&figure).unwrap();
     for word in ["f32", "f64", "1e11", "ns per body"] {
