@@ -18,7 +18,8 @@ Proof.
   assert (Scaled : forall s, s * s * square way <= (s * whole) * (s * whole)).
   { intros s. replace (s * whole * (s * whole)) with (s * s * (whole * whole)) by ring.
     apply Rmult_le_compat_l; [apply Rle_0_sqr | exact H]. }
-  exists (at_share (radius a / whole)). unfold in_ball, distance. split; (apply norm_below; [lra |]).
+  exists (at_share (radius a / whole)). unfold in_ball, distance.
+  split; (apply norm_below; [lra |]).
   - set (s := radius a / whole). replace (radius a) with (s * whole) by (unfold s; field; lra).
     replace (square _) with (s * s * square way); [now apply Scaled |].
     unfold square, minus, at_share. cbn. ring.

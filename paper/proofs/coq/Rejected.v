@@ -1,7 +1,7 @@
 (* Theorem S: bodies that the sphere test rejects have no point in common. *)
 From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core.
-From Sdop Require Import Format Geometry Double Pose Place Sphere.
+From Sdop Require Import Format Geometry Double Pose Place WorldBall Sphere.
 Open Scope R_scope.
 
 (* A body: the ball of its shape, its rotation and its translation, each as it is given. *)
@@ -48,7 +48,8 @@ Qed.
    slack. *)
 Lemma occupied_near (m : modes) (b : body) (p : point) :
   valid_modes m -> sound m b -> occupies b p ->
-  let w := world_ball (pose32 m) (pose64 m) (turn b) (place b) (centre (shape b)) (radius (shape b)) in
+  let w := world_ball (pose32 m) (pose64 m) (turn b) (place b)
+    (centre (shape b)) (radius (shape b)) in
   0 <= radius w /\ distance p (centre w) <= radius w + slack / 2.
 Proof.
   intros (Hm & Hm64 & _) (Hq & Hread & Ht & Hc & Hr) (x & Hx & ->) w.
