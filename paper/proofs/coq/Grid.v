@@ -2,7 +2,7 @@
    is sized by its widest ball. *)
 From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core.
-From Sdop Require Import Format Geometry Double Pose Place WorldBall Sphere Rejected Cells.
+From Sdop Require Import Format Geometry Double Pose Place ReadPose WorldBall Sphere Rejected Cells.
 Open Scope R_scope.
 
 (* A point's coordinate along an axis. *)

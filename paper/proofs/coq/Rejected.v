@@ -1,7 +1,7 @@
 (* Theorem S: bodies that the sphere test rejects have no point in common. *)
 From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core.
-From Sdop Require Import Format Geometry Double Pose Place WorldBall Sphere.
+From Sdop Require Import Format Geometry Double Pose Place ReadPose WorldBall Sphere.
 Open Scope R_scope.
 
 (* A body: the ball of its shape, its rotation and its translation, each as it is given. *)

@@ -1,7 +1,7 @@
 (* World balls: the posed ball lies in the ball that is stored for it, but for `slack`. *)
 From Coq Require Import Reals ZArith Bool List Lra Lia.
 From Flocq Require Import Core.
-From Sdop Require Import Format Geometry Double Pose Place.
+From Sdop Require Import Format Geometry Double Pose Place ReadPose.
 Open Scope R_scope.
 
 Section WorldBall.
@@ -41,9 +41,6 @@ Definition stretch : R := nearest64 1.0001.
 Definition read_point (p : point) : point := pt (read m (px p)) (read m (py p)) (read m (pz p)).
 (* `as f32` of an f64 *)
 Definition cast_point (p : point) : point := pt (fl m (px p)) (fl m (py p)) (fl m (pz p)).
-Definition read_quaternion (q : quaternion) : quaternion :=
-  {| qx := read m (qx q); qy := read m (qy q); qz := read m (qz q); qw := read m (qw q) |}.
-
 Definition is_origin (p : point) : bool :=
   Req_bool (read m (px p)) 0 && Req_bool (read m (py p)) 0 && Req_bool (read m (pz p)) 0.
 
@@ -62,7 +59,8 @@ Definition largest (p t : point) : R :=
 (* src/rounding/sphere.rs: world_ball, of src/rounding/pose.rs: rotation *)
 Definition world_ball (q : quaternion) (t c : point) (r : R) : ball :=
   if is_origin c then {| centre := t; radius := r |} else
-  let exact := transform m64 (rotation_of m64 (read_quaternion q)) (read_point c) (read_point t) in
+  let exact := transform m64 (rotation_of m64 (read_quaternion m q))
+    (read_point c) (read_point t) in
   let centre := cast_point exact in
   let moved := moved exact (read_point centre) in
   let size := largest (read_point c) (read_point t) in
@@ -333,29 +331,28 @@ Proof.
   unfold v in *. lra.
 Qed.
 
-Definition readable (q : quaternion) : Prop := read_quaternion q = q.
-
 (* The posed ball lies in the world ball, but for numbers that are read as zero. *)
 Theorem world_ball_contains (q : quaternion) (t c : point) (r : R) :
-  sound_quaternion q -> readable q -> within limit t -> within limit c -> 0 <= r ->
+  sound_quaternion q -> readable m q -> within limit t -> within limit c -> 0 <= r ->
   let b := world_ball q t c r in
   0 <= radius b /\ distance (posed q t c) (centre b) + r <= radius b + slack / 2.
 Proof.
   intros Hq Hread Ht Hc Hr. unfold world_ball. pose proof tiny_value as T.
   destruct (is_origin c) eqn:O; cbn [centre radius].
   - pose proof (origin_near q t c Hq O). unfold slack. lra.
-  - rewrite Hread.
-    destruct (read_within _ _ Ht) as [Ht' Mt]. destruct (read_within _ _ Hc) as [Hc' Mc].
+  - destruct (read_within _ _ Ht) as [Ht' Mt]. destruct (read_within _ _ Hc) as [Hc' Mc].
     set (t' := read_point t) in *. set (c' := read_point c) in *.
     destruct (largest_bounds c' t' limit Hc' Ht') as (Hs & Sc & St).
     set (size := largest c' t') in *.
     pose proof limit_value as [L0 L1]. pose proof far_value as F. pose proof v_value as V.
     pose proof dust_root_value as (R0 & R1 & R2 & R3). pose proof dust_value as D.
-    pose proof (transform_error m64 q t' c' size Hm64 Hq ltac:(lra) St Sc) as E1.
-    set (e := transform m64 (rotation_of m64 q) c' t') in *.
+    destruct (read_turn m q t' c' size Hq Hread Sc) as [Hq' E0].
+    set (q' := read_quaternion m q) in *.
+    pose proof (transform_error m64 q' t' c' size Hm64 Hq' ltac:(lra) St Sc) as E1.
+    set (e := transform m64 (rotation_of m64 q') c' t') in *.
     pose proof (posed_moved q t t' c c' tiny Hq Mt Mc) as E2.
     assert (We : within (4 * limit) e).
-    { pose proof (posed_within q t' c' size size Hq St Sc) as P.
+    { pose proof (posed_within q' t' c' size size Hq' St Sc) as P.
       pose proof (coordinates_of_norm _ _ E1) as Q.
       unfold within, distance, minus in *. cbn [px py pz] in Q.
       assert (W : forall a b d f, Rabs b <= d -> Rabs (a - b) <= f -> Rabs a <= d + f).
@@ -379,13 +376,15 @@ Proof.
     split; [exact U0 |].
     set (w := cast_point e) in *. set (k := moved e (read_point w)) in *.
     pose proof (distance_triangle (posed q t c) (posed q t' c') w).
-    pose proof (distance_triangle (posed q t' c') e w).
+    pose proof (distance_triangle (posed q t' c') (posed q' t' c') w).
+    pose proof (distance_triangle (posed q' t' c') e w).
     pose proof (distance_triangle e (read_point w) w).
     rewrite (distance_symmetric e (read_point w)) in *.
     set (total := up _) in *.
     pose proof (norm_nonneg (minus e (read_point w))) as N. fold (distance (read_point w) e) in N.
     assert (0 <= v * size) by (apply Rmult_le_pos; lra).
     set (vs := v * size) in *.
+    replace (0.2 * v * size) with (0.2 * vs) in E0 by (unfold vs; ring).
     replace (61.15 * v * size) with (61.15 * vs) in E1 by (unfold vs; ring).
     replace (64 * v * size) with (64 * vs) in U1 by (unfold vs; ring).
     unfold slack, v in *. lra.
