@@ -110,7 +110,8 @@ Qed.
 End Rule.
 
 (* (2) A cell size of hardly less than 2 w (1 + 2^-16), w being the radius of the widest ball or
-   more, and hardly more than 2^29 cells along an axis: fit_size in Grid.v. *)
+   more, and hardly more than 2^29 cells along an axis: Grid.v shows both (needed_above,
+   fit_most_cells). *)
 Section Level.
 Variable m : mode64.
 Hypothesis Hm : valid64 m.
