@@ -14,3 +14,4 @@ Print Assumptions Cells.centre_in_table.
 Print Assumptions Cells.around_covers.
 Print Assumptions Grid.touching_bodies_in_neighbouring_cells.
 Print Assumptions Grid.fit_most_cells.
+Print Assumptions Controls.former_count_refuted.
