@@ -100,7 +100,8 @@ Proof.
   { unfold cell, sub64. rewrite Rminus_diag_eq by reflexivity.
     assert (Z : fl64 m 0 = 0) by (unfold fl64; case Rlt_bool; [reflexivity | apply nearest64_zero]).
     assert (Zr : read64 m 0 = 0) by (destruct (read64_cases m 0) as [-> | [_ ->]]; reflexivity).
-    rewrite Z. unfold mul64. rewrite Zr, Rmult_0_l, Z. rewrite integer_cell by (rewrite Rabs_R0; lra).
+    rewrite Z. unfold mul64. rewrite Zr, Rmult_0_l, Z.
+    rewrite integer_cell by (rewrite Rabs_R0; lra).
     rewrite Zr, Rplus_0_l. unfold to_integer. now rewrite (Zrnd_IZR ZnearestE). }
   pose proof (cell_monotone _ _ Hi H0) as L. rewrite O in L.
   pose proof (cell_monotone _ _ Hi H1) as U.
@@ -109,7 +110,8 @@ Qed.
 End Rule.
 
 (* (2) A cell size of hardly less than 2 w (1 + 2^-16), w being the radius of the widest ball or
-   more, and hardly more than 2^29 cells along an axis: fit_size in Grid.v. *)
+   more, and hardly more than 2^29 cells along an axis: Grid.v shows both (needed_above,
+   fit_most_cells). *)
 Section Level.
 Variable m : mode64.
 Hypothesis Hm : valid64 m.
@@ -138,7 +140,8 @@ Proof.
     apply Rinv_le_contravar; [now apply IZR_lt | now apply IZR_le]. }
   pose proof (inverse64_error m Hm size ltac:(lra)) as Ei. fold inverse in Ei.
   assert (Ex : Rabs (x - x) <= 0) by (rewrite Rminus_diag_eq, Rabs_R0 by reflexivity; lra).
-  assert (Eo : Rabs (origin - origin) <= 0) by (rewrite Rminus_diag_eq, Rabs_R0 by reflexivity; lra).
+  assert (Eo : Rabs (origin - origin) <= 0)
+    by (rewrite Rminus_diag_eq, Rabs_R0 by reflexivity; lra).
   pose proof (sub64_near m Hm x origin x origin 0 0 Ex Eo) as Ed.
   set (X := x - origin) in *. rewrite (Rabs_pos_eq X) in Ed by lra.
   unfold quotient. set (d := sub64 m x origin) in *.
@@ -166,7 +169,8 @@ Proof.
     assert (Ri : Rabs inverse <= / size * (1 + v) + dust).
     { replace inverse with (/ size + (inverse - / size)) by ring.
       apply Rle_trans with (1 := Rabs_triang _ _). rewrite (Rabs_pos_eq (/ size)) by lra. lra. }
-    assert (A : Rabs (d - X) * Rabs inverse <= (v * X + dust + (1 + v) * (0 + 0)) * (/ size * (1 + v) + dust))
+    assert (A : Rabs (d - X) * Rabs inverse
+      <= (v * X + dust + (1 + v) * (0 + 0)) * (/ size * (1 + v) + dust))
       by (apply Rmult_le_compat; try apply Rabs_pos; lra).
     assert (B : X * Rabs (inverse - / size) <= X * (v * / size + dust))
       by (apply Rmult_le_compat_l; lra).
@@ -267,7 +271,8 @@ Qed.
 (* src/broad_phase/grid/cells.rs: Cells::around, one axis; `last` is the cell of the farthest
    centre. *)
 Definition around (x reach last : R) : option (R * R) :=
-  let (lo, hi) := (cell m origin inverse (sub64 m x reach), cell m origin inverse (add64 m x reach)) in
+  let lo := cell m origin inverse (sub64 m x reach) in
+  let hi := cell m origin inverse (add64 m x reach) in
   if Rlt_bool last lo || Rlt_bool hi to_integer then None
   else Some (Rmin (Rmax lo to_integer) last, Rmin (Rmax hi to_integer) last).
 

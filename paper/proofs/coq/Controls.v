@@ -18,7 +18,8 @@ Proof.
   assert (Scaled : forall s, s * s * square way <= (s * whole) * (s * whole)).
   { intros s. replace (s * whole * (s * whole)) with (s * s * (whole * whole)) by ring.
     apply Rmult_le_compat_l; [apply Rle_0_sqr | exact H]. }
-  exists (at_share (radius a / whole)). unfold in_ball, distance. split; (apply norm_below; [lra |]).
+  exists (at_share (radius a / whole)). unfold in_ball, distance.
+  split; (apply norm_below; [lra |]).
   - set (s := radius a / whole). replace (radius a) with (s * whole) by (unfold s; field; lra).
     replace (square _) with (s * s * square way); [now apply Scaled |].
     unfold square, minus, at_share. cbn. ring.
@@ -86,3 +87,30 @@ Proof.
   split; [vm_compute; reflexivity |]. split; [vm_compute; reflexivity |].
   unfold tiny_a, tiny_b. meet.
 Qed.
+
+(* The grid's former count of cells, round(extent / size) + 1 with one division, where a centre's
+   cell comes from a product with 1 / size. For this widened radius and these ends of the box the
+   quotient is below 21.5, so the last cell was 21, and the farthest centre falls in cell 22. *)
+#[export] Instance precision_of_f64 : Prec_gt_0 53 := eq_refl.
+#[export] Instance exponents64 : Prec_lt_emax 53 1024 := eq_refl.
+Definition f64 : Type := binary_float 53 1024.
+Definition number64 (n e : Z) : f64 := binary_normalize 53 1024 _ _ mode_NE n e false.
+Definition plus64 : f64 -> f64 -> f64 := Bplus mode_NE.
+Definition minus64 : f64 -> f64 -> f64 := Bminus mode_NE.
+Definition mult64 : f64 -> f64 -> f64 := Bmult mode_NE.
+Definition divide64 : f64 -> f64 -> f64 := Bdiv mode_NE.
+
+Definition widened : f64 := number64 23408582 (-24).
+Definition low_end : f64 := number64 (-17187326) (-48).
+Definition high_end : f64 := number64 31455762 (-19).
+
+(* src/broad_phase/grid/cells.rs: Cells::fit, Rule::cell *)
+Definition size64 : f64 := mult64 (mult64 (number64 2 0) widened) (number64 65537 (-16)).
+Definition extent : f64 := minus64 high_end low_end.
+Definition cell64 (x : f64) : f64 :=
+  plus64 (mult64 (minus64 x low_end) (divide64 (number64 1 0) size64)) (number64 (3 * 2 ^ 51) 0).
+
+Theorem former_count_refuted :
+  Bcompare (divide64 extent size64) (number64 43 (-1)) = Some Lt /\
+  Bcompare (cell64 high_end) (number64 (3 * 2 ^ 51 + 22) 0) = Some Eq.
+Proof. split; vm_compute; reflexivity. Qed.

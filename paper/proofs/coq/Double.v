@@ -144,7 +144,8 @@ Lemma mul64_near (x y Q e : R) :
   Rabs x <= big -> Rabs y <= big -> Rabs (x * y - Q) <= e ->
   Rabs (mul64 m x y - Q) <= v * Rabs Q + dust + (1 + v) * e.
 Proof.
-  intros Bx By He. unfold mul64. pose proof (read64_error x) as Hx. pose proof (read64_error y) as Hy.
+  intros Bx By He. unfold mul64.
+  pose proof (read64_error x) as Hx. pose proof (read64_error y) as Hy.
   pose proof (read64_abs y) as Ay. pose proof (Rabs_pos (read64 m y)).
   pose proof (Rabs_pos x). pose proof (Rabs_pos (read64 m x - x)).
   pose proof (Rabs_pos (read64 m y - y)).
@@ -180,5 +181,55 @@ Proof.
   unfold div64. rewrite E, Ex. unfold Rdiv. rewrite Rmult_1_l.
   pose proof (fl64_error (/ x)) as Hf. pose proof (Rinv_0_lt_compat x ltac:(lra)) as Hi.
   rewrite (Rabs_pos_eq (/ x)) in Hf by lra. lra.
+Qed.
+(* From below, for nonnegative numbers. *)
+Lemma add64_below (x y : R) : 0 <= x -> 0 <= y -> (x + y) * (1 - v) - dust <= add64 m x y.
+Proof.
+  intros Hx Hy.
+  assert (Ex : Rabs (x - x) <= 0) by (rewrite Rminus_diag_eq, Rabs_R0; lra).
+  assert (Ey : Rabs (y - y) <= 0) by (rewrite Rminus_diag_eq, Rabs_R0; lra).
+  pose proof (add64_near x y x y 0 0 Ex Ey) as E.
+  rewrite (Rabs_pos_eq (x + y)) in E by lra. apply Rabs_le_inv in E. lra.
+Qed.
+
+Lemma fl64_nonneg (x : R) : 0 <= x -> 0 <= fl64 m x.
+Proof.
+  intro H. unfold fl64. case Rlt_bool; [lra |]. unfold nearest64.
+  rewrite <- (round_0 radix2 (FLT_exp (-1074) 53) ZnearestE).
+  apply round_le; [typeclasses eauto | typeclasses eauto | exact H].
+Qed.
+
+Lemma read64_nonneg (x : R) : 0 <= x -> 0 <= read64 m x <= x.
+Proof. intro H. destruct (read64_cases x) as [-> | [_ ->]]; lra. Qed.
+
+Lemma add64_nonneg (x y : R) : 0 <= x -> 0 <= y -> 0 <= add64 m x y.
+Proof.
+  intros Hx Hy. unfold add64. apply fl64_nonneg. pose proof (read64_nonneg x Hx).
+  pose proof (read64_nonneg y Hy). lra.
+Qed.
+
+Lemma mul64_nonneg (x y : R) : 0 <= x -> 0 <= y -> 0 <= mul64 m x y.
+Proof.
+  intros Hx Hy. unfold mul64. apply fl64_nonneg. pose proof (read64_nonneg x Hx).
+  pose proof (read64_nonneg y Hy). apply Rmult_le_pos; lra.
+Qed.
+
+Lemma mul64_below (x y : R) :
+  tiny64 <= x -> x <= 2 -> 0 <= y -> x * y * (1 - v) - dust <= mul64 m x y.
+Proof.
+  intros Hx Hx2 Hy. pose proof tiny64_value as [T0 _]. pose proof tiny64_dust as T.
+  pose proof v_value as V. unfold mul64.
+  destruct (read64_cases x) as [-> | [A _]]; [| rewrite Rabs_pos_eq in A; lra].
+  pose proof (read64_error y) as E. apply Rabs_le_inv in E.
+  pose proof (read64_nonneg y Hy) as N. set (y' := read64 m y) in *.
+  assert (P : 0 <= x * y') by (apply Rmult_le_pos; lra).
+  pose proof (fl64_error (x * y')) as F. rewrite (Rabs_pos_eq (x * y')) in F by exact P.
+  apply Rabs_le_inv in F.
+  assert (L : x * y - 2 * tiny64 <= x * y').
+  { assert (x * (y - y') <= 2 * tiny64).
+    { apply Rle_trans with (x * tiny64); [apply Rmult_le_compat_l; lra |].
+      apply Rmult_le_compat_r; lra. }
+    lra. }
+  set (p := x * y') in *. set (w := x * y) in *. unfold v in *. lra.
 Qed.
 End Operations.

@@ -2,7 +2,7 @@
    is sized by its widest ball. *)
 From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core.
-From Sdop Require Import Format Geometry Double Pose Place Sphere Rejected Cells.
+From Sdop Require Import Format Geometry Double Pose Place ReadPose WorldBall Sphere Rejected Cells.
 Open Scope R_scope.
 
 (* A point's coordinate along an axis. *)
@@ -82,12 +82,10 @@ Proof.
   unfold u, v in *. lra.
 Qed.
 
-(* src/broad_phase/grid/cells.rs: Cells::fit, before the size grows to fit a table. The box's ends
-   along an axis are lo and hi; longest is its longest side. *)
-Definition needed (widest : R) : R :=
-  mul64 m64 (mul64 m64 2 (widen widest)) (1 + / 65536).
-Definition fit (widest longest : R) : R :=
-  Rmax (needed widest) (div64 m64 longest (IZR (2 ^ 29))).
+(* src/broad_phase/grid/cells.rs: Cells::fit takes the larger of these two sizes, or a larger one
+   still. `longest` is the longest side of the box of centres. *)
+Definition needed (widest : R) : R := mul64 m64 (mul64 m64 2 (widen widest)) (1 + / 65536).
+Definition fewest (longest : R) : R := div64 m64 longest (IZR (2 ^ 29)).
 
 Lemma needed_above (widest : R) :
   0 <= widest <= IZR (2 ^ 100) -> widen widest <= IZR (2 ^ 200) ->
@@ -126,11 +124,39 @@ Proof.
   rewrite (Rabs_pos_eq (d * (1 + / 65536))) in E2 by lra. apply Rabs_le_inv in E2.
   set (result := mul64 m64 d (1 + / 65536)) in *. unfold v in *. lra.
 Qed.
+
+(* Hardly more than 2^29 cells lie between two ends of the box. *)
+Lemma fit_most_cells (lo hi x longest size : R) :
+  lo <= x <= hi -> sub64 m64 hi lo <= longest -> 0 <= longest ->
+  fewest longest <= size -> / IZR (2 ^ 100) <= size -> x - lo <= most_cells * size.
+Proof.
+  intros Hx Hl L0 Hs Hmin. pose proof v_value as V. pose proof dust_value as D.
+  pose proof tiny64_dust as T1. pose proof (proj1 tiny64_value) as T0.
+  assert (D1 : dust <= / 1000000000000 * / IZR (2 ^ 100)).
+  { unfold dust. rewrite <- Rinv_mult, <- mult_IZR.
+    apply Rinv_le_contravar; [now apply IZR_lt | now apply IZR_le]. }
+  assert (E0 : forall a : R, Rabs (a - a) <= 0) by (intro; rewrite Rminus_diag_eq, Rabs_R0; lra).
+  pose proof (sub64_near m64 Hm64 hi lo hi lo 0 0 (E0 hi) (E0 lo)) as S.
+  rewrite (Rabs_pos_eq (hi - lo)) in S by lra. apply Rabs_le_inv in S.
+  pose proof (read64_error m64 longest) as Rl. apply Rabs_le_inv in Rl.
+  pose proof (read64_nonneg m64 longest L0) as Rn.
+  assert (R29 : read64 m64 (IZR (2 ^ 29)) = 536870912).
+  { destruct (read64_cases m64 (IZR (2 ^ 29))) as [-> | [A _]]; [reflexivity |].
+    exfalso. pose proof tiny64_small. rewrite Rabs_pos_eq in A; lra. }
+  unfold fewest, div64 in Hs. rewrite R29 in Hs.
+  set (l := read64 m64 longest) in *.
+  pose proof (fl64_error m64 Hm64 (l / 536870912)) as F.
+  rewrite (Rabs_pos_eq (l / 536870912)) in F by lra. apply Rabs_le_inv in F.
+  set (size' := fl64 m64 (l / 536870912)) in *. unfold most_cells.
+  assert (A : (hi - lo) * (1 - 3 * v) <= 536870912 * size + / IZR (2 ^ 100) * / 1000).
+  { unfold v in *. lra. }
+  unfold v in *. lra.
+Qed.
 End Fit.
 
 (* Bodies a and b of a level that share a point, along one axis: `widest` is no less than their
-   radii, `size` no less than what the level needs (Cells::fit only makes it larger), `origin` no
-   more than their coordinates, which are read as m reads them. *)
+   radii, `size` no less than what Cells::fit starts from, `origin` no more than their coordinates,
+   which are read as m reads them. *)
 Theorem touching_bodies_in_neighbouring_cells
     (m : mode) (m64 : mode64) (ma mb : modes) (a b : body) (p : point) (axis : nat)
     (widest size origin : R) :

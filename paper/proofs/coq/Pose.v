@@ -121,11 +121,13 @@ Proof.
     - apply Rmult_le_reg_l with den; [lra |]. rewrite Hk.
       apply Rle_trans with ((1 + 4.01 * v) * n * (1 - 4.02 * v)).
       + apply Rmult_le_compat_r; [unfold v; lra | lra].
-      + replace ((1 + 4.01 * v) * n * (1 - 4.02 * v)) with (n * ((1 + 4.01 * v) * (1 - 4.02 * v))) by ring.
+      + replace ((1 + 4.01 * v) * n * (1 - 4.02 * v))
+          with (n * ((1 + 4.01 * v) * (1 - 4.02 * v))) by ring.
         rewrite <- (Rmult_1_r n) at 2. apply Rmult_le_compat_l; [lra |]. unfold v. lra.
     - apply Rmult_le_reg_l with den; [lra |]. rewrite Hk.
       apply Rle_trans with ((1 - 4.01 * v) * n * (1 + 4.02 * v)).
-      + replace ((1 - 4.01 * v) * n * (1 + 4.02 * v)) with (n * ((1 - 4.01 * v) * (1 + 4.02 * v))) by ring.
+      + replace ((1 - 4.01 * v) * n * (1 + 4.02 * v))
+          with (n * ((1 - 4.01 * v) * (1 + 4.02 * v))) by ring.
         rewrite <- (Rmult_1_r n) at 1. apply Rmult_le_compat_l; [lra |]. unfold v. lra.
       + apply Rmult_le_compat_r; [unfold v; lra | lra]. }
   assert (G : Rabs (o * n - 1) <= 5.03 * v).
@@ -324,7 +326,6 @@ Proof.
   destruct components_big as (Bx & By & Bz & Bw).
   pose proof denominator_error as Hden. cbv zeta beta in Hden.
   unfold rotation_of, exact_rotation, row_error, twice, diagonal, pt. cbn [row0 row1 row2 px py pz].
-  assert (P : forall a b, Rabs (mul64 m a b) = Rabs (mul64 m a b)) by reflexivity. clear P.
   assert (Diag : forall a b c d, Rabs a <= big -> Rabs b <= big -> Rabs c <= big -> Rabs d <= big ->
     a * a + b * b + c * c + d * d = n -> _)
     by (intros a b c d Ba Bb Bc Bd E; exact (diagonal_error a b c d Ba Bb Bc Bd E)).
@@ -333,7 +334,8 @@ Proof.
     by (intros a b c d Ba Bb Bc Bd E;
         exact (twice_error a b c d _ _ E eq_refl eq_refl _ _ (mul64_error m Hm a b Ba Bb)
                  (mul64_error m Hm c d Bc Bd))).
-  assert (Minus : forall a b c d, Rabs a <= big -> Rabs b <= big -> Rabs c <= big -> Rabs d <= big ->
+  assert (Minus : forall a b c d,
+    Rabs a <= big -> Rabs b <= big -> Rabs c <= big -> Rabs d <= big ->
     a * a + b * b + c * c + d * d = n -> _)
     by (intros a b c d Ba Bb Bc Bd E;
         exact (twice_error a b c d _ _ E eq_refl (Rabs_Ropp _) _ _ (mul64_error m Hm a b Ba Bb)

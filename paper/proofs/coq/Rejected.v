@@ -1,7 +1,7 @@
 (* Theorem S: bodies that the sphere test rejects have no point in common. *)
 From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core.
-From Sdop Require Import Format Geometry Double Pose Place Sphere.
+From Sdop Require Import Format Geometry Double Pose Place ReadPose WorldBall Sphere.
 Open Scope R_scope.
 
 (* A body: the ball of its shape, its rotation and its translation, each as it is given. *)
@@ -48,7 +48,8 @@ Qed.
    slack. *)
 Lemma occupied_near (m : modes) (b : body) (p : point) :
   valid_modes m -> sound m b -> occupies b p ->
-  let w := world_ball (pose32 m) (pose64 m) (turn b) (place b) (centre (shape b)) (radius (shape b)) in
+  let w := world_ball (pose32 m) (pose64 m) (turn b) (place b)
+    (centre (shape b)) (radius (shape b)) in
   0 <= radius w /\ distance p (centre w) <= radius w + slack / 2.
 Proof.
   intros (Hm & Hm64 & _) (Hq & Hread & Ht & Hc & Hr) (x & Hx & ->) w.
@@ -75,4 +76,40 @@ Proof.
     (centre (shape a)) (radius (shape a)))) p (centre (world_ball (pose32 mb) (pose64 mb) (turn b)
     (place b) (centre (shape b)) (radius (shape b))))) as T.
   rewrite (distance_symmetric _ p) in T. lra.
+Qed.
+
+(* A quaternion of finite f32 numbers, not all of them zero, meets the contract. *)
+Definition finite32 (x : R) : Prop :=
+  generic_format radix2 (FLT_exp (-149) 24) x /\ Rabs x <= IZR (2 ^ 128).
+
+Lemma finite32_square (x : R) :
+  finite32 x -> x * x <= IZR (2 ^ 256) /\ (x = 0 \/ least_norm <= x * x).
+Proof.
+  intros [F H]. pose proof (Rabs_pos x) as P. pose proof (Rsqr_abs x) as E. unfold Rsqr in E.
+  rewrite E. split.
+  - change (2 ^ 256)%Z with (2 ^ 128 * 2 ^ 128)%Z. rewrite mult_IZR. apply Rmult_le_compat; lra.
+  - destruct (Req_dec x 0) as [Z | N]; [now left | right].
+    assert (L : bpow radix2 (-149) <= Rabs x).
+    { apply generic_format_ge_bpow with (FLT_exp (-149) 24).
+      - intro e. unfold FLT_exp. lia.
+      - now apply Rabs_pos_lt.
+      - now apply generic_format_abs. }
+    replace least_norm with (bpow radix2 (-149) * bpow radix2 (-149)).
+    + pose proof (bpow_gt_0 radix2 (-149)). apply Rmult_le_compat; lra.
+    + rewrite <- bpow_plus. reflexivity.
+Qed.
+
+Lemma quaternion_sound (q : quaternion) :
+  finite32 (qx q) -> finite32 (qy q) -> finite32 (qz q) -> finite32 (qw q) ->
+  norm_of q <> 0 -> sound_quaternion q.
+Proof.
+  intros Fx Fy Fz Fw N. unfold sound_quaternion, greatest_norm, norm_of in *.
+  pose proof (square_shares q) as (Px & Py & Pz & Pw).
+  destruct (finite32_square _ Fx) as [Ux Lx]. destruct (finite32_square _ Fy) as [Uy Ly].
+  destruct (finite32_square _ Fz) as [Uz Lz]. destruct (finite32_square _ Fw) as [Uw Lw].
+  split.
+  - destruct Lx as [Ex | Lx]; [| lra]. destruct Ly as [Ey | Ly]; [| lra].
+    destruct Lz as [Ez | Lz]; [| lra]. destruct Lw as [Ew | Lw]; [| lra].
+    exfalso. apply N. rewrite Ex, Ey, Ez, Ew. ring.
+  - change (2 ^ 258)%Z with (4 * 2 ^ 256)%Z. rewrite mult_IZR. lra.
 Qed.

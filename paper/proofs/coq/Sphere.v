@@ -172,7 +172,8 @@ Proof.
     assert (tiny * Rabs Y <= tiny * (P + slack)) by (apply Rmult_le_compat_l; lra).
     assert (tiny * Rabs Z <= tiny * (P + slack)) by (apply Rmult_le_compat_l; lra).
     lra. }
-  pose proof (Rle_0_sqr (Rabs X + 3 * tiny)) as Qx. pose proof (Rle_0_sqr (Rabs Y + 3 * tiny)) as Qy.
+  pose proof (Rle_0_sqr (Rabs X + 3 * tiny)) as Qx.
+  pose proof (Rle_0_sqr (Rabs Y + 3 * tiny)) as Qy.
   pose proof (Rle_0_sqr (Rabs Z + 3 * tiny)) as Qz. unfold Rsqr in Qx, Qy, Qz.
   assert (F : forall q, (q * (1 + u)) * (q * (1 + u)) = (q * q) * ((1 + u) * (1 + u)))
     by (intro; ring).
@@ -214,7 +215,8 @@ Proof.
   intros Hf HW Hd. pose proof tiny_value as Hw. pose proof Hm as Ht. unfold valid in Ht.
   assert (Hb : s <= 16777216 * radius_floor).
   { apply Rnot_lt_le. intro Hn. rewrite floor_value in Hn. pose proof tiny_square as Hw2.
-    assert (16777216 * (72057594037927936 * tiny) * (16777216 * (72057594037927936 * tiny)) <= s * s)
+    assert (16777216 * (72057594037927936 * tiny)
+      * (16777216 * (72057594037927936 * tiny)) <= s * s)
       by (apply Rmult_le_compat; lra).
     pose proof (Rle_0_sqr tiny) as Hq. unfold Rsqr in Hq. lra. }
   rewrite floor_value in *. unfold slack, u in *. lra.

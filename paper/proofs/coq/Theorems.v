@@ -1,11 +1,17 @@
 (* What each theorem rests on. .ci/proofs accepts the four axioms of README.md and no other. *)
-From Sdop Require Rejected Ieee Controls Cells Grid.
+From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid.
 
 Print Assumptions Rejected.sphere_rejects_disjoint.
+Print Assumptions Rejected.quaternion_sound.
+Print Assumptions Sphere.stored_balls_disjoint.
 Print Assumptions Ieee.rejected32_disjoint.
+Print Assumptions Place.transform_error.
+Print Assumptions ReadPose.pose_change.
+Print Assumptions WorldBall.world_ball_contains.
 Print Assumptions Controls.lower_factor_refuted.
 Print Assumptions Controls.lower_floor_refuted.
 Print Assumptions Cells.centre_in_table.
-Print Assumptions Cells.neighbouring_cells.
 Print Assumptions Cells.around_covers.
 Print Assumptions Grid.touching_bodies_in_neighbouring_cells.
+Print Assumptions Grid.fit_most_cells.
+Print Assumptions Controls.former_count_refuted.
