@@ -6,8 +6,8 @@ use crate::linear::{Matrix, Vector, apply, norm_squared, rotation, sub};
 /// Where a body is: f32 numbers as given, never renormalised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    q: [f32; 4],
-    t: [f32; 3],
+    q: [f64; 4],
+    t: [f64; 3],
 }
 
 impl Pose {
@@ -31,17 +31,22 @@ impl Pose {
         if q == [0.0; 4] {
             return Err(InvalidInput::ZeroQuaternion);
         }
-        Ok(Self { q, t })
+        Ok(Self::of_f64(q.map(f64::from), t.map(f64::from)))
+    }
+
+    /// Numbers that f32 need not hold: only for [`WidePose`](crate::WidePose).
+    pub(crate) fn of_f64(q: [f64; 4], t: [f64; 3]) -> Self {
+        Self { q, t }
     }
 
     /// The quaternion (x, y, z, w) as given.
     pub fn quaternion(&self) -> [f64; 4] {
-        self.q.map(f64::from)
+        self.q
     }
 
     /// The translation as given.
     pub fn translation(&self) -> Vector<f64> {
-        self.t.map(f64::from)
+        self.t
     }
 
     /// R(q)/|q|².
