@@ -5,8 +5,8 @@
     python benches/adapters/board.py --one coal
 
 Verdicts: `pass`, every case was judged and nothing was missed; `partial`, nothing was missed in those that the library can
-represent; `does not claim`, what was missed is outside of its claim; `fail`; `error`. Published cases alone, so that every machine
-finds the same.
+represent; `does not claim`, what was missed is outside of its claim; `fail`; `error`. Only published cases are judged: they are the
+same everywhere.
 """
 
 from __future__ import annotations
