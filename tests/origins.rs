@@ -1,12 +1,9 @@
-//! Poses refer to the mesh's own origin: what a user writes first, every example and Bullet's seam
-//! are judged in the coordinates of the file, by an L-shaped bracket that lies next to its origin.
+//! Poses refer to the mesh's own origin: what a user writes first, every example and the pair
+//! test are judged in the coordinates of the file, by an L-shaped bracket next to its origin.
 //! Rapier's seam is judged in its own package.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "../examples/bullet/src/seam.rs"]
-#[allow(dead_code, reason = "a test calls what C++ does")]
-mod bullet;
 #[path = "../examples/cull.rs"]
 #[allow(dead_code, reason = "a test calls what `main` does")]
 mod cull;
@@ -185,12 +182,11 @@ fn the_judged_grid_keeps_the_origin() {
 }
 
 #[test]
-fn the_seam_of_bullet_keeps_the_origin() {
-    let mesh = bracket();
-    let vertices = mesh.vertices.clone();
+fn a_pair_test_keeps_the_origin() {
+    let shape = Shape::build(&bracket(), &ShapeSpec::default()).unwrap();
     let mut test = PairTest::new(DirectionSet::K18);
-    let number = bullet::add(&mut test, &vertices, &mesh.triangles, 0.0).unwrap();
-    assert_nothing_missed("bullet", |&(rotation, translation)| {
+    let number = test.add(&shape).unwrap();
+    assert_nothing_missed("pair test", |&(rotation, translation)| {
         test.may_touch(number, number, rotation, translation)
     });
 }

@@ -2,6 +2,7 @@
 
 fn main() {
     println!("cargo:rerun-if-changed=native");
+    println!("cargo:rerun-if-changed=../../src/c/sdop.h");
     #[cfg(feature = "debian")]
     compile();
 }
@@ -14,6 +15,7 @@ fn compile() {
         .opt_level(3)
         .define("NDEBUG", None)
         .flag("-isystem/usr/include/bullet") // its headers warn
+        .include("../../src/c")
         .file("native/scene.cpp")
         .compile("sdop_bullet_scene");
     for library in ["BulletDynamics", "BulletCollision", "LinearMath"] {

@@ -1,4 +1,4 @@
-// Meshes with poses of an engine: a fixed set, then a world with margins that is saved and rolled back. C++17.
+// Meshes with poses of an engine: a fixed set, a world with margins that is saved and rolled back, single pairs. C++17.
 #include <array>
 #include <cassert>
 #include <cstdio>
@@ -20,6 +20,7 @@ struct Free {
 };
 using Shape = std::unique_ptr<SdopShape, Free<SdopShape, sdop_shape_free>>;
 using Culler = std::unique_ptr<SdopCuller, Free<SdopCuller, sdop_culler_free>>;
+using PairTest = std::unique_ptr<SdopPairTest, Free<SdopPairTest, sdop_pair_test_free>>;
 using World = std::unique_ptr<SdopWorld, Free<SdopWorld, sdop_world_free>>;
 
 Shape tetrahedron() {
@@ -86,11 +87,28 @@ void a_world(const SdopShape *shape) {
     assert(pairs_of(world.get()).size() == 1);
 }
 
+void single_pairs(const SdopShape *shape) {
+    SdopPairTest *made = nullptr;
+    assert(sdop_pair_test_new(17, &made) == SDOP_STATUS_REFUSED);
+    check(sdop_pair_test_new(0, &made));
+    const PairTest test(made);
+    std::uint32_t plain = 0, grown = 0;
+    check(sdop_pair_test_add(test.get(), shape, &plain));
+    check(sdop_pair_test_grow(test.get(), plain, 2.5F, &grown));
+    assert(sdop_pair_test_grow(test.get(), 7, 0.5F, &grown) == SDOP_STATUS_REFUSED && grown == 1);
+    const float rotation[] = {0, 0, 0, 1}, touching[] = {1, 0, 0}, apart[] = {3, 0, 0};
+    assert(sdop_pair_test_may_touch(test.get(), plain, plain, &rotation, &touching));
+    assert(!sdop_pair_test_may_touch(test.get(), plain, plain, &rotation, &apart));
+    assert(sdop_pair_test_may_touch(test.get(), grown, plain, &rotation, &apart));
+    assert(sdop_pair_test_may_touch(test.get(), 7, plain, &rotation, &apart)); // unknown numbers are never rejected
+}
+
 } // namespace
 
 int main() {
     const Shape shape = tetrahedron();
     a_fixed_set(shape.get());
     a_world(shape.get());
+    single_pairs(shape.get());
     std::puts("all as expected");
 }

@@ -18,6 +18,7 @@ from __future__ import annotations
 from ._sdop import (
     BoxCuller,
     BoxWorld,
+    CaseSkipped,
     Culler,
     Events,
     Scene,
@@ -34,6 +35,7 @@ from .laboratory import MissedPair, Verdict, cost, judge, tradeoff
 __all__ = [
     "BoxCuller",
     "BoxWorld",
+    "CaseSkipped",
     "CollisionManager",
     "Culler",
     "Events",

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = [
     "BoxCuller",
     "BoxWorld",
+    "CaseSkipped",
     "Culler",
     "Events",
     "Scene",
@@ -27,6 +28,7 @@ _Origin = Literal["file", "ball"]
 _Pose = tuple[ArrayLike, ArrayLike]
 
 class SdopError(ValueError): ...
+class CaseSkipped(Exception): ...
 
 def box_pairs(
     boxes: ArrayLike, *, groups: ArrayLike | None = None, sort: bool = False, threads: int = 1
@@ -36,6 +38,8 @@ def box_pairs(
 class BoxCuller:
     def __new__(cls, *, finder: str = "auto", threads: int = 1) -> BoxCuller: ...
     def cull(self, boxes: ArrayLike, *, groups: ArrayLike | None = None, sort: bool = False) -> NDArray[np.uint32]: ...
+    @property
+    def seconds(self) -> float: ...
 
 @final
 class BoxWorld:
@@ -90,6 +94,8 @@ class Shape:
     @property
     def offset(self) -> list[float]: ...
     @property
+    def pose_offset(self) -> list[float]: ...
+    @property
     def scale(self) -> float: ...
 
 @final
@@ -109,6 +115,8 @@ class Culler:
     def cull(self, rotations: ArrayLike, translations: ArrayLike, *, sort: bool = False) -> NDArray[np.uint32]: ...
     @property
     def finder(self) -> str: ...
+    @property
+    def seconds(self) -> float: ...
     def __len__(self) -> int: ...
 
 class _Body(TypedDict):

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._sdop import Shape, World, exact_meet
 
 _Names = set[tuple[str, str]]
+_Vector = NDArray[np.float64]
 
 
 class CollisionManager:
@@ -17,7 +18,9 @@ class CollisionManager:
 
     Method names and meanings are those of ``trimesh.collision.CollisionManager``; a pair collides when its posed meshes share a
     point, or one lies inside of a closed part of the other, in exact arithmetic. Transforms are rigid: 4 × 4, a rotation and a
-    translation. Distances and contact points are not computed.
+    translation. The rotation is rounded to a quaternion of float32, the translation is taken in float64. A mesh that lies far
+    from its own origin is placed by a point near it, whose position is computed in float64. Distances and contact points are
+    not computed.
     """
 
     def __init__(self) -> None:
@@ -27,13 +30,16 @@ class CollisionManager:
 
     def add_object(self, name: str, mesh: Any, transform: ArrayLike | None = None) -> None:
         """Adds a ``trimesh.Trimesh`` or a `Shape`; one of the same name is replaced."""
-        rotation, translation = _pose(transform)
         shape = mesh if isinstance(mesh, Shape) else Shape(mesh, name=name)
+        offset = np.array(shape.pose_offset)
+        if offset.any():
+            shape = Shape(shape.vertices, shape.triangles, name=name)
+        rotation, translation = _pose(transform, offset)
         if name in self._objects:
             self.remove_object(name)
         number = self._world.add_shape(shape)
         id = self._world.insert(number, rotation, translation)
-        self._objects[name] = _Object(id, number, shape, rotation, translation)
+        self._objects[name] = _Object(id, number, shape, offset, rotation, translation)
         self._names[id] = name
 
     def remove_object(self, name: str) -> None:
@@ -46,7 +52,7 @@ class CollisionManager:
     def set_transform(self, name: str, transform: ArrayLike) -> None:
         """Moves an object."""
         moved = self._find(name)
-        moved.rotation, moved.translation = _pose(transform)
+        moved.rotation, moved.translation = _pose(transform, moved.offset)
         self._world.set_pose(moved.id, moved.rotation, moved.translation)
 
     def in_collision_internal(self, return_names: bool = False) -> bool | tuple[bool, _Names]:
@@ -100,9 +106,9 @@ class CollisionManager:
 
 class _Object:
     def __init__(
-        self, id: int, number: int, shape: Shape, rotation: NDArray[np.float32], translation: NDArray[np.float32]
+        self, id: int, number: int, shape: Shape, offset: _Vector, rotation: NDArray[np.float32], translation: _Vector
     ) -> None:
-        self.id, self.number, self.shape = id, number, shape
+        self.id, self.number, self.shape, self.offset = id, number, shape, offset
         self.rotation, self.translation = rotation, translation
 
     def meets(self, other: _Object) -> bool:
@@ -110,8 +116,8 @@ class _Object:
         return exact_meet(self.shape, mine, other.shape, theirs)
 
 
-def _pose(transform: ArrayLike | None) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """A rigid transform as a quaternion x, y, z, w and a translation, both rounded to float32."""
+def _pose(transform: ArrayLike | None, offset: _Vector) -> tuple[NDArray[np.float32], _Vector]:
+    """A rigid transform as a quaternion x, y, z, w, rounded to float32, and the place of a point of the mesh."""
     matrix = np.eye(4) if transform is None else np.asarray(transform, dtype=np.float64)
     if matrix.shape != (4, 4) or not np.array_equal(matrix[3], [0, 0, 0, 1]):
         raise ValueError(f"a transform has shape (4, 4) and the last row 0, 0, 0, 1; this one is\n{matrix}")
@@ -121,7 +127,7 @@ def _pose(transform: ArrayLike | None) -> tuple[NDArray[np.float32], NDArray[np.
             "a transform turns and moves, and this one also scales or mirrors\n"
             "help: apply the scale to the mesh: mesh.apply_transform(…)"
         )
-    return _quaternion(turn).astype(np.float32), matrix[:3, 3].astype(np.float32)
+    return _quaternion(turn).astype(np.float32), matrix[:3, 3] + turn @ offset
 
 
 def _quaternion(turn: NDArray[np.float64]) -> NDArray[np.float64]:

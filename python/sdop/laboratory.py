@@ -81,7 +81,8 @@ def judge(
     make : a class, or anything else that makes a culler of a `Scene`
         The culler has ``frame(rotations, translations)``, which returns the pairs i < j as an array of shape (m, 2); with the
         claim "aabb" it has ``frame(boxes)``. If its set of bodies can change, it has ``change(body_shapes, dynamic, was)``,
-        where ``was`` holds each body's former number, or -1; otherwise cases with such a change are skipped.
+        where ``was`` holds each body's former number, or -1; otherwise cases with such a change are skipped. One that can't do a
+        case raises `CaseSkipped` with the reason.
     claims : {"mesh", "hull", "or-dop", "sphere", "aabb"}
         What it never misses.
     cases : str

@@ -1,6 +1,7 @@
 //! Boxes on the world's axes.
 
 use std::sync::Mutex;
+use std::time::Instant;
 
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -44,11 +45,16 @@ pub(super) fn groups(
 
 /// Which boxes meet? Touching is meeting.
 ///
-/// Parameters ---------- boxes : array of float32, shape (n, 6) or (n, 2, 3) Lower corner x, y, z,
-/// then the upper one. float64 is taken where float32 holds each number exactly. groups : array of
-/// whole numbers, shape (n, 2), optional Bits of the groups that each box is in, and of those that
-/// it collides with. sort : bool Whether the rows are sorted; otherwise their order is the same for
-/// the same boxes. threads : int Number of threads.
+/// Parameters
+/// ----------
+/// boxes : array of float32, shape (n, 6) or (n, 2, 3)
+///     Lower corner x, y, z, then the upper one. float64 is taken where float32 holds each number.
+/// groups : array of whole numbers, shape (n, 2), optional
+///     Bits of the groups that each box is in, and of those that it collides with.
+/// sort : bool
+///     Whether the rows are sorted; otherwise the same boxes give the same order.
+/// threads : int
+///     Number of threads.
 ///
 /// Returns
 /// -------
@@ -76,7 +82,12 @@ pub fn box_pairs<'py>(
 /// threads : int
 ///     Number of threads.
 #[pyclass(frozen, module = "sdop")]
-pub struct BoxCuller(Mutex<sdop::BoxCuller>);
+pub struct BoxCuller(Mutex<Timed>);
+
+struct Timed {
+    culler: sdop::BoxCuller,
+    seconds: f64,
+}
 
 #[pymethods]
 impl BoxCuller {
@@ -85,7 +96,10 @@ impl BoxCuller {
     fn new(finder: &str, threads: usize) -> PyResult<Self> {
         let finder: Finder = finder.parse().map_err(refused)?;
         let builder = sdop::BoxCuller::builder().finder(finder).threads(threads);
-        Ok(Self(Mutex::new(builder.build().map_err(refused)?)))
+        Ok(Self(Mutex::new(Timed {
+            culler: builder.build().map_err(refused)?,
+            seconds: 0.0,
+        })))
     }
 
     /// The pairs of this frame's boxes, as `box_pairs` has them. Their number may change from frame
@@ -101,11 +115,20 @@ impl BoxCuller {
         let given = self::boxes(boxes)?;
         let boxes = Aabb::from_rows(given.rows());
         let groups = self::groups(groups, boxes.len())?;
-        let found = locked(py, &self.0, |culler| {
+        let found = locked(py, &self.0, |Timed { culler, seconds }| {
             culler.set_groups(groups);
-            culler.cull(boxes).map(|found| list(found, sort))
+            let start = Instant::now();
+            let found = culler.cull(boxes);
+            *seconds = start.elapsed().as_secs_f64();
+            found.map(|found| list(found, sort))
         });
         pairs(py, found.map_err(refused)?)
+    }
+
+    /// How long the last `cull` took, without what passing arrays took.
+    #[getter]
+    fn seconds(&self, py: Python<'_>) -> f64 {
+        locked(py, &self.0, |timed| timed.seconds)
     }
 }
 

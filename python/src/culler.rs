@@ -1,6 +1,7 @@
 //! Culling a fixed set of bodies.
 
 use std::sync::Mutex;
+use std::time::Instant;
 
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -18,14 +19,23 @@ const ROUND: &str = "pass float32, whose pose is then the one that is culled; `s
 /// If two posed meshes meet in exact arithmetic, touching included, and one of them is dynamic, the
 /// pair is reported. Pairs that don't meet may be reported too; how many depends on the strategy.
 ///
-/// Parameters ---------- shapes : list of Shape body_shapes : array of whole numbers, shape (n,)
-/// For each body, the index of its shape. dynamic : array of bool, shape (n,), optional Whether a
-/// body may move; pairs of two that may not are never reported. All may, unless given. strategy :
-/// str Which volumes are tested: "s-dop-sequential" tests spheres, then or-DOPs. finder : str Who
-/// finds the candidates; the reported set doesn't depend on it. interest : list of int, optional
-/// Bodies of interest, for the strategies that need them. groups : array of whole numbers, shape
-/// (n, 2), optional Bits of the groups that each body is in, and of those that it collides with.
-/// threads : int Number of threads.
+/// Parameters
+/// ----------
+/// shapes : list of Shape
+/// body_shapes : array of whole numbers, shape (n,)
+///     For each body, the index of its shape.
+/// dynamic : array of bool, shape (n,), optional
+///     Whether a body may move; pairs of two that may not are never reported. All may, unless given.
+/// strategy : str
+///     Which volumes are tested: "s-dop-sequential" tests spheres, then or-DOPs.
+/// finder : str
+///     Who finds the candidates; the reported set doesn't depend on it.
+/// interest : list of int, optional
+///     Bodies of interest, for the strategies that need them.
+/// groups : array of whole numbers, shape (n, 2), optional
+///     Bits of the groups that each body is in, and of those that it collides with.
+/// threads : int
+///     Number of threads.
 #[pyclass(frozen, module = "sdop")]
 pub struct Culler(Mutex<State>);
 
@@ -34,6 +44,7 @@ struct State {
     bodies: Bodies,
     /// Whether no frame has come yet, so that the poses of static bodies are unknown.
     is_new: bool,
+    seconds: f64,
 }
 
 #[pymethods]
@@ -84,6 +95,7 @@ impl Culler {
             culler,
             bodies,
             is_new: true,
+            seconds: 0.0,
         })))
     }
 
@@ -125,6 +137,12 @@ impl Culler {
         locked(py, &self.0, |state| state.culler.finder().name())
     }
 
+    /// How long the last `cull` took, without what passing arrays took.
+    #[getter]
+    fn seconds(&self, py: Python<'_>) -> f64 {
+        locked(py, &self.0, |state| state.seconds)
+    }
+
     fn __len__(&self, py: Python<'_>) -> usize {
         locked(py, &self.0, |state| state.bodies.len())
     }
@@ -151,9 +169,9 @@ impl State {
             self.culler.refresh(&self.bodies).map_err(refused)?;
             self.is_new = false;
         }
-        self.culler
-            .cull(&self.bodies)
-            .map(|found| list(found, sort))
-            .map_err(refused)
+        let start = Instant::now();
+        let found = self.culler.cull(&self.bodies);
+        self.seconds = start.elapsed().as_secs_f64();
+        found.map(|found| list(found, sort)).map_err(refused)
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyException, PyValueError};
 use pyo3::{PyErr, Python, create_exception};
 use sdop_bench::remedy::Remedy;
 
@@ -12,6 +12,13 @@ create_exception!(
     SdopError,
     PyValueError,
     "Input that sdop refuses; the text says where it is wrong and how to mend it."
+);
+
+create_exception!(
+    sdop,
+    CaseSkipped,
+    PyException,
+    "Raised by a culler under judgement that can't do a case; the text says why."
 );
 
 /// An error of the library.

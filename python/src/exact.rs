@@ -1,14 +1,11 @@
 //! The exact answer for one pair.
 
 use pyo3::prelude::*;
-use sdop_reference::exact::meeting;
-use sdop_reference::{Body, Pose};
+use sdop_reference::{WidePose, wide};
 
-use super::arrays::rows;
+use super::arrays::wide_rows;
 use super::errors::with_help;
 use super::shape::Shape;
-
-const ROUND: &str = "pass float32: the exact answer is about the numbers as given";
 
 /// Whether two posed meshes share a point, or one lies inside of a closed part of the other, in
 /// exact arithmetic.
@@ -17,7 +14,8 @@ const ROUND: &str = "pass float32: the exact answer is about the numbers as give
 /// ----------
 /// shape_a, shape_b : Shape
 /// pose_a, pose_b : (rotation, translation)
-///     Quaternion x, y, z, w of any non-zero norm, and translation, in float32.
+///     Quaternion x, y, z, w of any non-zero norm, and translation, of float32 or float64: the
+///     answer is about these very numbers.
 ///
 /// Returns
 /// -------
@@ -32,30 +30,27 @@ pub fn exact_meet(
 ) -> PyResult<bool> {
     let poses = [pose("pose_a", &pose_a)?, pose("pose_b", &pose_b)?];
     py.detach(|| {
-        let [a, b] = [(shape_a, poses[0]), (shape_b, poses[1])].map(|(shape, pose)| {
-            shape.judged().map(|shape| Body {
-                shape,
-                pose,
-                dynamic: true,
-            })
-        });
-        Ok(meeting::overlap(&a?, &b?).meets)
+        let [a, b] = [shape_a.judged()?, shape_b.judged()?];
+        Ok(wide::meet((a, &poses[0]), (b, &poses[1])).meets)
     })
 }
 
 fn pose(
     what: &str,
     (rotation, translation): &(Bound<'_, PyAny>, Bound<'_, PyAny>),
-) -> PyResult<Pose> {
-    let numpy = rotation.py().import("numpy")?;
-    let rotation = numpy.call_method1("reshape", (rotation, (1, 4)))?;
-    let translation = numpy.call_method1("reshape", (translation, (1, 3)))?;
-    let rotation = rows::<4>(&rotation, &format!("{what}'s rotation"), ROUND)?.rows()[0];
-    let translation = rows::<3>(&translation, &format!("{what}'s translation"), ROUND)?.rows()[0];
-    Pose::new(rotation, translation).map_err(|error| {
+) -> PyResult<WidePose> {
+    let rotation = row::<4>(rotation, &format!("{what}'s rotation"))?;
+    let translation = row::<3>(translation, &format!("{what}'s translation"))?;
+    WidePose::new(rotation, translation).map_err(|error| {
         with_help(
             format!("{what}: {error}"),
             "a non-zero quaternion and finite numbers",
         )
     })
+}
+
+fn row<const N: usize>(given: &Bound<'_, PyAny>, what: &str) -> PyResult<[f64; N]> {
+    let numpy = given.py().import("numpy")?;
+    let given = numpy.call_method1("reshape", (given, (1, N)))?;
+    Ok(wide_rows(&given, what)?[0])
 }

@@ -10,7 +10,7 @@ use sdop_judge::shrink::Smallest;
 use sdop_judge::{Case, Claim, Frame, Options, Subject, examine};
 
 use super::arrays::{matrix, whole_rows};
-use super::errors::{SdopError, refused};
+use super::errors::{CaseSkipped, SdopError, refused};
 
 /// Judges a culler against the exact reference.
 ///
@@ -18,7 +18,7 @@ use super::errors::{SdopError, refused};
 /// translations)`, which returns the pairs i < j as an array of shape (m, 2). For the claim "aabb"
 /// it has `frame(boxes)` instead. If its set of bodies can change, it has `change(body_shapes,
 /// dynamic, was)`, where `was` holds each body's former number, or −1; cases with such a change are
-/// skipped otherwise. An exception is an error of that case.
+/// skipped otherwise. `CaseSkipped` skips a case, any other exception is an error of it.
 ///
 /// Returns whether it is a pass, the verdict as text and as JSON, and the smallest case of a miss;
 /// `sdop.judge` makes a `Verdict` of it.
@@ -122,6 +122,10 @@ impl Subject for InPython {
         Python::attach(|py| match self.run(py, case, claim, &mut answered) {
             Ok(None) => Ok(answered),
             Ok(Some(why)) => Err(Stop::Skipped { why, answered }),
+            Err(error) if error.is_instance_of::<CaseSkipped>(py) => Err(Stop::Skipped {
+                why: error.value(py).to_string(),
+                answered,
+            }),
             Err(error) => Err(Stop::Trouble(Trouble::Crashed {
                 how: how(py, &error),
                 answered: answered.len(),

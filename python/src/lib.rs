@@ -22,7 +22,7 @@ mod _sdop {
     #[pymodule_export]
     use super::culler::Culler;
     #[pymodule_export]
-    use super::errors::SdopError;
+    use super::errors::{CaseSkipped, SdopError};
     #[pymodule_export]
     use super::exact::exact_meet;
     #[pymodule_export]

@@ -132,6 +132,13 @@ impl Shape {
         self.built.offset
     }
 
+    /// Where the origin of `vertices` lies, seen from the point that poses place: zero unless the
+    /// mesh is so far from its origin that float32 can't hold its vertices there.
+    #[getter]
+    fn pose_offset(&self) -> [f64; 3] {
+        self.built.pose_offset
+    }
+
     /// By how much the mesh was scaled.
     #[getter]
     fn scale(&self) -> f64 {
@@ -167,7 +174,7 @@ impl Shape {
                     "shape `{}` is far from the origin of its mesh",
                     self.built.name
                 ),
-                "the exact answer takes float32 poses: move the mesh to its origin, and add its place to the translations",
+                "the exact answer is about float32 vertices: move the mesh to its origin, and add its place to the translations",
             ));
         }
         let judged = self.judged.get_or_init(|| {

@@ -1,6 +1,7 @@
 """Boxes: the pairs that numpy finds by brute force, and what is refused."""
 
 import hashlib
+import time
 
 import numpy as np
 import pytest
@@ -120,3 +121,11 @@ def test_pairs_are_those_of_rust_to_the_bit():
 
 
 HASH = "bf3a97d3cf6860a4eba71ead750f8e5a0928f8a2a647e078928cac46621b6769"
+
+
+def test_the_time_of_a_call_is_kept():
+    culler = sdop.BoxCuller()
+    assert culler.seconds == 0
+    start = time.perf_counter()
+    culler.cull(np.zeros((1000, 6), np.float32))
+    assert 0 < culler.seconds < time.perf_counter() - start

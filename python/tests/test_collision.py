@@ -52,3 +52,26 @@ def test_rotations_are_those_of_the_matrix():
 def test_scaling_transforms_are_refused():
     with pytest.raises(ValueError, match="scales or mirrors"):
         sdop.CollisionManager().add_object("cube", trimesh.creation.box(), np.diag([2, 2, 2, 1]))
+
+
+def test_translations_are_float64():
+    cube = trimesh.creation.box(extents=[1, 1, 1])
+    for step, meets in [(0.7, True), (1.0, True), (1.0000002, False)]:
+        manager = sdop.CollisionManager()
+        manager.add_object("near", cube, at(1e9))
+        manager.add_object("far", cube, at(1e9 + step))
+        assert manager.in_collision_internal() is meets, step
+
+
+def test_a_mesh_far_from_its_origin():
+    cube = trimesh.creation.box(extents=[1, 1, 1])
+    away = cube.copy().apply_translation([1e7, 0, 0])
+    turned = trimesh.transformations.rotation_matrix(np.pi / 2, [0, 0, 1])
+    manager = sdop.CollisionManager()
+    manager.add_object("away", away)
+    assert manager.in_collision_single(cube, at(1e7 + 0.9))
+    assert not manager.in_collision_single(cube, at(1e7 + 1.1))
+    manager.set_transform("away", turned)
+    assert manager.in_collision_single(cube, at(0, 1e7 + 0.9))
+    assert not manager.in_collision_single(cube, at(0, 1e7 + 1.1))
+    assert not manager.in_collision_single(cube, at(1e7))

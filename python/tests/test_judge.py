@@ -67,6 +67,18 @@ def test_our_culler_passes():
     assert verdict, verdict.text
 
 
+def test_a_case_may_be_skipped():
+    class FewBoxes(Boxes):
+        def frame(self, boxes):
+            if len(boxes) > 2:
+                raise sdop.CaseSkipped("more than two")
+            return super().frame(boxes)
+
+    verdict = sdop.judge(FewBoxes, claims="aabb", cases="hard/counts/*")
+    outcomes = {case["outcome"] for case in verdict.cases}
+    assert outcomes == {"pass", "skipped"} and not verdict and "more than two" in verdict.text
+
+
 def test_an_exception_is_an_error_of_the_case():
     verdict = sdop.judge(Broken, cases="exact/*", fail_fast=True)
     assert not verdict and "TypeError" in verdict.text and "test_judge.py" in verdict.text

@@ -56,13 +56,40 @@ def test_static_bodies_are_placed_by_the_first_frame_and_moved_by_others():
         assert len(culler.cull(unturned, np.float32([[0, 0, 0], [x, 0, 0]]))) == meets
 
 
+def tetrahedron():
+    return sdop.Shape([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+
+
+def test_exact_answers_about_float64():
+    shape = tetrahedron()
+
+    def meet(x_a, x_b):
+        a, b = [([0, 0, 0, 1], np.array([x, 0.0, 0.0])) for x in (x_a, x_b)]
+        assert sdop.exact_meet(shape, a, shape, b) == sdop.exact_meet(shape, b, shape, a)
+        return sdop.exact_meet(shape, a, shape, b)
+
+    assert meet(1000000031.5, 1000000032.2)
+    place = 1000000031.7
+    assert meet(place, place + 1) and not meet(place, np.nextafter(place + 1, np.inf))
+    # As given, 1.1 is more than 1 above 0.1, though the difference rounds to 1.
+    assert 1.1 - 0.1 == 1.0 and not meet(0.1, 1.1) and meet(0.1, np.nextafter(1.1, 0))
+    # Turned by a half about z it ends at x = 0, and at a turn of 2**-59 more at x = 2**-59.
+    for more, x, meets in [(0.0, 0.0, True), (0.0, 2.0**-70, False), (2.0**-60, 2.0**-70, True), (2.0**-60, 2.0**-50, False)]:
+        a = (np.array([0, 0, 1, -more]), np.zeros(3))
+        b = (np.array([0, 0, 0, 1]), np.array([x, -1.0, 0.0]))
+        assert sdop.exact_meet(shape, a, shape, b) is meets, (more, x)
+    for rotation in [(0, 0, 0, 0), (0, 0, np.nan, 1), (1e200, 0, 0, 1e-200)]:
+        with pytest.raises(sdop.SdopError, match="pose_a"):
+            sdop.exact_meet(shape, (rotation, [0.0] * 3), shape, ([0, 0, 0, 1], [0.0] * 3))
+
+
 def test_translations_are_float64_in_a_world():
-    tetrahedron = sdop.Shape([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-    world = sdop.World([tetrahedron])
+    shape = tetrahedron()
+    world = sdop.World([shape])
     for x in (1000000031.5, 1000000032.2):
         world.insert(0, [0, 0, 0, 1], [x, 0, 0])
     assert len(world.cull()) == 1
-    culler = sdop.Culler([tetrahedron], [0, 0])
+    culler = sdop.Culler([shape], [0, 0])
     with pytest.raises(sdop.SdopError, match=r"translations\[0, 0\] is 1000000031.5.*\n.*World"):
         culler.cull([[0, 0, 0, 1]] * 2, [[1000000031.5, 0, 0], [1000000032.2, 0, 0]])
 

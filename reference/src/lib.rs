@@ -38,6 +38,7 @@ pub mod pose;
 pub mod shape;
 pub mod strategy;
 pub mod volume;
+pub mod wide;
 
 #[cfg(test)]
 mod tests;
@@ -47,6 +48,7 @@ pub use pose::Pose;
 pub use shape::{Body, Shape};
 pub use strategy::{Strategy, pairs};
 pub use volume::{Ball, DirectionSet, Slabs};
+pub use wide::WidePose;
 
 /// What the reference refuses to judge: an answer about it would mean nothing.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -60,6 +62,9 @@ pub enum InvalidInput {
     /// The quaternion (0, 0, 0, 0) names no rotation.
     #[error("the quaternion is zero: give any other norm")]
     ZeroQuaternion,
+    /// A component of an f64 quaternion is lost in the largest one.
+    #[error("components of the quaternion differ by more than 2^900: set the smallest to zero")]
+    QuaternionSpread,
     /// A radius below zero, or one that is NaN or infinite.
     #[error("the radius is negative, NaN or infinite")]
     Radius,

@@ -3,10 +3,10 @@
 use crate::InvalidInput;
 use crate::linear::{Matrix, Vector, apply, norm_squared, rotation, sub};
 
-/// Where a body is: an f32 quaternion and an f64 translation as given, never renormalised.
+/// Where a body is: a quaternion and a translation as given, never renormalised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    q: [f32; 4],
+    q: [f64; 4],
     t: Vector<f64>,
 }
 
@@ -46,12 +46,17 @@ impl Pose {
         if q == [0.0; 4] {
             return Err(InvalidInput::ZeroQuaternion);
         }
-        Ok(Self { q, t })
+        Ok(Self::of_f64(q.map(f64::from), t))
+    }
+
+    /// Numbers that f32 need not hold: only for [`WidePose`](crate::WidePose).
+    pub(crate) fn of_f64(q: [f64; 4], t: Vector<f64>) -> Self {
+        Self { q, t }
     }
 
     /// The quaternion (x, y, z, w) as given.
     pub fn quaternion(&self) -> [f64; 4] {
-        self.q.map(f64::from)
+        self.q
     }
 
     /// The translation as given.

@@ -5,6 +5,7 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
+use crate::bodies::contract::ContractError;
 use crate::choice::UnknownChoice;
 use crate::culler::CullError;
 use crate::mesh::MeshError;
@@ -117,6 +118,7 @@ macro_rules! refusals {
 }
 refusals!(
     UnknownChoice,
+    ContractError,
     CullError,
     MeshError,
     VolumeError,

@@ -10,6 +10,7 @@ mod bodies;
 mod border;
 mod box_world;
 mod boxes;
+mod pair_test;
 mod world;
 
 use std::ffi::c_char;
@@ -20,6 +21,7 @@ pub use border::{
 };
 pub use box_world::*;
 pub use boxes::*;
+pub use pair_test::*;
 pub use world::*;
 
 /// The version of the library, such as "0.1.0".

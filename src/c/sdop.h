@@ -42,6 +42,9 @@ typedef struct SdopBoxWorld SdopBoxWorld;
 // Culls the frames of a fixed set of bodies whose poses change.
 typedef struct SdopCuller SdopCuller;
 
+// The or-DOPs of shapes, as they are and grown by margins, for tests of single pairs.
+typedef struct SdopPairTest SdopPairTest;
+
 // A mesh with its bounding ball and or-DOP.
 typedef struct SdopShape SdopShape;
 
@@ -345,6 +348,46 @@ SdopStatus sdop_box_culler_cull_each(SdopBoxCuller *culler,
                                      size_t count,
                                      SdopTakePairs take,
                                      void *user);
+
+// Makes a test without shapes, of or-DOPs with `k` faces: 6, 14, 18 or 26; 0 is 18.
+//
+// # Safety
+// `out` may be written.
+SdopStatus sdop_pair_test_new(uint32_t k, SdopPairTest **out);
+
+// Frees a test; null is fine.
+//
+// # Safety
+// It is from `sdop_pair_test_new` and not used afterwards.
+void sdop_pair_test_free(SdopPairTest *test);
+
+// Adds a shape, which the test copies; `number` gets what it is known by: 0, and one more for each
+// that is added or grown.
+//
+// # Safety
+// `test` and `shape` are handles; `number` may be written.
+SdopStatus sdop_pair_test_add(SdopPairTest *test, const SdopShape *shape, uint32_t *number);
+
+// Adds what a shape of the test is with all points up to `margin` away; `number` gets what it is
+// known by.
+//
+// # Safety
+// `test` is a handle; `number` may be written.
+SdopStatus sdop_pair_test_grow(SdopPairTest *test, uint32_t shape, float margin, uint32_t *number);
+
+// Whether two shapes may touch, the second posed in the frame of the first by a quaternion x, y,
+// z, w of any non-zero norm and the translation of its origin. False only if they are apart in
+// exact arithmetic; true for null pointers, unknown numbers and poses that are not finite. Many
+// threads may call it at the same time.
+//
+// # Safety
+// `test` is a handle, to which nothing is added meanwhile, or null; `rotation` and `translation`
+// may be read, or are null.
+bool sdop_pair_test_may_touch(const SdopPairTest *test,
+                              uint32_t first,
+                              uint32_t second,
+                              const float (*rotation)[4],
+                              const float (*translation)[3]);
 
 // Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
 // defaults.

@@ -256,6 +256,20 @@ const OWN: &[Experiment] = &[
         scenes: &[],
     },
     Experiment {
+        name: "python",
+        about: "what a call from Python costs beyond Rust, and box pairs by Python's libraries",
+        steps: &[Step::Script("python.json", &["python/bench/run"])],
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
+        name: "adapters",
+        about: "other libraries judged: which of their claims hold",
+        steps: &[Step::Script("board.json", &["benches/adapters/run"])],
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
         name: "effects",
         about: "what an effect costs that isn't listed",
         steps: &[Step::Script(

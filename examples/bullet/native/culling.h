@@ -1,32 +1,23 @@
-// S-DOP culling for Bullet: what an application copies. `src/seam.rs` is the other side.
+// S-DOP culling for Bullet: what an application copies, beside sdop.h.
 #pragma once
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
-struct SdopTest;
-
-extern "C" {
-SdopTest* sdop_test_new();
-void sdop_test_free(SdopTest* test);
-// Adds a mesh about its body's origin, and the same grown by `margin`; returns the first's number (the second's is one more), or
-// UINT32_MAX for a mesh that can't be culled.
-uint32_t sdop_test_add(SdopTest* test, const float* vertices, size_t vertex_count, const uint32_t* triangles,
-                       size_t triangle_count, float margin);
-// Whether the two may touch; quaternion (x, y, z, w) and translation of the second in the frame of the first.
-bool sdop_test_may_touch(const SdopTest* test, uint32_t first, uint32_t second, const float rotation[4],
-                         const float translation[3]);
-}
+#include "sdop.h"
 
 // Hands over to the narrow phase only pairs that may touch. A collision object takes part when `setUserIndex3` has told it its mesh's
 // number; all others pass.
 class CullingDispatcher : public btCollisionDispatcher {
 public:
-    CullingDispatcher(btCollisionConfiguration* configuration, const SdopTest* test)
+    CullingDispatcher(btCollisionConfiguration* configuration, const SdopPairTest* test)
         : btCollisionDispatcher(configuration), test(test) {
         setNearCallback([](btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
             if (static_cast<const CullingDispatcher&>(dispatcher).mayTouch(pair)) defaultNearCallback(pair, dispatcher, info);
@@ -46,7 +37,23 @@ public:
         const btVector3 way = between.getOrigin();
         const float rotation[4] = {turn.x(), turn.y(), turn.z(), turn.w()};
         const float translation[3] = {way.x(), way.y(), way.z()};
-        return sdop_test_may_touch(test, static_cast<uint32_t>(first) + 1, static_cast<uint32_t>(second), rotation, translation);
+        return sdop_pair_test_may_touch(test, uint32_t(first) + 1, uint32_t(second), &rotation, &translation);
+    }
+
+    // Adds a mesh about its body's origin, and after it the same grown by `margin`. Returns the first's number, for `setUserIndex3`, or
+    // −1 for a mesh that can't be culled: `sdop_last_error` says why, and its bodies pass unfiltered.
+    static int add(SdopPairTest* test, const float (*vertices)[3], size_t vertex_count, const uint32_t (*triangles)[3],
+                   size_t triangle_count, float margin) {
+        std::vector<std::array<double, 3>> wide(vertex_count);
+        for (size_t i = 0; i < vertex_count; i++) std::copy(vertices[i], vertices[i] + 3, wide[i].begin());
+        const auto corners = reinterpret_cast<const double(*)[3]>(wide.data());
+        SdopShape* shape = nullptr;
+        uint32_t number = 0, grown = 0;
+        const bool added = sdop_shape_new(corners, vertex_count, triangles, triangle_count, nullptr, &shape) == SDOP_STATUS_OK &&
+                           sdop_pair_test_add(test, shape, &number) == SDOP_STATUS_OK &&
+                           sdop_pair_test_grow(test, number, margin, &grown) == SDOP_STATUS_OK;
+        sdop_shape_free(shape);
+        return added ? int(number) : -1;
     }
 
     // What a shape's mesh must be grown by: contacts are made up to both shapes' collision margins (`widest_margin` is the largest in the
@@ -76,5 +83,5 @@ private:
         return !(place[place.maxAxis()] < FAR);
     }
 
-    const SdopTest* test;
+    const SdopPairTest* test;
 };

@@ -41,7 +41,7 @@ int points(const btBroadphasePair& pair) {
 
 class CountingDispatcher : public CullingDispatcher {
 public:
-    CountingDispatcher(btCollisionConfiguration* configuration, const SdopTest* test, Mode mode)
+    CountingDispatcher(btCollisionConfiguration* configuration, const SdopPairTest* test, Mode mode)
         : CullingDispatcher(configuration, test), mode(mode) {
         setNearCallback([](btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
             static_cast<CountingDispatcher&>(dispatcher).near(pair, info);
@@ -81,6 +81,7 @@ private:
 };
 
 struct Scene {
+    std::unique_ptr<SdopPairTest, decltype(&sdop_pair_test_free)> test;
     btDefaultCollisionConfiguration configuration;
     CountingDispatcher dispatcher;
     btDbvtBroadphase broad_phase;
@@ -90,7 +91,7 @@ struct Scene {
     std::vector<std::unique_ptr<btCollisionShape>> shapes;
     std::vector<std::unique_ptr<btRigidBody>> bodies;
 
-    Scene(const SdopTest* test, Mode mode) : dispatcher(&configuration, test, mode) {
+    Scene(SdopPairTest* test, Mode mode) : test(test, sdop_pair_test_free), dispatcher(&configuration, test, mode) {
         btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher);
     }
 
@@ -139,7 +140,9 @@ struct Scene {
 
 extern "C" {
 
-Scene* scene_new(const SdopTest* test, uint32_t mode) {
+Scene* scene_new(uint32_t mode) {
+    SdopPairTest* test = nullptr;
+    sdop_pair_test_new(0, &test);
     return new Scene(test, Mode(mode));
 }
 
@@ -164,12 +167,14 @@ uint32_t scene_shape(Scene* scene, uint32_t kind, const float* vertices, size_t 
     return uint32_t(scene->shapes.size() - 1);
 }
 
-// What the shape's mesh must be grown by among bodies of the default collision margin.
-float scene_margin(const Scene* scene, uint32_t shape) {
-    return CullingDispatcher::margin(*scene->shapes[shape], CONVEX_DISTANCE_MARGIN);
+// The number that the filter knows the shape's mesh by, or -1: grown by what bodies of the default collision margin need, times `share`.
+int scene_model(Scene* scene, uint32_t shape, const float (*vertices)[3], size_t count, const uint32_t (*triangles)[3],
+                size_t triangle_count, float share) {
+    const float margin = CullingDispatcher::margin(*scene->shapes[shape], CONVEX_DISTANCE_MARGIN) * share;
+    return CullingDispatcher::add(scene->test.get(), vertices, count, triangles, triangle_count, margin);
 }
 
-// `motion`: quaternion, translation, velocity, spin. `model` is the number that the filter knows the mesh by, or -1.
+// `motion`: quaternion, translation, velocity, spin. `model` is what `scene_model` gave, or -1.
 void scene_body(Scene* scene, uint32_t shape, int model, const float* motion, float restitution, float friction) {
     const btTransform pose(btQuaternion(motion[0], motion[1], motion[2], motion[3]), btVector3(motion[4], motion[5], motion[6]));
     btRigidBody& body = scene->add(1, scene->shapes[shape].get(), pose, restitution, friction);

@@ -6,7 +6,6 @@
 pub mod forms;
 mod native;
 pub mod plan;
-mod seam;
 pub mod stage;
 pub mod study;
 #[path = "../../rapier/src/whole.rs"]

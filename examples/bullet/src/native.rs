@@ -10,17 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::plan::{Kind, Mode};
 
 unsafe extern "C" {
-    fn sdop_test_new() -> *mut c_void;
-    fn sdop_test_free(test: *mut c_void);
-    fn sdop_test_add(
-        test: *mut c_void,
-        vertices: *const [f32; 3],
-        vertex_count: usize,
-        triangles: *const [u32; 3],
-        triangle_count: usize,
-        margin: f32,
-    ) -> u32;
-    fn scene_new(test: *const c_void, mode: u32) -> *mut c_void;
+    fn scene_new(mode: u32) -> *mut c_void;
     fn scene_free(scene: *mut c_void);
     fn scene_gravity(scene: *mut c_void, gravity: *const [f32; 3]);
     fn scene_wall(scene: *mut c_void, normal: *const [f32; 3], d: f32, restitution: f32);
@@ -32,7 +22,15 @@ unsafe extern "C" {
         triangles: *const [u32; 3],
         triangle_count: usize,
     ) -> u32;
-    fn scene_margin(scene: *const c_void, shape: u32) -> f32;
+    fn scene_model(
+        scene: *mut c_void,
+        shape: u32,
+        vertices: *const [f32; 3],
+        count: usize,
+        triangles: *const [u32; 3],
+        triangle_count: usize,
+        share: f32,
+    ) -> i32;
     fn scene_body(
         scene: *mut c_void,
         shape: u32,
@@ -85,7 +83,6 @@ type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
 /// A scene, and the meshes that its shapes look at.
 pub struct Scene {
     scene: *mut c_void,
-    test: *mut c_void,
     meshes: Vec<Mesh>,
 }
 
@@ -100,14 +97,10 @@ impl Scene {
     /// An empty one.
     #[must_use]
     pub fn new(mode: Mode) -> Self {
-        // SAFETY: the test outlives the scene: `drop` ends the scene first.
-        unsafe {
-            let test = sdop_test_new();
-            Self {
-                scene: scene_new(test, mode as u32),
-                test,
-                meshes: Vec::new(),
-            }
+        Self {
+            // SAFETY: it asks for nothing.
+            scene: unsafe { scene_new(mode as u32) },
+            meshes: Vec::new(),
         }
     }
 
@@ -141,16 +134,10 @@ impl Scene {
         let model = match kind {
             // SAFETY: a shape of this scene; arrays as above, read during the call; the scene isn't
             // stepping.
-            Kind::Hull | Kind::Mesh => unsafe {
-                let margin = scene_margin(self.scene, shape) * share;
-                sdop_test_add(self.test, v, n, t, m, margin)
-            },
-            Kind::Box | Kind::Ball => u32::MAX,
+            Kind::Hull | Kind::Mesh => unsafe { scene_model(self.scene, shape, v, n, t, m, share) },
+            Kind::Box | Kind::Ball => -1,
         };
-        ShapeId {
-            shape,
-            model: model.try_into().unwrap_or(-1),
-        }
+        ShapeId { shape, model }
     }
 
     /// A body of mass 1.
@@ -185,10 +172,7 @@ impl Scene {
 
 impl Drop for Scene {
     fn drop(&mut self) {
-        // SAFETY: made by `new`, ended once, the scene before what it looks at.
-        unsafe {
-            scene_free(self.scene);
-            sdop_test_free(self.test);
-        }
+        // SAFETY: made by `new`, and ended once, before the arrays that its shapes look at.
+        unsafe { scene_free(self.scene) }
     }
 }

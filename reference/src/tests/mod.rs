@@ -14,3 +14,4 @@ mod rational;
 mod scenes;
 mod shapes;
 mod strategies;
+mod wide_poses;

@@ -1,0 +1,83 @@
+//! The exact mesh answer for poses of f64.
+//!
+//! [`Pose`] takes f32, and the error bounds of volumes assume that. Whether two meshes meet depends
+//! on the poses through [`Relative`](crate::exact::relative::Relative) alone. Its intervals and
+//! integers take any f64. Its first stage, [`Approximate`](crate::exact::relative::Approximate),
+//! allows for a mapped coordinate M y + w the error 256u(|y|∞ + |Δ|∞), with u = 2⁻⁵³ and Δ = tB −
+//! tA; that is enough for f64 too, where products are rounded as well:
+//!
+//! - p = conj(qA)·qB: four rounded products, three sums, by Cauchy–Schwarz within 4u|p|.
+//! - M = R(p): four products of those, each entry within 4u·2|p|·Σ|pᵢ|/|p| ≤ 16u|p|², and its own
+//!   rounding 4u|p|²: 20u. The scale |qA|²|qB|² is within 9u, the division within u: 30u in all.
+//! - w = |qB|² R(qA)ᵀΔ: Δ within u of each coordinate, entries of R within 4u|qA|², a row of three
+//!   products and two sums within 3u, |qB|² and its product within 5u, scale and division within
+//!   10u: at most (u + 3u + 5u + 10u)√3|Δ|∞ + 4u·3|Δ|∞, below 46u|Δ|∞.
+//! - M y + w: 30u·3|y|∞, the row's own 3u√3|y|∞, and the last sum: below 100u|y|∞ + 50u|Δ|∞ with
+//!   all terms of second order.
+//!
+//! Numbers too small for a relative bound don't matter: quaternions are scaled to 1 ≤ |q|∞ < 2 and
+//! |Δ| underflows only where it is 0, so what a product loses is below 2⁻¹⁰⁷⁰, far below u times
+//! the f32 vertices of any mesh that has an extent. Sums too large make the bound NaN, and
+//! integers decide.
+
+use crate::exact::meeting::{self, Meeting};
+use crate::linear::largest;
+use crate::number::power_of_two;
+use crate::{InvalidInput, Pose, Shape};
+
+/// Components that are smaller than the largest by more than this power of two are refused.
+const SPREAD: i32 = 900;
+
+/// Where a mesh is, in f64: x ↦ R(q)x/|q|² + t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WidePose(pub(crate) Pose);
+
+impl WidePose {
+    /// A pose of the quaternion q = (x, y, z, w), of any non-zero norm, and the translation t.
+    ///
+    /// # Errors
+    /// When a number is not finite, the quaternion is zero, or the magnitudes of its non-zero
+    /// components differ by more than 2⁹⁰⁰.
+    pub fn new(q: [f64; 4], t: [f64; 3]) -> Result<Self, InvalidInput> {
+        if !q.iter().all(|x| x.is_finite()) {
+            return Err(InvalidInput::NotFinite("the quaternion"));
+        }
+        if !t.iter().all(|x| x.is_finite()) {
+            return Err(InvalidInput::NotFinite("the translation"));
+        }
+        if q == [0.0; 4] {
+            return Err(InvalidInput::ZeroQuaternion);
+        }
+        let scaled = scaled(q);
+        let least = power_of_two(-SPREAD);
+        let is_lost = |(given, scaled): (f64, f64)| given != 0.0 && scaled.abs() < least;
+        if q.into_iter().zip(scaled).any(is_lost) {
+            return Err(InvalidInput::QuaternionSpread);
+        }
+        Ok(Self(Pose::of_f64(scaled, t)))
+    }
+}
+
+/// The quaternion times the power of two that takes its largest magnitude to 1 or more, below 2:
+/// the same rotation. Only what ends below 2⁻¹⁰⁰⁰ is rounded.
+fn scaled(q: [f64; 4]) -> [f64; 4] {
+    let exponent = |q: [f64; 4]| (largest_of(q).to_bits() >> 52) as i32 - 1023;
+    // First out of the subnormal numbers, which have no exponent of their own.
+    let q = if exponent(q) < 0 {
+        q.map(|x| x * power_of_two(600))
+    } else {
+        q
+    };
+    // Two steps: one alone may leave the normal numbers.
+    let down = -exponent(q);
+    q.map(|x| x * power_of_two(down / 2) * power_of_two(down - down / 2))
+}
+
+fn largest_of([x, y, z, w]: [f64; 4]) -> f64 {
+    largest(&[x, y, z]).max(w.abs())
+}
+
+/// Whether two posed meshes intersect, and what it took.
+pub fn meet(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Meeting {
+    meeting::meet((a.0.mesh(), &a.1.0), (b.0.mesh(), &b.1.0))
+}

@@ -1,0 +1,103 @@
+//! One pair at a time, for engines whose own broad phase has found it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::bodies::SdopShape;
+use super::border::{SdopStatus, call, free, give, handle, put, shared};
+use crate::settings::DirectionSet;
+use crate::world::PairTest;
+
+/// The or-DOPs of shapes, as they are and grown by margins, for tests of single pairs.
+#[derive(Debug)]
+pub struct SdopPairTest(PairTest);
+
+/// Makes a test without shapes, of or-DOPs with `k` faces: 6, 14, 18 or 26; 0 is 18.
+///
+/// # Safety
+/// `out` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_pair_test_new(k: u32, out: *mut *mut SdopPairTest) -> SdopStatus {
+    call(|| {
+        let directions = match k {
+            0 => DirectionSet::K18,
+            k => k.to_string().parse()?,
+        };
+        // SAFETY: the caller's promise.
+        unsafe { give(out, SdopPairTest(PairTest::new(directions))) }
+    })
+}
+
+/// Frees a test; null is fine.
+///
+/// # Safety
+/// It is from `sdop_pair_test_new` and not used afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_pair_test_free(test: *mut SdopPairTest) {
+    // SAFETY: the caller's promise.
+    unsafe { free(test) }
+}
+
+/// Adds a shape, which the test copies; `number` gets what it is known by: 0, and one more for each
+/// that is added or grown.
+///
+/// # Safety
+/// `test` and `shape` are handles; `number` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_pair_test_add(
+    test: *mut SdopPairTest,
+    shape: *const SdopShape,
+    number: *mut u32,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (test, shape) = unsafe { (handle(test, "test")?, shared(shape, "shape")?) };
+        let added = test.0.add(&shape.0)?;
+        // SAFETY: the caller's promise.
+        unsafe { put(number, added, "number") }
+    })
+}
+
+/// Adds what a shape of the test is with all points up to `margin` away; `number` gets what it is
+/// known by.
+///
+/// # Safety
+/// `test` is a handle; `number` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_pair_test_grow(
+    test: *mut SdopPairTest,
+    shape: u32,
+    margin: f32,
+    number: *mut u32,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let added = unsafe { handle(test, "test") }?.0.grown(shape, margin)?;
+        // SAFETY: the caller's promise.
+        unsafe { put(number, added, "number") }
+    })
+}
+
+/// Whether two shapes may touch, the second posed in the frame of the first by a quaternion x, y,
+/// z, w of any non-zero norm and the translation of its origin. False only if they are apart in
+/// exact arithmetic; true for null pointers, unknown numbers and poses that are not finite. Many
+/// threads may call it at the same time.
+///
+/// # Safety
+/// `test` is a handle, to which nothing is added meanwhile, or null; `rotation` and `translation`
+/// may be read, or are null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_pair_test_may_touch(
+    test: *const SdopPairTest,
+    first: u32,
+    second: u32,
+    rotation: *const [f32; 4],
+    translation: *const [f32; 3],
+) -> bool {
+    // SAFETY: the caller's promise.
+    let given = unsafe { (test.as_ref(), rotation.as_ref(), translation.as_ref()) };
+    let (Some(test), Some(rotation), Some(translation)) = given else {
+        return true;
+    };
+    let answer = || test.0.may_touch(first, second, *rotation, *translation);
+    catch_unwind(AssertUnwindSafe(answer)).unwrap_or(true)
+}
