@@ -1,7 +1,7 @@
 """What all adapters share: a culler's bodies, and the judge's wire.
 
 An adapter is a class like those that `sdop.judge` takes: it is made of a scene, and its ``frame`` returns the pairs of a frame.
-``serve`` makes a program of it that ``sdop verify --exec`` runs; ``board.py`` hands it to `sdop.judge`.
+``serve`` makes a program of it that ``sdop judge`` runs; ``board.py`` hands it to `sdop.judge`.
 """
 
 from __future__ import annotations
