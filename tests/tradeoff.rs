@@ -344,8 +344,9 @@ fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
         assert_eq!(one, two, "{file}");
     }
     let figure = fs::read_to_string(here.join("one/figures/tradeoff.svg")).unwrap();
+    // Ticks are plain numbers, whatever the machine's times.
     assert!(
-        figure.contains("aabb") && figure.contains("1000") && !figure.contains("1e"),
+        figure.contains("aabb") && !figure.contains("1e"),
         "{figure}"
     );
     let all = sdop(&["tradeoff", "one/tradeoff.json", "--all"], here);
