@@ -217,25 +217,6 @@ const tests = {
     }
   },
 
-  async "picking a body keeps colours and legend"(browser) {
-    const tab = await open(browser, "run.html", "#frame=10");
-    const legend = () => tab.read("document.getElementById('legend').textContent");
-    const before = await legend();
-    assert.match(before, /[1-9]/);
-    const seen = await until(async () => {
-      const seen = await colours(browser, await tab.screenshot(), 800, 700);
-      return seen.blue > 300 && seen;
-    }, "meeting bodies");
-    for (let body = 0; body < 5; body++) {
-      await tab.key("n");
-      await tab.settle();
-      assert.equal(await legend(), before, `legend with body ${body}`);
-    }
-    const picked = await colours(browser, await tab.screenshot(), 800, 700);
-    const tinted = ({ blue, orange }) => blue + orange;
-    assert.ok(tinted(picked) > tinted(seen) / 20, JSON.stringify([seen, picked]));
-  },
-
   async "broken and old records are explained in the page"(browser) {
     const message = (tab) => tab.read("document.getElementById('message').hidden ? '' : document.getElementById('message').textContent");
     const newer = await open(browser, "newer.html");
