@@ -22,6 +22,7 @@ from collections import Counter
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+TRIES = 20
 
 
 def claims() -> list[dict]:
@@ -58,10 +59,16 @@ def judged(name: str) -> dict:
 
 
 def touches(adapter: type, claim: str, case: str) -> bool:
-    """Whether the smallest scene that fails has a pair that is at most an ulp deep in one another."""
+    """Whether the pair missed in the smallest scene that fails is parted by a shift of one float32 step.
+
+    An answer that varies from run to run may be right when it is judged again: then it is judged until it fails."""
     import sdop
 
-    return "1 ulp deep at most" in sdop.judge(adapter, claims=claim, cases=case).text
+    for _ in range(TRIES):
+        missed = sdop.judge(adapter, claims=claim, cases=case).missed
+        if missed is not None:
+            return missed.depth_ulps == 1
+    return False
 
 
 def verdict_of(row: dict, claims_touching: bool) -> str:

@@ -29,6 +29,8 @@ class MissedPair:
     pair: tuple[int, int]
     point: tuple[float, float, float] | None
     """A point that both bodies share, rounded to float64."""
+    depth_ulps: int | None
+    """The least shift that parts them, in float32 steps at the pair; None if all shifts tried were too short."""
     boxes: NDArray[np.float32] = field(repr=False)
     """The boxes of that frame, shape (n, 6)."""
     files: dict[str, bytes] = field(repr=False)

@@ -67,6 +67,7 @@ fn missed(py: Python<'_>, smallest: &Smallest, claim: Claim) -> PyResult<Missed>
         "frame": smallest.miss.frame,
         "pair": smallest.miss.pair,
         "point": smallest.witness.as_ref().map(|witness| witness.decimals),
+        "depth_ulps": smallest.witness.as_ref().and_then(|witness| witness.depth_ulps),
     });
     let files = counter_example(smallest, claim)?;
     Ok((data.to_string(), matrix(py, boxes)?.unbind(), files))

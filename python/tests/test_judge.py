@@ -58,6 +58,7 @@ def test_right_boxes_pass_and_strict_ones_fail(tmp_path):
     i, j = verdict.missed.pair
     a, b = verdict.missed.boxes[[i, j]]
     assert (a[:3] <= b[3:]).all() and (b[:3] <= a[3:]).all() and verdict.missed.point is not None
+    assert verdict.missed.depth_ulps == 1  # they only touch
     verdict.missed.save(tmp_path)
     assert (tmp_path / "missed-pair.ndjson").stat().st_size > 0
 
