@@ -19,6 +19,8 @@ mod portions;
 #[cfg(feature = "shapes")]
 mod replace;
 #[cfg(feature = "shapes")]
+mod sample;
+#[cfg(feature = "shapes")]
 mod shapes;
 
 #[cfg(feature = "shapes")]
@@ -29,12 +31,14 @@ pub use builder::CullerBuilder;
 #[cfg(feature = "shapes")]
 pub(crate) use check::FAR_SHAPE_HELP;
 pub use error::CullError;
+#[cfg(feature = "shapes")]
+pub(crate) use sample::FoundPairs;
 
 #[cfg(feature = "shapes")]
 use std::{ops::Range, time::Instant};
 
 #[cfg(feature = "shapes")]
-use self::{models::Models, needs::Needs};
+use self::{models::Models, needs::Needs, sample::Sample};
 #[cfg(all(feature = "shapes", feature = "serde"))]
 use crate::strategy::RefinementRanks;
 #[cfg(feature = "shapes")]
@@ -84,6 +88,7 @@ pub struct Culler {
     interval_slots: IntervalSlots,
     interest: Vec<bool>,
     scratch: Scratch,
+    sample: Sample,
     pairs: PairList,
     stamp: u32,
     counters: Counters,
@@ -145,6 +150,7 @@ impl Culler {
             interval_slots: IntervalSlots::default(),
             interest: vec![false; n],
             scratch: Scratch::default(),
+            sample: Sample::default(),
             pairs: PairList::default(),
             stamp: 1,
             counters: Counters::default(),

@@ -1,6 +1,7 @@
 //! Another set of bodies, and other places for the same ones.
 
 use super::needs;
+use super::sample::Sample;
 use super::{Culler, check};
 use crate::bodies::Bodies;
 use crate::broad_phase::{Balls, PairFinder, Reorder};
@@ -48,6 +49,7 @@ impl Culler {
             intervals.forget_bodies();
         }
         self.scratch.forget_lists();
+        self.sample = Sample::default();
         self.pairs.shrink_to_fit();
         self.groups = None;
         (self.places, self.fixed, self.order) = Default::default();
