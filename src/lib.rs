@@ -103,6 +103,7 @@ pub mod culler;
 #[cfg(feature = "shapes")]
 pub mod mesh;
 pub mod pairs;
+pub mod query;
 pub mod settings;
 #[cfg(feature = "shapes")]
 pub mod volume;
@@ -139,6 +140,7 @@ pub use culler::{Culler, CullerBuilder};
 #[cfg(feature = "shapes")]
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
 pub use pairs::PairList;
+pub use query::{Line, QueryIndex, QueryVolume};
 pub use settings::Finder;
 #[cfg(feature = "shapes")]
 pub use settings::{

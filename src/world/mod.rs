@@ -60,6 +60,8 @@ mod saved;
 mod shapes;
 #[cfg(all(feature = "shapes", feature = "serde"))]
 mod snapshot;
+#[cfg(feature = "shapes")]
+mod volumes;
 
 pub use crate::bodies::Groups;
 #[cfg(feature = "shapes")]
@@ -81,6 +83,8 @@ pub(crate) use self::ids::{Ids, shrink_column};
 pub(crate) use self::live_pairs::LivePairs;
 #[cfg(feature = "serde")]
 pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length, damaged};
+#[cfg(feature = "shapes")]
+pub(crate) use self::volumes::{ShapeVolumes, compose};
 #[cfg(feature = "shapes")]
 use self::{
     margins::{Margins, check_margin},
