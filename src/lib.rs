@@ -38,7 +38,8 @@
 //! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of
 //! bodies; in a [`World`] they come and go, with stable ids, groups, contact margins, f64
 //! translations and events. Whoever has boxes already takes [`BoxCuller`] or [`BoxWorld`]: exactly
-//! the pairs of boxes that meet.
+//! the pairs of boxes that meet. A [`QueryIndex`] answers which bodies of a world touch a volume or
+//! lie along a line.
 //!
 //! # Conventions
 //!

@@ -26,12 +26,12 @@ pub const QUERY_FLOOR: f64 = exp2(-1000);
 /// five roundings, a sum of three squares of six. Proof: `query_line.g`.
 pub const WIDENING: f64 = exp2(-50);
 
-/// 2⁻⁹⁰⁰: a line that is slower than this along an axis stands still there.
-pub const STILL: f64 = exp2(-900);
+/// 2⁻⁸⁰⁰: a line that is slower than this along an axis stands still there.
+pub const STILL: f64 = exp2(-800);
 
-/// 2⁻⁷⁵⁰: more than such a line moves while it is among bodies. Their coordinates are below 2⁶², and
-/// a ray is no slower than 2⁻⁶⁰ along some axis.
-pub const STILL_FLOOR: f64 = exp2(-750);
+/// 2⁻⁶⁰⁰: more than such a line moves while it is among bodies. Their coordinates are below 2¹²⁹,
+/// and a ray is no slower than 2⁻⁶⁰ along some axis.
+pub const STILL_FLOOR: f64 = exp2(-600);
 
 /// By how much slabs are moved out for sizes that sum to `size`, per length of their normals.
 #[inline(always)]
@@ -154,13 +154,13 @@ mod tests {
     #[test]
     fn a_still_line_is_where_it_is() {
         let ends = [0.0, 2.0];
-        for speed in [0.0, -0.0, exp2(-901), -exp2(-1074 + 60)] {
+        for speed in [0.0, -0.0, exp2(-801), -exp2(-1014)] {
             let is_in = |at: f64| {
                 let [first, last] = crossing(Course::new(at, speed), ends);
                 first <= last
             };
             assert!(is_in(0.0) && is_in(2.0) && is_in(1.0));
-            assert!(!is_in(2.0f64.next_up()) && !is_in(-exp2(-700)));
+            assert!(!is_in(2.0f64.next_up()) && !is_in(-exp2(-500)));
         }
     }
 
