@@ -2,7 +2,8 @@
 
 use super::{CullError, Culler, check};
 use crate::simd::in_default_mode;
-use crate::volume::Shape;
+use crate::update::ShapeFrame;
+use crate::volume::{OrDop, Shape};
 
 impl Culler {
     /// Adds a shape. Bodies take it by the returned number in `bodies.shape`, from the next
@@ -59,6 +60,11 @@ impl Culler {
     /// Removes a grown model that no body takes. Its number is given again.
     pub(crate) fn remove_grown(&mut self, model: u32) {
         self.models.remove(model);
+    }
+
+    /// The slabs and the frame of a model.
+    pub(crate) fn volumes(&self, model: u32) -> (&OrDop, &ShapeFrame) {
+        self.models.volumes(model)
     }
 
     /// One above the number of every model.
