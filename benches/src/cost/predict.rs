@@ -190,7 +190,11 @@ impl FirstTest {
         let [moving, tests, hits] =
             [counters.updates, counters.tests, counters.hits].map(|count| count as f64 / frames);
         // Oriented volumes have no first test: each candidate is listed.
-        let lists_hits = !matches!(volume, Volume::OrDop | Volume::Obb);
+        let (lists_hits, is_aligned) = match volume {
+            Volume::Sphere | Volume::Hull => (true, false),
+            Volume::Aabb | Volume::KDop => (true, true),
+            Volume::OrDop | Volume::Obb => (false, false),
+        };
         Self {
             bodies,
             rows: if lists_hits {
@@ -200,7 +204,7 @@ impl FirstTest {
             },
             tests,
             hits,
-            is_aligned: matches!(volume, Volume::Aabb | Volume::KDop),
+            is_aligned,
         }
     }
 
@@ -226,6 +230,7 @@ impl Prices {
             let (costs, counters) = (&price.costs, counts.of(price.volume));
             let first = FirstTest::of(price.volume, counts, frames, bodies);
             let [_, _, rows, misses, hits, further] = first.counts(self.lanes);
+            let rows = if place == 0 { rows } else { 0.0 };
             // All that the test before lets through, whether it is then tested or not.
             let before = place
                 .checked_sub(1)
