@@ -140,12 +140,10 @@ fn calibration_varies_one_count_at_a_time() {
     let scene = scene();
     let mut by_size = std::collections::BTreeMap::new();
     for calibration in scenes(&scene) {
-        let counts = counters(&calibration, Tier::detect());
-        let at = STRATEGIES
-            .iter()
-            .position(|&s| s == Strategy::Sphere)
-            .unwrap();
-        let sphere = counts[at].culler.sphere;
+        let (tier, spheres) = (Tier::detect(), [Variant::spheres(&calibration.cull)]);
+        let mut frames = Simulated::new(&calibration, FRAMES).unwrap();
+        let passed = pass(&calibration, &spheres, tier, &mut frames, None, &mut ()).unwrap();
+        let sphere = passed.culled[0].counts.culler.sphere;
         let all = by_size
             .entry(calibration.bodies.len())
             .or_insert_with(Vec::new);

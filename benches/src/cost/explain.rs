@@ -23,7 +23,7 @@ use crate::random::Stream;
 use sdop::bodies::Bodies;
 use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
-use sdop::settings::{CullSettings, Strategy};
+use sdop::settings::Strategy;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 
@@ -176,14 +176,7 @@ pub(super) fn anchor(variant: &Variant) -> Option<Variant> {
     let [Volume::Sphere, second] = *variant.volumes().as_slice() else {
         return None;
     };
-    (second != Volume::Hull).then(|| {
-        let settings = CullSettings {
-            budget: None,
-            interest: None,
-            ..variant.settings.clone()
-        };
-        Variant::strategy(&settings, Strategy::SDopSequential)
-    })
+    (second != Volume::Hull).then(|| Variant::strategy(&variant.settings, Strategy::SDopSequential))
 }
 
 /// With what building takes: each volume's own, and of the last one the culler's.
@@ -241,7 +234,7 @@ fn refining(anchor: &Calibrated<'_>, spheres: &VolumeCosts, lanes: usize) -> Vol
     let known = (Volume::Sphere, spheres.update);
     let [_, update] = update(Volume::OrDop, anchor.turns, known);
     let stage = |turn: &Observed| (Volume::OrDop, turn.stages.refining);
-    let [_, _, hit, miss] = tests(anchor, lanes, stage);
+    let [_, _, hit, miss] = second_test(anchor, lanes, stage);
     VolumeCosts {
         update,
         hit,
@@ -252,7 +245,7 @@ fn refining(anchor: &Calibrated<'_>, spheres: &VolumeCosts, lanes: usize) -> Vol
 
 /// The prices of hulls behind spheres, whose poses are made with their tests.
 fn hulls(one: &Calibrated<'_>) -> VolumeCosts {
-    let [frame, update, hit, miss] = tests(one, 1, |turn| (Volume::Hull, turn.stages.hulls));
+    let [frame, update, hit, miss] = second_test(one, 1, |turn| (Volume::Hull, turn.stages.hulls));
     VolumeCosts {
         update,
         frame,
@@ -264,7 +257,7 @@ fn hulls(one: &Calibrated<'_>) -> VolumeCosts {
 
 /// A second test: per frame, per update (of hulls), a hit and a miss, which an idle lane costs as
 /// well. The level comes from the frames, what a hit costs more from the splits.
-fn tests(
+fn second_test(
     one: &Calibrated<'_>,
     lanes: usize,
     stage: impl Fn(&Observed) -> (Volume, f64),
@@ -379,7 +372,7 @@ mod tests {
             let costs = known(first);
             let rows = expected::rows(moving, n, tests, hits);
             let further = tests * expected::further(tests, hits, LANES);
-            let scatter = 1.0 + 0.01 * f64::from(number as u32 * 7 % 5) - 0.02;
+            let scatter = 0.99 + 0.002 * f64::from(number as u32 * 7 % 11);
             let mut stages = Stages {
                 update: moving * costs.update,
                 finding: costs.frame
