@@ -290,7 +290,7 @@ fn hidden(results: &Results) -> Vec<HiddenRow> {
 fn prices(results: &Results) -> Vec<ScenePrice> {
     let mut prices = Vec::new();
     for &scene in &results.plan.names {
-        let passes = results.passes_of(scene);
+        let passes = results.priced_as(scene);
         for &regime in Regime::ALL {
             let rows = table::prices(&passes, regime).into_iter();
             prices.extend(rows.map(|price| ScenePrice {

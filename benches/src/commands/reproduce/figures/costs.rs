@@ -145,19 +145,22 @@ mod tests {
 
     fn cost(strategy: Strategy, volume: Volume, microseconds: f64) -> Cost {
         let seconds = 1e-6 * microseconds;
-        let compared = Compared::of(&[[seconds, seconds]]);
+        let compared = Compared::of(&[[seconds, seconds]], &[seconds]);
         Cost {
             scene: "s".into(),
             bodies: 1,
             strategy,
             variant: strategy.name().into(),
             regime: Regime::Warm,
+            level: None,
             frames: 1,
             terms: vec![Terms {
                 volume,
                 updates: 1.0,
                 tests: 1.0,
                 hits: 1.0,
+                rows: 0.0,
+                further: 0.0,
                 construct: 0.0,
                 update: 0.5 * seconds,
                 finding: 0.25 * seconds,
@@ -168,6 +171,7 @@ mod tests {
             quartiles: Quartiles::default(),
             construct: compared,
             total: compared,
+            fails: None,
         }
     }
 
