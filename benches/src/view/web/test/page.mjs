@@ -8,7 +8,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { find, launch, sleep, Tab } from "./chromium.mjs";
-import { colours } from "./colours.mjs";
+import { colours, kept } from "./colours.mjs";
 
 const sdop = resolve(process.argv[2] ?? "target/debug/sdop");
 const directory = mkdtempSync(join(tmpdir(), "sdop-view-page-"));
@@ -37,6 +37,18 @@ async function until(ask, what) {
     await sleep(100);
   }
   assert.fail(`${what}: not within 20 s`);
+}
+
+/** The picture once it is drawn sharp: it stays the same. */
+async function finished(tab) {
+  let last = null;
+  return until(async () => {
+    await sleep(200); // longer than a picture rests before it is drawn sharp
+    const picture = await tab.screenshot();
+    const same = last?.equals(picture);
+    last = picture;
+    return same && picture;
+  }, "a picture that stays");
 }
 
 const sum = (frame, key) => frame.counters.reduce((total, volume) => total + volume[key], 0);
@@ -215,6 +227,29 @@ const tests = {
         return teal + purple > 100; // far away, it is little more than its label
       }, `frame ${frame} shows a body`);
     }
+  },
+
+  async "picking a body keeps colours and legend"(browser) {
+    const tab = await open(browser, "run.html", "#frame=10", { still: true });
+    const legend = () => tab.read("document.getElementById('legend').textContent");
+    const before = await legend();
+    assert.match(before, /[1-9]/);
+    const unpicked = await finished(tab);
+    const shares = [];
+    for (let body = 0; body < 5; body++) {
+      await tab.key("n");
+      assert.match(await tab.read("document.getElementById('picked-text').textContent"), new RegExp(`^Body ${body}:`));
+      assert.equal(await legend(), before, `legend with body ${body}`);
+      const { coloured, same } = await kept(browser, unpicked, await finished(tab), 800, 700);
+      assert.ok(coloured > 1000, `${coloured} coloured pixels: too few to tell`);
+      shares.push(same / coloured);
+    }
+    // A body that hides the picked one isn't drawn, and a ring is.
+    const mean = shares.reduce((a, b) => a + b) / shares.length;
+    assert.ok(mean > 0.85 && Math.min(...shares) > 0.5, `shares of pixels that keep their colour: ${shares}`);
+    await tab.key("Escape");
+    const { coloured, same } = await kept(browser, unpicked, await finished(tab), 800, 700);
+    assert.equal(same, coloured, "let go, all is as before");
   },
 
   async "broken and old records are explained in the page"(browser) {
