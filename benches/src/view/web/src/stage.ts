@@ -84,7 +84,7 @@ export class Stage {
     this.dress(colours);
     // Decimated meshes have slits, through which the inside is better than nothing; pictures in a hurry do without.
     this.bodies.surface.side = shown.moving ? FrontSide : DoubleSide;
-    this.bodies.place(shown.frame);
+    this.bodies.place(shown.frame, shown.switches.boxes);
     const { width, height } = this.canvas.getBoundingClientRect();
     const part = width / shown.sides.length;
     this.renderer.setScissorTest(shown.sides.length > 1);
@@ -158,8 +158,8 @@ export class Stage {
   private covering(picked: number | null): (body: number) => boolean {
     if (picked === null) return () => false;
     const seen = (body: number) => {
-      const radius = this.bodies.radius(body);
-      const way = new Vector3().fromArray(this.bodies.placement(body).offset).sub(this.camera.lens.position);
+      const { centre, radius } = this.bodies.ball(body);
+      const way = new Vector3(...centre).sub(this.camera.lens.position);
       return { way, radius, distance: way.length() };
     };
     const own = seen(picked);

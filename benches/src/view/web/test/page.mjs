@@ -229,6 +229,21 @@ const tests = {
     }
   },
 
+  async "the boxes of a case take the place of its meshes"(browser) {
+    const tab = await open(browser, "tiny.html", "", { still: true });
+    const ground = async () => (await colours(browser, await finished(tab), 800, 700)).light;
+    const around = await ground();
+    assert.ok(around > 300_000, `${around} pixels of ground about two small boxes`);
+    const { x, y, width, height } = await tab.read("document.getElementById('picture').getBoundingClientRect().toJSON()");
+    await tab.click(x + width / 2, y + height / 2);
+    assert.match(await tab.read("document.getElementById('picked-text').textContent"), /^Body [01]:/);
+    await tab.key("Escape");
+    // Without the boxes, the meshes are there, which are far larger.
+    await tab.key("3");
+    const left = await ground();
+    assert.ok(left < around / 2, `${left} pixels of ground, and ${around} about the boxes`);
+  },
+
   async "picking a body keeps colours and legend"(browser) {
     const tab = await open(browser, "run.html", "#frame=10", { still: true });
     const legend = () => tab.read("document.getElementById('legend').textContent");
@@ -328,6 +343,13 @@ function makePages() {
   const answers = [0, 1, 2, 3, 4, 5].map((frame) => JSON.stringify({ frame, pairs: frame ? [] : all }));
   writeFileSync(file("answers.ndjson"), answers.join("\n"));
   run("view", file("cases/churn/teleport/0004.ndjson"), "--answers", file("answers.ndjson"), "--no-prices", "--out", file("counter.html"));
+  const given = readFileSync(file("cases/churn/teleport/0004.ndjson"), "utf8").trim().split("\n").map((line) => JSON.parse(line));
+  // In the frame with the miss, both bodies of the pair have one small box.
+  const [lower, upper] = [given[2].boxes[0].slice(0, 3), given[2].boxes[0].slice(3)];
+  const small = [...lower, ...lower.map((low, axis) => Math.fround(low + (upper[axis] - low) / 16))];
+  given[2].boxes.splice(0, 2, small, small);
+  writeFileSync(file("tiny.ndjson"), given.map((line) => JSON.stringify(line)).join("\n"));
+  run("view", file("tiny.ndjson"), "--answers", file("answers.ndjson"), "--no-prices", "--out", file("tiny.html"));
   assert.equal(write("newer", lines.join("\n").replace('"version":1', '"version":2')), 2);
   assert.equal(write("cut", lines.join("\n").slice(0, -30)), 2);
   const old = lines.map((line) => {
