@@ -95,18 +95,19 @@ pub(super) struct Listing<'a> {
 impl<'a> Listing<'a> {
     #[cfg(feature = "shapes")]
     pub(super) fn new(inputs: Inputs<'a>, listed: PairNames) -> Self {
-        let first = match inputs.settings.strategy.scheme().first {
+        let arranged = inputs.arranged;
+        let first = match inputs.setup.scheme.first {
             None => FirstVolume::PassAll,
-            Some(TestedVolume::Sphere) => FirstVolume::Spheres(inputs.slots),
-            Some(_) => FirstVolume::Intervals(inputs.intervals),
+            Some(TestedVolume::Sphere) => FirstVolume::Spheres(arranged.slots),
+            Some(_) => FirstVolume::Intervals(inputs.volumes.intervals),
         };
         Self {
             tier: inputs.executor.tier,
-            finder: inputs.finder,
+            finder: arranged.finder,
             first,
             listed,
-            names: inputs.names,
-            groups: inputs.groups,
+            names: arranged.names,
+            groups: arranged.groups,
         }
     }
 
