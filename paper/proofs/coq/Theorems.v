@@ -1,7 +1,7 @@
 (* What the theorems rest on. .ci/proofs accepts the four axioms of README.md and no other. One list
    for all of them, since each takes Coq a second. *)
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
-  Finder Lists.
+  Finder Lists Levels.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -32,7 +32,8 @@ Definition theorems := (
   Outward.grown_boxes_meet,
   Outward.grown_no_farther,
   Lists.drift_within_budget,
-  Lists.lists_hold_reported_pairs
+  Lists.lists_hold_reported_pairs,
+  Levels.levels_hand_over
 ).
 
 Print Assumptions theorems.
