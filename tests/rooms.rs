@@ -54,6 +54,7 @@ const BENCH: &[&str] = &[
     "tradeoff",
     "view",
     "report",
+    "board",
     // The program.
     "commands",
     "main",
