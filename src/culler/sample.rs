@@ -46,7 +46,7 @@ impl Culler {
     /// Whether a pair's verdict is a function of its two bodies: under every strategy that has no
     /// budget and looks at pairs at all.
     pub(crate) fn judges_pairs_alone(&self) -> bool {
-        match self.scheme.flow {
+        match self.setup.scheme.flow {
             Flow::FirstTest | Flow::Sequential | Flow::Batch | Flow::OfInterest => true,
             Flow::Nothing | Flow::TimeCritical => false,
         }
@@ -58,7 +58,7 @@ impl Culler {
         self.sample.places.body.clear();
         self.place_sample(bodies, some);
         let sample = &self.sample;
-        let boxes = if self.intervals.is_some() {
+        let boxes = if self.volumes.intervals.is_some() {
             let slabs = sample.ends.len() / some.len().max(1);
             let boxes = sample.ends.chunks_exact(slabs.max(1));
             boxes.map(box_of_slabs).collect()
@@ -81,13 +81,13 @@ impl Culler {
         let start = Instant::now();
         self.place_sample(bodies, others);
         let updated = Instant::now();
-        if let Some(volume) = self.scheme.first {
+        if let Some(volume) = self.setup.scheme.first {
             let counted = self.keep_near(some.len(), others, ends);
             *self.counters.of_mut(volume) += counted;
         }
         let tested = Instant::now();
         let mut refined = 0;
-        if let Some(volume) = self.scheme.refining {
+        if let Some(volume) = self.setup.scheme.refining {
             let counted = self.refine_found(bodies, some, others, ends, interest);
             refined = counted.tests;
             *self.counters.of_mut(volume) += counted;
@@ -124,7 +124,7 @@ impl Culler {
         let range = first..places.len();
         balls.resize(range.end);
         let executor = self.threads.get().executor(self.tier);
-        match &mut self.intervals {
+        match &mut self.volumes.intervals {
             Some(intervals) => {
                 let frames = &self.models.frames;
                 let posed = UpdateInputs {
@@ -140,7 +140,7 @@ impl Culler {
             }
             None => _ = update_spheres(executor, balls, &self.models.frames, bodies, places, range),
         }
-        if let Some(volume) = self.scheme.first {
+        if let Some(volume) = self.setup.scheme.first {
             self.counters.of_mut(volume).updates += more.len() as u64;
         }
     }
@@ -155,7 +155,7 @@ impl Culler {
             ..
         } = &self.sample;
         let tests = others.len() as u64;
-        if self.intervals.is_some() {
+        if self.volumes.intervals.is_some() {
             let each = slabs.len() / places.len().max(1);
             let of = |place: usize| &slabs[place * each..(place + 1) * each];
             keep(others, ends, |number, at, _| {
@@ -189,7 +189,9 @@ impl Culler {
         interest: &[bool],
     ) -> VolumeCounters {
         let is_refined = |a: u32, b: u32| {
-            self.scheme.flow != Flow::OfInterest || interest[a as usize] || interest[b as usize]
+            self.setup.scheme.flow != Flow::OfInterest
+                || interest[a as usize]
+                || interest[b as usize]
         };
         let Sample {
             places,
@@ -210,7 +212,7 @@ impl Culler {
             balls: &[],
         };
         let executor = self.threads.get().executor(self.tier);
-        rows.update(executor, posed, 0..places.len(), self.stamp);
+        rows.update(executor, posed, 0..places.len(), self.volumes.stamp);
         pairs.clear();
         survivors.clear();
         for (number, range) in ranges(ends) {
@@ -228,7 +230,7 @@ impl Culler {
         let columns = OrDopColumns {
             rows: RowsByNumber::all(&rows.rows),
             tables: &self.models.tables,
-            overlap: self.scheme.overlap(self.settings.overlap),
+            overlap: self.setup.scheme.overlap(self.setup.settings.overlap),
         };
         let tested = columns.test_pairs(self.tier, pairs.first(), pairs.second(), survivors);
         let mut survivors = survivors.iter().map(|[i, j]| i.max(j) as usize).peekable();

@@ -64,6 +64,8 @@ mod saved;
 mod shapes;
 #[cfg(all(feature = "shapes", feature = "serde"))]
 mod snapshot;
+#[cfg(feature = "shapes")]
+mod volumes;
 
 pub use crate::bodies::{Groups, Motion};
 #[cfg(feature = "shapes")]
@@ -88,6 +90,8 @@ pub(crate) use self::movers::Movers;
 pub(crate) use self::saved::{
     IdsSnapshot, PairsSnapshot, Version, check_length, resting_column, resting_slots,
 };
+#[cfg(feature = "shapes")]
+pub(crate) use self::volumes::{ShapeVolumes, compose};
 #[cfg(feature = "shapes")]
 use self::{
     local::Origins,
