@@ -569,7 +569,7 @@ fn a_frame_costs_what_changes() {
         let mut random = Random(ChaCha8Rng::seed_from_u64(5));
         let mut world = World::new(shapes()).unwrap();
         let side = f64::from(count).cbrt();
-        let mut place =
+        let place =
             |random: &mut Random| [(); 3].map(|()| far + 2.0 * side * f64::from(random.unit()));
         let ids: Vec<BodyId> = (0..count)
             .map(|i| {
