@@ -6,7 +6,7 @@
 //! it is full.
 
 use super::levels::{Levels, cell_count};
-use crate::bodies::{Aabb, Groups};
+use crate::bodies::{Aabb, ExcludedPairs, Groups};
 use crate::pairs::{Run, Runs};
 use crate::simd::prefetch;
 
@@ -57,6 +57,7 @@ pub(super) struct Seeker<'a> {
     pub tags: u32,
     /// By slot.
     pub groups: &'a [Groups],
+    pub excluded: &'a ExcludedPairs,
 }
 
 /// All boxes of a world by location.
@@ -295,6 +296,7 @@ impl Seeker<'_> {
         let are_fixed = self.tags & other.tags & FIXED != 0;
         let collide = (self.tags | other.tags) & GROUPED == 0
             || self.groups[self.slot as usize].collide(self.groups[other.slot as usize]);
-        other.slot != self.slot && !are_fixed && collide
+        let may_meet = other.slot != self.slot && !are_fixed && collide;
+        may_meet && !self.excluded.contains(self.slot, other.slot)
     }
 }

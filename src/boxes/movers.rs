@@ -1,8 +1,9 @@
 //! Frames in which few boxes change: these alone are looked for, and the pairs of all others are
 //! kept.
 //!
-//! A pair's verdict is a function of the ends, groups and motion of its two boxes. A box of which
-//! any of these has changed since the last cull is in the list of changed ones, so a pair of two
+//! A pair's verdict is a function of the ends, groups and motion of its two boxes, and of whether it
+//! is excluded. A box of which any of these has changed since the last cull is in the list of changed
+//! ones, as is one of the two where a pair was excluded or included, so a pair of two
 //! others has the verdict that it had. The partners of each changed box are found anew by an index
 //! of all boxes, compared with those that it had, and the differences are made at its partners too.
 
@@ -207,6 +208,7 @@ impl BoxWorld {
                 aabb: &self.bounds[slot as usize],
                 tags: self.tags(slot as usize),
                 groups: &self.groups,
+                excluded: &self.excluded,
             }));
             updates += seekers.iter().filter(|seeker| seeker.is_present).count() as u64;
             work += index.find_partners(&seekers, &mut search, &mut found, &mut ends);

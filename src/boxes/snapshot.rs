@@ -6,6 +6,7 @@ use super::BoxWorld;
 use crate::bodies::{Aabb, Groups};
 use crate::world::{
     IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, check_length, damaged,
+    restored_excluded,
 };
 
 /// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
@@ -24,10 +25,12 @@ pub struct BoxWorldSnapshot {
     resting: Vec<u32>,
     groups: Vec<[u32; 2]>,
     pairs: PairsSnapshot,
+    #[serde(default)]
+    excluded: Vec<[u32; 2]>,
 }
 
 impl BoxWorld {
-    /// The world as it is now, for [`Self::restore`]: boxes with ids and groups, the slots that ids
+    /// The world as it is now, for [`Self::restore`]: boxes with ids and groups, excluded pairs, the slots that ids
     /// are given from, the pairs of the last cull and those that events were last read of. Counters
     /// are not in it.
     #[must_use]
@@ -45,6 +48,7 @@ impl BoxWorld {
                 .collect(),
             groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
             pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
+            excluded: self.excluded.sorted(),
         }
     }
 
@@ -70,6 +74,7 @@ impl BoxWorld {
             aabb.check(slot)?;
         }
         let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
+        let excluded = restored_excluded(&snapshot.excluded, &ids)?;
         let mut resting = vec![false; ids.slots()];
         for &slot in &snapshot.resting {
             match resting.get_mut(slot as usize) {
@@ -81,6 +86,7 @@ impl BoxWorld {
         (self.ids, self.log, self.bounds) = (ids, log, bounds);
         self.dynamic.clone_from(&snapshot.dynamic);
         self.resting = resting;
+        self.excluded = excluded;
         let groups = snapshot.groups.iter();
         self.groups = groups
             .map(|&[member, mask]| Groups { member, mask })

@@ -40,7 +40,7 @@ use crate::strategy::RefinementRanks;
 #[cfg(feature = "shapes")]
 use crate::{
     bodies::contract::{check_bodies, check_column, check_poses},
-    bodies::{Bodies, Groups, Places},
+    bodies::{Bodies, ExcludedPairs, Groups, PairFilter, Places},
     broad_phase::{Balls, PairFinder},
     counters::{Counters, Seconds},
     overlap::intervals::IntervalSlots,
@@ -70,6 +70,7 @@ pub struct Culler {
     models: Models,
     places: Places,
     groups: Option<Vec<Groups>>,
+    excluded: ExcludedPairs,
     /// What doesn't change between two frames, as it was at the last [`Culler::refresh`].
     fixed: Bodies,
     /// 0, 1, 2 …: the names of slots where pairs are refined further.
@@ -135,6 +136,7 @@ impl Culler {
             models,
             places,
             groups: None,
+            excluded: ExcludedPairs::default(),
             fixed: check::fixed(bodies),
             numbers: (0..n as u32).collect(),
             order: Vec::new(),
@@ -169,6 +171,16 @@ impl Culler {
         }
         self.groups = groups;
         Ok(())
+    }
+
+    /// Pairs that are not listed, to be changed.
+    pub(crate) fn excluded_mut(&mut self) -> &mut ExcludedPairs {
+        &mut self.excluded
+    }
+
+    /// Pairs that are not listed.
+    pub(crate) fn excluded(&self) -> &ExcludedPairs {
+        &self.excluded
     }
 
     /// From now on, a budget that is spent on pairs as they are found is spent on them in the order
@@ -435,7 +447,7 @@ impl Culler {
                 places: &self.places,
                 balls: if self.needs.balls { &self.balls } else { &[] },
             },
-            groups: self.groups.as_deref(),
+            filter: PairFilter::new(self.groups.as_deref(), &self.excluded),
             intervals: &self.interval_slots,
             tables: &self.models.tables,
             interest: &self.interest,

@@ -5,7 +5,7 @@ use super::tasks::Tasks;
 #[cfg(feature = "serde")]
 use super::time_critical::RefinementRanks;
 use super::{SlotNames, Totals, batch, listing, output::Output, sequential, time_critical};
-use crate::bodies::{Groups, Places};
+use crate::bodies::{PairFilter, Places};
 use crate::broad_phase::{PairFinder, SlotBodies};
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::ordop::SlabTables;
@@ -30,8 +30,8 @@ pub(crate) struct Inputs<'a> {
     pub names: SlotNames<'a>,
     /// The poses, and spheres by place where there are any.
     pub posed: UpdateInputs<'a>,
-    /// Each body's groups where not all collide with all.
-    pub groups: Option<&'a [Groups]>,
+    /// Which pairs pass after the first test, where not all do.
+    pub filter: Option<PairFilter<'a>>,
     pub intervals: &'a IntervalSlots,
     pub tables: &'a SlabTables,
     /// Whether each body is of interest.

@@ -283,7 +283,7 @@ mod tests {
             slots: slots.arranged(),
             names: SlotNames::Places(&places.body),
             posed,
-            groups: None,
+            filter: None,
             intervals: &IntervalSlots::default(),
             tables: &SlabTables::new(DirectionSet::K18, [(&shape, &shape.ordop)]),
             interest: &[],

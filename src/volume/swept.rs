@@ -68,7 +68,8 @@ mod tests {
         let shape = rod();
         for turn in [0.0, 0.1, 1.0, 3.0, 40.0] {
             for speed in [0.0, 0.5, 7.0] {
-                let margin = f64::from(shape.swept_margin([speed, 0.0, 0.0], [0.0, 0.0, turn], 0.5));
+                let margin =
+                    f64::from(shape.swept_margin([speed, 0.0, 0.0], [0.0, 0.0, turn], 0.5));
                 let mut farthest = 0.0_f64;
                 for time in 0..=64 {
                     let time = f64::from(time) / 128.0;
@@ -85,7 +86,10 @@ mod tests {
                 assert!(farthest <= margin, "{turn} {speed}: {farthest} {margin}");
                 // Less than that of a long way and a turn across it.
                 let is_tight = turn <= 0.1 && turn * speed == 0.0;
-                assert!(!is_tight || farthest > 0.98 * margin - 1e-12, "{turn} {speed}: {farthest} {margin}");
+                assert!(
+                    !is_tight || farthest > 0.98 * margin - 1e-12,
+                    "{turn} {speed}: {farthest} {margin}"
+                );
             }
         }
     }
@@ -101,13 +105,21 @@ mod tests {
         assert!(turned > 2.0 * shape.reach && turned < 2.000_001 * shape.reach);
         assert!(shape.swept_margin([f32::NAN; 3], [0.0; 3], 1.0).is_nan());
         assert!(shape.swept_margin([0.0; 3], [f32::NAN; 3], 1.0).is_nan());
-        assert!(shape.swept_margin([f32::MAX; 3], [0.0; 3], 9.0).is_infinite());
+        assert!(
+            shape
+                .swept_margin([f32::MAX; 3], [0.0; 3], 9.0)
+                .is_infinite()
+        );
     }
 
     /// Poses turn a far mesh about the file's own origin.
     #[test]
     fn far_meshes_swing() {
-        let points = [[1.0e9, 0.0, 0.0], [1.0e9 + 1.0, 0.0, 0.0], [1.0e9, 1.0, 0.0]];
+        let points = [
+            [1.0e9, 0.0, 0.0],
+            [1.0e9 + 1.0, 0.0, 0.0],
+            [1.0e9, 1.0, 0.0],
+        ];
         let mesh = TriangleMesh::from_f64(&points, &[[0, 1, 2]]).unwrap();
         let shape = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
         let margin = shape.swept_margin([0.0; 3], [0.0, 0.0, 1.0e-3], 1.0);

@@ -69,6 +69,7 @@ impl World {
         shrink_column(&mut self.models, shapes);
         self.interest.shrink_to_fit();
         self.margins.shrink_to_fit();
+        self.culler.excluded_mut().shrink_to_fit();
         self.log.shrink_to_fit();
         self.culler.forget();
         (self.replaced, self.regrouped) = (true, true);

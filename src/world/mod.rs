@@ -4,7 +4,7 @@
 //! masks, contact margins, translations in f64, and pairs as a list or as events. The promise is
 //! the same, margins included: at every [`World::cull`], if two meshes, each grown by its body's
 //! margin and posed at its f64 translation, meet in exact arithmetic, and one of them is dynamic,
-//! and their groups collide, the pair is reported.
+//! and their groups collide, and the pair isn't [excluded](World::exclude), it is reported.
 //!
 //! Bodies that come or go leave what is known of the others: until a sixteenth of all are new, the
 //! next cull takes a sort more, and places static bodies anew. Poses, margins and groups change at
@@ -37,6 +37,8 @@ mod crowds;
 mod digest;
 mod error;
 mod events;
+#[cfg(feature = "shapes")]
+mod excluded;
 mod ids;
 mod live_pairs;
 #[cfg(feature = "shapes")]
@@ -82,7 +84,9 @@ pub use snapshot::WorldSnapshot;
 pub(crate) use self::ids::{Ids, shrink_column};
 pub(crate) use self::live_pairs::LivePairs;
 #[cfg(feature = "serde")]
-pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length, damaged};
+pub(crate) use self::saved::{
+    IdsSnapshot, PairsSnapshot, Version, check_length, damaged, restored_excluded,
+};
 #[cfg(feature = "shapes")]
 pub(crate) use self::volumes::{ShapeVolumes, compose};
 #[cfg(feature = "shapes")]
@@ -201,6 +205,7 @@ impl World {
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
         self.ids.remove(id)?;
         self.shapes[self.shape[id.slot()] as usize].bodies -= 1;
+        self.culler.excluded_mut().remove_all(id.slot);
         self.replaced = true;
         Ok(())
     }

@@ -9,7 +9,9 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::saved::{IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged};
+use super::saved::{
+    IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged, restored_excluded,
+};
 use super::shapes::{ShapeSlot, check_shape};
 use super::{BodyId, Groups, World, check_margin, check_pose};
 use crate::bodies::Bodies;
@@ -33,6 +35,8 @@ pub struct WorldSnapshot {
     interest: Vec<BodyId>,
     pairs: PairsSnapshot,
     answers: Vec<([u32; 2], u32)>,
+    #[serde(default)]
+    excluded: Vec<[u32; 2]>,
 }
 
 /// A shape that a snapshot's bodies may have.
@@ -43,7 +47,7 @@ struct ShapeSnapshot {
 }
 
 impl World {
-    /// The world as it is now, for [`Self::restore`]: bodies with ids, poses, margins and groups,
+    /// The world as it is now, for [`Self::restore`]: bodies with ids, poses, margins and groups, excluded pairs,
     /// the slots that ids are given from, the bodies of interest, the pairs of the last cull and
     /// those that events were last read of, and, where a budget is spent on the oldest answers
     /// first, when pairs were refined. Counters and seconds are not in it.
@@ -91,6 +95,7 @@ impl World {
             interest: self.interest.clone(),
             pairs: PairsSnapshot::of(&self.log),
             answers: self.culler.answers().0,
+            excluded: self.culler.excluded().sorted(),
         }
     }
 
@@ -144,6 +149,7 @@ impl World {
         }
         let log = snapshot.pairs.restored(&ids)?;
         let answers = checked(&snapshot.answers, slots)?;
+        let excluded = restored_excluded(&snapshot.excluded, &ids)?;
 
         self.bodies = Bodies {
             shape: vec![0; slots],
@@ -162,6 +168,7 @@ impl World {
         }
         self.interest.clone_from(&snapshot.interest);
         self.culler.set_answers(&answers);
+        *self.culler.excluded_mut() = excluded;
         self.look();
         (self.replaced, self.regrouped) = (true, true);
         Ok(())
