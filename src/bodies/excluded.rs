@@ -108,7 +108,15 @@ impl Hasher for NumberHasher {
     }
 }
 
-/// What is asked of a pair whose volumes meet.
+/// What decides, next to their volumes, whether two bodies are reported.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PairRules<'a> {
+    /// One entry a body.
+    pub groups: &'a [super::Groups],
+    pub excluded: &'a ExcludedPairs,
+}
+
+/// What is asked of a pair whose volumes meet, where something is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairFilter<'a> {
     /// By body, where not all collide with all.

@@ -14,8 +14,6 @@ mod cubes;
 mod culler;
 mod excluded;
 mod frame;
-mod index;
-mod levels;
 mod movers;
 #[cfg(feature = "serde")]
 mod snapshot;

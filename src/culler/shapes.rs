@@ -46,7 +46,7 @@ impl Culler {
     /// given again.
     pub(crate) fn remove_shape(&mut self, model: u32) {
         let hull = self.models.remove_shape(model);
-        if let Some(intervals) = &mut self.intervals {
+        if let Some(intervals) = &mut self.volumes.intervals {
             intervals.clear(hull as usize);
         }
     }
@@ -74,7 +74,7 @@ impl Culler {
 
     fn set_hull(&mut self, model: u32, shape: &Shape) {
         let hull = self.models.frames[model as usize].hull();
-        if let Some(intervals) = &mut self.intervals {
+        if let Some(intervals) = &mut self.volumes.intervals {
             intervals.set(hull as usize, shape);
         }
     }

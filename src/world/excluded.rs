@@ -25,8 +25,12 @@ impl World {
     /// # Errors
     /// A body that has been removed.
     pub fn exclude(&mut self, a: BodyId, b: BodyId) -> Result<bool, WorldError> {
-        let [a, b] = [self.ids.slot(a)? as u32, self.ids.slot(b)? as u32];
-        Ok(a != b && self.culler.excluded_mut().insert(a, b))
+        let [a, b] = [self.ids.slot(a)?, self.ids.slot(b)?];
+        let is_new = a != b && self.culler.excluded_mut().insert(a as u32, b as u32);
+        if is_new {
+            self.movers.note(a, &self.ids); // its partners are found anew, and so the pair is lost
+        }
+        Ok(is_new)
     }
 
     /// Reports a pair again that was left out. Returns whether it was.
@@ -34,8 +38,12 @@ impl World {
     /// # Errors
     /// A body that has been removed.
     pub fn include(&mut self, a: BodyId, b: BodyId) -> Result<bool, WorldError> {
-        let [a, b] = [self.ids.slot(a)? as u32, self.ids.slot(b)? as u32];
-        Ok(self.culler.excluded_mut().remove(a, b))
+        let [a, b] = [self.ids.slot(a)?, self.ids.slot(b)?];
+        let was_excluded = self.culler.excluded_mut().remove(a as u32, b as u32);
+        if was_excluded {
+            self.movers.note(a, &self.ids);
+        }
+        Ok(was_excluded)
     }
 
     /// Whether a pair is left out. None is that has a body which has been removed.

@@ -2,7 +2,7 @@
 
 use sdop::query::QueryShape;
 use sdop::volume::DirectionSet;
-use sdop::{Body, BodyId, Line, QueryIndex, QueryVolume, Shape, World};
+use sdop::{Body, BodyId, Line, Motion, QueryIndex, QueryVolume, Shape, World};
 use sdop_reference::Pose;
 use sdop_reference::exact::meeting::meet;
 use sdop_reference::exact::query::{ExactLine, ball_meets_mesh, is_no_later, line_meets_mesh};
@@ -29,7 +29,11 @@ impl Scene {
         for n in 0..count {
             let body = Body {
                 shape: random.below(shapes.len()) as u32,
-                dynamic: n % 3 > 0,
+                motion: if n % 3 > 0 {
+                    Motion::Dynamic
+                } else {
+                    Motion::Fixed
+                },
                 rotation: [(); 4].map(|()| random.within(1.0)),
                 translation: near(at, 4.0, random),
                 ..Body::default()
