@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use super::Ids;
 use super::pair_log::{PairLog, Reported};
+use crate::bodies::ExcludedPairs;
 use crate::bodies::contract::{ContractError, check_number};
 use crate::pairs::PairList;
 
@@ -70,6 +71,20 @@ pub(crate) fn check_length(
     damaged(format!(
         "`{column}` has {entries} entries for {slots} slots"
     ))
+}
+
+/// Pairs of bodies that are left out, as a snapshot has them: sorted pairs of slots that have
+/// bodies, the lower first.
+pub(crate) fn restored_excluded(
+    pairs: &[[u32; 2]],
+    ids: &Ids,
+) -> Result<ExcludedPairs, SnapshotError> {
+    let has_body = |slot: u32| ids.present.get(slot as usize) == Some(&true);
+    let is_sound = |&[a, b]: &[u32; 2]| a < b && has_body(a) && has_body(b);
+    if pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(is_sound) {
+        return Ok(pairs.iter().copied().collect());
+    }
+    damaged("excluded pairs that there can't be")
 }
 
 /// The slots of bodies at rest, sorted.
