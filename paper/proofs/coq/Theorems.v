@@ -1,7 +1,7 @@
 (* What the theorems rest on. .ci/proofs accepts the four axioms of README.md and no other. One list
    for all of them, since each takes Coq a second. *)
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
-  Finder Lists Levels Duality.
+  Finder Lists Levels Duality Margins.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -35,7 +35,9 @@ Definition theorems := (
   Lists.lists_hold_reported_pairs,
   Levels.levels_hand_over,
   Duality.support_bounds,
-  Duality.axis_separates
+  Duality.axis_separates,
+  Margins.place_within_moved,
+  Margins.slab_with_margin
 ).
 
 Print Assumptions theorems.
