@@ -28,7 +28,7 @@ Definition inside (k : kind) (s : slabs) (z : point) : Prop :=
   forall member, In member (members k) ->
     dot (direction member) z <= fst (s member) /\ - dot (direction member) z <= snd (s member).
 
-(* src/overlap/ordop/slabs.rs, as RunOrDop.v has it. *)
+(* src/overlap/ordop/slabs.rs: Slabs::own, Slabs::pair, Slabs::cube, as RunOrDop.v has them. *)
 Definition end_of (s : slabs) (member : nat) (opposite : bool) : R :=
   if opposite then snd (s member) else fst (s member).
 Definition pair (s : slabs) (member : nat) (x y : bool) : R :=
@@ -36,7 +36,7 @@ Definition pair (s : slabs) (member : nat) (x y : bool) : R :=
 Definition facing (s : slabs) (x y z : bool) : R :=
   end_of s (9 + (if xorb x z then 1 else 0) + (if xorb y z then 2 else 0)) z.
 
-(* src/overlap/ordop/support.rs: the four supports of |e| = (a, b, c), from the ends that e faces. *)
+(* src/overlap/ordop/support.rs: support, the four of |e| = (a, b, c), from the ends that e faces. *)
 Definition lead (x y z : R) : R := Rmax (x - Rmax y z) 0.
 Definition leads (x y z a b c : R) : R := lead a b c * x + lead b a c * y + lead c a b * z.
 Definition support_6 (x y z a b c : R) : R := a * x + b * y + c * z.
