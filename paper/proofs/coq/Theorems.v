@@ -1,7 +1,7 @@
 (* What the theorems rest on. .ci/proofs accepts the four axioms of README.md and no other. One list
    for all of them, since each takes Coq a second. *)
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
-  Finder Lists Levels Duality Margins.
+  Finder Lists Levels Duality Margins Refit.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -37,7 +37,8 @@ Definition theorems := (
   Duality.support_bounds,
   Duality.axis_separates,
   Margins.place_within_moved,
-  Margins.slab_with_margin
+  Margins.slab_with_margin,
+  Refit.refit_contains
 ).
 
 Print Assumptions theorems.
