@@ -20,7 +20,7 @@ use sdop::bodies::Bodies;
 use sdop::settings::{Finder, Interest};
 
 /// Sizes of one level, the smallest one included.
-const SIZES: usize = 5;
+const SIZES: usize = 4;
 /// Densities of each size.
 pub(super) const DENSITIES: usize = 5;
 /// Bodies of the smallest calibration scene.
