@@ -262,8 +262,8 @@ impl Cell {
         }
     }
 
-    /// Which misses are outside of the library's claim, and the smallest case of one that is not, or
-    /// of any.
+    /// Which misses are outside of the library's claim, and the smallest case of one that is not,
+    /// or of any.
     fn explained(
         mut self,
         adapter: &Adapter,

@@ -53,7 +53,7 @@ pub struct Args {
 }
 
 /// Frames of the timed scene.
-const FRAMES: u32 = 20;
+const FRAMES: u32 = 6;
 
 /// Runs the command.
 ///
