@@ -9,9 +9,8 @@ use std::time::{Duration, Instant};
 
 use super::answer::{Answer, Seconds, Stop, Trouble};
 use super::case::Case;
-use super::claim::Claim;
 use super::subject::Subject;
-use super::wire::{Said, Wire, beginning};
+use super::wire::{Wire, beginning, book};
 
 /// A program and how it is run.
 #[derive(Clone, Debug)]
@@ -32,12 +31,9 @@ const SAID: usize = 400;
 const CHATTER: usize = 1 << 16;
 
 impl Subject for Program {
-    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
         let start = |why: String| Trouble::Start { why };
-        let input = self
-            .wire
-            .encode(case, claim)
-            .map_err(|e| start(e.to_string()))?;
+        let input = self.wire.encode(case).map_err(|e| start(e.to_string()))?;
         let time = self.timeout + Duration::from_micros(input.len() as u64);
         let mut running = Running::start(&self.command, input).map_err(|e| start(e.to_string()))?;
         running.answers(self.wire, case, time)
@@ -113,13 +109,8 @@ impl Running {
                 let line = beginning(&line);
                 return Err(Trouble::TooMany { frames, line }.into());
             }
-            match wire.decode(answers.len(), &line)? {
-                Said::Answer(answer) => answers.push(answer),
-                Said::Skipped(why) => {
-                    let answered = answers;
-                    return Err(Stop::Skipped { why, answered });
-                }
-            }
+            let said = wire.decode(answers.len(), &line)?;
+            book(&mut answers, said, &line)?;
         }
         let answered = answers.len();
         let Some(status) = self.status(deadline) else {
