@@ -34,34 +34,48 @@ impl Aabb {
         std::array::from_fn(|axis| 0.5 * self.max[axis] - 0.5 * self.min[axis])
     }
 
-    /// The bits of its ends: equal ones are equal in any floating-point mode.
+    /// Whether its ends have the bits of another's: equal ones are equal in any floating-point mode.
     #[inline]
-    pub(crate) fn bits(&self) -> [[u32; 3]; 2] {
-        [self.min, self.max].map(|corner| corner.map(f32::to_bits))
+    pub(crate) fn has_bits_of(&self, other: &Self) -> bool {
+        // Written out and without a branch: of every box that is set.
+        let difference = |axis: usize| {
+            (self.min[axis].to_bits() ^ other.min[axis].to_bits())
+                | (self.max[axis].to_bits() ^ other.max[axis].to_bits())
+        };
+        difference(0) | difference(1) | difference(2) == 0
     }
 
     /// Whether its ends are finite and in order, by their bits: in any floating-point mode, but not
     /// of zeros of two signs.
     #[inline]
     fn is_surely_sound(&self) -> bool {
+        const INFINITY: u32 = f32::INFINITY.to_bits();
         // Numbers of one sign are in the order of their bits, negative ones in the opposite one.
         let rank = |bits: u32| (bits ^ (((bits as i32) >> 31) as u32 >> 1)) as i32;
         let size = |bits: u32| bits & !(1 << 31);
-        let [min, max] = self.bits();
-        (0..3).all(|axis| {
-            let ends = [min[axis], max[axis]];
-            let are_finite = ends.map(|end| size(end) < size(f32::INFINITY.to_bits()));
-            are_finite[0] & are_finite[1] & (rank(ends[0]) <= rank(ends[1]))
-        })
+        let is_sound = |axis: usize| {
+            let (lo, hi) = (self.min[axis].to_bits(), self.max[axis].to_bits());
+            (size(lo) < INFINITY) & (size(hi) < INFINITY) & (rank(lo) <= rank(hi))
+        };
+        is_sound(0) & is_sound(1) & is_sound(2)
     }
 
     /// Checks that a box is one; `body` is its number.
+    #[inline]
     pub(crate) fn check(&self, body: usize) -> Result<(), ContractError> {
+        if self.is_surely_sound() {
+            return Ok(());
+        }
+        self.check_ends(body)
+    }
+
+    #[cold]
+    fn check_ends(&self, body: usize) -> Result<(), ContractError> {
         let is_sound = |axis: usize| {
             let [lo, hi] = [self.min[axis], self.max[axis]];
             lo <= hi && f32::MIN <= lo && hi <= f32::MAX
         };
-        if self.is_surely_sound() || in_default_mode(|| (0..3).all(is_sound)) {
+        if in_default_mode(|| (0..3).all(is_sound)) {
             return Ok(());
         }
         let value = format!("from {:?} to {:?}", self.min, self.max);

@@ -187,7 +187,7 @@ impl BoxWorld {
         let (slot, body) = (self.ids.slot(id)?, body.into());
         body.bounds.check(slot)?;
         let (is_dynamic, was_dynamic) = (body.motion.is_dynamic(), self.dynamic[slot]);
-        let is_same = body.bounds.bits() == self.bounds[slot].bits()
+        let is_same = body.bounds.has_bits_of(&self.bounds[slot])
             && is_dynamic == was_dynamic
             && body.groups == self.groups[slot];
         if !is_same {
@@ -206,7 +206,7 @@ impl BoxWorld {
     pub fn set_bounds(&mut self, id: BodyId, bounds: Aabb) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
         bounds.check(slot)?;
-        if bounds.bits() != self.bounds[slot].bits() {
+        if !bounds.has_bits_of(&self.bounds[slot]) {
             self.replaced |= !self.dynamic[slot];
             self.movers.note(slot, &self.ids);
             self.bounds[slot] = bounds;
