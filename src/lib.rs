@@ -38,7 +38,8 @@
 //! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of
 //! bodies; in a [`World`] they come and go, with stable ids, groups, contact margins, f64
 //! translations and events. Whoever has boxes already takes [`BoxCuller`] or [`BoxWorld`]: exactly
-//! the pairs of boxes that meet.
+//! the pairs of boxes that meet. A [`QueryIndex`] answers which bodies of a world touch a volume or
+//! lie along a line.
 //!
 //! # Conventions
 //!
@@ -103,6 +104,7 @@ pub mod culler;
 #[cfg(feature = "shapes")]
 pub mod mesh;
 pub mod pairs;
+pub mod query;
 pub mod settings;
 #[cfg(feature = "shapes")]
 pub mod volume;
@@ -139,6 +141,7 @@ pub use culler::{Culler, CullerBuilder};
 #[cfg(feature = "shapes")]
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
 pub use pairs::PairList;
+pub use query::{Line, QueryIndex, QueryVolume};
 pub use settings::Finder;
 #[cfg(feature = "shapes")]
 pub use settings::{

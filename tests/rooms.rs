@@ -27,6 +27,7 @@ const LIBRARY: &[&str] = &[
     "culler",
     "world",
     "boxes",
+    "query",
     "c",
 ];
 const JUDGE: &[&str] = &["contestant", "json", "record", "ours", REST];
@@ -54,6 +55,7 @@ const BENCH: &[&str] = &[
     "tradeoff",
     "view",
     "report",
+    "board",
     // The program.
     "commands",
     "main",

@@ -12,6 +12,12 @@ pub struct Balls {
     padded: Vec<[f32; 4]>,
 }
 
+impl Default for Balls {
+    fn default() -> Self {
+        Self::new(0)
+    }
+}
+
 impl Balls {
     /// That many, without a size at the origin.
     #[must_use]

@@ -18,6 +18,9 @@ pub(super) struct Needs {
     pub rows: bool,
     /// World-aligned slabs.
     pub intervals: Option<DirectionSet>,
+    /// Slots named by place: rows and slabs are looked up by place, spheres alone need the body
+    /// only.
+    pub by_place: bool,
 }
 
 impl Needs {
@@ -25,11 +28,23 @@ impl Needs {
     pub fn of(scheme: Scheme, k: DirectionSet, finder: Finder) -> Self {
         // Oriented volumes are binned by balls, which a finder that doesn't bin can do without.
         let binned = scheme.is_oriented_alone() && finder != Finder::AllPairs;
+        let (rows, intervals) = (scheme.refining.is_some(), scheme.slabs(k));
         Self {
             balls: binned || scheme.first == Some(TestedVolume::Sphere),
-            rows: scheme.refining.is_some(),
-            intervals: scheme.slabs(k),
+            rows,
+            intervals,
+            by_place: rows || intervals.is_some(),
         }
+    }
+
+    /// What slots are named by: the numbers of places, or the bodies in them.
+    pub fn names<'a>(&self, numbers: &'a [u32], places: &'a Places) -> &'a [u32] {
+        if self.by_place { numbers } else { &places.body }
+    }
+
+    /// The balls by place, or none where they are not updated.
+    pub fn known<'a>(&self, balls: &'a [[f32; 4]]) -> &'a [[f32; 4]] {
+        if self.balls { balls } else { &[] }
     }
 
     /// The work of a frame with so many moving bodies, and with the tests of another.
@@ -91,6 +106,7 @@ mod tests {
                 balls,
                 rows,
                 intervals,
+                by_place: rows,
             };
             let work = needs.work(7, &like);
             assert_eq!(work.updates, 7 * volumes, "{needs:?}");

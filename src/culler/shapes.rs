@@ -2,7 +2,8 @@
 
 use super::{CullError, Culler, check};
 use crate::simd::in_default_mode;
-use crate::volume::Shape;
+use crate::update::ShapeFrame;
+use crate::volume::{OrDop, Shape};
 
 impl Culler {
     /// Adds a shape. Bodies take it by the returned number in `bodies.shape`, from the next
@@ -45,7 +46,7 @@ impl Culler {
     /// given again.
     pub(crate) fn remove_shape(&mut self, model: u32) {
         let hull = self.models.remove_shape(model);
-        if let Some(intervals) = &mut self.intervals {
+        if let Some(intervals) = &mut self.volumes.intervals {
             intervals.clear(hull as usize);
         }
     }
@@ -61,6 +62,11 @@ impl Culler {
         self.models.remove(model);
     }
 
+    /// The slabs and the frame of a model.
+    pub(crate) fn volumes(&self, model: u32) -> (&OrDop, &ShapeFrame) {
+        self.models.volumes(model)
+    }
+
     /// One above the number of every model.
     pub(crate) fn models(&self) -> usize {
         self.models.frames.len()
@@ -68,7 +74,7 @@ impl Culler {
 
     fn set_hull(&mut self, model: u32, shape: &Shape) {
         let hull = self.models.frames[model as usize].hull();
-        if let Some(intervals) = &mut self.intervals {
+        if let Some(intervals) = &mut self.volumes.intervals {
             intervals.set(hull as usize, shape);
         }
     }

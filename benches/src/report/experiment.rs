@@ -265,7 +265,10 @@ const OWN: &[Experiment] = &[
     Experiment {
         name: "adapters",
         about: "other libraries judged: which of their claims hold",
-        steps: &[Step::Script("board.json", &["benches/adapters/run"])],
+        steps: &[
+            Step::Script("installed.txt", &["benches/adapters/install"]),
+            Step::Sdop(&["board", "--timed", "data/scenes/crowded-500.toml"]),
+        ],
         deterministic: &[],
         scenes: &[],
     },

@@ -10,10 +10,10 @@ use sdop_bench::reproduce::rates::{ELSEWHERE, Rate};
 
 use super::style::{anchored, colour, ends, label, quiet, text, titled};
 use super::{Area, Drawn};
-use crate::commands::reproduce::rows::{Tables, distinct};
+use crate::commands::reproduce::rows::{Drawings, distinct};
 
 /// One panel a scene and F.
-pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {
+pub fn draw(area: &Area<'_>, tables: &Drawings) -> Drawn {
     let bodies = tables.rates.iter().map(|rate| rate.bodies);
     let most = bodies.max().unwrap_or(0);
     let of_most = || tables.rates.iter().filter(|rate| rate.bodies == most);
