@@ -30,7 +30,7 @@ use sdop::volume::Shape;
 /// Where the draws of lists with a known share of hits start.
 const SEED: u64 = 0xca11_b8a7_e001_0000;
 /// How often such a list is timed.
-const REPEATS: usize = 5;
+const REPEATS: usize = 15;
 /// Fewer pairs tell nothing.
 const FEWEST: usize = 32;
 
