@@ -223,6 +223,8 @@ fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
     use sdop_bench::measure::conditions::Conditions;
 
     use super::*;
