@@ -199,7 +199,8 @@ impl BoxIndex {
     }
 
     /// Appends for each of some boxes the slots of those that meet it, not both fixed, that the
-    /// rules let pass: sorted, each once. Where each one's end goes to `ends`. Returns how many boxes and cells were looked at.
+    /// rules let pass: sorted, each once. Where each one's end goes to `ends`. Returns how many
+    /// boxes and cells were looked at.
     pub fn find_partners(
         &self,
         seekers: &[IndexedBox],
