@@ -30,9 +30,9 @@ pub struct BoxWorldSnapshot {
 }
 
 impl BoxWorld {
-    /// The world as it is now, for [`Self::restore`]: boxes with ids and groups, excluded pairs, the
-    /// slots that ids are given from, the pairs of the last cull and those that events were last
-    /// read of. Counters are not in it.
+    /// The world as it is now, for [`Self::restore`]: boxes with ids and groups, excluded pairs,
+    /// the slots that ids are given from, the pairs of the last cull and those that events were
+    /// last read of. Counters are not in it.
     #[must_use]
     pub fn snapshot(&self) -> BoxWorldSnapshot {
         let bits = |aabb: &Aabb| [aabb.min, aabb.max].map(|corner| corner.map(f32::to_bits));

@@ -128,9 +128,10 @@ impl QueryIndex {
     }
 
     /// The first body along a line by the caller's own judgement: `judge` returns the parameter at
-    /// which the line really meets a body, or none if it misses it. It is called for bodies that the
-    /// line may meet no later than the nearest that is known, nearer ones first as far as boxes tell;
-    /// none is left out that could be the first. Of several at one parameter, the lowest slot's.
+    /// which the line really meets a body, or none if it misses it. It is called for bodies that
+    /// the line may meet no later than the nearest that is known, nearer ones first as far as boxes
+    /// tell; none is left out that could be the first. Of several at one parameter, the lowest
+    /// slot's.
     ///
     /// # Errors
     /// As [`Self::along`].

@@ -9,10 +9,10 @@
 //!
 //! The promise is that of culling: no body is missed that has a point in common with the volume or
 //! the line in exact arithmetic, touching included. Boxes are reported for a box exactly if they
-//! meet. For balls and lines f64 rounding may report one in addition that is closer than 2⁻⁵⁰ of the
-//! distances involved. Bodies of a `World` are grown by their margins and tested by their boxes,
-//! balls and or-DOPs, as culling does, so that a narrow phase still has to judge what is reported.
-//! Groups, and whether a body moves, are not asked: filter what is returned.
+//! meet. For balls and lines f64 rounding may report one in addition that is closer than 2⁻⁵⁰ of
+//! the distances involved. Bodies of a `World` are grown by their margins and tested by their
+//! boxes, balls and or-DOPs, as culling does, so that a narrow phase still has to judge what is
+//! reported. Groups, and whether a body moves, are not asked: filter what is returned.
 //!
 //! ```
 //! use sdop::{Aabb, BoxWorld, Line, QueryIndex, QueryVolume};

@@ -5,8 +5,8 @@
 //! a difference, a square or a quotient, each of which is widened by more than its rounding
 //! ([`crossing`], [`is_beyond`]). Against a posed body everything is brought into the body's own
 //! frame ([`into_body`]), where its slabs are exact f32, and each slab is moved out by the
-//! [`slack`] of the sizes involved. Theorem Q of `paper/proofs/LEMMAS.md` counts the errors in units
-//! of 2⁻⁵³ of these sizes; the slack is 256 of them, of which 228 are needed.
+//! [`slack`] of the sizes involved. Theorem Q of `paper/proofs/LEMMAS.md` counts the errors in
+//! units of 2⁻⁵³ of these sizes; the slack is 256 of them, of which 228 are needed.
 
 use super::exp2;
 use super::pose::Rotation;

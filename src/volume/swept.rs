@@ -3,8 +3,8 @@
 //!
 //! A body that is grown by that contains all of the way, whatever its path, as long as it is no
 //! faster. Two bodies that meet at any time of the step then meet as they are grown now, and are
-//! reported (theorem U of `paper/proofs/LEMMAS.md`). That says which pairs to look at, not when they
-//! meet.
+//! reported (theorem U of `paper/proofs/LEMMAS.md`). That says which pairs to look at, not when
+//! they meet.
 
 use super::Shape;
 use crate::rounding::{pose::norm, up};
@@ -16,8 +16,8 @@ impl Shape {
     /// faster than `angular` (in radians per second), of which the lengths count. Infinite where
     /// that is beyond f32, NaN where a number is.
     ///
-    /// The origin is the point that poses place. Rotation moves a point at the distance ρ by at most
-    /// 2ρ, and by the angle times ρ.
+    /// The origin is the point that poses place. Rotation moves a point at the distance ρ by at
+    /// most 2ρ, and by the angle times ρ.
     ///
     /// ```
     /// # use sdop::{ProceduralShape, Shape, ShapeSpec};

@@ -2,8 +2,8 @@
 //! model and at a place, of their groups and motion, of whether one of them is of interest, and of
 //! whether the pair is excluded.
 //!
-//! A body is noted as changed when any of these is set, one of the two for a pair that is excluded, and where its local place or its model
-//! becomes another one because an origin has moved.
+//! A body is noted as changed when any of these is set, one of the two for a pair that is excluded,
+//! and where its local place or its model becomes another one because an origin has moved.
 
 use std::time::Instant;
 

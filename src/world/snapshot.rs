@@ -52,10 +52,10 @@ struct ShapeSnapshot {
 }
 
 impl World {
-    /// The world as it is now, for [`Self::restore`]: bodies with ids, poses, margins and groups, excluded pairs,
-    /// the slots that ids are given from, the bodies of interest, the pairs of the last cull and
-    /// those that events were last read of, and, where a budget is spent on the oldest answers
-    /// first, when pairs were refined. Counters and seconds are not in it.
+    /// The world as it is now, for [`Self::restore`]: bodies with ids, poses, margins and groups,
+    /// excluded pairs, the slots that ids are given from, the bodies of interest, the pairs of the
+    /// last cull and those that events were last read of, and, where a budget is spent on the
+    /// oldest answers first, when pairs were refined. Counters and seconds are not in it.
     ///
     /// ```
     /// # use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};

@@ -49,7 +49,8 @@ impl Model {
         }
     }
 
-    /// Culls the world, and checks pairs and events. Returns how many would be reported, and how many of them aren't.
+    /// Culls the world, and checks pairs and events. Returns how many would be reported, and how
+    /// many of them aren't.
     fn check(&mut self, world: &mut World, way: &CullSettings) -> [usize; 2] {
         let mut wanted = afresh(&shapes(), way, &self.bodies);
         let all = wanted.len();
