@@ -9,7 +9,6 @@ use sdop_bench::outsiders::timing::frames;
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_judge::process::Program;
 use sdop_judge::wire::Wire;
-use sdop_judge::{Case, Claim};
 
 use super::Outcome;
 use super::files;
