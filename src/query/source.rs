@@ -39,9 +39,9 @@ impl QuerySource for BoxWorld {
                 Motion::Fixed => FIXED,
                 _ => MOVING,
             };
-            let is_there = index.bounds_of(id).is_some_and(|(former, bounds)| {
-                former == tree && bounds.bits() == body.bounds.bits()
-            });
+            let is_there = index
+                .bounds_of(id)
+                .is_some_and(|(former, bounds)| former == tree && bounds.has_bits_of(&body.bounds));
             if !is_there {
                 index.put(id, tree, &body.bounds);
             }
