@@ -44,7 +44,7 @@ use crate::strategy::RefinementRanks;
 #[cfg(feature = "shapes")]
 use crate::{
     bodies::contract::{check_bodies, check_column, check_poses},
-    bodies::{Bodies, Groups, Places},
+    bodies::{Bodies, ExcludedPairs, Groups, PairFilter, Places},
     broad_phase::{Balls, PairFinder},
     counters::{Counters, Seconds},
     overlap::intervals::IntervalSlots,
@@ -87,6 +87,7 @@ pub struct Culler {
 struct BodySet {
     places: Places,
     groups: Option<Vec<Groups>>,
+    excluded: ExcludedPairs,
     /// What doesn't change between two frames, as it was at the last [`Culler::refresh`].
     fixed: Bodies,
     /// 0, 1, 2 …: the names of slots where pairs are refined further.
@@ -154,6 +155,7 @@ impl Culler {
             set: BodySet {
                 places,
                 groups: None,
+                excluded: ExcludedPairs::default(),
                 fixed: check::fixed(bodies),
                 numbers: (0..n as u32).collect(),
                 order: Vec::new(),
@@ -192,6 +194,16 @@ impl Culler {
         }
         self.set.groups = groups;
         Ok(())
+    }
+
+    /// Pairs that are not listed, to be changed.
+    pub(crate) fn excluded_mut(&mut self) -> &mut ExcludedPairs {
+        &mut self.set.excluded
+    }
+
+    /// Pairs that are not listed.
+    pub(crate) fn excluded(&self) -> &ExcludedPairs {
+        &self.set.excluded
     }
 
     /// From now on, a budget that is spent on pairs as they are found is spent on them in the order
@@ -448,7 +460,7 @@ impl Culler {
                 finder: &self.set.finder,
                 slots: self.set.finder.slots(&self.volumes.balls),
                 names,
-                groups: self.set.groups.as_deref(),
+                filter: PairFilter::new(self.set.groups.as_deref(), &self.set.excluded),
             },
             volumes: FrameVolumes {
                 posed: UpdateInputs {

@@ -8,7 +8,7 @@
 //! differences are made at its partners too.
 
 use super::{Ids, LivePairs};
-use crate::bodies::Groups;
+use crate::bodies::PairRules;
 use crate::broad_phase::{BoxIndex, IndexedBox, Search};
 
 /// Changed bodies are looked for one by one while they are at most one in so many: beyond, finding
@@ -157,16 +157,16 @@ impl Movers {
     }
 
     /// Puts changed bodies where they are now, and lists those whose boxes meet each one's:
-    /// `box_of` is called for each of [`Self::changed`], `groups` has one entry a slot. Returns the
+    /// `box_of` is called for each of [`Self::changed`], groups have one entry a slot. Returns the
     /// work that it took: boxes and cells that were looked at. None if that is too much, or if
     /// there are pairs beyond `most`.
     pub fn find(
         &mut self,
         box_of: impl FnMut(u32) -> IndexedBox,
-        groups: &[Groups],
+        rules: PairRules<'_>,
         most: usize,
     ) -> Option<usize> {
-        let (mut work, most_work) = (0, WORK_PER_BODY * groups.len());
+        let (mut work, most_work) = (0, WORK_PER_BODY * rules.groups.len());
         let mut index = self.index.take()?;
         let boxes = &mut self.boxes;
         boxes.clear();
@@ -181,7 +181,7 @@ impl Movers {
         self.ends.clear();
         for seekers in boxes.chunks(SEEKERS_PER_BATCH) {
             let (search, found, ends) = (&mut self.search, &mut self.found, &mut self.ends);
-            work += index.find_partners(seekers, groups, search, found, ends);
+            work += index.find_partners(seekers, rules, search, found, ends);
             // A pair of two changed bodies is found twice.
             if work > most_work || found.len() / 2 > most {
                 self.back_off();

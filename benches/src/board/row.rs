@@ -262,8 +262,8 @@ impl Cell {
         }
     }
 
-    /// Which misses are outside of the library's claim, and the smallest case of one that is not, or
-    /// of any.
+    /// Which misses are outside of the library's claim, and the smallest case of one that is not,
+    /// or of any.
     fn explained(
         mut self,
         adapter: &Adapter,
@@ -313,7 +313,8 @@ impl Cell {
 
 /// The published case of a name.
 fn named(claim: Claim, name: &str) -> Result<Case, JudgeError> {
-    Ok(select(claim, name, None)?.remove(0).case()?) // its name came from there
+    let mut found = select(claim, name, None)?;
+    Ok(found.swap_remove(0).case()?) // its name came from there
 }
 
 /// Whether every pair that is missed in a case is parted by a shift of one f32 step.
@@ -325,8 +326,8 @@ fn only_touch(subject: &dyn Subject, case: &Case) -> bool {
         let mut missed = Vec::new();
         for (number, (frame, list)) in case.frames.iter().zip(lists).enumerate() {
             let required = truth.pairs(frame).unwrap_or_default().into_iter();
-            let lacking = required.filter(|pair| !list.contains(pair));
-            missed.extend(lacking.map(|pair| Miss {
+            let lost = required.filter(|pair| list.binary_search(pair).is_err());
+            missed.extend(lost.map(|pair| Miss {
                 frame: number,
                 pair,
             }));
@@ -338,10 +339,8 @@ fn only_touch(subject: &dyn Subject, case: &Case) -> bool {
         let judged = answers.and_then(|answers| judge_answers(case, &answers).ok());
         let missed = judged.map_or_else(Vec::new, |judged| missed(&judged.lists));
         if !missed.is_empty() {
-            return missed.into_iter().all(|miss| {
-                let witness = Witness::of(case, miss);
-                witness.is_some_and(|witness| witness.depth_ulps == Some(1))
-            });
+            let depth = |miss| Witness::of(case, miss).and_then(|witness| witness.depth_ulps);
+            return missed.into_iter().all(|miss| depth(miss) == Some(1));
         }
     }
     false

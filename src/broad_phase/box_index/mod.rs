@@ -7,7 +7,7 @@
 mod levels;
 
 use self::levels::{Levels, cell_count};
-use crate::bodies::{Aabb, Groups};
+use crate::bodies::{Aabb, Groups, PairRules};
 use crate::pairs::{Run, Runs};
 use crate::simd::prefetch;
 
@@ -198,13 +198,12 @@ impl BoxIndex {
         }
     }
 
-    /// Appends for each of some boxes the slots of those that meet it, not both fixed, whose groups
-    /// collide: sorted, each once. Where each one's end goes to `ends`. `groups` are by slot.
-    /// Returns how many boxes and cells were looked at.
+    /// Appends for each of some boxes the slots of those that meet it, not both fixed, that the
+    /// rules let pass: sorted, each once. Where each one's end goes to `ends`. Returns how many boxes and cells were looked at.
     pub fn find_partners(
         &self,
         seekers: &[IndexedBox],
-        groups: &[Groups],
+        rules: PairRules<'_>,
         search: &mut Search,
         found: &mut Vec<u32>,
         ends: &mut Vec<usize>,
@@ -230,11 +229,11 @@ impl BoxIndex {
             let start = found.len();
             if is_everywhere {
                 for cell in &self.cells {
-                    work += self.look_into(cell.boxes, seeker, groups, found);
+                    work += self.look_into(cell.boxes, seeker, rules, found);
                 }
             }
             for &run in &search.runs[std::mem::replace(&mut first, end)..end] {
-                work += self.look_into(run, seeker, groups, found);
+                work += self.look_into(run, seeker, rules, found);
             }
             sort_each_once(found, start);
             ends.push(found.len());
@@ -267,13 +266,13 @@ impl BoxIndex {
         &self,
         run: Run,
         seeker: &IndexedBox,
-        groups: &[Groups],
+        rules: PairRules<'_>,
         found: &mut Vec<u32>,
     ) -> usize {
         let Aabb { min, max } = seeker.aabb;
         for entry in self.boxes.get(run) {
             let on = |axis: usize| (min[axis] <= entry.max[axis]) & (entry.min[axis] <= max[axis]);
-            if on(0) & on(1) & on(2) && seeker.may_meet(entry, groups) {
+            if on(0) & on(1) & on(2) && seeker.may_meet(entry, rules) {
                 found.push(entry.slot);
             }
         }
@@ -313,11 +312,12 @@ fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
 
 impl IndexedBox {
     /// Whether a pair with this box is reported if the boxes meet.
-    fn may_meet(&self, other: &Entry, groups: &[Groups]) -> bool {
+    fn may_meet(&self, other: &Entry, rules: PairRules<'_>) -> bool {
         let are_fixed = self.tags & other.tags & FIXED != 0;
         let collide = (self.tags | other.tags) & GROUPED == 0
-            || groups[self.slot as usize].collide(groups[other.slot as usize]);
-        other.slot != self.slot && !are_fixed && collide
+            || rules.groups[self.slot as usize].collide(rules.groups[other.slot as usize]);
+        let may_meet = other.slot != self.slot && !are_fixed && collide;
+        may_meet && !rules.excluded.contains(self.slot, other.slot)
     }
 }
 
