@@ -39,8 +39,11 @@ pub fn shrink(subject: &dyn Subject, case: &Case, time: Duration) -> Option<Smal
     })
 }
 
+/// Pairs by frame, sorted.
+pub type Lists = Vec<Vec<[u32; 2]>>;
+
 /// What is wrong with a case, and what is reported of it, frame by frame; `None` when nothing is.
-pub type Wrong<'a> = &'a dyn Fn(&Case) -> Option<(Miss, Vec<Vec<[u32; 2]>>)>;
+pub type Wrong<'a> = &'a dyn Fn(&Case) -> Option<(Miss, Lists)>;
 
 /// Makes a case smaller while something is wrong with it, for so long at most.
 pub fn shrink_while(case: &Case, time: Duration, wrong: Wrong<'_>) -> Option<Smallest> {

@@ -144,10 +144,10 @@ fn restored(rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
         for body in 0..COUNT {
             if next.bodies.dynamic[body] && rng.random_range(0..2) == 0 {
                 let by: [f32; 3] = std::array::from_fn(|_| rng.random_range(-4..=4) as f32);
-                for axis in 0..3 {
-                    next.boxes[body][axis] += by[axis];
-                    next.boxes[body][axis + 3] += by[axis];
-                    next.bodies.translation[body][axis] += by[axis];
+                for (axis, by) in by.into_iter().enumerate() {
+                    next.boxes[body][axis] += by;
+                    next.boxes[body][axis + 3] += by;
+                    next.bodies.translation[body][axis] += by;
                 }
             }
         }

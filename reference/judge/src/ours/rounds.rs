@@ -21,7 +21,7 @@ use super::ways::{Mode, Rotation, rows};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
 use crate::score::Miss;
-use crate::shrink::{Smallest, shrink_while};
+use crate::shrink::{Lists, Smallest, shrink_while};
 use sdop::bodies::Bodies;
 use sdop::culler::CullError;
 use sdop::mesh::ProceduralShape;
@@ -94,7 +94,7 @@ impl Failure {
     }
 
     /// The first pair of a case that is wrong by these settings, and the lists.
-    fn again(&self, case: &Case) -> Result<Option<(Miss, Vec<Vec<[u32; 2]>>)>, RoundError> {
+    fn again(&self, case: &Case) -> Result<Option<(Miss, Lists)>, RoundError> {
         let shapes = Shapes::new(case.shapes.clone())?;
         let frames: Vec<Bodies> = case.frames.iter().map(|f| f.bodies.clone()).collect();
         let k = self.settings.k;
