@@ -18,8 +18,8 @@ class Adapter(Culler):
         if len(translations) == 0:
             return self.pairs([])
         reach = self.reach()
-        if reach == 0.0:
-            raise CaseSkipped("its r_max must be above zero")
+        if np.float32(reach) * np.float32(reach) == 0.0:
+            raise CaseSkipped("the square of its r_max is zero in float32, in which it computes")
         points = np.asarray(translations, dtype=np.float32)
         side = 4.0 * float(np.abs(points).max()) + 4.0 * reach
         if sys.argv[1] == "cells" and side > MOST_CELLS * reach:

@@ -5,7 +5,7 @@ import { CaseSkipped, centresAndHalves, serve } from "../wire.mjs";
 
 const jolt = await initialise();
 const settings = new jolt.JoltSettings();
-settings.mMaxBodies = 4096;
+settings.mMaxBodies = 16384;
 const layers = new jolt.ObjectLayerPairFilterTable(1);
 layers.EnableCollision(0, 0);
 const broad = new jolt.BroadPhaseLayerInterfaceTable(1, 1);
