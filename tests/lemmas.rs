@@ -170,6 +170,41 @@ fn every_script_and_every_theorem_is_about_some_code() {
     assert_eq!(lemmas, theorems.collect());
 }
 
+/// Definitions in Coq say which code they are: a file and names in it, which exist.
+#[test]
+fn coq_definitions_name_existing_code() {
+    let mut named = 0;
+    for entry in fs::read_dir("paper/proofs/coq").unwrap() {
+        let path = entry.unwrap().path();
+        let text = fs::read_to_string(&path).unwrap();
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        for (at, _) in text.match_indices("src/") {
+            let (file, names) = text[at..].split_once(": ").unwrap();
+            let source = fs::read_to_string(file).unwrap_or_else(|error| panic!("{file}: {error}"));
+            for (place, name) in names.split(", ").enumerate() {
+                let end =
+                    name.find(|letter: char| !letter.is_alphanumeric() && !"_:".contains(letter));
+                let (word, rest) = name.split_at(end.unwrap_or(name.len()));
+                // Behind the names there may be prose.
+                if place > 0 && rest.starts_with(' ') && !rest.starts_with(" *)") {
+                    break;
+                }
+                let word = word.trim_end_matches(':');
+                assert!(
+                    item(&source, word).is_some(),
+                    "{}: {file} has no `{word}`",
+                    path.display()
+                );
+                named += 1;
+                if !rest.is_empty() {
+                    break;
+                }
+            }
+        }
+    }
+    assert!(named > 60, "{named}");
+}
+
 #[test]
 fn a_digest_is_of_the_code_and_not_of_its_layout() {
     let source = "

@@ -229,6 +229,15 @@ impl PairsSnapshot {
             Some(WatchedSnapshot { pairs, generation }) => {
                 let named = pairs[1].iter().max().map_or(0, |&last| last as usize + 1);
                 check_length("watched generation", generation.len(), named)?;
+                let mut unnamed: Vec<u32> = generation.clone();
+                for &slot in pairs.iter().flatten() {
+                    if let Some(generation) = unnamed.get_mut(slot as usize) {
+                        *generation = 0;
+                    }
+                }
+                if let Some(slot) = unnamed.iter().position(|&generation| generation > 0) {
+                    return damaged(format!("no watched pair names slot {slot}"));
+                }
                 Arc::new(Reported {
                     slots: sorted(pairs, generation.len())?,
                     generation: Arc::new(generation.clone()),

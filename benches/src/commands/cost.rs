@@ -25,7 +25,7 @@ use super::{Outcome, prices};
 /// Frames of a pass when neither the scene nor a flag wants fewer.
 const FRAMES: u32 = 200;
 const EFFORT: Effort = Effort {
-    turns: 3,
+    turns: 1,
     builds: 9,
 };
 

@@ -20,21 +20,23 @@ use sdop::bodies::Bodies;
 use sdop::settings::{Finder, Interest};
 
 /// Sizes of one level, the smallest one included.
-const SIZES: usize = 5;
+const SIZES: usize = 4;
+/// Densities of each size.
+pub(super) const DENSITIES: usize = 5;
 /// Bodies of the smallest calibration scene.
 const FEWEST: usize = 16;
 /// A level's sizes end at so many times its fewest bodies: all pairs of more take too long, and
 /// caches that hold them are the same.
 const SPAN: f64 = 4.0;
 /// Densities where every pair is tested: shares of them whose balls meet.
-const SHARES: [f64; 5] = [0.0002, 0.002, 0.01, 0.05, 0.15];
+const SHARES: [f64; DENSITIES] = [0.0002, 0.002, 0.01, 0.04, 0.12];
 /// Densities where a finder rejects most pairs: balls that meet one's own.
-const PARTNERS: [f64; 5] = [0.25, 1.0, 2.0, 5.0, 12.0];
+const PARTNERS: [f64; DENSITIES] = [0.25, 1.0, 2.0, 5.0, 12.0];
 /// Where all calibration draws start; scenes count their seeds from 1.
 const SEED: u64 = 0xca11_b8a7_e000_0000;
 
 /// The number of calibration scenes.
-pub const SCENES: usize = SIZES * SHARES.len();
+pub const SCENES: usize = SIZES * DENSITIES;
 
 /// The calibration scenes of a scene.
 pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
@@ -43,7 +45,7 @@ pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
     (0..SCENES).map(move |number| {
         let (bodies, mut share) = grid[number];
         if !tests_all {
-            share = share.min(PARTNERS[number % SHARES.len()] / bodies as f64);
+            share = share.min(PARTNERS[number % DENSITIES] / bodies as f64);
         }
         resample(scene, bodies, share, number as u64)
     })
@@ -52,7 +54,7 @@ pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
 /// Every size of a level at every share of pairs whose balls meet.
 pub(super) fn grid(level: CacheLevel) -> [(usize, f64); SCENES] {
     let sizes = sizes(level);
-    std::array::from_fn(|number| (sizes[number / SHARES.len()], SHARES[number % SHARES.len()]))
+    std::array::from_fn(|number| (sizes[number / DENSITIES], SHARES[number % DENSITIES]))
 }
 
 /// The smallest size, and those of a level, each as far from the next as a ratio.

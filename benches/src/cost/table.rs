@@ -61,8 +61,8 @@ choices! {
         Steady = "the machine worked at one speed while prices and frames were measured",
         /// Every body's update takes what the calibration's take.
         Updates = "an update costs the same here as on the calibration's bodies",
-        /// Hits and misses lie among each other as they do in the calibration.
-        Finding = "hits are spread over bodies and frames as in the calibration",
+        /// Neither the number of bodies nor how hits lie among misses changes a price.
+        Finding = "finding and testing cost the same at this density and number of bodies as in the calibration",
         /// Second tests follow one another as they do in the calibration.
         Refining = "a second test costs the same here as on the calibration's pairs",
     }

@@ -126,7 +126,7 @@ Proof.
   pose proof (proj2 half_step_value). unfold u in *. lra.
 Qed.
 
-(* src/rounding/skin.rs: Skin, Skin::of, stays *)
+(* src/rounding/skin.rs: Skin::of, stays *)
 Record skin := { share : R; least : R }.
 Definition sound_skin (s : skin) : Prop :=
   0 <= share s <= 1 /\ skin_floor <= least s <= IZR (2 ^ 100).

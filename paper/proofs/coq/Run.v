@@ -123,7 +123,7 @@ Definition sphere32 (q : f32 * f32 * f32 * f32) (t c : three f32) (r : f32) : ba
   {| x32 := first centre; y32 := second centre; z32 := third centre;
      r32 := inflate32 factor32 floor32 radius |}.
 
-(* src/broad_phase/grid/cells.rs: Cells::fit of a wrapped table, Rule::cell, Rule::count, number,
+(* src/broad_phase/grid/cells.rs: Cells::fit of a wrapped table, CellRule::cell, CellRule::count, number,
    Cells::around *)
 Definition to_integer64 : f64 := number64 (3 * 2 ^ 51) 0.
 Definition cell64 (origin inverse x : f64) : f64 :=

@@ -1,4 +1,5 @@
-//! Box3D by boxddd-sys: the contacts of one step of a new world, for a box on the world's axes per body.
+//! Box3D by boxddd-sys: the contacts of one step of a new world, for a box on the world's axes per
+//! body.
 
 use adapters::{Frame, serve};
 use boxddd_sys::ffi::*;
@@ -10,7 +11,8 @@ fn main() {
     serve("boxddd-sys", || contacts);
 }
 
-/// The half side of the smallest box about a centre that holds both ends: more pairs are no failure.
+/// The half side of the smallest box about a centre that holds both ends: more pairs are no
+/// failure.
 fn half(centre: f32, lower: f32, upper: f32) -> f32 {
     let mut half = (upper - centre).max(centre - lower);
     while centre - half > lower || centre + half < upper {
@@ -24,15 +26,21 @@ fn contacts(frame: &Frame) -> Result<Vec<[usize; 2]>, &'static str> {
     for ends in &frame.boxes {
         let centre = [0, 1, 2].map(|axis| ends[axis] / 2.0 + ends[axis + 3] / 2.0);
         let half = [0, 1, 2].map(|axis| half(centre[axis], ends[axis], ends[axis + 3]));
-        if half.iter().any(|&length| length < LIMITS[1]) || ends.iter().any(|x| x.abs() > LIMITS[0]) {
+        if half.iter().any(|&length| length < LIMITS[1]) || ends.iter().any(|x| x.abs() > LIMITS[0])
+        {
             return Err("a box is smaller than B3_LINEAR_SLOP or farther out than B3_HUGE");
         }
         placed.push((centre, half));
     }
-    // SAFETY: the calls follow the header; ids are used while their world lives, which this function alone sees.
+    // SAFETY: the calls follow the header; ids are used while their world lives, which this
+    // function alone sees.
     unsafe {
         let mut def = b3DefaultWorldDef();
-        def.gravity = b3Vec3 { x: 0.0, y: 0.0, z: 0.0 };
+        def.gravity = b3Vec3 {
+            x: 0.0,
+            y: 0.0,
+            z: 0.0,
+        };
         let world = b3CreateWorld(&def);
         let mut bodies = Vec::new();
         for (number, ([x, y, z], [a, b, c])) in placed.iter().copied().enumerate() {
@@ -53,7 +61,10 @@ fn contacts(frame: &Frame) -> Result<Vec<[usize; 2]>, &'static str> {
             let count = b3Body_GetContactData(body, room.as_mut_ptr(), room.capacity() as i32);
             room.set_len(count as usize);
             for contact in room {
-                found.push([contact.shapeIdA, contact.shapeIdB].map(|shape| b3Shape_GetUserData(shape) as usize));
+                found.push(
+                    [contact.shapeIdA, contact.shapeIdB]
+                        .map(|shape| b3Shape_GetUserData(shape) as usize),
+                );
             }
         }
         b3DestroyWorld(world);

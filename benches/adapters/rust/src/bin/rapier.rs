@@ -22,7 +22,8 @@ fn main() {
                 }
             }
             let mut events = Vec::new();
-            // Removals first: a new collider may have the index of one that is gone, and `set_aabb` takes effect at once.
+            // Removals first: a new collider may have the index of one that is gone, and `set_aabb`
+            // takes effect at once.
             phase.update(&params, &colliders, &bodies, &[], &removed, &mut events);
             for (&[a, b, c, d, e, f], &id) in frame.boxes.iter().zip(&frame.ids) {
                 let handle = *handles.entry(id).or_insert_with(|| {
@@ -35,7 +36,11 @@ fn main() {
             }
             phase.update(&params, &colliders, &bodies, &[], &[], &mut events);
             let ids = |pair: ColliderPair| {
-                let id = |handle| colliders.get(handle).map(|it: &Collider| it.user_data as usize);
+                let id = |handle| {
+                    colliders
+                        .get(handle)
+                        .map(|it: &Collider| it.user_data as usize)
+                };
                 let mut ids = [id(pair.collider1)?, id(pair.collider2)?];
                 ids.sort_unstable();
                 Some(ids)
