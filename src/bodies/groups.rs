@@ -1,6 +1,6 @@
 //! Collision groups: which bodies may collide at all.
 
-/// Bits of the groups that a body is in, and of those that it collides with.
+/// Which groups a body is in, and which it collides with: one bit per group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)] // as `sdop.h` has it
 pub struct Groups {
@@ -11,7 +11,7 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// In all groups, colliding with all.
+    /// In all groups, and collides with all: the default.
     pub const ALL: Self = Self {
         member: u32::MAX,
         mask: u32::MAX,

@@ -1,5 +1,4 @@
-//! What a strategy needs of the other rooms: which volumes are updated, and by which finder pairs
-//! are found.
+//! What a strategy needs: which volumes are updated, and which pair finder suits it.
 
 use super::models::Models;
 use crate::bodies::Places;
@@ -9,10 +8,10 @@ use crate::strategy::Totals;
 use crate::threads::FrameWork;
 use crate::volume::DirectionSet;
 
-/// Which volumes are updated.
+/// Which volumes a strategy needs updated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Needs {
-    /// Balls by place.
+    /// Balls, by place.
     pub balls: bool,
     /// Rows: or-DOPs, or boxes.
     pub rows: bool,
@@ -21,9 +20,9 @@ pub(super) struct Needs {
 }
 
 impl Needs {
-    /// Of a row of the table of strategies; `k` are the directions of a k-DOP.
+    /// The needs of a row of the table of strategies; `k` are the directions of a k-DOP.
     pub fn of(scheme: Scheme, k: DirectionSet, finder: Finder) -> Self {
-        // Oriented volumes are binned by balls, which a finder that doesn't bin can do without.
+        // Oriented volumes are binned by balls; a finder that doesn't bin needs none.
         let binned = scheme.is_oriented_alone() && finder != Finder::AllPairs;
         Self {
             balls: binned || scheme.first == Some(TestedVolume::Sphere),
@@ -32,7 +31,7 @@ impl Needs {
         }
     }
 
-    /// The work of a frame with so many moving bodies, and with the tests of another.
+    /// The work of a frame with `moving` moving bodies and the tests of the frame `like`.
     pub fn work(&self, moving: u64, like: &Totals) -> FrameWork {
         let volumes = u64::from(self.balls) + u64::from(self.rows);
         let slabs = if self.intervals.is_some() { SLABS } else { 0 };
@@ -44,10 +43,10 @@ impl Needs {
     }
 }
 
-/// What a body's world-aligned slabs take, in updates of a ball.
+/// The cost of updating a body's world-aligned slabs, in updates of a ball.
 const SLABS: u64 = 16;
 
-/// What `auto` chooses a finder by.
+/// The facts by which `auto` picks a finder.
 pub(super) fn population(scheme: Scheme, models: &Models, places: &Places) -> Population {
     let radii = places
         .shape
