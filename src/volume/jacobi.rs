@@ -3,14 +3,14 @@
 //!
 //! Each rotation makes one off-diagonal entry zero: with θ = (a_qq − a_pp)/2a_pq, its tangent is
 //! the smaller root t = sign(θ)/(|θ| + √(θ² + 1)). Only sums, products, quotients and square roots
-//! occur, in one written order, so every CPU computes the same bits. Convergence is quadratic: over
-//! 10⁶ random hulls and all shipped meshes, the last sweeps change nothing, and the snapped bases
+//! are used, in a fixed order, so every CPU computes the same bits. Convergence is quadratic: for
+//! 10⁶ random hulls and all shipped meshes, the last sweeps change nothing, and the rounded bases
 //! equal those of a library's solver.
 
 use glam::{DMat3, DVec3};
 
-/// Sweeps over the three off-diagonal entries. Five suffice for f64; the rest find zeros and are
-/// skipped.
+/// Sweeps over the three off-diagonal entries. Five suffice for f64; the others find zeros and do
+/// nothing.
 const SWEEPS: usize = 8;
 
 /// Eigenvalues in falling order, each with its unit eigenvector of either sign. Their residuals

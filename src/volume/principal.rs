@@ -1,9 +1,9 @@
 //! Principal axes: eigenvectors of the covariance of the convex hull's surface.
 //!
 //! With A_i, m_i the area and centroid of triangle (p, q, r)_i, A = ΣA_i and μ = ΣA_i m_i / A
-//! (Gottschalk 2000, §3.5): C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. Taken over the
-//! hull's surface, not the mesh's vertices, neither interior detail nor sampling density turns the
-//! axes.
+//! (Gottschalk 2000, §3.5): C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. It is computed
+//! over the hull's surface and not over the mesh's vertices, so neither interior detail nor
+//! sampling density changes the axes.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -11,13 +11,13 @@ use super::jacobi::eigen;
 use super::{Axes, Basis, Hull};
 use crate::mesh::in_f64;
 
-/// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are
-/// whatever rounding makes of them. Far above f32 rounding (2⁻²⁴), so a symmetric mesh is seen as
-/// such after any rotation.
+/// Eigenvalues closer than this share of the largest are tied: rounding alone would decide the axes
+/// of a gear or a cube. It is far above f32 rounding (2⁻²⁴), so that a symmetric mesh is recognised
+/// after any rotation.
 const EIGENVALUE_TIE: f64 = 1.0 / 8192.0;
 
 impl Axes {
-    /// The basis for these vertices; only principal axes need their hull.
+    /// The basis for these vertices. Only principal axes need the hull.
     #[must_use]
     pub fn basis(self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Basis {
         match self {
@@ -28,8 +28,8 @@ impl Axes {
 }
 
 impl Basis {
-    /// The principal axes, longest first, snapped; the model axes when they are tied or the hull is
-    /// flat.
+    /// The principal axes, longest first, rounded to an exact basis; the model axes if two are tied
+    /// or the hull is flat.
     #[must_use]
     pub fn principal(hull: &Hull, vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         surface_covariance(hull, vertices)
@@ -70,7 +70,8 @@ fn outer(v: DVec3) -> DMat3 {
     DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
 
-/// Eigenvectors by falling eigenvalue as a right-handed rotation; `None` when two eigenvalues tie.
+/// Eigenvectors by falling eigenvalue as a right-handed rotation; `None` if two eigenvalues are
+/// tied.
 fn principal_rotation(covariance: DMat3) -> Option<DMat3> {
     let [(first, x), (second, y), (third, _)] = eigen(covariance);
     let gap = (first - second).min(second - third);
@@ -82,7 +83,7 @@ fn principal_rotation(covariance: DMat3) -> Option<DMat3> {
     Some(DMat3::from_cols(x, y, x.cross(y)))
 }
 
-/// The sign of the largest component; of the first one when others equal it but for rounding.
+/// The sign of the largest component, or of the first one if others equal it up to rounding.
 fn sign_of_largest(v: DVec3) -> f64 {
     let limit = v.abs().max_element() * (1.0 - 1e-6);
     let largest = v.to_array().into_iter().find(|c| c.abs() >= limit);

@@ -1,9 +1,10 @@
 //! Wavefront OBJ: the lines `v` and `f`, all into one mesh.
 //!
-//! Groups, objects and materials would split it, texture seams would double its vertices; none of
-//! them is read. A line that ends with a backslash goes on in the next, `#` starts a comment
-//! anywhere, and a face may name vertices further down. Polygons become fans; faces of one or two
-//! vertices become degenerate triangles, so nothing is lost.
+//! Groups, objects, materials and texture coordinates are not read: the first three would split the
+//! mesh, the last would double vertices along seams. A line that ends with a backslash continues on
+//! the next one, `#` starts a comment anywhere, and a face may refer to later vertices. Polygons
+//! become triangle fans. Faces of one or two vertices become degenerate triangles, so that nothing
+//! is lost.
 
 use super::parts::Parts;
 use super::text::{self, Fault, Token};
@@ -35,7 +36,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
 #[derive(Default)]
 struct File {
     points: Vec<[f64; 3]>,
-    /// Indices from 1 up; those that name no vertex as the file has them.
+    /// 1-based indices; those out of range as the file has them.
     triangles: Vec<[i64; 3]>,
     /// The line of each triangle.
     lines: Vec<usize>,
@@ -52,7 +53,7 @@ impl File {
         }
     }
 
-    /// `v x y z`, with a weight as a fourth number, which divides, or with a colour.
+    /// `v x y z`, perhaps with a weight, by which the coordinates are divided, or with a colour.
     fn add_vertex(&mut self, line: usize, numbers: &[Token]) -> Result<(), Fault> {
         if numbers.len() < 3 {
             return Err((Some(line), malformed("a vertex should be `v x y z`")));
@@ -72,7 +73,7 @@ impl File {
     }
 
     /// `f a b c …` with corners a, a/b, a//c or a/b/c, of which only a is used. −1 is the last
-    /// vertex so far.
+    /// vertex read so far.
     fn add_face(&mut self, line: usize, words: &[Token]) -> Result<(), Fault> {
         if words.is_empty() {
             return Err((Some(line), malformed("the face names no vertices")));

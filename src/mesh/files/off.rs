@@ -1,11 +1,11 @@
-//! OFF, Geomview's format and CGAL's: a header, the counts, a line for each vertex and for each
+//! OFF, the format of Geomview and CGAL: a header, the counts, one line per vertex and one per
 //! face.
 //!
-//! The header's letters say what a vertex has besides its position: `ST` texture coordinates, `C` a
-//! colour, `N` a normal, `4` a weight, which divides. A face is its number of corners, their
-//! indices from 0, and perhaps a colour. `#` starts a comment. Files without a header are read as
-//! well. A record is a line; only a file that does not fit so is read without regard to lines,
-//! which Geomview allows.
+//! The header's letters say what a vertex has in addition to its position: `ST` texture
+//! coordinates, `C` a colour, `N` a normal, `4` a weight, by which the position is divided. A face
+//! has its number of corners, their 0-based indices, and perhaps a colour. `#` starts a comment.
+//! Files without a header are read too. A record is one line; a file that does not fit this is read
+//! without regard to line ends, as Geomview does.
 
 use super::parts::Parts;
 use super::text::{self, Fault, Token};
@@ -38,10 +38,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     })
 }
 
-/// What a vertex has.
+/// The numbers that a vertex has.
 struct Layout {
     weight: bool,
-    /// Numbers after the position (and the weight), where these are known.
+    /// How many numbers follow the position (and the weight), if known.
     extra: Option<usize>,
 }
 
@@ -95,7 +95,7 @@ fn header<'t, 'a>(tokens: &'t [Token<'a>]) -> Result<(Layout, &'t [Token<'a>]), 
 /// What is left of the file.
 struct Body<'t, 'a> {
     rest: &'t [Token<'a>],
-    /// The line of the last word that was taken.
+    /// The line of the last word that was read.
     line: usize,
     by_line: bool,
 }
@@ -104,7 +104,7 @@ impl<'t, 'a> Body<'t, 'a> {
     fn read(mut self, layout: &Layout) -> Result<Parts, Fault> {
         let counts = self.take(2, || "the numbers of vertices and faces".to_owned())?;
         let [vertices, faces] = [count(&counts[0])?, count(&counts[1])?];
-        // The number of edges follows, which some leave out and nobody uses.
+        // The number of edges follows. Some programs omit it, and none uses it.
         let same_line = self
             .rest
             .first()

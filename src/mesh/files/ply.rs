@@ -1,10 +1,10 @@
 //! PLY, text and binary: vertices, and faces as polygons or as strips.
 //!
-//! The header names elements and their properties; all are passed over but the vertices' x, y, z
-//! and the lists of indices. Values that are passed over are not read as numbers: a NaN, or a word,
-//! in a property that nobody uses is no error. Polygons become fans; faces of one or two vertices
-//! become degenerate triangles; strips are unrolled. In text, an element is a line; what follows
-//! its properties there is left out, but only in a file that does not fit without.
+//! The header lists elements and their properties. Everything is skipped except the vertices' x, y,
+//! z and the lists of indices. Skipped values are not parsed, so a NaN or a word in an unused
+//! property is not an error. Polygons become triangle fans, faces of one or two vertices become
+//! degenerate triangles, and strips are unrolled. In text, an element is one line; extra words
+//! after its properties are skipped only if the file can't be read otherwise.
 
 use std::iter::Peekable;
 
@@ -47,17 +47,17 @@ fn read_body(header: &Header, mut body: Body) -> Result<Parts, Fault> {
     mesh.into_parts()
 }
 
-/// The words of a text, whose first line follows so many others.
+/// The words of a text that starts after `lines_before` lines.
 fn tokens(text: &str, lines_before: usize) -> Box<dyn Iterator<Item = Token<'_>> + '_> {
     let later = move |(line, text): (usize, _)| (line + lines_before, text);
     Box::new(text::lines(text).map(later).flat_map(text::words))
 }
 
-/// What is left of the data.
+/// The data that is not yet read.
 enum Body<'a> {
     Text {
         tokens: Peekable<Box<dyn Iterator<Item = Token<'a>> + 'a>>,
-        /// Whether what an element has on its last line beyond its properties is left out.
+        /// Whether extra words on an element's last line are skipped.
         by_line: bool,
     },
     Binary {
@@ -66,14 +66,14 @@ enum Body<'a> {
     },
 }
 
-/// A value of the data and its line, if it has one.
+/// A value and its line, if the file is text.
 struct Value {
     number: f64,
     line: Option<usize>,
 }
 
 impl Body<'_> {
-    /// The next value, which is not looked at unless it is used; `None` at the end of the file.
+    /// The next value, parsed only if it is used; `None` at the end of the file.
     fn next(&mut self, scalar: Scalar, used: bool) -> Option<Result<Value, Fault>> {
         match self {
             Self::Text { tokens, .. } => {
@@ -84,7 +84,7 @@ impl Body<'_> {
                 }
                 let number = match scalar {
                     Scalar::F32 | Scalar::F64 => token.number("a value"),
-                    // Every type of whole numbers is exact in f64, and what is larger is no index.
+                    // Every integer type is exact in f64, and larger numbers are no valid indices.
                     _ => token.integer("a value").map(|whole| whole as f64),
                 };
                 Some(number.map(|number| Value { number, line }))
@@ -103,7 +103,7 @@ impl Body<'_> {
         }
     }
 
-    /// The next value; `line` becomes its line.
+    /// Reads the next value and stores its line in `line`.
     fn take(
         &mut self,
         scalar: Scalar,
@@ -119,7 +119,7 @@ impl Body<'_> {
         Ok(value.number)
     }
 
-    /// Ends an element, whose last value is on this line.
+    /// Ends an element whose last value is on this line.
     fn end_element(&mut self, line: Option<usize>) {
         if let Self::Text {
             tokens,
@@ -147,7 +147,7 @@ impl Body<'_> {
     }
 }
 
-/// What was read of the mesh.
+/// The parts of the mesh that were read so far.
 #[derive(Default)]
 struct Mesh {
     points: Vec<[f64; 3]>,
@@ -157,7 +157,7 @@ struct Mesh {
 }
 
 impl Mesh {
-    /// Reads all elements of a kind.
+    /// Reads all elements of one kind.
     fn add(&mut self, element: &Element, body: &mut Body) -> Result<(), Fault> {
         if element.properties.is_empty() {
             return Ok(()); // takes no bytes, however many the header declares

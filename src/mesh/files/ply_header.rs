@@ -1,9 +1,9 @@
-//! The header of a PLY file: elements, their properties, and what becomes of each.
+//! The header of a PLY file: elements, their properties, and how each is used.
 
 use super::text::{self, Fault, Token, excerpt};
 use crate::mesh::Problem;
 
-/// A type of numbers.
+/// A number type.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Scalar {
     I8,
@@ -40,7 +40,7 @@ impl Scalar {
         }
     }
 
-    /// The number that the first bytes of `word`, least significant first, stand for.
+    /// The number that the first bytes of `word` encode, least significant first.
     pub fn number(self, word: [u8; 8]) -> f64 {
         let [a, b, c, d, ..] = word;
         match self {
@@ -56,14 +56,14 @@ impl Scalar {
     }
 }
 
-/// What becomes of a property.
+/// How a property is used.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Use {
-    /// A vertex' coordinate of this axis.
+    /// A vertex's coordinate along this axis.
     Coordinate(usize),
     /// A face's corners.
     Polygon,
-    /// Corners of strips, between which −1 stands.
+    /// Corners of triangle strips, separated by −1.
     Strips,
     Nothing,
 }
@@ -77,14 +77,14 @@ pub(super) struct Property {
     pub used_as: Use,
 }
 
-/// A kind of elements.
+/// A kind of element, and how many there are.
 pub(super) struct Element {
     pub name: String,
     pub count: usize,
     pub properties: Vec<Property>,
 }
 
-/// How the values are written.
+/// How values are encoded.
 #[derive(Clone, Copy)]
 pub(super) enum Encoding {
     Text,
@@ -95,9 +95,9 @@ pub(super) enum Encoding {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// Bytes up to the end of the line `end_header`.
+    /// Number of bytes up to the end of the line `end_header`.
     pub size: usize,
-    /// Lines up to there.
+    /// Number of lines up to there.
     pub lines: usize,
 }
 
@@ -149,8 +149,7 @@ impl Header {
         ))
     }
 
-    /// The next line. Lines end with LF, before which a CR is white space, or all with CR: numbers
-    /// may follow the last one.
+    /// The next line. Lines end with LF (a CR before it is white space), or all of them with CR.
     fn next_line<'a>(&mut self, bytes: &'a [u8]) -> Option<&'a [u8]> {
         let rest = &bytes[self.size..];
         if rest.is_empty() {

@@ -1,10 +1,10 @@
 //! STL, text and binary; equal corners are welded into shared vertices.
 //!
-//! Binary files may start with the word of text files, `solid`, so the length decides first: a
-//! binary file has exactly 84 + 50·n bytes. In a text file the lines `solid` and `endsolid` hold
-//! names, which decide nothing, normals are not read, and a file may hold many solids. A facet is
-//! `facet normal`, `outer loop`, its vertices, `endloop`, `endfacet`, in either case and however
-//! lines are broken. Whatever else stands between facets is an error, except comments.
+//! Binary files may start with `solid` as text files do, so the length decides first: a binary file
+//! has exactly 84 + 50·n bytes. In a text file, the names after `solid` and `endsolid` and the
+//! normals are ignored, and there may be many solids. A facet is `facet normal`, `outer loop`, its
+//! vertices, `endloop`, `endfacet`, in upper or lower case and with any line breaks. Anything else
+//! between facets is an error, except comments.
 
 use super::parts::Parts;
 use super::text::{self, Fault, Token, put, wide};
@@ -26,7 +26,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     if size == Some(bytes.len() as u64) {
         return binary(&bytes[HEADER_BYTES..]);
     }
-    // Text has no byte 0 (but in UTF-16), where the count of any file below 800 megabytes has one.
+    // The count of triangles in a binary file below 800 megabytes has a byte 0 here, which text
+    // does not have, except UTF-16.
     if bytes.get(83) != Some(&0) || text::utf16(bytes).is_some() {
         let text = text::decode(bytes);
         let tokens = text::tokens(&text);
@@ -59,7 +60,7 @@ fn binary(bytes: &[u8]) -> Result<Parts, Fault> {
     Ok(Parts::soup(points))
 }
 
-/// The words of a text file from its first solid or facet on, if those begin it.
+/// The words of a text file, if it begins with a solid or a facet.
 fn start_of_text<'t, 'a>(tokens: &'t [Token<'a>]) -> Option<Facets<'t, 'a>> {
     let mut facets = Facets {
         tokens,
@@ -70,7 +71,7 @@ fn start_of_text<'t, 'a>(tokens: &'t [Token<'a>]) -> Option<Facets<'t, 'a>> {
     (first.is("solid") || first.is("facet")).then_some(facets)
 }
 
-/// What is left of a text file, and the corners that were read, three a triangle.
+/// The rest of a text file, and the corners read so far, three per triangle.
 struct Facets<'t, 'a> {
     tokens: &'t [Token<'a>],
     points: Vec<[f64; 3]>,
@@ -110,7 +111,7 @@ impl Facets<'_, '_> {
                 .all(|(word, token)| token.is(word))
     }
 
-    /// Takes one of two spellings of what should come next.
+    /// Reads a keyword that may be spelled in two ways.
     fn take(&mut self, keyword: &[&str], other: &[&str]) -> Result<(), Fault> {
         for words in [keyword, other] {
             if self.starts_with(words) {
@@ -197,8 +198,8 @@ fn malformed(message: String) -> Problem {
     Problem::malformed(message, help)
 }
 
-/// The mesh as an STL file: binary, or text where it is far from its origin, since binary STL has
-/// f32. Sharing of vertices is lost, and so are unused ones; positions are kept to the bit.
+/// The mesh as an STL file: binary, or text if the mesh is far from its origin, because binary STL
+/// stores f32. Shared indices and unused vertices are lost; positions are kept to the bit.
 pub(super) fn bytes(mesh: &TriangleMesh) -> Vec<u8> {
     if mesh.is_far() {
         return text(mesh).into_bytes();

@@ -1,4 +1,4 @@
-//! `.tri` files: one extension, many formats, distinguished by structure and counts.
+//! `.tri` files: one extension for several formats, which are told apart by structure and counts.
 //!
 //! | name | header | vertex | face | described by |
 //! |---|---|---|---|---|
@@ -9,12 +9,12 @@
 //! | `openmeeg` | `- nv` | position, normal | after a line `- nt nt nt`: 3 indices from 0 | OpenMEEG, BrainVISA |
 //! | `soup` | none | | 9 coordinates, perhaps a colour 0x… | POV-Ray raw triangles; AC3D as OpenFOAM reads it |
 //!
-//! A dialect *fits* when every number is what it should be, every index is in range and nothing is
-//! left over. Fits with one record a line come first. Only when none comes to a triangle may
-//! records run over line ends, which Fortran's list-directed output and the raw format allow; each
-//! section must start a line even then, or a file that was cut off could pass for one of another
-//! dialect. One fit is the answer, two are refused with both names. When nothing fits, the message
-//! comes from the dialect that got furthest into the file.
+//! A dialect *fits* if every number is valid, every index is in range and nothing is left over.
+//! Dialects are tried with one record per line first. Only if none of them reads a triangle may
+//! records continue over line ends, as Fortran's list-directed output and the raw format allow.
+//! Each section must start on a new line even then; otherwise a truncated file could be taken for
+//! one of another dialect. If exactly one dialect fits, it is used; if two fit, the error names
+//! both. If none fits, the error is that of the dialect that got furthest into the file.
 
 use super::parts::Parts;
 use super::text::{self, Cursor, Fault, Token};
@@ -24,7 +24,7 @@ use crate::mesh::{Problem, check_triangle};
 choices! {
     /// A `.tri` dialect.
     TriFormat, ".tri dialect", {
-        /// Position, normal and colour a vertex; indices from 0.
+        /// Position, normal and colour per vertex; indices from 0.
         Bourke = "bourke",
         /// Positions; faces of three indices from 0.
         Indexed = "indexed",
@@ -35,14 +35,14 @@ choices! {
         Labelled = "labelled",
         /// Positions; faces of a count or label and three indices from 1.
         LabelledFromOne = "labelled-1",
-        /// Headers that start with a dash; position and normal a vertex; indices from 0.
+        /// Headers that start with a dash; position and normal per vertex; indices from 0.
         OpenMeeg = "openmeeg",
-        /// No header; nine coordinates a triangle.
+        /// No header; nine coordinates per triangle.
         Soup = "soup",
     }
 }
 
-/// How the counted dialects differ.
+/// The layout of a dialect that begins with counts.
 struct Layout {
     dashed: bool,
     vertex_numbers: usize,
@@ -52,7 +52,7 @@ struct Layout {
 }
 
 impl TriFormat {
-    /// The dialect in words.
+    /// A description of the dialect.
     pub fn description(self) -> &'static str {
         match self {
             Self::Bourke => "Bourke's format (position, normal and colour a vertex)",
@@ -129,9 +129,9 @@ pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<Parts, Fau
     }
 }
 
-/// The dialects to try. Any nine numbers are a triangle of a soup, so that a cut-off file of
-/// another dialect would pass for one when lines do not count: then, a first line like `nv nt`
-/// rules it out.
+/// The dialects to try. Any nine numbers are a triangle of the dialect `soup`, so that a truncated
+/// file of another dialect would fit it when line ends are ignored. In that case a first line like
+/// `nv nt` excludes `soup`.
 fn candidates(format: Option<TriFormat>, tokens: &[Token], by_line: bool) -> Vec<TriFormat> {
     let first_line: Vec<_> = tokens
         .iter()
@@ -145,7 +145,7 @@ fn candidates(format: Option<TriFormat>, tokens: &[Token], by_line: bool) -> Vec
     }
 }
 
-/// No header is longer than this: a dialect that got past it has seen a vertex or a triangle.
+/// The longest header, in words: a dialect that got further has read a vertex or a triangle.
 const HEADER_TOKENS: usize = 2;
 
 fn ambiguous(fits: &[(TriFormat, Parts)]) -> Problem {
@@ -228,8 +228,8 @@ fn vertices(cursor: &mut Cursor, count: usize, numbers: usize) -> Result<Vec<[f6
     let mut vertices = Vec::with_capacity(count.min(cursor.tokens.len() / numbers));
     for index in 0..count {
         let record = cursor.record(numbers, &format!("vertex {index} of {count}"))?;
-        // Normals and colours are not used, and a degenerate mesh has NaN normals: they need only
-        // be numbers.
+        // Normals and colours are not used; a degenerate mesh has NaN normals. They only have to be
+        // numbers.
         for token in &record[3..] {
             token.number("a normal or colour")?;
         }
@@ -272,8 +272,7 @@ fn triangles(
     Ok(triangles)
 }
 
-/// Cart3D's configurations name a component for each triangle; the numbers may be spread over lines
-/// in any way.
+/// Reads Cart3D's component number per triangle, with any line breaks.
 fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), Fault> {
     let numbers = cursor.rest();
     cursor.at = cursor.tokens.len();
@@ -308,7 +307,7 @@ fn soup(cursor: &mut Cursor) -> Result<Parts, Fault> {
     result.map(|()| Parts::soup(points))
 }
 
-/// The tokens without the colours (0xRRGGBB) that close a triangle of nine numbers.
+/// The tokens without the colours (0xRRGGBB) after each triangle's nine numbers.
 fn without_colours<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     let mut kept: Vec<Token<'a>> = Vec::with_capacity(tokens.len());
     let mut after_colour = true;
