@@ -1,8 +1,9 @@
-//! The box of ball centres and the widest ball: what a finder sizes its cells by.
+//! [`BallBounds`]: the box of ball centres and the largest radius, from which a finder derives its
+//! cells.
 
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
-/// Extremes over a set of balls. Without any, `lo` is above `hi`.
+/// Extremes over a set of balls. For an empty set, `lo` is above `hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Lowest centre coordinates.
@@ -14,20 +15,20 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Of no ball.
+    /// The bounds of an empty set.
     pub const EMPTY: Self = Self {
         lo: [f32::INFINITY; 3],
         hi: [f32::NEG_INFINITY; 3],
         widest: 0.0,
     };
 
-    /// Of some balls.
+    /// The bounds of some balls.
     #[must_use]
     pub fn of(tier: Tier, balls: &[[f32; 4]]) -> Self {
         dispatch(tier, FindExtremes(balls))
     }
 
-    /// Of both sets.
+    /// The bounds of both sets together.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
@@ -38,8 +39,8 @@ impl Bounds {
     }
 }
 
-/// Four balls' numbers, which any tier's vectors divide: each of the sixteen positions has its own
-/// extremes, so every tier compares the same numbers in the same order.
+/// The numbers of four balls, a multiple of every tier's vectors. Each of the sixteen positions has
+/// extremes of its own, so every tier compares the same numbers in the same order.
 const NUMBERS_PER_CHUNK: usize = 16;
 
 struct FindExtremes<'a>(&'a [[f32; 4]]);

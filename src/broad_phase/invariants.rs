@@ -1,9 +1,10 @@
-//! What debug builds, and so tests, check of every finder in every small frame: each pair is a
-//! candidate at most once, and each pair whose cubes meet once, unless both bodies are static.
+//! Checks of every finder in debug builds, and therefore in tests, in every small frame: each pair
+//! is a candidate at most once, and each pair whose cubes meet exactly once, unless both bodies are
+//! static.
 //!
-//! Cubes, since some first tests compare world-aligned volumes: there balls stand for the cubes
-//! about them. A list of neighbours knows whether they do, and whether it was made by the boxes
-//! themselves.
+//! It uses cubes because some first tests compare world-aligned volumes, for which balls stand for
+//! the cubes around them. A list of neighbours knows whether they do, and whether it was built from
+//! the boxes themselves.
 
 use std::ops::Range;
 
@@ -11,10 +12,10 @@ use super::{Block, Boxes, FirstTest, PairFinder, Volume};
 use crate::bodies::Places;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
-/// The most bodies of a frame that is checked: it takes the time of all pairs.
+/// The most bodies of a frame that is checked, because the check compares all pairs.
 const MOST_BODIES: usize = 64;
 
-/// 1 + 4u: how far beyond the sum of their radii balls may be reported.
+/// 1 + 4u: the ratio of distance to the sum of radii up to which balls may be reported.
 const REPORTED: f64 = 1.0 + 4.0 * crate::rounding::U;
 
 impl PairFinder {
@@ -72,7 +73,7 @@ impl PairFinder {
         matches!(self, Self::Neighbours(finder) if finder.is_by_boxes())
     }
 
-    /// Whether the cubes about two balls meet, or the balls where these alone are reported.
+    /// Whether the cubes around two balls meet, or the balls if only those are reported.
     fn meet(&self, a: [f32; 4], b: [f32; 4]) -> bool {
         let [a, b] = [a, b].map(|ball| ball.map(f64::from));
         let apart: [f64; 3] = std::array::from_fn(|axis| (a[axis] - b[axis]).abs());

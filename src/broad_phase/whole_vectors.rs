@@ -1,14 +1,14 @@
-//! A run or a block that fills its vectors costs no vector more.
+//! Test helper: a run or a block that fills its vectors exactly must not read one vector more.
 
 use super::{Block, SlotTest};
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 
-/// Slots of the test: whole vectors in every tier.
+/// Slots in the check: whole vectors in every tier.
 pub const SLOTS: usize = 2 * MAX_WIDTH;
 
 /// Tests slot 0 against all of [`SLOTS`] slots, and as many pairs as a block. All touch. The test's
-/// columns have no padding, and the hits of the block no room after them: what begins a vector
-/// more in vain, panics.
+/// columns have no padding and the block's hits no room after them, so starting another vector
+/// panics.
 pub fn check(test: &impl SlotTest) {
     struct Touching<'a, T>(&'a T);
     impl<T: SlotTest> Kernel for Touching<'_, T> {

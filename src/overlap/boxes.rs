@@ -1,29 +1,29 @@
-//! Given boxes: apart iff on some axis one begins after the other's end. Ends are compared as they
-//! are, so the answer is exact, in either of two ways.
+//! [`CubeTest`]: the test of given boxes, which are apart iff on some axis one begins after the
+//! other's end. Ends are compared without rounding, so the answer is exact.
 //!
-//! Nearly cubic boxes leave little between the cube about them and the one within
-//! ([`cube`](crate::rounding::cube)): one quad a box answers nearly all pairs, and the few others
-//! are looked up. Of long boxes the cubes know nothing; their ends stand in slots as two quads, and
-//! are compared straight away ([`EndSlots`](crate::broad_phase::EndSlots)).
+//! For nearly cubic boxes, the cube around a box and the largest cube inside it
+//! ([`cube`](crate::rounding::cube)) differ little: one quad per box decides nearly all pairs, and
+//! the boxes of the others are looked up. For long boxes cubes decide little, so their ends are
+//! compared directly ([`EndSlots`](crate::broad_phase::EndSlots)).
 
 use crate::bodies::Aabb;
 use crate::broad_phase::{BallTest, SlotBodies};
 use crate::rounding::cube;
 use crate::simd::Lanes;
 
-/// Boxes by their cubes, which the finder has in its slots.
+/// The test of boxes by their cubes, which the finder has in its slots.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubes<'a> {
     /// The cubes; slots are named by box.
     pub slots: SlotBodies<'a>,
-    /// All boxes by name.
+    /// All boxes, indexed by name.
     pub boxes: &'a [Aabb],
     /// See [`less_than_sure`](crate::rounding::cube::less_than_sure).
     pub less: f32,
 }
 
 impl Cubes<'_> {
-    /// Whether two boxes meet, by their ends: exact. Few pairs need it, so that it stays out of the
+    /// Whether two boxes meet, exactly, by their ends. Few pairs need it, so it is kept out of the
     /// vector loop.
     #[cold]
     fn boxes_meet(&self, pair: [usize; 2]) -> bool {

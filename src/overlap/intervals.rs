@@ -1,6 +1,7 @@
-//! World-aligned volumes (AABB, k-DOP): cull iff on some direction lo_i > hi_j or lo_j > hi_i.
+//! The test of world-aligned volumes (AABB, k-DOP): two are apart iff on some direction lo_i > hi_j
+//! or lo_j > hi_i.
 //!
-//! The ends were rounded outward when they were re-fitted, so the comparison itself is exact.
+//! The ends were rounded outward when they were updated, so the comparison is exact.
 
 use std::ops::Range;
 
@@ -8,7 +9,7 @@ use crate::broad_phase::{Block, SlotTest, list_slots};
 use crate::simd::{Lanes, MAX_WIDTH};
 use crate::threads::Threads;
 
-/// Bodies for whose columns waking another thread pays.
+/// The fewest bodies for whose columns it pays to wake another thread.
 const WORTH_SHARING: usize = 1 << 14;
 
 /// World-aligned slabs in the pair finder's slot order: one column per direction, each padded by
@@ -22,8 +23,8 @@ pub struct IntervalSlots {
 }
 
 impl IntervalSlots {
-    /// Gathers the slabs of all bodies into slot order: `ends[place·slabs + slab]` = [lo, hi], and
-    /// the place in each slot.
+    /// Gathers the slabs of all bodies into slot order. `ends[place·slabs + slab]` = [lo, hi], and
+    /// `order` has the place in each slot.
     pub fn fill(&mut self, pool: &Threads, order: &[u32], ends: &[[f32; 2]]) {
         let slabs = ends.len().checked_div(order.len()).unwrap_or(0);
         self.lo.resize(slabs, Vec::new());

@@ -1,5 +1,4 @@
-//! One frame by the strategy of the settings: what it reads, what it keeps, and the way that pairs
-//! take.
+//! Culling one frame by a strategy: its inputs, its buffers, and the flow of pairs.
 
 use super::tasks::Tasks;
 #[cfg(feature = "serde")]
@@ -14,21 +13,21 @@ use crate::settings::{CullSettings, Flow, Updates};
 use crate::threads::Executor;
 use crate::update::{OrDopRows, UpdateInputs};
 
-/// Rows that the second-level cache holds.
+/// Rows that fit into the second-level cache.
 const ROWS_IN_CACHE: usize = 1 << 14;
 
-/// What culling a frame reads, once volumes are updated and bodies arranged in slots.
+/// The inputs of culling a frame, after volumes are updated and bodies are arranged in slots.
 #[derive(Clone, Copy)]
 pub(crate) struct Inputs<'a> {
     pub executor: Executor<'a>,
     pub settings: &'a CullSettings,
-    /// Whether budgets are spent on pairs in the order of their bodies.
+    /// Whether budgets are spent on pairs in the order of their body numbers.
     pub is_canonical: bool,
     pub finder: &'a PairFinder,
-    /// What the finder has arranged.
+    /// The slots that the finder has arranged.
     pub slots: SlotBodies<'a>,
     pub names: SlotNames<'a>,
-    /// The poses, and spheres by place where there are any.
+    /// The poses, and spheres by place if there are any.
     pub posed: UpdateInputs<'a>,
     /// Each body's groups where not all collide with all.
     pub groups: Option<&'a [Groups]>,
@@ -36,14 +35,14 @@ pub(crate) struct Inputs<'a> {
     pub tables: &'a SlabTables,
     /// Whether each body is of interest.
     pub interest: &'a [bool],
-    /// Counts frames from 1.
+    /// The number of the frame, from 1.
     pub stamp: u32,
-    /// Whether the rows of this frame are still to be made ([`makes_rows`]).
+    /// Whether the rows of this frame are not yet computed ([`makes_rows`]).
     pub without_rows: bool,
 }
 
 impl Inputs<'_> {
-    /// Whether rows are made when a pair needs them.
+    /// Whether rows are computed only when a pair needs them.
     pub(super) fn is_lazy(&self) -> bool {
         self.settings.updates == Updates::Lazy
     }
@@ -54,41 +53,42 @@ impl Inputs<'_> {
     }
 }
 
-/// What stays from frame to frame: buffers, and when time-critical culling refined which pair.
+/// State that is kept from frame to frame: buffers, and the refinement history of time-critical
+/// culling.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     pub(super) tasks: Tasks,
-    /// The potentially colliding set by places, where a list of it is kept.
+    /// The potentially colliding set as pairs of places, if a list of it is kept.
     pub candidates: PairList,
-    /// Those of them that have a body of interest, and which of those survived.
+    /// The candidates that have a body of interest, and which of those survived.
     pub(super) selected: PairList,
     pub(super) survivors: PairList,
-    /// What is reported of a portion of them.
+    /// The reported pairs of a portion of the candidates.
     pub(super) portion: PairList,
     pub(super) history: time_critical::History,
 }
 
 impl Scratch {
-    /// Gives back the memory of lists of pairs, but for the last potentially colliding set.
+    /// Frees the memory of lists of pairs, except the last potentially colliding set.
     pub fn shrink_to_fit(&mut self) {
         self.candidates.shrink_to_fit();
         self.history.shrink_to_fit();
         (self.tasks, self.selected, self.survivors, self.portion) = Default::default();
     }
 
-    /// Gives back the memory of all lists of pairs, the last potentially colliding set included.
+    /// Frees the memory of all lists of pairs, including the last potentially colliding set.
     pub fn forget_lists(&mut self) {
         self.candidates.clear();
         self.shrink_to_fit();
     }
 
-    /// When the pairs of the last frame were refined.
+    /// When each pair of the last frame was last refined.
     #[cfg(feature = "serde")]
     pub fn answers(&self) -> RefinementRanks {
         self.history.answers()
     }
 
-    /// Takes over when pairs were refined.
+    /// Replaces the refinement history.
     #[cfg(feature = "serde")]
     pub fn set_answers(&mut self, answers: &RefinementRanks) {
         self.history.set_answers(answers);
@@ -107,9 +107,9 @@ impl Scratch {
     }
 }
 
-/// Whether a strategy makes the rows of bodies that move itself, when their pairs are listed, so
-/// that they are tested while the caches have them. Where a list isn't kept, or caches hold all
-/// rows anyway, they are made before.
+/// Whether a strategy computes the rows of moving bodies itself, once their pairs are listed, so
+/// that they are tested while they are in the caches. If no list is kept, or all rows fit into the
+/// caches, they are computed before.
 pub(crate) fn makes_rows(settings: &CullSettings, places: &Places, output: &Output<'_>) -> bool {
     settings.strategy.scheme().flow == Flow::Batch
         && settings.updates == Updates::Eager
@@ -129,12 +129,12 @@ pub(crate) fn cull(
     match inputs.settings.strategy.scheme().flow {
         Flow::Nothing => Totals::default(),
         Flow::FirstTest => listing::flow(inputs, scratch, output),
-        // Rows on demand need the whole set before its first test.
+        // Lazy rows need the whole set before its first test.
         Flow::Sequential if lazy => batch::flow(inputs, rows, scratch, None, output),
         Flow::OfInterest if lazy => batch::flow(inputs, rows, scratch, interest, output),
         Flow::Sequential => sequential::flow(inputs, rows, scratch, None, output),
         Flow::OfInterest => sequential::flow(inputs, rows, scratch, interest, output),
-        // The same pairs in the same order, and no list that grows with them.
+        // The same pairs in the same order, without a list that grows with them.
         Flow::Batch if output.is_in_portions() && !lazy => {
             sequential::flow(inputs, rows, scratch, None, output)
         }

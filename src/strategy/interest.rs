@@ -1,4 +1,4 @@
-//! Which bodies are of interest in a frame (a list, or those whose sphere centres lie in a view
+//! Which bodies are of interest in a frame (a list, or those whose sphere centres are in a view
 //! cone), and which pairs.
 
 use crate::bodies::Bodies;
@@ -7,7 +7,7 @@ use crate::rounding::exp2;
 use crate::rounding::pose::rotation;
 use crate::settings::{Interest, ViewCone};
 
-/// Marks the bodies of interest. `centre` gives a body's sphere centre in the world frame.
+/// Marks the bodies of interest. `centre` returns a body's sphere centre in the world frame.
 pub(crate) fn mark(
     interest: &Interest,
     bodies: &Bodies,
@@ -34,7 +34,7 @@ pub(crate) fn mark(
     }
 }
 
-/// Pairs of places, of which only those with a body of interest are refined.
+/// A list of pairs of places, of which only those with a body of interest are refined.
 pub(super) struct InterestFilter<'a> {
     pub pairs: &'a PairList,
     /// The body in each place.
@@ -62,8 +62,8 @@ impl InterestFilter<'_> {
         }
     }
 
-    /// Appends, as bodies, the pairs that weren't to be refined and those that `passed`, in their
-    /// common order: a list must not show where blocks, and so threads, begin.
+    /// Appends, as pairs of bodies, those that are not refined and those that `passed`, in their
+    /// common order. The list must not depend on where blocks, and therefore threads, begin.
     pub fn merge(&self, passed: &PairList, out: &mut PairList) {
         let mut passed = passed.iter().peekable();
         for (_, [a, b], of_interest) in self.classified() {
@@ -74,8 +74,8 @@ impl InterestFilter<'_> {
     }
 }
 
-/// More than the cosine of the half angle, the axis' length and a product may be off by: what lies
-/// on the rim is in the cone, sideways at 90° and straight behind at 180°.
+/// Exceeds the errors of the half angle's cosine, of the axis' length and of a product, so that
+/// points on the rim are in the cone: at right angles for 90°, and opposite to the axis for 180°.
 const CONE_SLACK: f64 = exp2(-48);
 
 /// A view cone in the world frame.
@@ -88,7 +88,8 @@ pub struct PlacedCone {
 }
 
 impl PlacedCone {
-    /// Places a cone; `pose` is that of the body that looks, if one does.
+    /// Transforms a cone to the world frame. `pose` is that of the body that looks, if there is
+    /// one.
     #[must_use]
     pub fn new(cone: &ViewCone, pose: Option<([f32; 4], [f64; 3])>) -> Self {
         let given = cone.direction.map(f64::from);
@@ -105,8 +106,8 @@ impl PlacedCone {
         }
     }
 
-    /// The apex itself is in the cone, so a body that looks is of interest when its sphere's centre
-    /// is its origin; elsewhere the centre counts, as for others.
+    /// Whether a centre is in the cone. The apex is in it, so a body that looks is of interest if
+    /// its sphere's centre is its origin.
     #[must_use]
     pub fn sees(&self, centre: [f64; 3]) -> bool {
         let way: [f64; 3] = std::array::from_fn(|i| centre[i] - self.apex[i]);

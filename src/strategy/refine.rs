@@ -13,11 +13,11 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 use crate::threads::Executor;
 use crate::update::{MOST_ROWS, OrDopRows, RowsByNumber, UpdateInputs};
 
-/// Pairs whose rows are made together, and how many of such stretches one thread looks at.
+/// Pairs whose rows are computed together, and how many such stretches one thread checks at a time.
 const PAIRS_PER_STRETCH: usize = 1024;
 const STRETCHES_PER_TASK: usize = 16;
 
-/// The or-DOP test with the rows as they are: takes pairs of places, leaves pairs of bodies.
+/// The or-DOP test with existing rows: takes pairs of places, returns pairs of bodies.
 #[derive(Clone, Copy)]
 pub(super) struct Refine<'a> {
     tier: Tier,
@@ -40,8 +40,8 @@ impl<'a> Refine<'a> {
         }
     }
 
-    /// Tests pairs and appends the survivors to `out`, in list order. Called per block: the
-    /// dispatch is paid once for all.
+    /// Tests pairs and appends the survivors to `out`, in list order. It is called per block, so
+    /// that the dispatch to a tier costs little.
     pub fn test(
         &self,
         [first, second]: [&[u32]; 2],
@@ -58,7 +58,8 @@ impl<'a> Refine<'a> {
         *seconds += start.elapsed().as_secs_f64();
     }
 
-    /// Tests a task's pairs, stretch after stretch, and makes the rows of each when it is its turn.
+    /// Tests a task's pairs stretch by stretch, and computes the rows of each stretch shortly
+    /// before its test.
     fn test_in_windows(
         &self,
         posed: UpdateInputs<'_>,
@@ -88,10 +89,10 @@ impl<'a> Refine<'a> {
     }
 }
 
-/// The places in which some pairs are, and those between: of bodies that move, which have the first
-/// places, and of the others.
+/// The ranges of places that include those of some pairs: one of moving bodies, which have the
+/// first places, and one of static bodies.
 fn places_of(tier: Tier, moving: usize, pairs: [&[u32]; 2]) -> [Range<usize>; 2] {
-    /// The least place and the one after the greatest.
+    /// Finds the smallest place and the one after the largest.
     struct FindEnds<'a>(u32, [&'a [u32]; 2]);
     impl Kernel for FindEnds<'_> {
         type Output = [[u32; 2]; 2];
@@ -122,7 +123,7 @@ fn places_of(tier: Tier, moving: usize, pairs: [&[u32]; 2]) -> [Range<usize>; 2]
         .map(|[least, end]| least.min(end) as usize..end as usize)
 }
 
-/// The or-DOP test that makes rows first where they are lacking, and sums up what it took.
+/// The or-DOP test that computes missing rows first, and sums up counts and times.
 pub(super) struct Refiner<'a> {
     inputs: Inputs<'a>,
     rows: &'a mut OrDopRows,
@@ -138,8 +139,8 @@ impl<'a> Refiner<'a> {
         }
     }
 
-    /// Tests all pairs of a list and appends the survivors to `out`; on all threads if their
-    /// `tasks` are at hand.
+    /// Tests all pairs of a list and appends the survivors to `out`; on all threads if `tasks` are
+    /// given.
     pub fn refine(&mut self, list: &PairList, tasks: Option<&mut Tasks>, out: &mut PairList) {
         let Some(tasks) = tasks else {
             return self.refine_range(list, 0..list.len(), out);
@@ -149,7 +150,7 @@ impl<'a> Refiner<'a> {
             self.make_rows(list, 0..list.len());
         }
         let refine = Refine::new(self.inputs, self.rows);
-        // Tasks begin where stretches do, which were looked at one by one.
+        // Tasks begin at the start of stretches, which were checked one by one.
         let unit = if in_windows {
             PAIRS_PER_STRETCH
         } else {
@@ -171,7 +172,7 @@ impl<'a> Refiner<'a> {
         self.totals.update_seconds += done.update_seconds;
     }
 
-    /// Whether the places of each stretch of pairs lie so near each other that a window holds their
+    /// Whether the places of each stretch of pairs are so close together that a window holds their
     /// rows.
     fn are_near(&self, list: &PairList) -> bool {
         let Executor { tier, pool } = self.inputs.executor;
@@ -205,8 +206,8 @@ impl<'a> Refiner<'a> {
         Refine::new(self.inputs, self.rows).test(pairs, refining, refining_seconds, out);
     }
 
-    /// Makes the rows that this frame lacks: with lazy updates, those of some listed pairs, and
-    /// else all.
+    /// Computes the missing rows of this frame: with lazy updates those of some listed pairs,
+    /// otherwise all.
     fn make_rows(&mut self, list: &PairList, range: Range<usize>) {
         let Inputs {
             executor,

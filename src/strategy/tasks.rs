@@ -10,7 +10,7 @@ use crate::threads::Threads;
 #[cfg(feature = "shapes")]
 use crate::update::RowWindow;
 
-/// Tasks per thread: a thread that is done early takes another.
+/// Tasks per thread. A thread that finishes early takes another one.
 const TASKS_PER_THREAD: usize = 4;
 
 /// One contiguous range of the work, with buffers that stay from frame to frame.
@@ -18,20 +18,20 @@ const TASKS_PER_THREAD: usize = 4;
 pub(super) struct Task {
     /// Reported pairs, or candidates.
     pub out: PairList,
-    /// Candidates that wait for the refining test.
+    /// Candidates for the refining test.
     pub block: PairList,
-    /// Those of a block that have a body of interest.
+    /// The candidates of a block that have a body of interest.
     pub selected: PairList,
-    /// Those of them that survived.
+    /// The selected candidates that survived.
     pub survivors: PairList,
-    /// Rows that are made where they are tested.
+    /// Rows that are computed where they are tested.
     #[cfg(feature = "shapes")]
     pub window: RowWindow,
     pub first: VolumeCounters,
     pub refining: VolumeCounters,
     /// Seconds in the refining test.
     pub seconds: f64,
-    /// Seconds in making rows.
+    /// Seconds of computing rows.
     pub update_seconds: f64,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct Task {
 pub(crate) struct Tasks(pub(super) Vec<Task>);
 
 impl Tasks {
-    /// Gives back the memory of all lists of pairs.
+    /// Frees the memory of all lists of pairs.
     pub fn shrink_to_fit(&mut self) {
         *self = Self::default();
     }
@@ -55,7 +55,8 @@ impl Tasks {
     }
 }
 
-/// Splits `units` of work into tasks; what they list goes to `output` in the order of the work.
+/// Splits `units` of work into tasks. The pairs that they list go to `output` in the order of the
+/// work.
 pub(super) fn split_work(
     pool: &Threads,
     Tasks(tasks): &mut Tasks,
@@ -81,7 +82,7 @@ pub(super) fn split_work(
     let range = |index: usize| index * units / count..(index + 1) * units / count;
     match output {
         Output::List(out) => {
-            // The first task's list is the common one: with a single task nothing is copied.
+            // The first task writes to the common list, so that a single task copies nothing.
             std::mem::swap(out, &mut tasks[0].out);
             pool.each(tasks, |index, task| {
                 work(range(index), task, &Outlet::Kept);

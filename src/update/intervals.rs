@@ -1,4 +1,5 @@
-//! World-aligned updates: slabs re-fitted each frame to the hull's vertices and rounded outward.
+//! [`Intervals`]: updates of world-aligned volumes. Slabs are fitted to the posed hull vertices in
+//! each frame and rounded outward.
 
 #![allow(
     clippy::needless_range_loop,
@@ -15,21 +16,23 @@ use crate::simd::{Kernel, Lanes, dispatch};
 use crate::threads::Executor;
 use crate::volume::{DirectionSet, Hull, Shape};
 
-/// Bodies that one thread re-fits at a time.
+/// Bodies that one thread updates at a time.
 const BODIES_PER_TASK: usize = 32;
 
-/// World-aligned slabs by place, re-fitted each frame from the hull's vertices and rounded outward.
+/// World-aligned slabs by place, fitted to the posed hull vertices in each frame and rounded
+/// outward.
 #[derive(Clone, Debug)]
 pub struct Intervals {
     directions: DirectionSet,
-    /// Hull vertices of each shape, body frame, in eights; the last is filled up by its first.
+    /// Hull vertices of each shape in the body frame, eight at a time. The last group is padded
+    /// with its first vertex.
     hulls: Vec<Vec<[F64x8; 3]>>,
     /// `ends[place·slabs + slab]` = [lo, hi].
     pub ends: Vec<[f32; 2]>,
 }
 
 impl Intervals {
-    /// Room for `bodies` bodies in `shapes`.
+    /// Slabs for `bodies` bodies of `shapes`.
     #[must_use]
     pub fn new(directions: DirectionSet, shapes: &[Shape], bodies: usize) -> Self {
         Self {
@@ -39,19 +42,19 @@ impl Intervals {
         }
     }
 
-    /// Takes a shape as the one of this number: in place of another, or the next.
+    /// Sets the hull of this number to that of a shape: replaces one, or appends the next.
     pub(crate) fn set(&mut self, hull: usize, shape: &Shape) {
         self.hulls
             .resize_with(self.hulls.len().max(hull + 1), Vec::new);
         self.hulls[hull] = hull_in_eights(shape);
     }
 
-    /// Forgets the shape of this number.
+    /// Removes the hull of this number.
     pub(crate) fn clear(&mut self, hull: usize) {
         self.hulls[hull] = Vec::new();
     }
 
-    /// Keeps the first shapes, and no room for more.
+    /// Keeps the first `hulls` hulls, and frees other memory.
     pub(crate) fn shrink_to(&mut self, hulls: usize) {
         self.hulls.truncate(hulls);
         self.hulls.shrink_to_fit();
@@ -63,12 +66,12 @@ impl Intervals {
         self.ends.resize(bodies * slabs, [0.0; 2]);
     }
 
-    /// Room for no body, and no memory kept for any.
+    /// Removes all bodies and frees their memory.
     pub(crate) fn forget_bodies(&mut self) {
         self.ends = Vec::new();
     }
 
-    /// Re-fits the slabs of the bodies in a range of places, and the cubes about their boxes:
+    /// Updates the slabs of the bodies in a range of places, and the cubes around their boxes:
     /// centre and half side.
     pub fn update(
         &mut self,
@@ -114,7 +117,7 @@ fn hull_in_eights(shape: &Shape) -> Vec<[F64x8; 3]> {
     in_eights.collect()
 }
 
-/// The cube about a box, whose slabs are the first three: if two boxes meet, so do their cubes.
+/// The cube around a box, whose slabs are the first three. If two boxes meet, so do their cubes.
 fn cube_about(ends: &[[f32; 2]]) -> [f32; 4] {
     let mut cube = [0.0; 4];
     for (axis, &[lo, hi]) in ends[..3].iter().enumerate() {
@@ -127,7 +130,7 @@ fn cube_about(ends: &[[f32; 2]]) -> [f32; 4] {
     cube
 }
 
-/// The slabs of consecutive places.
+/// Computes the slabs of consecutive places.
 struct Refit<'a> {
     posed: UpdateInputs<'a>,
     hulls: &'a [Vec<[F64x8; 3]>],
@@ -160,7 +163,7 @@ impl Kernel for Refit<'_> {
     }
 }
 
-/// The slabs of posed points along integer directions of the world axes.
+/// The slabs of posed points along integer combinations of the world axes.
 #[inline(always)]
 fn fit(
     ends: &mut [[f32; 2]],
@@ -205,7 +208,7 @@ fn fit(
     }
 }
 
-/// Moves slabs out by `margin`.
+/// Moves slabs outward by `margin`.
 fn widen(ends: &mut [[f32; 2]], coefficients: &[[i8; 3]], margin: f32) {
     for ([lo, hi], c) in ends.iter_mut().zip(coefficients) {
         let out = f64::from(margin) * norm(c.map(f32::from));

@@ -1,4 +1,4 @@
-//! Pairs of bodies in two levels: either side may look for the other, whichever is cheaper.
+//! Pairs between two levels of the grid: whichever side is cheaper searches for the other.
 
 use std::ops::Range;
 
@@ -10,27 +10,27 @@ use crate::rounding::skin::Reach;
 use crate::rounding::widen;
 use crate::simd::Lanes;
 
-/// How the bodies of one level find those of another.
+/// How bodies of one level find those of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LevelSearch {
-    /// Each looks into the cells around it.
+    /// Each searches the cells around it.
     Cells,
     /// Each is tested against all.
     All,
 }
 
-/// Bodies that a look at one row costs as much as testing in a long run (10 cycles, and 0.7 a
-/// body).
+/// The cost of searching one row of cells, in bodies tested in a long run (10 cycles per row, 0.7
+/// per body).
 const ROW_COST: f64 = 15.0;
 
-/// The cheapest way to the pairs of two levels: which one seeks (true: `a`), and how. By bodies and
-/// sizes alone.
+/// The cheapest way to find the pairs of two levels, estimated from bodies and sizes: whether `a`
+/// searches for `b`, and how.
 pub fn plan(a: &Level, b: &Level) -> (bool, LevelSearch) {
     let all = a.range.len() as f64 * b.range.len() as f64;
     let mut best = (a.range.len() < b.range.len(), LevelSearch::All, all);
     for (seeker, target, is_a) in [(a, b, true), (b, a, false)] {
         let across = 2.0 * (seeker.widest + target.widest) / target.cells.size();
-        // Nearly always: roundings and the place of the seeker may make it one more.
+        // Nearly always. Rounding and the seeker's position may add one.
         let span = across + 1.0;
         if span >= f64::from(target.cells.most_span()) {
             continue;
@@ -49,8 +49,8 @@ pub fn plan(a: &Level, b: &Level) -> (bool, LevelSearch) {
 }
 
 impl Grid {
-    /// Pairs of a slot in `seekers`, whose balls grow by `grown`, and one in the level `target`, to
-    /// which they don't belong.
+    /// Finds the pairs of a slot in `seekers`, whose balls grow by `grown`, and a slot in the level
+    /// `target`, which is another level.
     #[inline(always)]
     pub(super) fn across<L: Lanes>(
         &self,

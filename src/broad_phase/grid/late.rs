@@ -1,24 +1,24 @@
-//! Bodies that come and go between two plans: those that stay keep their levels, those that come
-//! share one more.
+//! Bodies that come and go between two plans of the levels: those that stay keep their levels, and
+//! new ones share one more level.
 //!
-//! Which body is in which level decides how long a search takes, never what it finds: a level's
-//! cells are fitted in every frame to the widest ball that it has then. So a plan holds as long as
-//! late bodies are few.
+//! The assignment of bodies to levels affects only the time of a search, because a level's cells
+//! are fitted to its largest ball in every frame. Therefore a plan can stay while there are few
+//! late bodies.
 
 use std::ops::Range;
 
 use super::{FRAMES_PER_REORDER, Grid, Level};
 
-/// Late bodies, whatever their sizes: so many, or this share of all, but never more than so many,
-/// since all of them may lie in one cell.
+/// How many late bodies, of any sizes, are accepted: [`FEW_LATE`], or one in [`LATE_SHARE`] bodies,
+/// but at most [`MOST_LATE`], because all of them may be in one cell.
 const FEW_LATE: usize = 64;
 const LATE_SHARE: usize = 16;
 const MOST_LATE: usize = 4096;
 
 impl Grid {
-    /// Takes up another set of bodies in the order that
-    /// [`Places::replace`](crate::bodies::Places::replace) leaves: `stays` is of each former place.
-    /// False, and levels are to be planned anew, if too many bodies are late.
+    /// Changes the set of bodies, in the order after
+    /// [`Places::replace`](crate::bodies::Places::replace); `stays` says which former places keep
+    /// their body. Returns false if too many bodies are late, and levels have to be planned again.
     pub(in crate::broad_phase) fn replace(
         &mut self,
         stays: &[bool],
@@ -30,7 +30,7 @@ impl Grid {
         self.take_levels(moving_levels, stays, 0..moving);
         self.moving_levels = self.levels.len();
         self.take_levels(static_levels, stays, moving..bodies);
-        // Slots are the former set's: no order of places is taken from them before bodies are
+        // Slots belong to the former set. No order of places is taken from them until bodies are
         // sorted again.
         self.age = self
             .age
@@ -42,8 +42,8 @@ impl Grid {
         late <= FEW_LATE.max(MOST_LATE.min(bodies / LATE_SHARE))
     }
 
-    /// Shares `places` out among the levels whose bodies stay, in their order, and one for the late
-    /// ones.
+    /// Distributes `places` to the levels whose bodies stay, in their order, and to one level of
+    /// late bodies.
     fn take_levels(&mut self, former: &[Level], stays: &[bool], places: Range<usize>) {
         let mut start = places.start;
         for level in former.iter().filter(|level| !level.is_late) {

@@ -1,9 +1,9 @@
-//! One level of the grid: bodies of like size, counting-sorted by cell into their slots.
+//! One level of the grid: bodies of similar size, counting-sorted by cell into slots.
 //!
-//! Threads share a sort by cells and not by places: each reads every body's cell, which is four
-//! bytes in sequence, and counts and places those of its own range of cells. Tables and slots are
-//! then split between them without overlap, no thread needs another's counts but one sum, and the
-//! order within a cell is that of one thread.
+//! Threads divide a sort by ranges of cells, not of places. Each thread reads the cells of all
+//! bodies, four bytes each in sequence, and counts and places the bodies in its own range of cells.
+//! Tables and slots are then split without overlap, a thread needs only one sum from the others,
+//! and the order within a cell is that of one thread.
 
 use std::ops::Range;
 
@@ -14,21 +14,21 @@ use crate::rounding::widen;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 use crate::threads::{Executor, Threads};
 
-/// Bodies whose cells have one size. Their slots are a range, and so are their places: sorting
-/// stays within it.
+/// Bodies in cells of one size. Their slots are a range and their places the same range, within
+/// which they are sorted.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// Slots, and places.
+    /// The range of slots and of places.
     pub range: Range<usize>,
     /// The cells of this frame.
     pub cells: Cells,
-    /// First slot of each cell, and one more entry: the last cell's end.
+    /// The first slot of each cell, and the end of the last cell.
     pub starts: Vec<u32>,
-    /// Widest ball of this frame, grown and widened.
+    /// The largest radius of this frame, grown and widened.
     pub widest: f64,
-    /// How balls grow before they are looked for.
+    /// How balls are grown for the search.
     pub reach: Reach,
-    /// Whether its bodies came after the levels had been planned.
+    /// Whether its bodies came after the levels were planned.
     pub is_late: bool,
     layout: TableLayout,
 }
@@ -47,7 +47,7 @@ impl Level {
         }
     }
 
-    /// A level for bodies that came after the others had been planned.
+    /// A level for bodies that came after the levels were planned.
     pub fn late(range: Range<usize>) -> Self {
         Self {
             is_late: true,
@@ -55,7 +55,7 @@ impl Level {
         }
     }
 
-    /// The level with other places.
+    /// The level with another range of places.
     pub fn holding(self, range: Range<usize>) -> Self {
         Self { range, ..self }
     }
@@ -85,8 +85,8 @@ impl Level {
         });
         let entries = self.cells.table_len() + 1;
         if entries > self.starts.capacity() {
-            // An eighth to spare, so that a box that breathes allocates nothing and doubles
-            // nothing.
+            // With an eighth to spare, so that a box that varies in size does not allocate in every
+            // frame.
             let spare = entries + entries / 8 - self.starts.len();
             self.starts.reserve_exact(spare);
         }
@@ -107,7 +107,7 @@ impl Level {
                 names: &mut slots.names[range.clone()],
                 cells: &mut slot_cells[range.clone()],
             };
-            // All bodies lie in cells up to the last one in which a centre can fall.
+            // All bodies are in cells up to the last one that a centre can be in.
             if to.sort(pool, &from) && self.starts[last as usize + 1] == range.end as u32 {
                 break;
             }
@@ -115,7 +115,7 @@ impl Level {
                 balls.as_flattened().iter().any(|x| x.is_nan()),
                 "a body's cell lies beyond the table"
             );
-            // A centre that is NaN, of a body outside the contract, has any number for a cell.
+            // A NaN centre, of a body that breaks the contract, may get any number as its cell.
             for cell in &mut *place_cells {
                 *cell = (*cell).min(last);
             }
@@ -123,13 +123,13 @@ impl Level {
         self.check(slots, balls, names);
     }
 
-    /// What debug builds, and so tests, check of every sort.
+    /// Checks every sort in debug builds, and therefore in tests.
     fn check(&self, slots: &Slots, balls: &[[f32; 4]], names: &[u32]) {
         if !cfg!(debug_assertions) {
             return;
         }
         let range = self.range.clone();
-        // Sums that any other set of names hardly has, since sorting would allocate.
+        // Checksums of the names, because sorting them would allocate.
         let sums = |names: &[u32]| {
             let sums = names
                 .iter()
@@ -152,10 +152,10 @@ impl Level {
 /// Bodies whose cells one thread finds at a time.
 const BODIES_PER_TASK: usize = 4096;
 
-/// Bodies that are worth sharing a sort for.
+/// The fewest bodies whose sort is divided among threads.
 const WORTH_SHARING: usize = 1 << 15;
 
-/// The bounds of some balls, found by all threads: extremes don't depend on who finds them.
+/// The bounds of some balls, computed on all threads. Extremes don't depend on the split.
 fn bounds(tier: Tier, pool: &Threads, balls: &[[f32; 4]]) -> Bounds {
     if pool.threads() == 1 || balls.len() < WORTH_SHARING {
         return Bounds::of(tier, balls);
@@ -169,14 +169,14 @@ fn bounds(tier: Tier, pool: &Threads, balls: &[[f32; 4]]) -> Bounds {
     found.into_iter().fold(Bounds::EMPTY, Bounds::union)
 }
 
-/// Bodies by place.
+/// The bodies to be sorted, by place.
 struct Columns<'a> {
     balls: &'a [[f32; 4]],
     names: &'a [u32],
     cells: &'a [u32],
 }
 
-/// What one thread sorts: the bodies in a range of cells, whose slots are a range too.
+/// One thread's part of the sort: the bodies in a range of cells, whose slots are a range too.
 struct CellShare<'a> {
     first_cell: u32,
     /// The end of each cell.
@@ -188,8 +188,8 @@ struct CellShare<'a> {
 }
 
 impl<'a> CellShare<'a> {
-    /// Sorts all cells, split among the threads: each reads all bodies and takes those of its own
-    /// cells, so that the order is that of one thread. False, and nothing is sorted, if a body's
+    /// Sorts all cells, split among the threads: each reads all bodies and sorts those in its own
+    /// cells, so that the order is that of one thread. Returns false without sorting if a body's
     /// cell isn't in the table.
     fn sort(mut self, pool: &Threads, from: &Columns<'_>) -> bool {
         let threads = pool.threads();
@@ -243,8 +243,8 @@ impl<'a> CellShare<'a> {
         true
     }
 
-    /// Puts the counted bodies into their slots. Each cell's entry is its count, then its start,
-    /// and moves to its end.
+    /// Puts the counted bodies into their slots. Each cell's entry changes from its count to its
+    /// start, and then to its end.
     fn place(&mut self, from: &Columns<'_>) {
         let mut slot = self.first_slot;
         for end in self.ends.iter_mut() {
@@ -278,7 +278,7 @@ fn count(cells: &[u32], first: u32, counts: &mut [u32]) -> usize {
     counted
 }
 
-/// Compiled once a tier, for wide conversions to f64 and back.
+/// Computes the cells of bodies. It is compiled per tier, for wide conversions to f64 and back.
 pub(super) struct AssignCells<'a> {
     pub cells: &'a Cells,
     pub balls: &'a [[f32; 4]],

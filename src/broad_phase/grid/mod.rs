@@ -1,10 +1,10 @@
-//! The grid: cells of uniform size, counting-sorted slots, contiguous runs of candidates.
+//! The grid finder: cells of uniform size, slots sorted by counting, contiguous runs of candidates.
 //!
-//! Where radii differ much, bodies are split into levels of like size ([`plan`]), each with its own
-//! cells; static bodies have levels of their own, sorted once, so no two of them ever meet. Every
-//! frame sorts the moving levels anew: at ten cycles a body that is cheaper than keeping a tree in
-//! shape. Now and then the places themselves take the order of the slots, so that the sort reads
-//! and writes memory nearly in sequence.
+//! If radii differ a lot, bodies are split into levels of similar size ([`plan`]), each with its
+//! own cells. Static bodies have levels of their own, which are sorted once and never paired with
+//! each other. Every frame sorts the moving levels again: at ten cycles per body, that is cheaper
+//! than maintaining a tree. Every few frames the places take the order of the slots, so that the
+//! sort reads and writes memory nearly in sequence.
 
 mod across;
 mod cells;
@@ -24,23 +24,24 @@ use crate::rounding::skin::Reach;
 use crate::simd::Lanes;
 use crate::threads::Executor;
 
-/// Frames after which places take the order of slots. Bodies that move a tenth of their radius a
-/// frame are then in their cell still, or next to it; each frame would spare the sort no more than
-/// following the order costs.
+/// Frames between reorderings of the places. Bodies that move a tenth of their radius per frame are
+/// then still in their cell or next to it. Reordering in every frame would cost as much as the sort
+/// gains.
 const FRAMES_PER_REORDER: u32 = 4;
 
-/// Frames between two looks at whether the levels still fit, and the growth of the candidates that
-/// calls for new ones.
+/// Frames between two checks whether the levels still fit. [`PLAN_GROWTH`] is the growth of the
+/// number of candidates that triggers a new plan.
 const PLAN_PAUSE: u32 = 8;
 const PLAN_GROWTH: u64 = 2;
 
-/// Slots in one part of the work.
+/// Slots per part of the work.
 const SLOTS_PER_PART: usize = 1024;
 
-/// Parts are ordered by shares of their levels, in steps of such a power of two.
+/// Parts are ordered by their relative position in their level, in 2 to this power steps.
 const SHARE_BITS: u32 = 24;
 
-/// Bodies that seek those of another level in one part of the work, by cells or all against all.
+/// Seekers of another level per part of the work, when they search cells and when they are tested
+/// against all.
 const SEEKERS_BY_CELLS: usize = 256;
 const SEEKERS_OF_ALL: usize = 16;
 
@@ -58,16 +59,16 @@ pub struct Grid {
     parts: Vec<Part>,
     /// Frames since the last plan.
     age: u32,
-    /// Candidates of the last frame, and of the first after the last plan.
+    /// Candidates in the last frame, and in the first frame after the last plan.
     candidates: u64,
     planned: Option<u64>,
 }
 
-/// A piece of the work: the pairs of some slots with slots of one level.
+/// A part of the work: the pairs of some slots with slots of one level.
 #[derive(Clone, Debug)]
 struct Part {
     slots: Range<usize>,
-    /// Theirs.
+    /// The level of these slots.
     seeker: usize,
     level: usize,
     kind: Kind,
@@ -80,8 +81,8 @@ enum Kind {
 }
 
 impl Grid {
-    /// Looks for a better order of places and writes it as the names that take the places. `balls`
-    /// and `names` are those of the last frame.
+    /// Finds a better order of places and writes it as the names for the places. `balls` and
+    /// `names` are those of the last frame.
     pub(super) fn reorder(
         &mut self,
         moving: usize,
@@ -100,8 +101,8 @@ impl Grid {
             return Reorder::All;
         }
         if self.age == 1 {
-            // The first sort after a plan: static bodies take the order of their slots once and for
-            // all.
+            // In the first sort after a plan, static bodies take the order of their slots
+            // permanently.
             order.extend_from_slice(&self.slots.names[..balls.len()]);
             self.fixed_sorted = false;
             return Reorder::All;
@@ -123,8 +124,8 @@ impl Grid {
         (self.levels.is_empty() && bodies > 0) || (grown && self.age >= PLAN_PAUSE)
     }
 
-    /// Writes an order of places that is the one of the slots, after a frame in which bodies were
-    /// arranged, for a time in which they aren't.
+    /// Writes the order of the slots as the order of places, after a frame in which bodies were
+    /// arranged and before frames in which they aren't.
     pub(super) fn follow_slots(
         &mut self,
         moving: usize,
@@ -141,12 +142,12 @@ impl Grid {
         Reorder::All
     }
 
-    /// One more frame in which bodies weren't arranged.
+    /// Counts a frame in which bodies weren't arranged.
     pub(super) fn rest(&mut self) {
         self.age += 1;
     }
 
-    /// From the next frame on, moving bodies grow so before they are looked for.
+    /// Sets how moving bodies are grown for the search, from the next frame on.
     pub(super) fn set_reach(&mut self, reach: Reach) {
         for level in &mut self.levels[..self.moving_levels] {
             level.reach = reach;
@@ -186,7 +187,7 @@ impl Grid {
         self.cut();
     }
 
-    /// Cuts the work into parts, in the order of space.
+    /// Splits the work into parts, in spatial order.
     fn cut(&mut self) {
         self.parts.clear();
         for (index, level) in self.levels[..self.moving_levels].iter().enumerate() {
@@ -217,8 +218,8 @@ impl Grid {
                 push_parts(&mut self.parts, across, size);
             }
         }
-        // All levels have their slots in the same order of space: side by side, what one part reads
-        // serves the next.
+        // All levels have their slots in the same spatial order, so neighbouring parts read the
+        // same memory.
         let levels = &self.levels;
         self.parts.sort_by_key(|part| {
             let all = &levels[part.seeker].range;
@@ -236,7 +237,7 @@ impl Grid {
         &self.slots
     }
 
-    /// How many bodies are arranged.
+    /// The number of arranged bodies.
     pub(super) fn bodies(&self) -> usize {
         self.slot_cells.len()
     }
@@ -245,7 +246,7 @@ impl Grid {
         &mut self.slots
     }
 
-    /// Whether the seekers of a part move, and the bodies that they look for.
+    /// Whether a part's seekers move, and whether its targets move.
     pub(super) fn moves(&self, part: usize) -> [bool; 2] {
         let part = &self.parts[part];
         [part.seeker, part.level].map(|level| level < self.moving_levels)
@@ -255,7 +256,7 @@ impl Grid {
         self.parts.len()
     }
 
-    /// Hears how many candidates a frame had.
+    /// Records the number of candidates of a frame.
     pub(super) fn observe(&mut self, candidates: u64) {
         self.candidates = candidates;
         self.planned.get_or_insert(candidates);
@@ -282,7 +283,7 @@ impl Grid {
     }
 }
 
-/// Cuts a part into parts of `size` slots.
+/// Splits a part into parts of `size` slots.
 fn push_parts(parts: &mut Vec<Part>, whole: Part, size: usize) {
     let slots = whole.slots.clone();
     for start in slots.clone().step_by(size) {
@@ -305,8 +306,8 @@ mod tests {
         }
     }
 
-    /// Of one level of that many moving bodies, and one of as many static ones, planned some frames
-    /// ago.
+    /// A grid with one level of `each` moving bodies and one of `each` static ones, planned some
+    /// frames ago.
     fn planned(each: usize) -> Grid {
         let level = |range| Level::new(range, TableLayout::Box);
         Grid {

@@ -1,9 +1,9 @@
-//! Which bodies share a level: as few levels as keep cells from crowding.
+//! Planning the levels: as few levels as possible without crowded cells.
 //!
-//! Balls that overlap little can only crowd a cell by being much smaller than it. So the widest
-//! octave gets a level of its own as long as the cells that it asks for are crowded, and what is
-//! left is looked at again, with smaller cells. One size gives one level, a giant among many small
-//! ones two.
+//! Balls that overlap little can crowd a cell only if they are much smaller than it. Therefore,
+//! while cells are crowded, the bodies in the largest octave of radii get a level of their own, and
+//! the rest is examined again with smaller cells. Bodies of one size give one level, a giant among
+//! many small bodies gives two.
 
 use std::ops::Range;
 
@@ -12,18 +12,19 @@ use super::level::{AssignCells, Level};
 use crate::broad_phase::Bounds;
 use crate::simd::{self, dispatch};
 
-/// Bodies that a body may find in its own cell, itself included, in the mean, before wide ones are
-/// split off. Uniform scenes reach it at 13 sphere partners a body.
+/// The mean number of bodies in a body's cell, including itself, above which large bodies are split
+/// off. Uniform scenes reach it at 13 sphere partners per body.
 const MOST_PER_CELL: u64 = 4;
 
-/// Levels for moving or for static bodies each.
+/// The most levels of moving bodies, and of static bodies.
 const MOST_LEVELS: usize = 24;
 
-/// A wrapped table must promise to halve the candidates: its rows lie scattered.
+/// By which factor a wrapped table must reduce the candidates to be used, because its rows are
+/// scattered in memory.
 const WORTH_WRAPPING: u64 = 2;
 
-/// Splits a range of places into levels, widest balls first. `order` lists the places in the range
-/// and is sorted by level; within a level it stays as it was.
+/// Splits a range of places into levels, largest balls first. `order` lists the places in the range
+/// and gets sorted by level; within a level the order stays.
 pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec<Level> {
     let mut levels = Vec::new();
     let mut from = 0;
@@ -35,7 +36,7 @@ pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec
         let wide = |place: &u32| balls[*place as usize][3] > half;
         let crowded = crowd > MOST_PER_CELL * rest.len() as u64 && levels.len() + 1 < MOST_LEVELS;
         let mut count = rest.len();
-        // None is wide where the widest radius is infinite.
+        // No ball is large if the largest radius is infinite.
         let wide_count = rest.iter().filter(|place| wide(place)).count();
         if crowded && (1..count).contains(&wide_count) {
             rest.sort_by_key(|place| !wide(place));
@@ -54,8 +55,8 @@ fn gather(balls: &[[f32; 4]], places: &[u32]) -> Vec<[f32; 4]> {
     places.iter().map(|&p| balls[p as usize]).collect()
 }
 
-/// The better layout for some balls, and how crowded its cells are: the sum over balls of the balls
-/// in the same cell.
+/// The better table layout for some balls, and how crowded its cells are: the sum, over all balls,
+/// of the number of balls in the same cell.
 fn fit(balls: &[[f32; 4]]) -> (TableLayout, u64) {
     let bounds = Bounds::of(simd::Tier::SCALAR, balls);
     let [in_box, wrapped] = [TableLayout::Box, TableLayout::Wrapped]
@@ -76,7 +77,7 @@ fn crowd(cells: &Cells, balls: &[[f32; 4]]) -> u64 {
     dispatch(simd::Tier::SCALAR, AssignCells { cells, balls, to });
     let mut counts = vec![0u64; cells.table_len()];
     for &cell in &cell_of {
-        // A centre that is NaN has no cell.
+        // A NaN centre has no cell.
         if let Some(count) = counts.get_mut(cell as usize) {
             *count += 1;
         }
@@ -88,7 +89,7 @@ fn crowd(cells: &Cells, balls: &[[f32; 4]]) -> u64 {
 mod tests {
     use super::*;
 
-    /// The places of each level that some balls get, and its layout.
+    /// The places and the layout of each level for some balls.
     fn planned(balls: &[[f32; 4]]) -> Vec<(Vec<u32>, TableLayout)> {
         let mut order: Vec<u32> = (0..balls.len() as u32).collect();
         let levels = levels(balls, 10..10 + balls.len(), &mut order);

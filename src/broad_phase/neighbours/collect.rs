@@ -1,4 +1,4 @@
-//! From the grid's candidates to neighbours: the pairs whose grown volumes touch.
+//! Building a list of neighbours from the grid's candidates: the pairs whose grown volumes touch.
 
 use std::ops::Range;
 
@@ -12,14 +12,14 @@ use crate::rounding::skin::Reach;
 use crate::rounding::{cube, sphere};
 use crate::simd::{Lanes, MAX_WIDTH};
 
-/// Balls, or the cubes that they stand for, grown by a skin.
+/// Balls, or the cubes that they stand for, each grown by a skin.
 #[derive(Clone, Copy)]
 pub struct GrownBalls<'a> {
-    /// The balls as they are.
+    /// The balls, not grown.
     pub slots: SlotBodies<'a>,
-    /// How the balls of seekers grow, and those of the bodies that they look for.
+    /// How the seekers' balls and the targets' balls are grown.
     pub by: [Reach; 2],
-    /// What balls stand for.
+    /// The volume that balls stand for.
     pub volume: Volume,
 }
 
@@ -39,13 +39,13 @@ impl BallTest for GrownBalls<'_> {
     }
 }
 
-/// Tests the grid's candidates and keeps the neighbours, until there are more of either than a list
-/// may take.
+/// Tests the grid's candidates and keeps the neighbours, until there are more of either than the
+/// list's limits allow.
 pub struct Collector<'a, T> {
     test: &'a T,
     chunk: &'a mut Chunk,
     effort: &'a Effort,
-    /// Pairs and candidates that the effort doesn't have yet.
+    /// Pairs and candidates that are not yet added to the shared effort.
     pairs: u64,
     candidates: u64,
     hits: [u32; MOST_CANDIDATES + MAX_WIDTH],
@@ -64,13 +64,13 @@ impl<'a, T: SlotTest> Collector<'a, T> {
         }
     }
 
-    /// Whether the rest of the search is of no use.
+    /// Whether the search has exceeded its limits.
     #[inline(always)]
     fn is_over(&self) -> bool {
         self.effort.is_over_with(self.pairs, self.candidates)
     }
 
-    /// Keeps the neighbours that a test of so many candidates has found.
+    /// Keeps the neighbours found by a test of `candidates` candidates.
     #[inline(always)]
     fn keep(&mut self, found: usize, candidates: usize) {
         self.chunk.append(&self.hits[..found]);
@@ -81,7 +81,7 @@ impl<'a, T: SlotTest> Collector<'a, T> {
         }
     }
 
-    /// Adds what has been counted to the effort of all threads.
+    /// Adds the counts to the effort of all threads.
     #[inline(always)]
     pub fn finish(&mut self) {
         self.effort.add(self.pairs, self.candidates);
@@ -133,7 +133,7 @@ mod tests {
     use crate::broad_phase::Slots;
     use crate::simd::{Kernel, Tier, dispatch};
 
-    /// Hands runs of slots to a list.
+    /// Passes runs of slots to a list.
     struct HandRuns<'a, 's>(Collector<'a, GrownBalls<'s>>, &'a [(usize, Range<usize>)]);
 
     impl Kernel for HandRuns<'_, '_> {
@@ -146,7 +146,7 @@ mod tests {
         }
     }
 
-    /// The pairs that a list is read as.
+    /// Collects the pairs of a list.
     struct ListedPairs(Vec<(usize, usize)>);
 
     impl FirstTest for ListedPairs {

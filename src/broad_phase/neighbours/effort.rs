@@ -1,5 +1,5 @@
-//! What the search for a list has found and tested so far, on all threads together, and when it
-//! ends.
+//! [`SearchEffort`]: what the search for a list has found and tested so far, on all threads
+//! together, and when it ends.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -8,9 +8,9 @@ use super::list::Limits;
 /// Candidates after which a thread adds its counts to those of all.
 pub const CANDIDATES_PER_REPORT: u64 = 1024;
 
-/// Counts of all threads. They only grow, so whether the search ends beyond its limits depends on
-/// no thread; how far beyond does, by a [`CANDIDATES_PER_REPORT`] and one piece of the work for
-/// each of them.
+/// Counts of all threads. They only grow, so whether the search exceeds its limits does not depend
+/// on threads. By how much it does: up to [`CANDIDATES_PER_REPORT`] and one part of the work per
+/// thread.
 #[derive(Debug)]
 pub struct Effort {
     limits: Limits,
@@ -19,7 +19,7 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// None so far.
+    /// Counts of zero, with these limits.
     pub fn new(limits: Limits) -> Self {
         Self {
             limits,
@@ -34,14 +34,14 @@ impl Effort {
         self.candidates.fetch_add(candidates, Relaxed);
     }
 
-    /// Whether the counts of all and these, of which nothing has been added, exceed the limits.
+    /// Whether the shared counts plus these, which are not yet added, exceed the limits.
     #[inline(always)]
     pub fn is_over_with(&self, pairs: u64, candidates: u64) -> bool {
         self.pairs.load(Relaxed) + pairs > self.limits.pairs
             || self.candidates.load(Relaxed) + candidates > self.limits.candidates
     }
 
-    /// Whether the search is to end.
+    /// Whether the search has to end.
     pub fn is_over(&self) -> bool {
         self.is_over_with(0, 0)
     }

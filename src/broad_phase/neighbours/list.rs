@@ -1,5 +1,5 @@
-//! The list itself: a chunk for each part of the grid's work, codes as in a [`Block`], sixteen
-//! slots an entry.
+//! [`NeighbourList`]: one chunk per part of the grid's work, with codes as in a [`Block`] and one
+//! entry per sixteen slots.
 
 use std::ops::Range;
 
@@ -11,30 +11,31 @@ use crate::rounding::skin::{Reach, Skin};
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch};
 use crate::threads::Executor;
 
-/// Pairs a body that a list with the widest skin may hold, and a few more for small scenes: crowds
-/// are bound by what is reported, and there a list would take more memory than all the rest.
+/// The most pairs per body of a list with the widest skin, apart from a constant for small scenes.
+/// In denser crowds the reported pairs dominate the time, and a list would take more memory than
+/// everything else.
 const PAIRS_PER_BODY: usize = 8;
 const FEW_PAIRS: u64 = 256;
 
-/// Candidates that the search for a list may test: this many times those of the grid without a
-/// skin, and some per body. What a skin adds is less ([`policy`](super::policy)), unless its floor
-/// is wider than the bodies.
+/// The limit of candidates that the search for a list may test: this many times those of the grid
+/// without a skin, plus some per body. Skins stay below it ([`policy`](super::policy)), unless the
+/// skin's floor exceeds the bodies' size.
 const GROWTH_OF_CANDIDATES: u64 = 3;
 const CANDIDATES_PER_BODY: u64 = 48;
 
-/// Room that a list is given, in lengths of its own.
+/// Capacity of a list relative to its length.
 const CAPACITY_FACTOR: f64 = 1.5;
 
-/// What must touch, grown by the skin, for a pair to be listed.
+/// The volumes that must touch, grown by the skin, for a pair to be listed.
 #[derive(Clone, Copy)]
 pub enum ListedVolume<'a> {
     /// Balls, or what they stand for.
     Balls(Volume),
-    /// Boxes, which have been grown.
+    /// Boxes, already grown.
     Ends(&'a EndSlots),
 }
 
-/// What a list may hold, and what its search may test.
+/// The limits of a list and of the search for it.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Pairs.
@@ -44,8 +45,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// For a list of so many bodies, where the widest skin brings `spare` times the pairs and the
-    /// grid without a skin has so many candidates.
+    /// The limits for a list of `bodies` bodies, for which the widest skin gives `spare` times as
+    /// many pairs and the grid without a skin has `candidates` candidates.
     fn of(bodies: usize, candidates: u64, spare: f64) -> Self {
         let pairs = (PAIRS_PER_BODY * bodies) as f64 / spare;
         Self {
@@ -55,7 +56,7 @@ impl Limits {
     }
 }
 
-/// What became of the search for a list.
+/// The result of the search for a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// The list is complete.
@@ -75,23 +76,23 @@ pub struct List {
     tested: u64,
 }
 
-/// The neighbours that one part of the grid's work has found.
+/// The neighbours found by one part of the grid's work.
 #[derive(Clone, Debug, Default)]
 pub struct Chunk {
-    /// Codes of all entries, and a vector of whatever codes after them.
+    /// The codes of all entries, followed by a vector of arbitrary codes.
     codes: Vec<u32>,
     len: usize,
-    /// The slot of lane 0, and where the entry's codes end.
+    /// For each entry, the slot of lane 0 and the end of its codes.
     entries: Vec<(u32, u32)>,
-    /// By how much more room is made than is needed.
+    /// The capacity to allocate, relative to the need.
     spare: f64,
 }
 
 impl List {
-    /// Makes the list of a grid that has just been arranged, whose bodies have so many candidates
-    /// without a skin. There is room for as many pairs as the widest skin will bring, `spare` times
-    /// those of this one, so that another skin allocates nothing. The search ends as soon as it
-    /// exceeds its limits; whether it does depends on no thread.
+    /// Builds the list of a grid that has just been arranged and has `candidates` candidates
+    /// without a skin. There is room for `spare` times the pairs of this skin, as many as the
+    /// widest skin will give, so that another skin allocates nothing. The search ends as soon as it
+    /// exceeds its limits; whether it does is independent of threads.
     pub fn make(
         &mut self,
         executor: Executor<'_>,
@@ -130,7 +131,7 @@ impl List {
         Outcome::Complete
     }
 
-    /// Pairs in it.
+    /// The number of pairs.
     pub fn len(&self) -> usize {
         self.len
     }
@@ -171,13 +172,13 @@ impl Chunk {
         self.len = 0;
     }
 
-    /// The slot of lane 0 of the entry that is being written, if there is one.
+    /// The slot of lane 0 of the open entry, if there is one.
     #[inline(always)]
     pub fn first(&self) -> Option<usize> {
         self.entries.last().map(|&(first, _)| first as usize)
     }
 
-    /// Opens an entry, in place of the last one if that is empty.
+    /// Opens an entry, replacing the last one if that is empty.
     #[inline(always)]
     pub fn open(&mut self, first: usize) {
         if self
@@ -206,7 +207,7 @@ impl Chunk {
         }
     }
 
-    /// Closes the list, with room for those that follow it.
+    /// Completes the list, and reserves room for the following ones.
     fn close(&mut self) {
         reserve(&mut self.codes, MAX_WIDTH, self.spare);
         self.codes.resize(self.len + MAX_WIDTH, 0);
@@ -221,7 +222,7 @@ impl Chunk {
     }
 }
 
-/// Room for more: `spare` times what is needed by now, and half as much beyond that.
+/// Reserves room: `spare` times what is needed so far, and half as much again.
 #[inline(always)]
 fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
     let needed = column.len() + more;
@@ -231,8 +232,7 @@ fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
     }
 }
 
-/// Lists breathe from one to the next: a column that was filled to the brim would be allocated anew
-/// by the next one.
+/// Reserves room in a full column, because the next list may be slightly longer and would allocate.
 fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
     let [least, room] =
         [1.0, CAPACITY_FACTOR].map(|times| (times * spare * column.len() as f64) as usize);

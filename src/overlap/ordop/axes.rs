@@ -1,4 +1,4 @@
-//! Separating axes of one pair per lane: both bodies' slab normals, and edge × edge.
+//! Separating axes of one pair per lane: both bodies' slab normals, and cross products of edges.
 
 use super::edges;
 use super::slabs::Slabs;
@@ -9,10 +9,10 @@ use crate::update::row::{O, Q, S, T};
 
 type Vector<L> = [<L as Lanes>::F; 3];
 
-/// Numbers in [`Frames`].
+/// The number of numbers in a [`PairFrames`].
 pub const FRAMES: usize = 17;
 
-/// Two bodies' frames in each other's coordinates.
+/// Two bodies' frames in each other's coordinates, one pair per lane.
 #[derive(Clone, Copy)]
 pub struct Frames<L: Lanes> {
     /// `turn[i][j]` = axis i of A · axis j of B: row i is A's axis in B's coordinates, column j B's
@@ -22,13 +22,13 @@ pub struct Frames<L: Lanes> {
     gap_a: Vector<L>,
     /// −Δ along B's axes.
     gap_b: Vector<L>,
-    /// The shapes of A and B, as rows hold them.
+    /// The shapes of A and B, as stored in rows.
     pub shapes: [L::F; 2],
 }
 
 impl<L: Lanes> Frames<L> {
-    /// Relates two rows. Δ is the difference of the input translations plus that of the offsets: a
-    /// difference of rounded world centres would lose it far from the origin.
+    /// The frames of two rows. Δ is the difference of the input translations plus that of the
+    /// offsets, because a difference of rounded world centres would be inexact far from the origin.
     #[cfg_attr(not(unoptimised), inline(always))]
     pub fn new(l: L, a: [L::F; ROW], b: [L::F; ROW]) -> Self {
         let zero = l.splat(0.0);
@@ -52,7 +52,7 @@ impl<L: Lanes> Frames<L> {
         }
     }
 
-    /// The same as plain numbers.
+    /// The frames as an array of vectors.
     #[inline(always)]
     pub fn numbers(&self) -> [L::F; FRAMES] {
         let ([x, y, z], [ga, gb, gc], [ha, hb, hc]) = (self.turn, self.gap_b, self.gap_a);
@@ -63,7 +63,7 @@ impl<L: Lanes> Frames<L> {
         ]
     }
 
-    /// Back from [`Self::numbers`].
+    /// The inverse of [`Self::numbers`].
     #[inline(always)]
     pub fn from_numbers(n: [L::F; FRAMES]) -> Self {
         Self {
@@ -74,13 +74,13 @@ impl<L: Lanes> Frames<L> {
         }
     }
 
-    /// Lanes that a normal of A separates.
+    /// Lanes in which a slab normal of A separates the pair.
     #[inline(always)]
     pub fn by_normals_of_a<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
         by_normals::<L, K>(l, self.turn, self.gap_a, a, b)
     }
 
-    /// Lanes that a normal of B separates.
+    /// Lanes in which a slab normal of B separates the pair.
     #[inline(always)]
     pub fn by_normals_of_b<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
         let back = [self.column(0), self.column(1), self.column(2)];
@@ -93,8 +93,9 @@ impl<L: Lanes> Frames<L> {
         [self.turn[0][j], self.turn[1][j], self.turn[2][j]]
     }
 
-    /// Axes edge × edge. An axis shorter than ½ (nearly parallel edges) is skipped: the error
-    /// bounds are relative to its length, and the normals serve such pairs.
+    /// Lanes in which a cross product of edges separates the pair. An axis shorter than ½ (of
+    /// nearly parallel edges) is skipped, because the error bounds are relative to its length, and
+    /// normals separate such pairs.
     #[cfg_attr(not(unoptimised), inline(always))]
     pub fn by_edges<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
         let all = l.bits(l.first(L::WIDTH));
@@ -128,7 +129,7 @@ impl<L: Lanes> Frames<L> {
 }
 
 /// Lanes separated along one body's own slab normals. `turn[i]` is its axis i in the other's
-/// coordinates, `gap` the way to the other's centre along its own axes.
+/// coordinates, `gap` is the vector to the other's centre along its own axes.
 #[cfg_attr(not(unoptimised), inline(always))]
 fn by_normals<L: Lanes, const K: usize>(
     l: L,
@@ -144,16 +145,16 @@ fn by_normals<L: Lanes, const K: usize>(
         combinations::<L>(turn[0][2], turn[1][2], turn[2][2]),
     ];
     let tau = combinations::<L>(gap[0], gap[1], gap[2]);
-    // The normal turned towards the other body faces one slab end; the other body answers in the
-    // opposite direction.
+    // The normal towards the other body selects one slab end; the other body's support is needed in
+    // the opposite direction.
     let other = other.mirrored();
     let mut separated = l.first(0);
     each_direction!(K, |i, _place| {
         let towards = flip(l, [x[i], y[i], z[i]], tau[i]);
         let reach = own.own(l, i, tau[i]) + support::<L, K>(l, &other, towards);
         separated = separated | l.gt(l.abs(tau[i]), reach);
-        // One lane alone leaves at its first separating axis; in a wide vector all lanes seldom
-        // agree so early.
+        // A single lane returns at its first separating axis. In a wide vector all lanes are rarely
+        // separated early.
         if L::WIDTH == 1 && l.bits(separated) == all {
             return separated;
         }

@@ -1,4 +1,4 @@
-//! Lists of pairs through the separating-axis test, a vector of pairs at a time.
+//! The separating-axis test of a list of pairs, a vector of pairs at a time.
 
 use super::axes::{FRAMES, Frames};
 use super::slabs::Slabs;
@@ -9,20 +9,20 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
 use crate::update::RowsByNumber;
 use crate::volume::DirectionSet;
 
-/// Pairs that go through the first bodies' normals before the rest: their survivors' frames fit the
-/// first-level cache.
+/// Pairs per block: all are tested with the first bodies' normals before the survivors take the
+/// other axes, so that the survivors' frames fit into the first-level cache.
 const PAIRS_PER_BLOCK: usize = 128;
 
 /// How many pairs ahead rows are prefetched.
 const PREFETCH_AHEAD: usize = 48;
 
-/// Up to so many rows the caches hold them all, and prefetching only costs.
+/// The most rows that fit into the caches. With fewer, prefetching only costs time.
 const ROWS_IN_CACHE: usize = 1 << 13;
 
 /// The or-DOPs of all bodies as the pair test reads them.
 #[derive(Clone, Copy)]
 pub struct OrDopColumns<'a> {
-    /// Q, t, o, shape: a row a body.
+    /// One row per body: Q, t, o and the shape.
     pub rows: RowsByNumber<'a>,
     /// Each shape's slabs.
     pub tables: &'a SlabTables,
@@ -30,17 +30,17 @@ pub struct OrDopColumns<'a> {
     pub overlap: Overlap,
 }
 
-/// Outcome of a range of pair tests.
+/// The counts of a range of pair tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TestOutcome {
     /// Pairs tested.
     pub tests: u64,
-    /// Pairs that no tried axis separates.
+    /// Pairs that none of the tried axes separates.
     pub hits: u64,
 }
 
 impl OrDopColumns<'_> {
-    /// Tests the listed pairs in the tier `tier` and appends the ones that may overlap to `out`, in
+    /// Tests the listed pairs in the tier `tier` and appends those that may overlap to `out`, in
     /// list order.
     pub fn test_pairs(
         &self,
@@ -60,8 +60,8 @@ impl OrDopColumns<'_> {
         dispatch(tier, Test(self, first, second, out))
     }
 
-    /// Whether no tried axis separates the two rows: the same test of one pair, in one lane, which
-    /// leaves at the first axis that does.
+    /// Whether none of the tried axes separates the two rows: the same test for one pair, in one
+    /// lane, which returns at the first separating axis.
     #[must_use]
     pub fn may_overlap(&self, first: u32, second: u32) -> bool {
         struct Test<'a, 'b>(&'a OrDopColumns<'b>, [u32; 2]);
@@ -116,8 +116,8 @@ impl OrDopColumns<'_> {
         second: &[u32],
         out: &mut PairList,
     ) -> TestOutcome {
-        // Only a vector of 16 has a permutation for 16 shapes; with two halves each, rows are as
-        // quick.
+        // Only a vector of 16 lanes has a permutation for 16 shapes; with two halves, loading rows
+        // is as fast.
         let few = L::WIDTH == 16 && !self.tables.columns().is_empty();
         if few {
             self.test_blocks::<L, K, true>(l, first, second, out)
@@ -150,8 +150,8 @@ impl OrDopColumns<'_> {
         }
     }
 
-    /// Pairs through the normals of the first bodies. `later` are the pairs that follow
-    /// [`PREFETCH_AHEAD`] behind these.
+    /// Tests pairs with the normals of the first bodies. `later` are the pairs
+    /// [`PREFETCH_DISTANCE`] after these, whose rows are prefetched.
     #[cfg_attr(not(unoptimised), inline(always))]
     fn by_first<L: Lanes, const K: usize, const FEW: bool>(
         &self,
@@ -182,7 +182,7 @@ impl OrDopColumns<'_> {
         alive.pad();
     }
 
-    /// Pairs that are still alive through all other axes; survivors are appended to `out`.
+    /// Tests the remaining pairs with all other axes, and appends the survivors to `out`.
     #[cfg_attr(not(unoptimised), inline(always))]
     fn by_rest<L: Lanes, const K: usize, const FEW: bool>(
         &self,
@@ -210,7 +210,7 @@ impl OrDopColumns<'_> {
         }
     }
 
-    /// Where the rows of the first bodies stand, a vector of them.
+    /// The indices of the first bodies' rows, a vector of them.
     #[inline(always)]
     fn rows_of(&self, bodies: &[u32]) -> [u32; MAX_WIDTH] {
         let mut rows = [0; MAX_WIDTH];
@@ -242,7 +242,7 @@ impl OrDopColumns<'_> {
     }
 }
 
-/// A block of pairs, padded by a vector of the first one.
+/// A block of pairs, padded with copies of the first one.
 struct Pairs {
     len: usize,
     first: [u32; PAIRS_PER_BLOCK + MAX_WIDTH],
@@ -276,7 +276,7 @@ impl Pairs {
     }
 }
 
-/// Pairs of a block that the first bodies' normals don't separate, with the frames already found.
+/// Pairs of a block that the first bodies' normals don't separate, with their frames.
 struct Survivors {
     pairs: Pairs,
     frames: [[f32; PAIRS_PER_BLOCK + MAX_WIDTH]; FRAMES],
@@ -325,7 +325,7 @@ impl Survivors {
         self.pairs.len += keep.count_ones() as usize;
     }
 
-    /// Fills the last vector up with the first pair.
+    /// Pads the last vector with the first pair.
     #[inline(always)]
     fn pad(&mut self) {
         self.pairs.pad();
