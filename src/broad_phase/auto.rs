@@ -19,11 +19,11 @@ use crate::settings::Finder;
 /// The most bodies for all pairs.
 const MOST_FOR_ALL_PAIRS: usize = 64;
 
-/// The most bodies for all pairs if radii span more than [`MANY_SIZES`].
-const MOST_OF_MANY_SIZES: usize = 96;
+/// The most bodies for all pairs if radii span more than [`LEAST_LEVEL_RATIO`].
+const MOST_MIXED_FOR_ALL_PAIRS: usize = 96;
 
 /// The ratio of largest to smallest radius from which on the grid has levels.
-const MANY_SIZES: f32 = 16.0;
+const LEAST_LEVEL_RATIO: f32 = 16.0;
 
 /// The facts of a scene by which a finder is picked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,8 +44,8 @@ impl Population {
     #[must_use]
     pub fn finder(&self) -> Finder {
         let [smallest, widest] = self.radii;
-        let few = if widest > MANY_SIZES * smallest {
-            MOST_OF_MANY_SIZES
+        let few = if widest > LEAST_LEVEL_RATIO * smallest {
+            MOST_MIXED_FOR_ALL_PAIRS
         } else {
             MOST_FOR_ALL_PAIRS
         };

@@ -13,19 +13,19 @@ use crate::simd::{Lanes, MAX_WIDTH};
 pub const BLOCK_BODIES: usize = MAX_WIDTH;
 
 /// Candidates that are written at once. The next run overwrites the surplus.
-const STRIDE: usize = 8;
+const CODES_PER_STORE: usize = 8;
 
 /// The longest run that is copied into a block; longer ones fill vectors by themselves.
-const LONGEST_WRITTEN: usize = 2 * STRIDE;
+const LONGEST_WRITTEN: usize = 2 * CODES_PER_STORE;
 
 /// Short runs that fit on a page.
 const RUNS_PER_PAGE: usize = 160;
 
 /// Codes that fit on a page.
-const CAPACITY: usize = RUNS_PER_PAGE * LONGEST_WRITTEN;
+const CODES_PER_PAGE: usize = RUNS_PER_PAGE * LONGEST_WRITTEN;
 
 /// The most candidates in a block.
-pub const MOST_CANDIDATES: usize = CAPACITY;
+pub const MOST_CANDIDATES: usize = CODES_PER_PAGE;
 
 /// Candidate pairs of up to sixteen neighbouring slots.
 #[derive(Clone, Copy, Debug)]
@@ -92,22 +92,22 @@ impl<'a> Block<'a> {
 
 /// The memory in which a search writes a block, and a list of long runs.
 #[derive(Clone, Debug)]
-pub struct Page {
+pub struct BlockPage {
     first: usize,
     len: usize,
-    codes: [u32; CAPACITY + MAX_WIDTH],
+    codes: [u32; CODES_PER_PAGE + MAX_WIDTH],
     long_len: usize,
     long: [(u32, u32, u32); RUNS_PER_PAGE],
 }
 
-impl Page {
+impl BlockPage {
     /// An empty page.
     #[inline(always)]
     pub fn new() -> Self {
         Self {
             first: 0,
             len: 0,
-            codes: [0; CAPACITY + MAX_WIDTH],
+            codes: [0; CODES_PER_PAGE + MAX_WIDTH],
             long_len: 0,
             long: [(0, 0, 0); RUNS_PER_PAGE],
         }
@@ -129,9 +129,9 @@ impl Page {
 
     /// Empties the page for the slots from `first` on, and returns a writer for their runs.
     #[inline(always)]
-    pub fn restart(&mut self, first: usize) -> Pen<'_> {
+    pub fn restart(&mut self, first: usize) -> RunWriter<'_> {
         self.first = first;
-        Pen {
+        RunWriter {
             page: self,
             len: 0,
             long_len: 0,
@@ -142,23 +142,23 @@ impl Page {
 /// Writes runs to a page. Its position is held in local variables, which stay in registers: if it
 /// were in the page, each run would wait for the previous one's store (25 cycles per body,
 /// measured).
-pub struct Pen<'a> {
-    page: &'a mut Page,
+pub struct RunWriter<'a> {
+    page: &'a mut BlockPage,
     len: usize,
     long_len: usize,
 }
 
-impl Pen<'_> {
+impl RunWriter<'_> {
     /// Appends the slots of `run` as candidates of the slot in `lane`.
     #[inline(always)]
     pub fn push(&mut self, lane: usize, run: Range<u32>) {
         let length = run.end.wrapping_sub(run.start) as usize;
         let code = run.start << 4 | lane as u32;
         self.write(0, code);
-        if length <= STRIDE {
+        if length <= CODES_PER_STORE {
             self.len += length;
         } else if length <= LONGEST_WRITTEN {
-            self.write(STRIDE, code);
+            self.write(CODES_PER_STORE, code);
             self.len += length;
         } else {
             let slot = self.page.first + lane;
@@ -170,7 +170,7 @@ impl Pen<'_> {
     #[inline(always)]
     fn write(&mut self, skip: usize, code: u32) {
         let at = self.len + skip;
-        if let Some(codes) = self.page.codes.get_mut(at..at + STRIDE) {
+        if let Some(codes) = self.page.codes.get_mut(at..at + CODES_PER_STORE) {
             for (i, to) in codes.iter_mut().enumerate() {
                 *to = code.wrapping_add(((skip + i) << 4) as u32);
             }
@@ -180,7 +180,7 @@ impl Pen<'_> {
     /// Whether `runs` more runs might not fit.
     #[inline(always)]
     pub fn is_full(&self, runs: usize) -> bool {
-        self.len + runs * LONGEST_WRITTEN > CAPACITY || self.long_len + runs > RUNS_PER_PAGE
+        self.len + runs * LONGEST_WRITTEN > CODES_PER_PAGE || self.long_len + runs > RUNS_PER_PAGE
     }
 
     /// Closes the page.
@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn runs_of_any_length_follow_each_other_without_gaps() {
-        let mut page = Page::new();
+        let mut page = BlockPage::new();
         let mut pen = page.restart(64);
         let (mut short, mut long) = (Vec::new(), Vec::new());
         for (lane, length) in [0, 1, 7, 8, 9, 16, 0, 17, 15, 300, 2]
@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn a_block_takes_what_it_promises() {
-        let mut page = Page::new();
+        let mut page = BlockPage::new();
         for length in [16, 17] {
             let mut pen = page.restart(0);
             let mut runs = 0;

@@ -5,7 +5,7 @@ use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
 /// Extremes over a set of balls. For an empty set, `lo` is above `hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub struct BallBounds {
     /// Lowest centre coordinates.
     pub lo: [f32; 3],
     /// Highest centre coordinates.
@@ -14,7 +14,7 @@ pub struct Bounds {
     pub widest: f32,
 }
 
-impl Bounds {
+impl BallBounds {
     /// The bounds of an empty set.
     pub const EMPTY: Self = Self {
         lo: [f32::INFINITY; 3],
@@ -46,9 +46,9 @@ const NUMBERS_PER_CHUNK: usize = 16;
 struct FindExtremes<'a>(&'a [[f32; 4]]);
 
 impl Kernel for FindExtremes<'_> {
-    type Output = Bounds;
+    type Output = BallBounds;
     #[inline(always)]
-    fn run<L: Lanes>(self, l: L) -> Bounds {
+    fn run<L: Lanes>(self, l: L) -> BallBounds {
         let vectors = NUMBERS_PER_CHUNK / L::WIDTH;
         let mut lo = [l.splat(f32::INFINITY); NUMBERS_PER_CHUNK];
         let mut hi = [l.splat(f32::NEG_INFINITY); NUMBERS_PER_CHUNK];
@@ -74,7 +74,7 @@ impl Kernel for FindExtremes<'_> {
         lows.for_each(|(i, x)| lo[i % 4] = lo[i % 4].min(*x));
         highs.for_each(|(i, x)| hi[i % 4] = hi[i % 4].max(*x));
         let ([x, y, z, _], [to_x, to_y, to_z, widest]) = (lo, hi);
-        Bounds {
+        BallBounds {
             lo: [x, y, z],
             hi: [to_x, to_y, to_z],
             widest: widest.max(0.0),
@@ -93,8 +93,8 @@ mod tests {
                 let mut balls = vec![[0.5, 0.25, -0.5, 1.0]; n];
                 balls[extreme] = [3.0, -4.0, 5.0, 6.0];
                 for tier in Tier::available() {
-                    let bounds = Bounds::of(tier, &balls);
-                    let alone = Bounds::of(tier, &balls[extreme..=extreme]);
+                    let bounds = BallBounds::of(tier, &balls);
+                    let alone = BallBounds::of(tier, &balls[extreme..=extreme]);
                     let [lo, hi] = match n {
                         1 => [[3.0, -4.0, 5.0]; 2],
                         _ => [[0.5, -4.0, -0.5], [3.0, 0.25, 5.0]],
@@ -102,14 +102,14 @@ mod tests {
                     let widest = 6.0;
                     assert_eq!(
                         bounds,
-                        Bounds { lo, hi, widest },
+                        BallBounds { lo, hi, widest },
                         "{tier}, {extreme} of {n}"
                     );
                     assert_eq!(bounds.union(alone), bounds);
-                    assert_eq!(Bounds::EMPTY.union(bounds), bounds);
+                    assert_eq!(BallBounds::EMPTY.union(bounds), bounds);
                 }
             }
         }
-        assert_eq!(Bounds::of(Tier::SCALAR, &[]), Bounds::EMPTY);
+        assert_eq!(BallBounds::of(Tier::SCALAR, &[]), BallBounds::EMPTY);
     }
 }

@@ -16,7 +16,7 @@ use crate::simd::{Kernel, Lanes, Tier, dispatch};
 const MOST_BODIES: usize = 64;
 
 /// 1 + 4u: the ratio of distance to the sum of radii up to which balls may be reported.
-const REPORTED: f64 = 1.0 + 4.0 * crate::rounding::U;
+const MOST_REPORTED_RATIO: f64 = 1.0 + 4.0 * crate::rounding::U;
 
 impl PairFinder {
     /// Checks the candidates of a frame that has just been arranged, without allocating.
@@ -77,7 +77,7 @@ impl PairFinder {
     fn meet(&self, a: [f32; 4], b: [f32; 4]) -> bool {
         let [a, b] = [a, b].map(|ball| ball.map(f64::from));
         let apart: [f64; 3] = std::array::from_fn(|axis| (a[axis] - b[axis]).abs());
-        let reach = (a[3] + b[3]) * REPORTED;
+        let reach = (a[3] + b[3]) * MOST_REPORTED_RATIO;
         match self {
             Self::Neighbours(finder) if finder.volume() == Volume::Ball => {
                 reach >= 0.0 && apart.iter().map(|d| d * d).sum::<f64>() <= reach * reach

@@ -30,9 +30,9 @@ pub mod whole_vectors;
 
 pub use all_pairs::AllPairs;
 pub use auto::Population;
-use block::{BLOCK_BODIES, Page, Pen};
+use block::{BLOCK_BODIES, BlockPage, RunWriter};
 pub use block::{Block, MOST_CANDIDATES};
-pub use bounds::Bounds;
+pub use bounds::BallBounds;
 pub use ends::{Boxes, EndSlots};
 pub use grid::{Cells, Grid, TableLayout};
 use neighbours::List;

@@ -21,7 +21,7 @@ const FRAMES_PER_REORDER: u32 = 32;
 const SLOTS_PER_PART: usize = 64;
 
 /// The factor by which another axis must have more spread before static bodies are sorted again.
-const WORTH_TURNING: f64 = 1.5;
+const LEAST_SPREAD_RATIO: f64 = 1.5;
 
 /// Moving bodies sorted along an axis, then static ones.
 #[derive(Clone, Debug, Default)]
@@ -84,7 +84,7 @@ impl Sweep {
             column().map(|x| (x - mean) * (x - mean)).sum()
         });
         for axis in 0..3 {
-            if spread[axis] > WORTH_TURNING * spread[self.axis] {
+            if spread[axis] > LEAST_SPREAD_RATIO * spread[self.axis] {
                 (self.axis, self.fixed_sorted) = (axis, false);
             }
         }

@@ -34,7 +34,7 @@ pub use error::CullError;
 use std::{ops::Range, time::Instant};
 
 #[cfg(feature = "shapes")]
-use self::{models::Models, needs::Needs};
+use self::{models::Models, needs::VolumeNeeds};
 #[cfg(all(feature = "shapes", feature = "serde"))]
 use crate::strategy::RefinementRanks;
 #[cfg(feature = "shapes")]
@@ -65,7 +65,7 @@ pub struct Culler {
     /// finder and of earlier frames.
     is_canonical: bool,
     scheme: Scheme,
-    needs: Needs,
+    needs: VolumeNeeds,
     tier: Tier,
     threads: FrameThreads,
     models: Models,
@@ -123,7 +123,7 @@ impl Culler {
         let scheme = settings.strategy.scheme();
         let population = needs::population(scheme, &models, &places);
         let finder = PairFinder::new(settings.pairs, &population);
-        let needs = Needs::of(scheme, settings.k, finder.name());
+        let needs = VolumeNeeds::of(scheme, settings.k, finder.name());
         let directions = needs.intervals;
         threads.expect(needs.work(n as u64, &Totals::default()));
         let mut culler = Self {

@@ -10,7 +10,7 @@ use crate::volume::DirectionSet;
 
 /// Which volumes a strategy needs updated.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Needs {
+pub(super) struct VolumeNeeds {
     /// Balls, by place.
     pub balls: bool,
     /// Rows: or-DOPs, or boxes.
@@ -19,7 +19,7 @@ pub(super) struct Needs {
     pub intervals: Option<DirectionSet>,
 }
 
-impl Needs {
+impl VolumeNeeds {
     /// The needs of a row of the table of strategies; `k` are the directions of a k-DOP.
     pub fn of(scheme: Scheme, k: DirectionSet, finder: Finder) -> Self {
         // Oriented volumes are binned by balls; a finder that doesn't bin needs none.
@@ -34,7 +34,11 @@ impl Needs {
     /// The work of a frame with `moving` moving bodies and the tests of the frame `like`.
     pub fn work(&self, moving: u64, like: &Totals) -> FrameWork {
         let volumes = u64::from(self.balls) + u64::from(self.rows);
-        let slabs = if self.intervals.is_some() { SLABS } else { 0 };
+        let slabs = if self.intervals.is_some() {
+            INTERVALS_COST
+        } else {
+            0
+        };
         FrameWork {
             updates: (volumes + slabs) * moving,
             candidates: like.first.tests,
@@ -44,7 +48,7 @@ impl Needs {
 }
 
 /// The cost of updating a body's world-aligned slabs, in updates of a ball.
-const SLABS: u64 = 16;
+const INTERVALS_COST: u64 = 16;
 
 /// The facts by which `auto` picks a finder.
 pub(super) fn population(scheme: Scheme, models: &Models, places: &Places) -> Population {
@@ -83,10 +87,10 @@ mod tests {
             (false, false, None, 0),
             (true, false, None, 1),
             (true, true, None, 2),
-            (false, false, Some(DirectionSet::K6), SLABS),
-            (true, true, Some(DirectionSet::K18), SLABS + 2),
+            (false, false, Some(DirectionSet::K6), INTERVALS_COST),
+            (true, true, Some(DirectionSet::K18), INTERVALS_COST + 2),
         ] {
-            let needs = Needs {
+            let needs = VolumeNeeds {
                 balls,
                 rows,
                 intervals,

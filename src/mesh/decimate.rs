@@ -26,7 +26,7 @@ pub fn decimate(mesh: &TriangleMesh, target: usize) -> TriangleMesh {
     if surface.alive == 0 || mesh.triangles.len() <= target {
         return mesh.clone();
     }
-    let mut queue: BinaryHeap<Candidate> = surface
+    let mut queue: BinaryHeap<EdgeCollapse> = surface
         .edges()
         .map(|edge| surface.candidate(edge))
         .collect();
@@ -108,14 +108,14 @@ const LEAST_TURN: f64 = 0.2;
 
 /// An edge that may be collapsed, and the resulting position. It is stale once either end has
 /// moved.
-struct Candidate {
+struct EdgeCollapse {
     cost: f64,
     edge: (u32, u32),
     versions: (u32, u32),
     position: DVec3,
 }
 
-impl Ord for Candidate {
+impl Ord for EdgeCollapse {
     /// Reversed, because the heap returns the greatest first: the cheapest edge, then the one with
     /// the lowest indices.
     fn cmp(&self, other: &Self) -> Ordering {
@@ -126,19 +126,19 @@ impl Ord for Candidate {
     }
 }
 
-impl PartialOrd for Candidate {
+impl PartialOrd for EdgeCollapse {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Candidate {
+impl PartialEq for EdgeCollapse {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Candidate {}
+impl Eq for EdgeCollapse {}
 
 struct Surface {
     /// The origin of `positions`. Quadrics about a far origin would lose their digits.
@@ -246,7 +246,7 @@ impl Surface {
         })
     }
 
-    fn candidate(&self, edge: (u32, u32)) -> Candidate {
+    fn candidate(&self, edge: (u32, u32)) -> EdgeCollapse {
         let (a, b) = (self.position(edge.0), self.position(edge.1));
         let quadric = self.quadrics[edge.0 as usize].plus(&self.quadrics[edge.1 as usize]);
         let choices = [quadric.minimum(), Some((a + b) * 0.5), Some(a), Some(b)];
@@ -261,7 +261,7 @@ impl Surface {
             self.versions[edge.0 as usize],
             self.versions[edge.1 as usize],
         );
-        Candidate {
+        EdgeCollapse {
             cost: best.0,
             edge,
             versions,
@@ -269,12 +269,12 @@ impl Surface {
         }
     }
 
-    fn is_current(&self, candidate: &Candidate) -> bool {
+    fn is_current(&self, candidate: &EdgeCollapse) -> bool {
         let (a, b) = candidate.edge;
         candidate.versions == (self.versions[a as usize], self.versions[b as usize])
     }
 
-    fn may_collapse(&self, candidate: &Candidate) -> bool {
+    fn may_collapse(&self, candidate: &EdgeCollapse) -> bool {
         let (a, b) = candidate.edge;
         let touched = |triangle: &[u32; 3]| !(triangle.contains(&a) && triangle.contains(&b));
         let at_a: Vec<[u32; 3]> = self.triangles_at(a).filter(touched).collect();
@@ -308,7 +308,7 @@ impl Surface {
     }
 
     /// Whether a triangle at one of the ends would lose its area or turn over.
-    fn turns_over(&self, triangle: [u32; 3], candidate: &Candidate) -> bool {
+    fn turns_over(&self, triangle: [u32; 3], candidate: &EdgeCollapse) -> bool {
         let (a, b) = candidate.edge;
         let before = self.cross(triangle);
         let [p, q, r] = triangle.map(|v| {
@@ -330,7 +330,7 @@ impl Surface {
     }
 
     /// Moves both ends to the candidate's position and keeps the first.
-    fn collapse(&mut self, candidate: &Candidate) {
+    fn collapse(&mut self, candidate: &EdgeCollapse) {
         let (a, b) = candidate.edge;
         for t in std::mem::take(&mut self.around[b as usize]) {
             let Some(triangle) = self.triangles[t as usize] else {

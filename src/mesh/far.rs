@@ -16,7 +16,7 @@ const MOST_ROUNDING: f64 = 15.0 * exp2(-24);
 const LEAST_STEP: f64 = exp2(-126);
 
 /// Points stored as f32 vertices about an offset.
-pub(super) struct Placed {
+pub(super) struct PlacedPoints {
     pub vertices: Vec<[f32; 3]>,
     pub offset: [f64; 3],
     /// An upper bound on the distance of each point from offset + vertex.
@@ -24,12 +24,12 @@ pub(super) struct Placed {
 }
 
 /// Rounds points to f32; about an offset if rounding would otherwise move them too far.
-pub(super) fn place(points: &[[f64; 3]]) -> Placed {
+pub(super) fn place(points: &[[f64; 3]]) -> PlacedPoints {
     let round = |offset: [f64; 3]| points.iter().map(|&p| vertex(p, offset)).collect();
-    let bounds = Bounds::of(points.iter().copied());
+    let bounds = PointBounds::of(points.iter().copied());
     let moved = moved(points.iter().copied());
     if moved <= 0.5 * MOST_ROUNDING * bounds.size() {
-        return Placed {
+        return PlacedPoints {
             vertices: round([0.0; 3]),
             offset: [0.0; 3],
             rounding: 0.0,
@@ -37,10 +37,10 @@ pub(super) fn place(points: &[[f64; 3]]) -> Placed {
     }
     let offset = bounds.settled_offset();
     let kept = || points.iter().map(|&p| kept(p, offset));
-    let far = self::moved(kept()) > MOST_ROUNDING * Bounds::of(kept()).size();
+    let far = self::moved(kept()) > MOST_ROUNDING * PointBounds::of(kept()).size();
     let offset = if far { offset } else { [0.0; 3] };
     let tiny = bounds.size() < LEAST_STEP; // no offset mends what f32 can't hold of it
-    Placed {
+    PlacedPoints {
         vertices: round(offset),
         offset,
         rounding: if far || tiny {
@@ -98,12 +98,12 @@ fn difference(a: f64, b: f64) -> (f64, f64) {
 
 /// A box about points.
 #[derive(Clone, Copy)]
-struct Bounds {
+struct PointBounds {
     lo: [f64; 3],
     hi: [f64; 3],
 }
 
-impl Bounds {
+impl PointBounds {
     fn of(points: impl Iterator<Item = [f64; 3]>) -> Self {
         let none = Self {
             lo: [f64::INFINITY; 3],

@@ -110,7 +110,7 @@ impl TriangleMesh {
         Ok(Self::placed(placed, triangles))
     }
 
-    fn placed(placed: far::Placed, triangles: Vec<[u32; 3]>) -> Self {
+    fn placed(placed: far::PlacedPoints, triangles: Vec<[u32; 3]>) -> Self {
         Self {
             name: String::new(),
             vertices: placed.vertices,

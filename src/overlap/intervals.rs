@@ -10,7 +10,7 @@ use crate::simd::{Lanes, MAX_WIDTH};
 use crate::threads::Threads;
 
 /// The fewest bodies for whose columns it pays to wake another thread.
-const WORTH_SHARING: usize = 1 << 14;
+const FEWEST_SHARED_BODIES: usize = 1 << 14;
 
 /// World-aligned slabs in the pair finder's slot order: one column per direction, each padded by
 /// [`MAX_WIDTH`] finite entries.
@@ -36,7 +36,7 @@ impl IntervalSlots {
                 column.extend(order.iter().map(end));
                 column.resize(order.len() + MAX_WIDTH, 0.0);
             };
-            if order.len() >= WORTH_SHARING {
+            if order.len() >= FEWEST_SHARED_BODIES {
                 pool.each(columns, fill);
             } else {
                 let columns = columns.iter_mut().enumerate();

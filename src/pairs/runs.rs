@@ -9,24 +9,24 @@ use super::bytes;
 use crate::simd::prefetch;
 
 /// The smallest room of a list that is not empty, in entries.
-const SMALLEST_ROOM: u32 = 4;
+const LEAST_ROOM: u32 = 4;
 
 /// A list shrinks to half of its room when it fills at most one in this many entries of it.
-const SPARSE: u32 = 4;
+const SHRINK_DIVISOR: u32 = 4;
 
 /// Where a list's entries are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Run {
-    /// In units of [`SMALLEST_ROOM`].
+    /// In units of [`LEAST_ROOM`].
     start: u32,
     len: u32,
-    /// Zero, or a power of two no less than [`SMALLEST_ROOM`].
+    /// Zero, or a power of two no less than [`LEAST_ROOM`].
     room: u32,
 }
 
 impl Run {
     fn first(self) -> usize {
-        self.start as usize * SMALLEST_ROOM as usize
+        self.start as usize * LEAST_ROOM as usize
     }
 
     /// Whether the list is empty.
@@ -84,7 +84,7 @@ impl<T: Copy + Default> Runs<T> {
 
     /// Makes room for at least `len` entries of an empty list.
     pub fn reserve(&mut self, run: &mut Run, len: usize) {
-        let needed = (len as u32).next_power_of_two().max(SMALLEST_ROOM);
+        let needed = (len as u32).next_power_of_two().max(LEAST_ROOM);
         if needed > run.room {
             self.release(run);
             run.start = self.take_room(needed);
@@ -102,7 +102,7 @@ impl<T: Copy + Default> Runs<T> {
     #[inline]
     pub fn insert(&mut self, run: &mut Run, at: usize, item: T) {
         if run.len == run.room {
-            self.resize(run, (2 * run.room).max(SMALLEST_ROOM));
+            self.resize(run, (2 * run.room).max(LEAST_ROOM));
         }
         let (first, len) = (run.first(), run.len());
         self.items
@@ -133,7 +133,7 @@ impl<T: Copy + Default> Runs<T> {
             self.release(run);
             return;
         }
-        if len > run.room || (len * SPARSE <= run.room && run.room > SMALLEST_ROOM) {
+        if len > run.room || (len * SHRINK_DIVISOR <= run.room && run.room > LEAST_ROOM) {
             self.release(run);
             self.reserve(run, items.len());
         }
@@ -145,7 +145,7 @@ impl<T: Copy + Default> Runs<T> {
         run.len -= 1;
         if run.len == 0 {
             self.release(run);
-        } else if run.len * SPARSE <= run.room && run.room > SMALLEST_ROOM {
+        } else if run.len * SHRINK_DIVISOR <= run.room && run.room > LEAST_ROOM {
             self.resize(run, run.room / 2);
         }
     }
@@ -183,7 +183,7 @@ impl<T: Copy + Default> Runs<T> {
         }
         let start = self.items.len();
         self.items.resize(start + room as usize, T::default());
-        (start / SMALLEST_ROOM as usize) as u32
+        (start / LEAST_ROOM as usize) as u32
     }
 
     /// Bytes that the lists hold, including free rooms.

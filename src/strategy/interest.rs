@@ -139,7 +139,7 @@ mod tests {
     }
 
     /// Pythagorean quadruples, so that distances are f32.
-    const WAYS: [([f32; 3], f32); 4] = [
+    const CONE_DIRECTIONS: [([f32; 3], f32); 4] = [
         ([2.0, 3.0, 6.0], 7.0),
         ([-4.0, 7.0, 4.0], 9.0),
         ([8.0, -9.0, 12.0], 17.0),
@@ -156,7 +156,7 @@ mod tests {
             bodies
         };
         for apex in APEXES {
-            for (way, length) in WAYS {
+            for (way, length) in CONE_DIRECTIONS {
                 let centre = std::array::from_fn(|i| apex[i] + way[i]);
                 for on_body in [false, true] {
                     let cone = |range: f32| ViewCone {
@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn what_lies_on_the_rim_is_in_the_cone() {
         for apex in APEXES {
-            for (way, _) in WAYS {
+            for (way, _) in CONE_DIRECTIONS {
                 let cone = |half_angle: f32| ViewCone {
                     body: None,
                     apex: Some(apex),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Totals;
-use super::output::{Outlet, Output};
+use super::output::{Output, TaskOutput};
 use super::tasks::{Task, Tasks, split_work};
 #[cfg(feature = "shapes")]
 use super::{Inputs, Scratch, SlotNames};
@@ -185,7 +185,7 @@ impl<'a> Listing<'a> {
         };
         dispatch(
             self.tier,
-            List {
+            ListParts {
                 listing: *self,
                 parts,
                 out,
@@ -252,7 +252,7 @@ fn list_parts(
     tasks: &mut Tasks,
     output: Output<'_>,
 ) -> Totals {
-    let work = |parts: Range<usize>, task: &mut Task, outlet: &Outlet<'_, '_>| {
+    let work = |parts: Range<usize>, task: &mut Task, outlet: &TaskOutput<'_, '_>| {
         let flush = &mut |out: &mut PairList| outlet.offer(out);
         task.first = listing.run(parts, &mut task.out, outlet.worth(), flush);
     };
@@ -265,14 +265,14 @@ struct FlushRule<'a> {
     call: &'a mut dyn FnMut(&mut PairList),
 }
 
-struct List<'a> {
+struct ListParts<'a> {
     listing: Listing<'a>,
     parts: Range<usize>,
     out: &'a mut PairList,
     flush: FlushRule<'a>,
 }
 
-impl Kernel for List<'_> {
+impl Kernel for ListParts<'_> {
     type Output = VolumeCounters;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> VolumeCounters {
@@ -289,7 +289,7 @@ impl Kernel for List<'_> {
     }
 }
 
-impl List<'_> {
+impl ListParts<'_> {
     #[inline(always)]
     fn with<L: Lanes>(self, l: L, test: &impl SlotTest) -> VolumeCounters {
         let finder = self.listing.finder;

@@ -32,14 +32,14 @@ impl Output<'_> {
 }
 
 /// The destination of a task's list while it is being written.
-pub(super) enum Outlet<'t, 's> {
+pub(super) enum TaskOutput<'t, 's> {
     /// It is kept until all tasks are done.
     Kept,
     /// It is passed on whenever it is a portion.
     HandedOver(TaskTurn<'t, 's>),
 }
 
-impl Outlet<'_, '_> {
+impl TaskOutput<'_, '_> {
     /// The number of pairs from which on a list is offered.
     pub fn worth(&self) -> usize {
         match self {
@@ -66,12 +66,12 @@ impl Outlet<'_, '_> {
 }
 
 /// The turns in which tasks pass on portions.
-pub(super) struct Turns<'s> {
-    state: Mutex<State<'s>>,
+pub(super) struct OutputTurns<'s> {
+    state: Mutex<TurnState<'s>>,
     changed: Condvar,
 }
 
-struct State<'s> {
+struct TurnState<'s> {
     /// The task whose turn it is.
     task: usize,
     /// Whether a task panicked. Nothing is passed on from then on.
@@ -81,13 +81,13 @@ struct State<'s> {
 
 /// One task's turn.
 pub(super) struct TaskTurn<'t, 's> {
-    turns: &'t Turns<'s>,
+    turns: &'t OutputTurns<'s>,
     task: usize,
 }
 
-impl<'s> Turns<'s> {
+impl<'s> OutputTurns<'s> {
     pub fn new(sink: &'s mut PortionSink<'s>) -> Self {
-        let state = State {
+        let state = TurnState {
             task: 0,
             abandoned: false,
             sink,
@@ -115,7 +115,7 @@ impl<'t, 's> TaskTurn<'t, 's> {
     }
 
     /// Waits for this task's turn; `None` if another task panicked.
-    fn wait(&self) -> Option<MutexGuard<'t, State<'s>>> {
+    fn wait(&self) -> Option<MutexGuard<'t, TurnState<'s>>> {
         let mut state = self.turns.state.lock().ok()?;
         while state.task != self.task && !state.abandoned {
             state = self.turns.changed.wait(state).ok()?;
@@ -149,10 +149,10 @@ mod tests {
         std::thread::spawn(move || {
             let mut handed_over = 0;
             let mut sink = |list: &mut PairList| handed_over += list.len();
-            let turns = Turns::new(&mut sink);
+            let turns = OutputTurns::new(&mut sink);
             let panicked = std::thread::scope(|scope| {
                 let later = scope.spawn(|| {
-                    let _outlet = Outlet::HandedOver(turns.of(1));
+                    let _outlet = TaskOutput::HandedOver(turns.of(1));
                     panic!("planted");
                 });
                 later.join().is_err()
@@ -160,7 +160,7 @@ mod tests {
             let mut list: PairList = (0..PAIRS_PER_PORTION as u32)
                 .map(|pair| [pair, pair + 1])
                 .collect();
-            let outlet = Outlet::HandedOver(turns.of(0));
+            let outlet = TaskOutput::HandedOver(turns.of(0));
             outlet.offer(&mut list);
             outlet.end(&mut list);
             done.send((panicked, list.len(), handed_over))

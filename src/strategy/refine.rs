@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use super::output::{Outlet, Output};
+use super::output::{Output, TaskOutput};
 use super::tasks::{Task, Tasks, split_work};
 use super::{Inputs, Totals};
 use crate::counters::VolumeCounters;
@@ -156,7 +156,7 @@ impl<'a> Refiner<'a> {
         } else {
             MAX_WIDTH
         };
-        let work = |units: Range<usize>, task: &mut Task, _: &Outlet<'_, '_>| {
+        let work = |units: Range<usize>, task: &mut Task, _: &TaskOutput<'_, '_>| {
             let pairs = units.start * unit..(units.end * unit).min(list.len());
             let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
             if in_windows {

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use super::interest::InterestFilter;
 use super::listing::{Listing, PairNames};
-use super::output::{Outlet, Output};
+use super::output::{Output, TaskOutput};
 use super::refine::Refine;
 use super::tasks::{Task, split_work};
 use super::{Inputs, Scratch, Totals};
@@ -32,7 +32,7 @@ pub(super) fn flow(
 ) -> Totals {
     let listing = Listing::new(inputs, PairNames::Places);
     let refine = Refine::new(inputs, rows);
-    let work = |parts: Range<usize>, task: &mut Task, outlet: &Outlet<'_, '_>| {
+    let work = |parts: Range<usize>, task: &mut Task, outlet: &TaskOutput<'_, '_>| {
         refine_blocks(&listing, parts, &refine, interest, task, outlet);
     };
     let units = inputs.finder.parts();
@@ -52,7 +52,7 @@ fn refine_blocks(
     refine: &Refine<'_>,
     interest: Option<&[bool]>,
     task: &mut Task,
-    outlet: &Outlet<'_, '_>,
+    outlet: &TaskOutput<'_, '_>,
 ) {
     let Task {
         out,

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Totals;
-use super::output::{Outlet, Output, Turns};
+use super::output::{Output, OutputTurns, TaskOutput};
 use crate::counters::VolumeCounters;
 use crate::pairs::PairList;
 use crate::threads::Threads;
@@ -62,7 +62,7 @@ pub(super) fn split_work(
     Tasks(tasks): &mut Tasks,
     units: usize,
     output: Output<'_>,
-    work: impl Fn(Range<usize>, &mut Task, &Outlet<'_, '_>) + Sync,
+    work: impl Fn(Range<usize>, &mut Task, &TaskOutput<'_, '_>) + Sync,
 ) -> Totals {
     let threads = pool.threads();
     let count = match threads {
@@ -85,15 +85,15 @@ pub(super) fn split_work(
             // The first task writes to the common list, so that a single task copies nothing.
             std::mem::swap(out, &mut tasks[0].out);
             pool.each(tasks, |index, task| {
-                work(range(index), task, &Outlet::Kept);
+                work(range(index), task, &TaskOutput::Kept);
             });
             std::mem::swap(out, &mut tasks[0].out);
             out.append_all(tasks[1..].iter().map(|task| &task.out));
         }
         Output::Portions(sink) => {
-            let turns = Turns::new(sink);
+            let turns = OutputTurns::new(sink);
             pool.each(tasks, |index, task| {
-                let outlet = Outlet::HandedOver(turns.of(index));
+                let outlet = TaskOutput::HandedOver(turns.of(index));
                 work(range(index), task, &outlet);
                 outlet.end(&mut task.out);
             });
@@ -118,7 +118,7 @@ mod tests {
     fn shares(threads: usize, units: usize) -> (Vec<[u32; 2]>, Totals) {
         let pool = Threads::new(threads).expect("a few threads");
         let mut out = PairList::default();
-        let work = |share: Range<usize>, task: &mut Task, _: &Outlet<'_, '_>| {
+        let work = |share: Range<usize>, task: &mut Task, _: &TaskOutput<'_, '_>| {
             task.out.push(share.start as u32, share.end as u32);
             (task.first.tests, task.refining.hits) = (share.len() as u64, 1);
             task.seconds = 6.0;

@@ -9,8 +9,8 @@ use robust::{Coord, Coord3D, orient2d};
 
 /// The corners of the convex hull of coplanar points: indices, ascending.
 pub(super) fn corners(points: &[Coord3D<f64>]) -> Vec<u32> {
-    type Plane = fn(&Coord3D<f64>) -> Coord<f64>;
-    let planes: [Plane; 3] = [
+    type Projection = fn(&Coord3D<f64>) -> Coord<f64>;
+    let planes: [Projection; 3] = [
         |p| Coord { x: p.x, y: p.y },
         |p| Coord { x: p.y, y: p.z },
         |p| Coord { x: p.z, y: p.x },

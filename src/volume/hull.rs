@@ -37,7 +37,7 @@ impl Hull {
                 facets: Vec::new(),
             };
         };
-        let facets = Builder::new(&points, simplex).run();
+        let facets = HullBuilder::new(&points, simplex).run();
         let mut used: Vec<u32> = facets.iter().flatten().copied().collect();
         used.sort_unstable();
         used.dedup();
@@ -93,23 +93,23 @@ impl Hull {
     }
 }
 
-type Point = Coord3D<f64>;
+type HullPoint = Coord3D<f64>;
 
-fn coordinates(vertex: [f32; 3]) -> Point {
+fn coordinates(vertex: [f32; 3]) -> HullPoint {
     let [x, y, z] = vertex.map(f64::from);
-    Point { x, y, z }
+    HullPoint { x, y, z }
 }
 
 /// How far `p` is outside the plane of (a, b, c), counter-clockwise from outside: exact sign,
 /// approximate size.
-fn height(points: &[Point], [a, b, c]: [u32; 3], p: u32) -> f64 {
+fn height(points: &[HullPoint], [a, b, c]: [u32; 3], p: u32) -> f64 {
     let [a, b, c, p] = [a, b, c, p].map(|i| points[i as usize]);
     -orient3d(a, b, c, p)
 }
 
 /// Four vertices that are not coplanar, the first three clockwise seen from the fourth; `None` if
 /// all are coplanar.
-fn initial_simplex(points: &[Point]) -> Option<[u32; 4]> {
+fn initial_simplex(points: &[HullPoint]) -> Option<[u32; 4]> {
     let farthest = |measure: &dyn Fn(u32) -> f64| {
         let candidates = (0..points.len() as u32).map(|i| (i, measure(i)));
         let best = candidates.max_by(|a, b| a.1.total_cmp(&b.1));
@@ -131,9 +131,9 @@ fn initial_simplex(points: &[Point]) -> Option<[u32; 4]> {
 }
 
 /// The largest of the three projected areas of the triangle abp: 0 exactly if p is on the line ab.
-fn off_line(a: Point, b: Point, p: Point) -> f64 {
+fn off_line(a: HullPoint, b: HullPoint, p: HullPoint) -> f64 {
     let area =
-        |project: fn(Point) -> Coord<f64>| orient2d(project(a), project(b), project(p)).abs();
+        |project: fn(HullPoint) -> Coord<f64>| orient2d(project(a), project(b), project(p)).abs();
     let xy = area(|p| Coord { x: p.x, y: p.y });
     let yz = area(|p| Coord { x: p.y, y: p.z });
     let zx = area(|p| Coord { x: p.z, y: p.x });
@@ -161,16 +161,16 @@ struct HorizonEdge {
     beyond: u32,
 }
 
-struct Builder<'a> {
-    points: &'a [Point],
+struct HullBuilder<'a> {
+    points: &'a [HullPoint],
     facets: Vec<Facet>,
     /// Buffer: the new facet whose horizon edge starts at each vertex.
     starting_at: Vec<u32>,
     step: u32,
 }
 
-impl<'a> Builder<'a> {
-    fn new(points: &'a [Point], [a, b, c, d]: [u32; 4]) -> Self {
+impl<'a> HullBuilder<'a> {
+    fn new(points: &'a [HullPoint], [a, b, c, d]: [u32; 4]) -> Self {
         let facet = |corners, neighbours| Facet {
             corners,
             neighbours,

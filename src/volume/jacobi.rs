@@ -11,14 +11,14 @@ use glam::{DMat3, DVec3};
 
 /// Sweeps over the three off-diagonal entries. Five suffice for f64; the others find zeros and do
 /// nothing.
-const SWEEPS: usize = 8;
+const JACOBI_SWEEPS: usize = 8;
 
 /// Eigenvalues in falling order, each with its unit eigenvector of either sign. Their residuals
 /// |Av − λv| are at most 2⁻⁴⁸·max|A|.
 pub fn eigen(matrix: DMat3) -> [(f64, DVec3); 3] {
     let mut a = matrix.to_cols_array_2d();
     let mut vectors = DMat3::IDENTITY.to_cols_array_2d();
-    for _ in 0..SWEEPS {
+    for _ in 0..JACOBI_SWEEPS {
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
             if a[p][q] != 0.0 {
                 rotate(&mut a, &mut vectors, p, q);

@@ -99,7 +99,7 @@ impl Shape {
     }
 
     fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
-        let placement = Placement::of(mesh, spec)?;
+        let placement = ShapePlacement::of(mesh, spec)?;
         let vertices: Vec<[f32; 3]> = mesh
             .vertices
             .iter()
@@ -190,7 +190,7 @@ fn grown(size: f32, rounding: f32) -> f32 {
 }
 
 /// The origin of the vertices and the scale of the mesh.
-struct Placement {
+struct ShapePlacement {
     /// In the mesh's coordinates, which are relative to the mesh's offset.
     centre: DVec3,
     /// In the file's coordinates.
@@ -199,7 +199,7 @@ struct Placement {
     pose_offset: DVec3,
 }
 
-impl Placement {
+impl ShapePlacement {
     fn of(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
         let shape = || mesh.name.clone();
         if mesh.vertices.is_empty() {

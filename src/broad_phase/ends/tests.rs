@@ -1,13 +1,13 @@
-use super::super::whole_vectors::{SLOTS, check};
+use super::super::whole_vectors::{SLOTS_PER_CHECK, check};
 use super::*;
 use crate::simd::Tier;
 
 #[test]
 fn boxes_that_fill_their_vectors_cost_no_vector_more() {
     check(&EndSlots {
-        lower: vec![[1.0, 1.0, 1.0, 0.0]; SLOTS],
-        upper: vec![[2.0, 2.0, 2.0, 0.0]; SLOTS],
-        columns: [1.0, 1.0, 1.0, 2.0, 2.0, 2.0].map(|end| vec![end; SLOTS]),
+        lower: vec![[1.0, 1.0, 1.0, 0.0]; SLOTS_PER_CHECK],
+        upper: vec![[2.0, 2.0, 2.0, 0.0]; SLOTS_PER_CHECK],
+        columns: [1.0, 1.0, 1.0, 2.0, 2.0, 2.0].map(|end| vec![end; SLOTS_PER_CHECK]),
     });
 }
 

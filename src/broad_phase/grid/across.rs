@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use super::Grid;
-use super::level::Level;
+use super::level::GridLevel;
 use super::near::hand_over;
-use crate::broad_phase::{BLOCK_BODIES, FirstTest, Page};
+use crate::broad_phase::{BLOCK_BODIES, BlockPage, FirstTest};
 use crate::rounding::skin::Reach;
 use crate::rounding::widen;
 use crate::simd::Lanes;
@@ -21,11 +21,11 @@ pub enum LevelSearch {
 
 /// The cost of searching one row of cells, in bodies tested in a long run (10 cycles per row, 0.7
 /// per body).
-const ROW_COST: f64 = 15.0;
+const BODIES_PER_ROW_SEARCH: f64 = 15.0;
 
 /// The cheapest way to find the pairs of two levels, estimated from bodies and sizes: whether `a`
 /// searches for `b`, and how.
-pub fn plan(a: &Level, b: &Level) -> (bool, LevelSearch) {
+pub fn plan(a: &GridLevel, b: &GridLevel) -> (bool, LevelSearch) {
     let all = a.range.len() as f64 * b.range.len() as f64;
     let mut best = (a.range.len() < b.range.len(), LevelSearch::All, all);
     for (seeker, target, is_a) in [(a, b, true), (b, a, false)] {
@@ -40,7 +40,7 @@ pub fn plan(a: &Level, b: &Level) -> (bool, LevelSearch) {
             * (0..3)
                 .map(|i| cells(i) / f64::from(target.cells.count()[i]))
                 .product::<f64>();
-        let cost = seeker.range.len() as f64 * cells(1) * cells(2) * ROW_COST + found;
+        let cost = seeker.range.len() as f64 * cells(1) * cells(2) * BODIES_PER_ROW_SEARCH + found;
         if cost < best.2 {
             best = (is_a, LevelSearch::Cells, cost);
         }
@@ -56,8 +56,8 @@ impl Grid {
         &self,
         l: L,
         (seekers, grown): (Range<usize>, Reach),
-        target: &Level,
-        page: &mut Page,
+        target: &GridLevel,
+        page: &mut BlockPage,
         test: &mut impl FirstTest,
     ) {
         let starts = target.starts.as_slice();
@@ -108,16 +108,16 @@ impl Grid {
 mod tests {
     use super::super::cells::{Cells, TableLayout};
     use super::*;
-    use crate::broad_phase::{Block, Bounds};
+    use crate::broad_phase::{BallBounds, Block};
     use crate::simd::{Kernel, Tier, dispatch};
 
     const TARGETS: usize = 24;
     const SEEKERS: usize = 30;
 
     /// How often each target is a candidate of each seeker.
-    struct Count([[u32; TARGETS]; SEEKERS]);
+    struct PairCount([[u32; TARGETS]; SEEKERS]);
 
-    impl FirstTest for Count {
+    impl FirstTest for PairCount {
         fn run<L: Lanes>(&mut self, _: L, i: usize, run: Range<usize>) {
             run.for_each(|j| self.0[i - TARGETS][j] += 1);
         }
@@ -129,14 +129,14 @@ mod tests {
         }
     }
 
-    struct Look<'a>(&'a Grid);
+    struct SearchAcross<'a>(&'a Grid);
 
-    impl Kernel for Look<'_> {
-        type Output = Count;
+    impl Kernel for SearchAcross<'_> {
+        type Output = PairCount;
         #[inline(always)]
-        fn run<L: Lanes>(self, l: L) -> Count {
-            let mut count = Count([[0; TARGETS]; SEEKERS]);
-            let (seekers, mut page) = (self.0.levels[1].range.clone(), Page::new());
+        fn run<L: Lanes>(self, l: L) -> PairCount {
+            let mut count = PairCount([[0; TARGETS]; SEEKERS]);
+            let (seekers, mut page) = (self.0.levels[1].range.clone(), BlockPage::new());
             let seekers = (seekers, Reach::NONE);
             self.0
                 .across(l, seekers, &self.0.levels[0], &mut page, &mut count);
@@ -157,7 +157,7 @@ mod tests {
                 .collect();
             let names: Vec<u32> = (0..balls.len() as u32).collect();
             let levels = [0..TARGETS, TARGETS..balls.len()]
-                .map(|range| Level::new(range, TableLayout::Wrapped));
+                .map(|range| GridLevel::new(range, TableLayout::Wrapped));
             let mut grid = Grid {
                 levels: levels.to_vec(),
                 moving_levels: 2,
@@ -170,7 +170,7 @@ mod tests {
                 pool: &pool,
             };
             grid.arrange(executor, &balls, &names);
-            let Count(found) = dispatch(Tier::SCALAR, Look(&grid));
+            let PairCount(found) = dispatch(Tier::SCALAR, SearchAcross(&grid));
             for (i, found) in (TARGETS..).zip(found) {
                 for (j, times) in found.into_iter().enumerate() {
                     let [a, b] = [i, j].map(|slot| grid.slots.balls[slot]);
@@ -183,10 +183,10 @@ mod tests {
 
     /// So many bodies, the widest of that radius, in cells of at least its size and so many of them
     /// each way.
-    fn level(bodies: usize, widest: f32, cells: [u8; 3], layout: TableLayout) -> Level {
-        let mut level = Level::new(0..bodies, layout);
+    fn level(bodies: usize, widest: f32, cells: [u8; 3], layout: TableLayout) -> GridLevel {
+        let mut level = GridLevel::new(0..bodies, layout);
         let hi = cells.map(|count| 2.0 * widest * (f32::from(count) - 1.0));
-        let bounds = Bounds {
+        let bounds = BallBounds {
             lo: [0.0; 3],
             hi,
             widest,

@@ -12,7 +12,7 @@
 //! and B spread evenly over it. Different cells may then share a table entry, which adds false
 //! candidates but loses none.
 
-use crate::broad_phase::{BLOCK_BODIES, Bounds};
+use crate::broad_phase::{BLOCK_BODIES, BallBounds};
 use crate::rounding::widen;
 use crate::simd::{Lanes, quads_in_columns};
 
@@ -91,8 +91,8 @@ pub struct Cells {
 impl Cells {
     /// Cells for `bodies` balls within the bounds, as large as the largest radius requires; in the
     /// layout of a box they are larger if the table would be too long.
-    pub fn fit(bounds: &Bounds, bodies: usize, layout: TableLayout) -> Self {
-        // Bounds that aren't finite come from bodies that break the contract. They get some cells,
+    pub fn fit(bounds: &BallBounds, bodies: usize, layout: TableLayout) -> Self {
+        // BallBounds that aren't finite come from bodies that break the contract. They get some cells,
         // so that this ends.
         let [lo, hi] = [bounds.lo, bounds.hi].map(|end| end.map(finite));
         let longest = (0..3).map(|i| hi[i] - lo[i]).fold(0.0, f64::max);

@@ -7,13 +7,13 @@
 
 use std::ops::Range;
 
-use super::{FRAMES_PER_REORDER, Grid, Level};
+use super::{FRAMES_PER_REORDER, Grid, GridLevel};
 
-/// How many late bodies, of any sizes, are accepted: [`FEW_LATE`], or one in [`LATE_SHARE`] bodies,
-/// but at most [`MOST_LATE`], because all of them may be in one cell.
-const FEW_LATE: usize = 64;
-const LATE_SHARE: usize = 16;
-const MOST_LATE: usize = 4096;
+/// How many late bodies, of any sizes, are accepted: [`LEAST_LATE_LIMIT`], or one in [`BODIES_PER_LATE`] bodies,
+/// but at most [`MOST_LATE_LIMIT`], because all of them may be in one cell.
+const LEAST_LATE_LIMIT: usize = 64;
+const BODIES_PER_LATE: usize = 16;
+const MOST_LATE_LIMIT: usize = 4096;
 
 impl Grid {
     /// Changes the set of bodies, in the order after
@@ -39,12 +39,12 @@ impl Grid {
         (self.fixed_sorted, self.candidates) = (false, 0);
         let late = self.levels.iter().filter(|level| level.is_late);
         let late: usize = late.map(|level| level.range.len()).sum();
-        late <= FEW_LATE.max(MOST_LATE.min(bodies / LATE_SHARE))
+        late <= LEAST_LATE_LIMIT.max(MOST_LATE_LIMIT.min(bodies / BODIES_PER_LATE))
     }
 
     /// Distributes `places` to the levels whose bodies stay, in their order, and to one level of
     /// late bodies.
-    fn take_levels(&mut self, former: &[Level], stays: &[bool], places: Range<usize>) {
+    fn take_levels(&mut self, former: &[GridLevel], stays: &[bool], places: Range<usize>) {
         let mut start = places.start;
         for level in former.iter().filter(|level| !level.is_late) {
             let stay = stays[level.range.clone()].iter().filter(|stays| **stays);
@@ -55,7 +55,7 @@ impl Grid {
             start = end;
         }
         if start < places.end {
-            self.levels.push(Level::late(start..places.end));
+            self.levels.push(GridLevel::late(start..places.end));
         }
     }
 }

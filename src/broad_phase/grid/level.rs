@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::cells::{Cells, TableLayout};
-use crate::broad_phase::{Bounds, Slots};
+use crate::broad_phase::{BallBounds, Slots};
 use crate::rounding::skin::Reach;
 use crate::rounding::widen;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
@@ -17,7 +17,7 @@ use crate::threads::{Executor, Threads};
 /// Bodies in cells of one size. Their slots are a range and their places the same range, within
 /// which they are sorted.
 #[derive(Clone, Debug)]
-pub struct Level {
+pub struct GridLevel {
     /// The range of slots and of places.
     pub range: Range<usize>,
     /// The cells of this frame.
@@ -33,11 +33,11 @@ pub struct Level {
     layout: TableLayout,
 }
 
-impl Level {
+impl GridLevel {
     /// A level for the bodies in a range of places.
     pub fn new(range: Range<usize>, layout: TableLayout) -> Self {
         Self {
-            cells: Cells::fit(&Bounds::EMPTY, range.len(), layout),
+            cells: Cells::fit(&BallBounds::EMPTY, range.len(), layout),
             starts: Vec::new(),
             widest: 0.0,
             reach: Reach::NONE,
@@ -94,7 +94,7 @@ impl Level {
         self.starts[0] = range.start as u32;
         let last = self.cells.last();
         loop {
-            let from = Columns {
+            let from = BodiesByPlace {
                 balls,
                 names,
                 cells: place_cells,
@@ -153,24 +153,24 @@ impl Level {
 const BODIES_PER_TASK: usize = 4096;
 
 /// The fewest bodies whose sort is divided among threads.
-const WORTH_SHARING: usize = 1 << 15;
+const FEWEST_SHARED_BODIES: usize = 1 << 15;
 
 /// The bounds of some balls, computed on all threads. Extremes don't depend on the split.
-fn bounds(tier: Tier, pool: &Threads, balls: &[[f32; 4]]) -> Bounds {
-    if pool.threads() == 1 || balls.len() < WORTH_SHARING {
-        return Bounds::of(tier, balls);
+fn bounds(tier: Tier, pool: &Threads, balls: &[[f32; 4]]) -> BallBounds {
+    if pool.threads() == 1 || balls.len() < FEWEST_SHARED_BODIES {
+        return BallBounds::of(tier, balls);
     }
     let piece = balls.len().div_ceil(pool.threads());
-    let mut found = vec![Bounds::EMPTY; pool.threads()];
+    let mut found = vec![BallBounds::EMPTY; pool.threads()];
     pool.each(&mut found, |k, found| {
         let end = balls.len().min((k + 1) * piece);
-        *found = Bounds::of(tier, &balls[end.min(k * piece)..end]);
+        *found = BallBounds::of(tier, &balls[end.min(k * piece)..end]);
     });
-    found.into_iter().fold(Bounds::EMPTY, Bounds::union)
+    found.into_iter().fold(BallBounds::EMPTY, BallBounds::union)
 }
 
 /// The bodies to be sorted, by place.
-struct Columns<'a> {
+struct BodiesByPlace<'a> {
     balls: &'a [[f32; 4]],
     names: &'a [u32],
     cells: &'a [u32],
@@ -191,9 +191,9 @@ impl<'a> CellShare<'a> {
     /// Sorts all cells, split among the threads: each reads all bodies and sorts those in its own
     /// cells, so that the order is that of one thread. Returns false without sorting if a body's
     /// cell isn't in the table.
-    fn sort(mut self, pool: &Threads, from: &Columns<'_>) -> bool {
+    fn sort(mut self, pool: &Threads, from: &BodiesByPlace<'_>) -> bool {
         let threads = pool.threads();
-        if threads == 1 || from.cells.len() < WORTH_SHARING {
+        if threads == 1 || from.cells.len() < FEWEST_SHARED_BODIES {
             let counted = count(from.cells, self.first_cell, self.ends);
             let all = counted == from.cells.len();
             if all {
@@ -245,7 +245,7 @@ impl<'a> CellShare<'a> {
 
     /// Puts the counted bodies into their slots. Each cell's entry changes from its count to its
     /// start, and then to its end.
-    fn place(&mut self, from: &Columns<'_>) {
+    fn place(&mut self, from: &BodiesByPlace<'_>) {
         let mut slot = self.first_slot;
         for end in self.ends.iter_mut() {
             slot += std::mem::replace(end, slot);
@@ -299,8 +299,8 @@ mod tests {
 
     /// Checks a level of two bodies whose slots have these names.
     fn check(slotted: [u32; 2], names: [u32; 2]) {
-        let (mut level, balls) = (Level::new(0..2, TableLayout::Box), [[0.25; 4]; 2]);
-        level.cells = Cells::fit(&Bounds::of(Tier::SCALAR, &balls), 2, TableLayout::Box);
+        let (mut level, balls) = (GridLevel::new(0..2, TableLayout::Box), [[0.25; 4]; 2]);
+        level.cells = Cells::fit(&BallBounds::of(Tier::SCALAR, &balls), 2, TableLayout::Box);
         (level.starts, level.widest) = (vec![0, 2], widen(0.25).into());
         let slots = Slots {
             names: slotted.to_vec(),
@@ -328,7 +328,7 @@ mod tests {
 
     /// Sorts balls with these names: their slots, and each slot's cell.
     fn sort(
-        level: &mut Level,
+        level: &mut GridLevel,
         threads: usize,
         balls: &[[f32; 4]],
         names: &[u32],
@@ -354,9 +354,9 @@ mod tests {
     /// A box that breathes allocates nothing.
     #[test]
     fn a_table_that_grows_takes_an_eighth_to_spare() {
-        let mut level = Level::new(0..100, TableLayout::Box);
+        let mut level = GridLevel::new(0..100, TableLayout::Box);
         let names: Vec<u32> = (0..100).collect();
-        let sorted = |level: &mut Level, step: f32| {
+        let sorted = |level: &mut GridLevel, step: f32| {
             let ball = |&i: &u32| [step * i as f32, 0.0, 0.0, 1.0];
             sort(
                 level,
@@ -381,7 +381,7 @@ mod tests {
     /// Bodies are shared by cells, and those of a cell stay in the order of places.
     #[test]
     fn many_bodies_are_sorted_alike_on_any_number_of_threads() {
-        let len = WORTH_SHARING + 1000;
+        let len = FEWEST_SHARED_BODIES + 1000;
         let ball = |i: usize| {
             let [x, y, z] = [7919, 104_729, 1_299_709].map(|p| (i * p % 1009) as f32);
             [x, y, z, 3.0 + (i % 7) as f32]
@@ -389,7 +389,7 @@ mod tests {
         let balls: Vec<_> = (0..len).map(ball).collect();
         let names: Vec<u32> = (0..len as u32).rev().collect();
         let sorted = |threads| {
-            let mut level = Level::new(0..len, TableLayout::Box);
+            let mut level = GridLevel::new(0..len, TableLayout::Box);
             let (slots, slot_cells) = sort(&mut level, threads, &balls, &names);
             (
                 level.starts,

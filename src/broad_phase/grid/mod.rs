@@ -18,8 +18,8 @@ use std::ops::Range;
 pub use self::cells::{Cells, TableLayout};
 
 use self::across::LevelSearch;
-use self::level::Level;
-use super::{FirstTest, Page, Reorder, Slots, bytes};
+use self::level::GridLevel;
+use super::{BlockPage, FirstTest, Reorder, Slots, bytes};
 use crate::rounding::skin::Reach;
 use crate::simd::Lanes;
 use crate::threads::Executor;
@@ -31,14 +31,14 @@ const FRAMES_PER_REORDER: u32 = 4;
 
 /// Frames between two checks whether the levels still fit. [`PLAN_GROWTH`] is the growth of the
 /// number of candidates that triggers a new plan.
-const PLAN_PAUSE: u32 = 8;
+const FRAMES_PER_PLAN_CHECK: u32 = 8;
 const PLAN_GROWTH: u64 = 2;
 
 /// Slots per part of the work.
 const SLOTS_PER_PART: usize = 1024;
 
 /// Parts are ordered by their relative position in their level, in 2 to this power steps.
-const SHARE_BITS: u32 = 24;
+const POSITION_BITS: u32 = 24;
 
 /// Seekers of another level per part of the work, when they search cells and when they are tested
 /// against all.
@@ -49,14 +49,14 @@ const SEEKERS_OF_ALL: usize = 16;
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     /// Moving levels first.
-    levels: Vec<Level>,
+    levels: Vec<GridLevel>,
     moving_levels: usize,
     /// Whether the static levels are sorted.
     fixed_sorted: bool,
     slots: Slots,
     slot_cells: Vec<u32>,
     place_cells: Vec<u32>,
-    parts: Vec<Part>,
+    parts: Vec<GridPart>,
     /// Frames since the last plan.
     age: u32,
     /// Candidates in the last frame, and in the first frame after the last plan.
@@ -66,16 +66,16 @@ pub struct Grid {
 
 /// A part of the work: the pairs of some slots with slots of one level.
 #[derive(Clone, Debug)]
-struct Part {
+struct GridPart {
     slots: Range<usize>,
     /// The level of these slots.
     seeker: usize,
     level: usize,
-    kind: Kind,
+    kind: PartKind,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum PartKind {
     Near,
     Across(LevelSearch),
 }
@@ -121,7 +121,7 @@ impl Grid {
         let grown = self
             .planned
             .is_some_and(|planned| self.candidates > most(planned));
-        (self.levels.is_empty() && bodies > 0) || (grown && self.age >= PLAN_PAUSE)
+        (self.levels.is_empty() && bodies > 0) || (grown && self.age >= FRAMES_PER_PLAN_CHECK)
     }
 
     /// Writes the order of the slots as the order of places, after a frame in which bodies were
@@ -191,11 +191,11 @@ impl Grid {
     fn cut(&mut self) {
         self.parts.clear();
         for (index, level) in self.levels[..self.moving_levels].iter().enumerate() {
-            let near = Part {
+            let near = GridPart {
                 slots: level.range.clone(),
                 seeker: index,
                 level: index,
-                kind: Kind::Near,
+                kind: PartKind::Near,
             };
             push_parts(&mut self.parts, near, SLOTS_PER_PART);
             for (other_index, other) in self.levels.iter().enumerate().skip(index + 1) {
@@ -209,11 +209,11 @@ impl Grid {
                     LevelSearch::Cells => SEEKERS_BY_CELLS,
                     LevelSearch::All => SEEKERS_OF_ALL,
                 };
-                let across = Part {
+                let across = GridPart {
                     slots: self.levels[seeker].range.clone(),
                     seeker,
                     level: target,
-                    kind: Kind::Across(search),
+                    kind: PartKind::Across(search),
                 };
                 push_parts(&mut self.parts, across, size);
             }
@@ -223,7 +223,7 @@ impl Grid {
         let levels = &self.levels;
         self.parts.sort_by_key(|part| {
             let all = &levels[part.seeker].range;
-            (((part.slots.start - all.start) as u64) << SHARE_BITS) / all.len() as u64
+            (((part.slots.start - all.start) as u64) << POSITION_BITS) / all.len() as u64
         });
     }
 
@@ -264,16 +264,16 @@ impl Grid {
 
     #[inline(always)]
     pub(super) fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
-        let mut page = Page::new();
+        let mut page = BlockPage::new();
         for part in &self.parts[parts] {
             let (slots, level) = (part.slots.clone(), &self.levels[part.level]);
             match part.kind {
-                Kind::Near => self.near(l, level, slots, &mut page, test),
-                Kind::Across(LevelSearch::Cells) => {
+                PartKind::Near => self.near(l, level, slots, &mut page, test),
+                PartKind::Across(LevelSearch::Cells) => {
                     let grown = self.levels[part.seeker].reach;
                     self.across(l, (slots, grown), level, &mut page, test);
                 }
-                Kind::Across(LevelSearch::All) => {
+                PartKind::Across(LevelSearch::All) => {
                     for i in slots {
                         test.run(l, i, level.range.clone());
                     }
@@ -284,10 +284,10 @@ impl Grid {
 }
 
 /// Splits a part into parts of `size` slots.
-fn push_parts(parts: &mut Vec<Part>, whole: Part, size: usize) {
+fn push_parts(parts: &mut Vec<GridPart>, whole: GridPart, size: usize) {
     let slots = whole.slots.clone();
     for start in slots.clone().step_by(size) {
-        parts.push(Part {
+        parts.push(GridPart {
             slots: start..slots.end.min(start + size),
             ..whole.clone()
         });
@@ -309,11 +309,11 @@ mod tests {
     /// A grid with one level of `each` moving bodies and one of `each` static ones, planned some
     /// frames ago.
     fn planned(each: usize) -> Grid {
-        let level = |range| Level::new(range, TableLayout::Box);
+        let level = |range| GridLevel::new(range, TableLayout::Box);
         Grid {
             levels: vec![level(0..each), level(each..2 * each)],
             moving_levels: 1,
-            age: PLAN_PAUSE,
+            age: FRAMES_PER_PLAN_CHECK,
             ..Grid::default()
         }
     }
@@ -327,12 +327,12 @@ mod tests {
         assert!(!grid.needs_plan(10));
         for (candidates, grown) in [(0, false), (209, false), (210, false), (211, true)] {
             grid.observe(candidates);
-            grid.age = PLAN_PAUSE;
+            grid.age = FRAMES_PER_PLAN_CHECK;
             assert_eq!(grid.needs_plan(10), grown, "{candidates}");
-            grid.age = PLAN_PAUSE - 1;
+            grid.age = FRAMES_PER_PLAN_CHECK - 1;
             assert!(!grid.needs_plan(10), "{candidates}: too soon");
         }
-        grid.age = PLAN_PAUSE + 1;
+        grid.age = FRAMES_PER_PLAN_CHECK + 1;
         assert!(grid.needs_plan(10));
     }
 
@@ -343,12 +343,18 @@ mod tests {
         let mut order = vec![9];
         let followed = grid.follow_slots(2, &[0, 1, 3, 2], &mut order);
         assert_eq!((followed, &order), (Reorder::Moving, &vec![1, 0, 3, 2]));
-        assert_eq!((grid.age, grid.fixed_sorted), (PLAN_PAUSE + 1, true));
+        assert_eq!(
+            (grid.age, grid.fixed_sorted),
+            (FRAMES_PER_PLAN_CHECK + 1, true)
+        );
         let followed = grid.follow_slots(2, &[0, 1, 2, 3], &mut order);
         assert_eq!((followed, &order), (Reorder::All, &vec![1, 0, 3, 2]));
-        assert_eq!((grid.age, grid.fixed_sorted), (PLAN_PAUSE + 2, false));
+        assert_eq!(
+            (grid.age, grid.fixed_sorted),
+            (FRAMES_PER_PLAN_CHECK + 2, false)
+        );
         grid.rest();
-        assert_eq!(grid.age, PLAN_PAUSE + 3);
+        assert_eq!(grid.age, FRAMES_PER_PLAN_CHECK + 3);
     }
 
     #[test]
@@ -361,11 +367,11 @@ mod tests {
         grid.slot_cells.resize(6, 0);
         assert_eq!(grid.bodies(), 6);
         grid.parts = [(0, 0), (0, 1), (1, 0)]
-            .map(|(seeker, level)| Part {
+            .map(|(seeker, level)| GridPart {
                 slots: 0..1,
                 seeker,
                 level,
-                kind: Kind::Near,
+                kind: PartKind::Near,
             })
             .to_vec();
         let moves = [0, 1, 2].map(|part| grid.moves(part));
@@ -374,11 +380,11 @@ mod tests {
 
     #[test]
     fn a_part_is_cut_without_gaps_or_overlap() {
-        let whole = Part {
+        let whole = GridPart {
             slots: 3..40,
             seeker: 1,
             level: 2,
-            kind: Kind::Across(LevelSearch::All),
+            kind: PartKind::Across(LevelSearch::All),
         };
         let mut parts = Vec::new();
         push_parts(&mut parts, whole, 16);
@@ -401,6 +407,6 @@ mod tests {
         grid.levels[1].starts = Vec::with_capacity(1_000_000);
         assert_eq!(grid.bytes(), 4_444_456);
         grid.parts = Vec::with_capacity(3);
-        assert_eq!(grid.bytes(), 4_444_456 + 3 * size_of::<Part>());
+        assert_eq!(grid.bytes(), 4_444_456 + 3 * size_of::<GridPart>());
     }
 }

@@ -9,8 +9,8 @@ use std::ops::Range;
 
 use super::Grid;
 use super::cells::TableLayout;
-use super::level::Level;
-use crate::broad_phase::{BLOCK_BODIES, FirstTest, Page, Pen};
+use super::level::GridLevel;
+use crate::broad_phase::{BLOCK_BODIES, BlockPage, FirstTest, RunWriter};
 use crate::simd::Lanes;
 
 impl Grid {
@@ -19,9 +19,9 @@ impl Grid {
     pub(super) fn near<L: Lanes>(
         &self,
         l: L,
-        level: &Level,
+        level: &GridLevel,
         range: Range<usize>,
-        page: &mut Page,
+        page: &mut BlockPage,
         test: &mut impl FirstTest,
     ) {
         let mut first = range.start;
@@ -40,7 +40,13 @@ impl Grid {
 
     /// In a box of more than one cell per axis. `rows` are those of the cells.
     #[inline(always)]
-    fn in_space(&self, level: &Level, bodies: Range<usize>, rows: [u32; 4], mut pen: Pen<'_>) {
+    fn in_space(
+        &self,
+        level: &GridLevel,
+        bodies: Range<usize>,
+        rows: [u32; 4],
+        mut pen: RunWriter<'_>,
+    ) {
         // The table from each row on, all of one length, so that one bounds check of a cell covers
         // all runs.
         let starts = level.starts.as_slice();
@@ -60,7 +66,7 @@ impl Grid {
 
     /// In a plane or on a line of cells.
     #[inline(always)]
-    fn in_box(&self, level: &Level, bodies: Range<usize>, mut pen: Pen<'_>) {
+    fn in_box(&self, level: &GridLevel, bodies: Range<usize>, mut pen: RunWriter<'_>) {
         let starts = level.starts.as_slice();
         for (lane, &cell) in self.slot_cells[bodies.clone()].iter().enumerate() {
             pen.push(
@@ -77,7 +83,7 @@ impl Grid {
 
     /// As in a box, but a run may continue at the table's beginning after its end.
     #[inline(always)]
-    fn wrapped(&self, level: &Level, bodies: Range<usize>, mut pen: Pen<'_>) {
+    fn wrapped(&self, level: &GridLevel, bodies: Range<usize>, mut pen: RunWriter<'_>) {
         let (starts, mask) = (level.starts.as_slice(), level.cells.mask());
         let table = mask as usize + 1;
         for (lane, &cell) in self.slot_cells[bodies.clone()].iter().enumerate() {
@@ -102,7 +108,7 @@ impl Grid {
 
 /// Passes a page's candidates to the test.
 #[inline(always)]
-pub(super) fn hand_over<L: Lanes>(l: L, page: &Page, test: &mut impl FirstTest) {
+pub(super) fn hand_over<L: Lanes>(l: L, page: &BlockPage, test: &mut impl FirstTest) {
     test.block(l, &page.block());
     for (i, run) in page.long_runs() {
         test.run(l, i, run);

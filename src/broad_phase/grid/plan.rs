@@ -8,8 +8,8 @@
 use std::ops::Range;
 
 use super::cells::{Cells, TableLayout};
-use super::level::{AssignCells, Level};
-use crate::broad_phase::Bounds;
+use super::level::{AssignCells, GridLevel};
+use crate::broad_phase::BallBounds;
 use crate::simd::{self, dispatch};
 
 /// The mean number of bodies in a body's cell, including itself, above which large bodies are split
@@ -21,18 +21,18 @@ const MOST_LEVELS: usize = 24;
 
 /// By which factor a wrapped table must reduce the candidates to be used, because its rows are
 /// scattered in memory.
-const WORTH_WRAPPING: u64 = 2;
+const LEAST_WRAP_GAIN: u64 = 2;
 
 /// Splits a range of places into levels, largest balls first. `order` lists the places in the range
 /// and gets sorted by level; within a level the order stays.
-pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec<Level> {
+pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec<GridLevel> {
     let mut levels = Vec::new();
     let mut from = 0;
     while from < order.len() {
         let rest = &mut order[from..];
         let mut level = gather(balls, rest);
         let (mut layout, crowd) = fit(&level);
-        let half = 0.5 * Bounds::of(simd::Tier::SCALAR, &level).widest;
+        let half = 0.5 * BallBounds::of(simd::Tier::SCALAR, &level).widest;
         let wide = |place: &u32| balls[*place as usize][3] > half;
         let crowded = crowd > MOST_PER_CELL * rest.len() as u64 && levels.len() + 1 < MOST_LEVELS;
         let mut count = rest.len();
@@ -45,7 +45,7 @@ pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec
             layout = fit(&level).0;
         }
         let start = range.start + from;
-        levels.push(Level::new(start..start + count, layout));
+        levels.push(GridLevel::new(start..start + count, layout));
         from += count;
     }
     levels
@@ -58,13 +58,13 @@ fn gather(balls: &[[f32; 4]], places: &[u32]) -> Vec<[f32; 4]> {
 /// The better table layout for some balls, and how crowded its cells are: the sum, over all balls,
 /// of the number of balls in the same cell.
 fn fit(balls: &[[f32; 4]]) -> (TableLayout, u64) {
-    let bounds = Bounds::of(simd::Tier::SCALAR, balls);
+    let bounds = BallBounds::of(simd::Tier::SCALAR, balls);
     let [in_box, wrapped] = [TableLayout::Box, TableLayout::Wrapped]
         .map(|layout| Cells::fit(&bounds, balls.len(), layout));
     let crowd_in_box = crowd(&in_box, balls);
     if in_box.size() > wrapped.size() {
         let crowd_wrapped = crowd(&wrapped, balls);
-        if WORTH_WRAPPING * crowd_wrapped < crowd_in_box {
+        if LEAST_WRAP_GAIN * crowd_wrapped < crowd_in_box {
             return (TableLayout::Wrapped, crowd_wrapped);
         }
     }
@@ -151,7 +151,11 @@ mod tests {
     fn a_crowd_is_the_sum_over_bodies_of_those_in_their_cells() {
         let at = |x: f32| [x, 0.0, 0.0, 0.5];
         let balls = [0.0, 50.0, 0.1, 50.1, 50.2, 100.0].map(at);
-        let cells = Cells::fit(&Bounds::of(simd::Tier::SCALAR, &balls), 6, TableLayout::Box);
+        let cells = Cells::fit(
+            &BallBounds::of(simd::Tier::SCALAR, &balls),
+            6,
+            TableLayout::Box,
+        );
         assert_eq!(crowd(&cells, &balls), 4 + 9 + 1);
         assert_eq!(fit(&balls).1, 14);
     }
@@ -183,7 +187,7 @@ mod tests {
         for (n, step) in (2..120).flat_map(|n| [0.7_f32, 1.0, 1.5, 4.0].map(|step| (n, step))) {
             let at = |i: usize| i as f32 * step;
             let balls: Vec<_> = (0..n).map(|i| [at(i), at(i), at(i), 0.5]).collect();
-            let bounds = Bounds::of(simd::Tier::SCALAR, &balls);
+            let bounds = BallBounds::of(simd::Tier::SCALAR, &balls);
             let [in_box, others] = [TableLayout::Box, TableLayout::Wrapped]
                 .map(|layout| Cells::fit(&bounds, n, layout));
             let crowds = [&in_box, &others].map(|cells| crowd(cells, &balls));

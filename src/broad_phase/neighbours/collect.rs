@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Volume;
-use super::effort::{CANDIDATES_PER_REPORT, Effort};
+use super::effort::{CANDIDATES_PER_REPORT, SearchEffort};
 use super::list::Chunk;
 use crate::broad_phase::{
     BLOCK_BODIES, BallTest, Block, FirstTest, MOST_CANDIDATES, SlotBodies, SlotTest,
@@ -44,7 +44,7 @@ impl BallTest for GrownBalls<'_> {
 pub struct Collector<'a, T> {
     test: &'a T,
     chunk: &'a mut Chunk,
-    effort: &'a Effort,
+    effort: &'a SearchEffort,
     /// Pairs and candidates that are not yet added to the shared effort.
     pairs: u64,
     candidates: u64,
@@ -53,7 +53,7 @@ pub struct Collector<'a, T> {
 
 impl<'a, T: SlotTest> Collector<'a, T> {
     #[inline(always)]
-    pub fn new(test: &'a T, chunk: &'a mut Chunk, effort: &'a Effort) -> Self {
+    pub fn new(test: &'a T, chunk: &'a mut Chunk, effort: &'a SearchEffort) -> Self {
         Self {
             test,
             chunk,
@@ -128,15 +128,15 @@ impl<T: SlotTest> FirstTest for Collector<'_, T> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::list::List;
+    use super::super::list::NeighbourList;
     use super::*;
     use crate::broad_phase::Slots;
     use crate::simd::{Kernel, Tier, dispatch};
 
     /// Passes runs of slots to a list.
-    struct HandRuns<'a, 's>(Collector<'a, GrownBalls<'s>>, &'a [(usize, Range<usize>)]);
+    struct PassRuns<'a, 's>(Collector<'a, GrownBalls<'s>>, &'a [(usize, Range<usize>)]);
 
-    impl Kernel for HandRuns<'_, '_> {
+    impl Kernel for PassRuns<'_, '_> {
         type Output = ();
         fn run<L: Lanes>(mut self, l: L) {
             for (i, run) in self.1 {
@@ -159,7 +159,7 @@ mod tests {
         }
     }
 
-    struct FindPairs<'a>(&'a List, &'a mut ListedPairs);
+    struct FindPairs<'a>(&'a NeighbourList, &'a mut ListedPairs);
 
     impl Kernel for FindPairs<'_> {
         type Output = ();
@@ -201,14 +201,14 @@ mod tests {
         };
         for tier in Tier::available() {
             let mut chunk = Chunk::default();
-            let effort = Effort::unlimited();
+            let effort = SearchEffort::unlimited();
             dispatch(
                 tier,
-                HandRuns(Collector::new(&test, &mut chunk, &effort), &runs),
+                PassRuns(Collector::new(&test, &mut chunk, &effort), &runs),
             );
             assert_eq!((chunk.len(), effort.tested()), (expected.len(), seen));
             let mut read = ListedPairs(Vec::new());
-            dispatch(tier, FindPairs(&List::of(chunk), &mut read));
+            dispatch(tier, FindPairs(&NeighbourList::of(chunk), &mut read));
             assert!(read.0 == expected, "{tier}");
         }
     }

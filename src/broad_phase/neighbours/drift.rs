@@ -13,17 +13,17 @@ pub fn all_stay(executor: Executor<'_>, skin: Skin, now: &[[f32; 4]], then: &[[f
     let Executor { tier, pool } = executor;
     pool.all(now.len(), BALLS_PER_TASK, |range| {
         let (now, then) = (&now[range.clone()], &then[range]);
-        dispatch(tier, Measure { skin, now, then })
+        dispatch(tier, MeasureDrift { skin, now, then })
     })
 }
 
-struct Measure<'a> {
+struct MeasureDrift<'a> {
     skin: Skin,
     now: &'a [[f32; 4]],
     then: &'a [[f32; 4]],
 }
 
-impl Kernel for Measure<'_> {
+impl Kernel for MeasureDrift<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> bool {

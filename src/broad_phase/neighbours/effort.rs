@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-use super::list::Limits;
+use super::list::SearchLimits;
 
 /// Candidates after which a thread adds its counts to those of all.
 pub const CANDIDATES_PER_REPORT: u64 = 1024;
@@ -12,15 +12,15 @@ pub const CANDIDATES_PER_REPORT: u64 = 1024;
 /// on threads. By how much it does: up to [`CANDIDATES_PER_REPORT`] and one part of the work per
 /// thread.
 #[derive(Debug)]
-pub struct Effort {
-    limits: Limits,
+pub struct SearchEffort {
+    limits: SearchLimits,
     pairs: AtomicU64,
     candidates: AtomicU64,
 }
 
-impl Effort {
+impl SearchEffort {
     /// Counts of zero, with these limits.
-    pub fn new(limits: Limits) -> Self {
+    pub fn new(limits: SearchLimits) -> Self {
         Self {
             limits,
             pairs: AtomicU64::new(0),
@@ -71,10 +71,10 @@ impl Effort {
 mod tests {
     use super::*;
 
-    impl Effort {
+    impl SearchEffort {
         /// Of a search that never ends early.
         pub fn unlimited() -> Self {
-            Self::new(Limits {
+            Self::new(SearchLimits {
                 pairs: u64::MAX,
                 candidates: u64::MAX,
             })
@@ -83,12 +83,12 @@ mod tests {
 
     #[test]
     fn an_effort_is_over_beyond_either_limit() {
-        let limits = Limits {
+        let limits = SearchLimits {
             pairs: 10,
             candidates: 100,
         };
         for (pairs, candidates, over) in [(10, 100, false), (11, 50, true), (5, 101, true)] {
-            let effort = Effort::new(limits);
+            let effort = SearchEffort::new(limits);
             assert_eq!(effort.is_over_with(pairs, candidates), over);
             effort.add(pairs - 1, candidates - 1);
             assert!(!effort.is_over() && effort.tested() == candidates - 1);
@@ -105,11 +105,11 @@ mod tests {
     #[test]
     #[cfg_attr(debug_assertions, should_panic(expected = "ends at its limits"))]
     fn a_search_without_end_is_noticed() {
-        let limits = Limits {
+        let limits = SearchLimits {
             pairs: 10,
             candidates: 100,
         };
-        let effort = Effort::new(limits);
+        let effort = SearchEffort::new(limits);
         effort.add(0, 100_000);
         effort.check(4);
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::Volume;
 use super::collect::{Collector, GrownBalls};
-use super::effort::Effort;
+use super::effort::SearchEffort;
 use crate::broad_phase::{Block, EndSlots, FirstTest, Grid, MOST_CANDIDATES, SlotTest, bytes};
 use crate::rounding::skin::{Reach, Skin};
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch};
@@ -15,7 +15,7 @@ use crate::threads::Executor;
 /// In denser crowds the reported pairs dominate the time, and a list would take more memory than
 /// everything else.
 const PAIRS_PER_BODY: usize = 8;
-const FEW_PAIRS: u64 = 256;
+const SPARE_PAIRS: u64 = 256;
 
 /// The limit of candidates that the search for a list may test: this many times those of the grid
 /// without a skin, plus some per body. Skins stay below it ([`policy`](super::policy)), unless the
@@ -37,20 +37,20 @@ pub enum ListedVolume<'a> {
 
 /// The limits of a list and of the search for it.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits {
+pub struct SearchLimits {
     /// Pairs.
     pub pairs: u64,
     /// Candidates.
     pub candidates: u64,
 }
 
-impl Limits {
+impl SearchLimits {
     /// The limits for a list of `bodies` bodies, for which the widest skin gives `spare` times as
     /// many pairs and the grid without a skin has `candidates` candidates.
     fn of(bodies: usize, candidates: u64, spare: f64) -> Self {
         let pairs = (PAIRS_PER_BODY * bodies) as f64 / spare;
         Self {
-            pairs: pairs as u64 + FEW_PAIRS,
+            pairs: pairs as u64 + SPARE_PAIRS,
             candidates: GROWTH_OF_CANDIDATES * candidates + CANDIDATES_PER_BODY * bodies as u64,
         }
     }
@@ -58,7 +58,7 @@ impl Limits {
 
 /// The result of the search for a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum SearchOutcome {
     /// The list is complete.
     Complete,
     /// There is no list: it would hold too many pairs, or its search would test too many
@@ -68,7 +68,7 @@ pub enum Outcome {
 
 /// The list of all parts.
 #[derive(Clone, Debug, Default)]
-pub struct List {
+pub struct NeighbourList {
     chunks: Vec<Chunk>,
     parts: usize,
     len: usize,
@@ -88,7 +88,7 @@ pub struct Chunk {
     spare: f64,
 }
 
-impl List {
+impl NeighbourList {
     /// Builds the list of a grid that has just been arranged and has `candidates` candidates
     /// without a skin. There is room for `spare` times the pairs of this skin, as many as the
     /// widest skin will give, so that another skin allocates nothing. The search ends as soon as it
@@ -99,12 +99,12 @@ impl List {
         (grid, candidates): (&Grid, u64),
         (skin, spare): (Skin, f64),
         near: ListedVolume<'_>,
-    ) -> Outcome {
+    ) -> SearchOutcome {
         self.parts = grid.parts();
         if self.chunks.len() < self.parts {
             self.chunks.resize(self.parts, Chunk::default());
         }
-        let effort = Effort::new(Limits::of(grid.bodies(), candidates, spare));
+        let effort = SearchEffort::new(SearchLimits::of(grid.bodies(), candidates, spare));
         let chunks = &mut self.chunks[..self.parts];
         executor.pool.each(chunks, |part, chunk| {
             chunk.clear();
@@ -112,7 +112,7 @@ impl List {
             if effort.is_over() {
                 return;
             }
-            let make = Make {
+            let make = BuildList {
                 grid,
                 part,
                 near,
@@ -125,10 +125,10 @@ impl List {
         effort.check(executor.pool.threads());
         self.tested = effort.tested();
         if effort.is_over() {
-            return Outcome::Abandoned;
+            return SearchOutcome::Abandoned;
         }
         self.len = self.chunks[..self.parts].iter().map(Chunk::len).sum();
-        Outcome::Complete
+        SearchOutcome::Complete
     }
 
     /// The number of pairs.
@@ -241,16 +241,16 @@ fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
     }
 }
 
-struct Make<'a> {
+struct BuildList<'a> {
     grid: &'a Grid,
     part: usize,
     near: ListedVolume<'a>,
     skin: Skin,
     chunk: &'a mut Chunk,
-    effort: &'a Effort,
+    effort: &'a SearchEffort,
 }
 
-impl Kernel for Make<'_> {
+impl Kernel for BuildList<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
@@ -267,7 +267,7 @@ impl Kernel for Make<'_> {
     }
 }
 
-impl Make<'_> {
+impl BuildList<'_> {
     #[inline(always)]
     fn collect<L: Lanes>(self, l: L, test: &impl SlotTest) {
         let mut collect = Collector::new(test, self.chunk, self.effort);
@@ -281,7 +281,7 @@ impl Make<'_> {
 mod tests {
     use super::*;
 
-    impl List {
+    impl NeighbourList {
         /// Of one part.
         pub(in crate::broad_phase) fn of(mut chunk: Chunk) -> Self {
             chunk.close();
@@ -354,7 +354,7 @@ mod tests {
 
     #[test]
     fn bytes_are_those_of_all_chunks_used_or_not() {
-        let mut list = List::default();
+        let mut list = NeighbourList::default();
         assert_eq!(list.bytes(), 0);
         list.chunks = Vec::with_capacity(5);
         list.chunks.resize(2, Chunk::default());

@@ -26,8 +26,8 @@ mod list;
 mod motion;
 mod policy;
 
-pub(super) use self::list::List;
-use self::list::{ListedVolume, Outcome};
+pub(super) use self::list::NeighbourList;
+use self::list::{ListedVolume, SearchOutcome};
 use self::motion::{LargestDrift, SizeSummary, are_specks, typical_radius};
 use self::policy::{EndedList, Policy};
 use super::{Boxes, EndSlots, Grid, Reorder, Slots};
@@ -50,10 +50,10 @@ pub enum Volume {
 pub struct Neighbours {
     grid: Grid,
     volume: Volume,
-    list: List,
+    list: NeighbourList,
     /// The grown boxes from which the list was built, if it was built from boxes.
     grown: EndSlots,
-    state: State,
+    state: ListState,
     policy: Policy,
     /// The grid's candidates without a skin.
     candidates: CandidateEstimate,
@@ -70,7 +70,7 @@ struct CandidateEstimate {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum State {
+enum ListState {
     /// There is no list: the grid finds pairs.
     #[default]
     Searching,
@@ -114,13 +114,13 @@ impl Neighbours {
     ) -> Reorder {
         let replan = self.grid.needs_plan(balls.len());
         match self.state {
-            _ if replan => self.state = State::Searching,
-            State::Searching => {}
-            State::Made => {
-                self.state = State::Ordered;
+            _ if replan => self.state = ListState::Searching,
+            ListState::Searching => {}
+            ListState::Made => {
+                self.state = ListState::Ordered;
                 return self.grid.follow_slots(moving, names, order);
             }
-            State::Ordered | State::Followed => {
+            ListState::Ordered | ListState::Followed => {
                 self.grid.rest();
                 return Reorder::None;
             }
@@ -130,9 +130,9 @@ impl Neighbours {
 
     /// Changes the set of bodies as the grid does, and drops the list.
     pub(super) fn replace(&mut self, stays: &[bool], moving: usize, bodies: usize) -> bool {
-        if self.state != State::Searching {
+        if self.state != ListState::Searching {
             self.policy.interrupted();
-            self.state = State::Searching;
+            self.state = ListState::Searching;
         }
         self.grid.replace(stays, moving, bodies)
     }
@@ -149,16 +149,16 @@ impl Neighbours {
     ) {
         self.list_tests = 0;
         let long = boxes.filter(|boxes| boxes.are_long);
-        if matches!(self.state, State::Ordered | State::Followed) {
+        if matches!(self.state, ListState::Ordered | ListState::Followed) {
             let (now, then) = (&balls[..moving], &self.grid.slots().balls[..moving]);
             let stay = match boxes.filter(|_| self.policy.is_by_boxes()) {
                 Some(boxes) => self.grown.hold(executor, &names[..moving], boxes.all),
                 None => drift::all_stay(executor, self.policy.skin(), now, then),
             };
             if stay {
-                if self.state == State::Ordered {
+                if self.state == ListState::Ordered {
                     self.grid.slots_mut().names[..names.len()].copy_from_slice(names);
-                    self.state = State::Followed;
+                    self.state = ListState::Followed;
                 }
                 self.policy.followed();
                 return;
@@ -172,7 +172,7 @@ impl Neighbours {
                 sizes,
             });
         }
-        self.state = State::Searching;
+        self.state = ListState::Searching;
         self.policy
             .turn_to(long.is_some(), || sizes(balls, names, long));
         let Some(skin) = self.policy.next() else {
@@ -186,7 +186,7 @@ impl Neighbours {
         self.grid.arrange(executor, balls, names);
         let outcome = self.make(executor, (skin, moving), long);
         self.list_tests = self.list.tested();
-        if outcome == Outcome::Abandoned {
+        if outcome == SearchOutcome::Abandoned {
             // If the limit came from an estimate, try again with the count of this frame.
             if self.candidates.is_counted {
                 self.policy.overflowed();
@@ -194,7 +194,7 @@ impl Neighbours {
             // The candidates that the skin has added would be tested in vain.
             return self.search(executor, balls, names);
         }
-        self.state = State::Made;
+        self.state = ListState::Made;
         // The grid plans by the candidates that it would have without a skin.
         let number = (self.list_tests as f64 / self.policy.more_candidates()) as u64;
         self.grid.observe(number);
@@ -216,7 +216,7 @@ impl Neighbours {
         executor: Executor<'_>,
         (skin, moving): (Skin, usize),
         long: Option<Boxes<'_>>,
-    ) -> Outcome {
+    ) -> SearchOutcome {
         let near = match long {
             None => ListedVolume::Balls(self.volume),
             Some(Boxes { all, .. }) => {
@@ -248,13 +248,13 @@ impl Neighbours {
     /// Whether the frame follows a list and places have its order. The slots' balls are then those
     /// from which the list was built.
     pub(super) fn slots_are_places(&self) -> bool {
-        self.state == State::Followed
+        self.state == ListState::Followed
     }
 
     /// The list, if this frame follows one.
     #[inline(always)]
-    pub(super) fn list(&self) -> Option<&List> {
-        (self.state != State::Searching).then_some(&self.list)
+    pub(super) fn list(&self) -> Option<&NeighbourList> {
+        (self.state != ListState::Searching).then_some(&self.list)
     }
 
     /// The grid, which finds the pairs otherwise.
@@ -265,7 +265,7 @@ impl Neighbours {
 
     /// Notes how many candidates a frame had.
     pub(super) fn observe(&mut self, candidates: u64) {
-        if self.state == State::Searching {
+        if self.state == ListState::Searching {
             self.grid.observe(candidates);
             self.candidates = CandidateEstimate {
                 number: candidates,

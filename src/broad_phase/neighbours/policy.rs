@@ -16,10 +16,10 @@ const SKINS: [f64; 8] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.5, 0.75];
 /// The largest factor by which a skin may multiply the candidates, that of 0.375 radii: with more,
 /// the frame that builds a list takes more than 1.3 times the grid's frame. For long boxes, a skin
 /// that is wide for the boxes enlarges their balls little.
-const GREATEST_GROWTH: f64 = 2.6;
+const MOST_CANDIDATE_GROWTH: f64 = 2.6;
 
 /// The index of the first skin, before anything is known of the motion.
-const FIRST_SKIN: usize = 3;
+const INITIAL_SKIN_INDEX: usize = 3;
 
 /// Costs in AVX2 instructions, including naming the pairs but not the update. They are linear fits
 /// to counts of frames of 4,000 uniform spheres with 2 to 18 candidates each.
@@ -39,15 +39,15 @@ const MOST_GRID_SHARE: f64 = 0.8;
 
 /// The fraction of the present cost below which skins switch between own and typical radii. If all
 /// bodies have one size, both are the same.
-const WORTH_CHANGING: f64 = 0.9;
+const MOST_SWITCH_COST_RATIO: f64 = 0.9;
 
-/// Grid frames between two attempts to build a list: at first, and at most ([`LONGEST_PAUSE`]).
-const FIRST_PAUSE: u32 = 16;
-const LONGEST_PAUSE: u32 = 256;
+/// Grid frames between two attempts to build a list: at first, and at most ([`MOST_PAUSE_FRAMES`]).
+const INITIAL_PAUSE_FRAMES: u32 = 16;
+const MOST_PAUSE_FRAMES: u32 = 256;
 
 /// The radii in which a skin is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Radii {
+enum RadiusKind {
     Own,
     Typical,
 }
@@ -55,7 +55,7 @@ enum Radii {
 /// What is known of the motion.
 #[derive(Clone, Debug)]
 pub struct Policy {
-    radii: Radii,
+    radii: RadiusKind,
     skin: usize,
     /// The sizes of the present list's bodies.
     sizes: SizeSummary,
@@ -72,14 +72,14 @@ pub struct Policy {
 impl Default for Policy {
     fn default() -> Self {
         Self {
-            radii: Radii::Own,
-            skin: FIRST_SKIN,
+            radii: RadiusKind::Own,
+            skin: INITIAL_SKIN_INDEX,
             sizes: SizeSummary::new(0.0, 0.0),
             is_by_boxes: false,
             served: 0,
             // In the first frame bodies are placed, and no list is built.
             wait: 1,
-            pause: FIRST_PAUSE,
+            pause: INITIAL_PAUSE_FRAMES,
         }
     }
 }
@@ -104,8 +104,8 @@ impl Policy {
     pub fn skin(&self) -> Skin {
         let share = SKINS[self.skin];
         match self.radii {
-            Radii::Own => Skin::share(share as f32),
-            Radii::Typical => Skin::length((share * self.sizes.typical) as f32),
+            RadiusKind::Own => Skin::share(share as f32),
+            RadiusKind::Typical => Skin::length((share * self.sizes.typical) as f32),
         }
     }
 
@@ -126,7 +126,7 @@ impl Policy {
 
     /// The skins to choose from.
     fn skins(&self) -> &'static [f64] {
-        let few = |&skin: &f64| self.candidates(skin) <= GREATEST_GROWTH;
+        let few = |&skin: &f64| self.candidates(skin) <= MOST_CANDIDATE_GROWTH;
         &SKINS[..SKINS.partition_point(few)]
     }
 
@@ -146,7 +146,7 @@ impl Policy {
         }
         (self.is_by_boxes, self.sizes) = (by_boxes, sizes());
         if self.knows_a_length() {
-            (self.radii, self.skin) = (Radii::Typical, FIRST_SKIN);
+            (self.radii, self.skin) = (RadiusKind::Typical, INITIAL_SKIN_INDEX);
         }
         self.skin = self.skin.min(self.widest_skin());
     }
@@ -186,8 +186,8 @@ impl Policy {
         let candidates = each(list.candidates as f64, self.more_candidates());
         self.sizes = list.sizes;
         let mut best = (f64::INFINITY, self.radii, 0);
-        for (radii, speed) in [(Radii::Own, own), (Radii::Typical, typical)] {
-            if radii == Radii::Own && self.knows_a_length() {
+        for (radii, speed) in [(RadiusKind::Own, own), (RadiusKind::Typical, typical)] {
+            if radii == RadiusKind::Own && self.knows_a_length() {
                 continue;
             }
             for (index, &skin) in self.skins().iter().enumerate() {
@@ -198,7 +198,7 @@ impl Policy {
                 let penalty = if radii == self.radii {
                     1.0
                 } else {
-                    1.0 / WORTH_CHANGING
+                    1.0 / MOST_SWITCH_COST_RATIO
                 };
                 if cost * penalty < best.0 {
                     best = (cost * penalty, radii, index);
@@ -207,7 +207,7 @@ impl Policy {
         }
         (self.radii, self.skin) = (best.1, best.2);
         if best.0 < MOST_GRID_SHARE * (GRID_BODY_COST + GRID_CANDIDATE_COST * candidates) {
-            self.pause = FIRST_PAUSE;
+            self.pause = INITIAL_PAUSE_FRAMES;
         } else {
             // If a list served only one frame, the widest skin gives the most information.
             self.skin = self.widest_skin();
@@ -219,16 +219,16 @@ impl Policy {
     fn speeds(&self, LargestDrift { own, typical }: LargestDrift) -> [f64; 2] {
         let served = f64::from(self.served);
         let (skin, drift) = match self.radii {
-            Radii::Own => (SKINS[self.skin], own),
-            Radii::Typical => (SKINS[self.skin], typical),
+            RadiusKind::Own => (SKINS[self.skin], own),
+            RadiusKind::Typical => (SKINS[self.skin], typical),
         };
         // A body that moves steadily has drifted by at most two skins when it leaves its skin.
         // Beyond that it has jumped, and its drift says nothing about other bodies.
         if self.served > 1 && drift > 2.0 * skin {
             let speed = skin / (served - 0.5);
             return match self.radii {
-                Radii::Own => [speed, f64::INFINITY],
-                Radii::Typical => [f64::INFINITY, speed],
+                RadiusKind::Own => [speed, f64::INFINITY],
+                RadiusKind::Typical => [f64::INFINITY, speed],
             };
         }
         [own / served, typical / served]
@@ -245,9 +245,9 @@ impl Policy {
     /// The search for the list exceeded its limits.
     pub fn overflowed(&mut self) {
         let radii = if self.knows_a_length() {
-            Radii::Typical
+            RadiusKind::Typical
         } else {
-            Radii::Own
+            RadiusKind::Own
         };
         (self.radii, self.skin) = (radii, 0);
         self.give_up();
@@ -255,7 +255,7 @@ impl Policy {
 
     fn give_up(&mut self) {
         self.wait = self.pause;
-        self.pause = LONGEST_PAUSE.min(2 * self.pause);
+        self.pause = MOST_PAUSE_FRAMES.min(2 * self.pause);
     }
 }
 

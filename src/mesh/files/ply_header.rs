@@ -1,6 +1,6 @@
 //! The header of a PLY file: elements, their properties, and how each is used.
 
-use super::text::{self, Fault, Token, excerpt};
+use super::text::{self, LineProblem, Token, excerpt};
 use crate::mesh::Problem;
 
 /// A number type.
@@ -58,7 +58,7 @@ impl Scalar {
 
 /// How a property is used.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Use {
+pub(super) enum PropertyUse {
     /// A vertex's coordinate along this axis.
     Coordinate(usize),
     /// A face's corners.
@@ -74,7 +74,7 @@ pub(super) struct Property {
     pub length: Option<Scalar>,
     /// The type of the value, or of a list's items.
     pub scalar: Scalar,
-    pub used_as: Use,
+    pub used_as: PropertyUse,
 }
 
 /// A kind of element, and how many there are.
@@ -102,7 +102,7 @@ pub(super) struct Header {
 }
 
 impl Header {
-    pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
+    pub fn read(bytes: &[u8]) -> Result<Self, LineProblem> {
         let mut encoding = None;
         let mut header = Self {
             encoding: Encoding::Text,
@@ -186,10 +186,10 @@ impl Header {
         let axis = ["x", "y", "z"].iter().position(|axis| *axis == name);
         let is_indices = length.is_some() && ["vertex_indices", "vertex_index"].contains(&name);
         let used_as = match (element.name.as_str(), axis) {
-            ("vertex", Some(axis)) if length.is_none() => Use::Coordinate(axis),
-            ("face", _) if is_indices => Use::Polygon,
-            ("tristrips", _) if is_indices => Use::Strips,
-            _ => Use::Nothing,
+            ("vertex", Some(axis)) if length.is_none() => PropertyUse::Coordinate(axis),
+            ("face", _) if is_indices => PropertyUse::Polygon,
+            ("tristrips", _) if is_indices => PropertyUse::Strips,
+            _ => PropertyUse::Nothing,
         };
         element.properties.push(Property {
             length,
@@ -200,14 +200,14 @@ impl Header {
     }
 
     /// A mesh needs vertices with x, y, z and faces or strips with a list of indices.
-    fn checked(self) -> Result<Self, Fault> {
-        let has = |used_as: Use| {
+    fn checked(self) -> Result<Self, LineProblem> {
+        let has = |used_as: PropertyUse| {
             let mut properties = self.elements.iter().flat_map(|element| &element.properties);
             properties.any(|property| property.used_as == used_as)
         };
-        let missing = if !(0..3).all(|axis| has(Use::Coordinate(axis))) {
+        let missing = if !(0..3).all(|axis| has(PropertyUse::Coordinate(axis))) {
             "an element vertex with the properties x, y and z"
-        } else if !has(Use::Polygon) && !has(Use::Strips) {
+        } else if !has(PropertyUse::Polygon) && !has(PropertyUse::Strips) {
             "an element face with a list property vertex_indices"
         } else {
             return Ok(self);

@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::parts::Parts;
+use super::parts::RawMesh;
 use super::{TriFormat, obj, off, ply, stl, tri};
 use crate::files;
 use crate::mesh::{MeshError, Problem, TriangleMesh};
@@ -110,7 +110,7 @@ pub fn read_bytes(
         MeshFormat::Ply => ply::read(bytes),
         MeshFormat::Off => off::read(bytes),
     };
-    let Parts { points, triangles } = parts.map_err(|(line, problem)| problem.at(file, line))?;
+    let RawMesh { points, triangles } = parts.map_err(|(line, problem)| problem.at(file, line))?;
     let stem = Path::new(file)
         .file_stem()
         .unwrap_or_default()

@@ -6,15 +6,15 @@
 //! vertices, `endloop`, `endfacet`, in upper or lower case and with any line breaks. Anything else
 //! between facets is an error, except comments.
 
-use super::parts::Parts;
-use super::text::{self, Fault, Token, put, wide};
+use super::parts::RawMesh;
+use super::text::{self, LineProblem, Token, put, wide};
 use crate::mesh::{Problem, TriangleMesh, check_vertex, in_f64};
 
 const HEADER_BYTES: usize = 84;
 const TRIANGLE_BYTES: usize = 50;
 
 /// Reads a text or binary STL file.
-pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     if bytes.is_empty() {
         return Err((None, Problem::NoVertices));
     }
@@ -47,7 +47,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
 }
 
 /// Reads the triangles of a binary file: a normal, three corners and two more bytes each.
-fn binary(bytes: &[u8]) -> Result<Parts, Fault> {
+fn binary(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     let mut points = Vec::with_capacity(3 * bytes.len() / TRIANGLE_BYTES);
     for triangle in bytes.as_chunks::<TRIANGLE_BYTES>().0 {
         let numbers = triangle.as_chunks::<4>().0;
@@ -57,7 +57,7 @@ fn binary(bytes: &[u8]) -> Result<Parts, Fault> {
             points.push(position);
         }
     }
-    Ok(Parts::soup(points))
+    Ok(RawMesh::soup(points))
 }
 
 /// The words of a text file, if it begins with a solid or a facet.
@@ -78,7 +78,7 @@ struct Facets<'t, 'a> {
 }
 
 impl Facets<'_, '_> {
-    fn read(mut self) -> Result<Parts, Fault> {
+    fn read(mut self) -> Result<RawMesh, LineProblem> {
         let (mut open, last) = (false, self.tokens.last().map(|token| token.line));
         while !self.tokens.is_empty() {
             if self.skip_comment() {
@@ -100,7 +100,7 @@ impl Facets<'_, '_> {
                 malformed("the file ends before `endsolid`".to_owned()),
             ));
         }
-        Ok(Parts::soup(self.points))
+        Ok(RawMesh::soup(self.points))
     }
 
     fn starts_with(&self, keywords: &[&str]) -> bool {
@@ -112,7 +112,7 @@ impl Facets<'_, '_> {
     }
 
     /// Reads a keyword that may be spelled in two ways.
-    fn take(&mut self, keyword: &[&str], other: &[&str]) -> Result<(), Fault> {
+    fn take(&mut self, keyword: &[&str], other: &[&str]) -> Result<(), LineProblem> {
         for words in [keyword, other] {
             if self.starts_with(words) {
                 self.tokens = &self.tokens[words.len()..];
@@ -122,7 +122,7 @@ impl Facets<'_, '_> {
         Err(self.missing(&format!("`{}`", keyword.join(" "))))
     }
 
-    fn missing(&self, what: &str) -> Fault {
+    fn missing(&self, what: &str) -> LineProblem {
         match self.tokens.first() {
             Some(token) => {
                 let message = format!(
@@ -161,7 +161,7 @@ impl Facets<'_, '_> {
         self.tokens = &self.tokens[rest.unwrap_or(self.tokens.len())..];
     }
 
-    fn facet(&mut self) -> Result<(), Fault> {
+    fn facet(&mut self) -> Result<(), LineProblem> {
         self.take(&["facet"], &["facet"])?;
         let structure = ["outer", "facet", "vertex", "endfacet", "endsolid"];
         while self

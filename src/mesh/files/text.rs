@@ -17,7 +17,7 @@ use std::fmt::{Display, LowerExp, Write};
 use crate::mesh::{Problem, check_vertex};
 
 /// A problem with its 1-based line, if it has one.
-pub(super) type Fault = (Option<usize>, Problem);
+pub(super) type LineProblem = (Option<usize>, Problem);
 
 /// A word and its 1-based line.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +33,7 @@ impl Token<'_> {
     }
 
     /// Parses a number: an f64 that rounds to the f32 nearest to the text.
-    pub(super) fn number(&self, what: &str) -> Result<f64, Fault> {
+    pub(super) fn number(&self, what: &str) -> Result<f64, LineProblem> {
         number(self.text).ok_or_else(|| {
             let message = format!("{what} should be a number, found {}", excerpt(self.text));
             let help = "correct the number or the line's layout";
@@ -42,7 +42,7 @@ impl Token<'_> {
     }
 
     /// A whole number.
-    pub(super) fn integer(&self, what: &str) -> Result<i64, Fault> {
+    pub(super) fn integer(&self, what: &str) -> Result<i64, LineProblem> {
         self.text.parse().map_err(|_| {
             let message = format!(
                 "{what} should be a whole number, found {}",
@@ -82,7 +82,7 @@ pub(super) fn utf16(bytes: &[u8]) -> Option<Vec<u16>> {
 
 /// The error for a file in which a text format's reader found nothing and that has a byte which
 /// text never has.
-pub(super) fn not_text(bytes: &[u8]) -> Option<Fault> {
+pub(super) fn not_text(bytes: &[u8]) -> Option<LineProblem> {
     let offset = bytes.iter().position(|&byte| byte == 0)?;
     let message = format!("this is not text: byte 0x00 at offset {offset}");
     let help = "the file is binary or damaged; does its extension name the right format?";
@@ -138,7 +138,7 @@ pub(super) fn number(text: &str) -> Option<f64> {
 }
 
 /// The vertex written in the first three tokens.
-pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<[f64; 3], Fault> {
+pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<[f64; 3], LineProblem> {
     let mut position = [0.0; 3];
     for (coordinate, token) in position.iter_mut().zip(tokens) {
         *coordinate = token.number("a coordinate")?;
@@ -236,7 +236,7 @@ impl<'t, 'a> Cursor<'t, 'a> {
 
     /// Checks that a section starts on a new line, which is required however records are broken
     /// into lines.
-    pub(super) fn start_section(&self) -> Result<(), Fault> {
+    pub(super) fn start_section(&self) -> Result<(), LineProblem> {
         let (before, after) = (self.at.checked_sub(1), self.rest().first());
         match (before.map(|at| self.tokens[at].line), after) {
             (Some(line), Some(token)) if token.line == line => {
@@ -248,7 +248,11 @@ impl<'t, 'a> Cursor<'t, 'a> {
         }
     }
 
-    pub(super) fn record(&mut self, numbers: usize, what: &str) -> Result<&'t [Token<'a>], Fault> {
+    pub(super) fn record(
+        &mut self,
+        numbers: usize,
+        what: &str,
+    ) -> Result<&'t [Token<'a>], LineProblem> {
         let rest = self.rest();
         let line = rest.first().or(self.tokens.last()).map(|token| token.line);
         let found = if self.by_line {

@@ -16,8 +16,8 @@
 //! one of another dialect. If exactly one dialect fits, it is used; if two fit, the error names
 //! both. If none fits, the error is that of the dialect that got furthest into the file.
 
-use super::parts::Parts;
-use super::text::{self, Cursor, Fault, Token};
+use super::parts::RawMesh;
+use super::text::{self, Cursor, LineProblem, Token};
 use crate::choice::choices;
 use crate::mesh::{Problem, check_triangle};
 
@@ -43,7 +43,7 @@ choices! {
 }
 
 /// The layout of a dialect that begins with counts.
-struct Layout {
+struct TriLayout {
     dashed: bool,
     vertex_numbers: usize,
     face_numbers: usize,
@@ -67,7 +67,7 @@ impl TriFormat {
         }
     }
 
-    fn layout(self) -> Option<Layout> {
+    fn layout(self) -> Option<TriLayout> {
         let (vertex_numbers, face_numbers, first_index) = match self {
             Self::Bourke => (9, 3, 0),
             Self::Indexed => (3, 3, 0),
@@ -78,7 +78,7 @@ impl TriFormat {
             Self::Soup => return None,
         };
         let (dashed, components) = (self == Self::OpenMeeg, self == Self::Cart3d);
-        Some(Layout {
+        Some(TriLayout {
             dashed,
             vertex_numbers,
             face_numbers,
@@ -89,13 +89,13 @@ impl TriFormat {
 }
 
 /// Reads a `.tri` file of the given dialect, or of the one that fits.
-pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<Parts, Fault> {
+pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<RawMesh, LineProblem> {
     let text = text::decode(bytes);
     let tokens = text::tokens(&text);
     if tokens.is_empty() {
         return Err((None, Problem::NoVertices));
     }
-    let mut furthest: Option<(usize, Fault)> = None;
+    let mut furthest: Option<(usize, LineProblem)> = None;
     let mut seen_triangle = false;
     for by_line in [true, false] {
         if !by_line && seen_triangle && format.is_none() {
@@ -148,7 +148,7 @@ fn candidates(format: Option<TriFormat>, tokens: &[Token], by_line: bool) -> Vec
 /// The longest header, in words: a dialect that got further has read a vertex or a triangle.
 const HEADER_TOKENS: usize = 2;
 
-fn ambiguous(fits: &[(TriFormat, Parts)]) -> Problem {
+fn ambiguous(fits: &[(TriFormat, RawMesh)]) -> Problem {
     Problem::Ambiguous {
         readings: fits
             .iter()
@@ -165,7 +165,7 @@ fn unknown_dialect() -> Problem {
 }
 
 /// Reads one dialect to the end of the file.
-fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<Parts, Fault> {
+fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<RawMesh, LineProblem> {
     let Some(layout) = format.layout() else {
         return soup(cursor);
     };
@@ -204,7 +204,7 @@ fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<Parts, Fault> {
         component_numbers(cursor, triangle_count)?;
     }
     match cursor.rest().first() {
-        None => Ok(Parts::indexed(vertices, triangles)),
+        None => Ok(RawMesh::indexed(vertices, triangles)),
         Some(token) => {
             let message = format!("{} after the last triangle", excess(cursor.rest().len()));
             let help = "remove what follows, or correct the counts in the header";
@@ -221,7 +221,11 @@ fn excess(count: usize) -> String {
     }
 }
 
-fn vertices(cursor: &mut Cursor, count: usize, numbers: usize) -> Result<Vec<[f64; 3]>, Fault> {
+fn vertices(
+    cursor: &mut Cursor,
+    count: usize,
+    numbers: usize,
+) -> Result<Vec<[f64; 3]>, LineProblem> {
     if count == 0 {
         return Err((None, Problem::NoVertices));
     }
@@ -241,10 +245,10 @@ fn vertices(cursor: &mut Cursor, count: usize, numbers: usize) -> Result<Vec<[f6
 fn triangles(
     cursor: &mut Cursor,
     count: usize,
-    layout: &Layout,
+    layout: &TriLayout,
     vertices: usize,
-) -> Result<Vec<[u32; 3]>, Fault> {
-    let Layout {
+) -> Result<Vec<[u32; 3]>, LineProblem> {
+    let TriLayout {
         face_numbers,
         first_index,
         ..
@@ -273,7 +277,7 @@ fn triangles(
 }
 
 /// Reads Cart3D's component number per triangle, with any line breaks.
-fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), Fault> {
+fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), LineProblem> {
     let numbers = cursor.rest();
     cursor.at = cursor.tokens.len();
     if numbers.len() != triangles {
@@ -289,7 +293,7 @@ fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), Fault>
         .try_for_each(|token| token.integer("a component number").map(|_| ()))
 }
 
-fn soup(cursor: &mut Cursor) -> Result<Parts, Fault> {
+fn soup(cursor: &mut Cursor) -> Result<RawMesh, LineProblem> {
     let coordinates = without_colours(cursor.tokens);
     let mut inner = Cursor::new(&coordinates, cursor.by_line);
     let mut points = Vec::new();
@@ -304,7 +308,7 @@ fn soup(cursor: &mut Cursor) -> Result<Parts, Fault> {
         Ok(())
     })();
     cursor.at = inner.at;
-    result.map(|()| Parts::soup(points))
+    result.map(|()| RawMesh::soup(points))
 }
 
 /// The tokens without the colours (0xRRGGBB) after each triangle's nine numbers.
@@ -321,7 +325,7 @@ fn without_colours<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     kept
 }
 
-fn count(token: &Token) -> Result<usize, Fault> {
+fn count(token: &Token) -> Result<usize, LineProblem> {
     token.text.parse().map_err(|_| {
         let message = format!(
             "a count should be a whole number, found {}",
@@ -332,7 +336,7 @@ fn count(token: &Token) -> Result<usize, Fault> {
     })
 }
 
-fn dash(token: &Token) -> Result<(), Fault> {
+fn dash(token: &Token) -> Result<(), LineProblem> {
     if token.text == "-" {
         return Ok(());
     }

@@ -1,7 +1,7 @@
 //! Separating axes of one pair per lane: both bodies' slab normals, and cross products of edges.
 
 use super::edges;
-use super::slabs::Slabs;
+use super::slabs::LaneSlabs;
 use super::support::support;
 use super::table::each_direction;
 use crate::simd::{Lanes, ROW};
@@ -10,11 +10,11 @@ use crate::update::row::{O, Q, S, T};
 type Vector<L> = [<L as Lanes>::F; 3];
 
 /// The number of numbers in a [`PairFrames`].
-pub const FRAMES: usize = 17;
+pub const NUMBERS_PER_FRAMES: usize = 17;
 
 /// Two bodies' frames in each other's coordinates, one pair per lane.
 #[derive(Clone, Copy)]
-pub struct Frames<L: Lanes> {
+pub struct PairFrames<L: Lanes> {
     /// `turn[i][j]` = axis i of A · axis j of B: row i is A's axis in B's coordinates, column j B's
     /// axis in A's.
     turn: [Vector<L>; 3],
@@ -26,7 +26,7 @@ pub struct Frames<L: Lanes> {
     pub shapes: [L::F; 2],
 }
 
-impl<L: Lanes> Frames<L> {
+impl<L: Lanes> PairFrames<L> {
     /// The frames of two rows. Δ is the difference of the input translations plus that of the
     /// offsets, because a difference of rounded world centres would be inexact far from the origin.
     #[cfg_attr(not(unoptimised), inline(always))]
@@ -54,7 +54,7 @@ impl<L: Lanes> Frames<L> {
 
     /// The frames as an array of vectors.
     #[inline(always)]
-    pub fn numbers(&self) -> [L::F; FRAMES] {
+    pub fn numbers(&self) -> [L::F; NUMBERS_PER_FRAMES] {
         let ([x, y, z], [ga, gb, gc], [ha, hb, hc]) = (self.turn, self.gap_b, self.gap_a);
         let [one, other] = self.shapes;
         [
@@ -65,7 +65,7 @@ impl<L: Lanes> Frames<L> {
 
     /// The inverse of [`Self::numbers`].
     #[inline(always)]
-    pub fn from_numbers(n: [L::F; FRAMES]) -> Self {
+    pub fn from_numbers(n: [L::F; NUMBERS_PER_FRAMES]) -> Self {
         Self {
             shapes: [n[0], n[1]],
             turn: [[n[2], n[3], n[4]], [n[5], n[6], n[7]], [n[8], n[9], n[10]]],
@@ -76,13 +76,23 @@ impl<L: Lanes> Frames<L> {
 
     /// Lanes in which a slab normal of A separates the pair.
     #[inline(always)]
-    pub fn by_normals_of_a<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
+    pub fn by_normals_of_a<const K: usize>(
+        &self,
+        l: L,
+        a: &LaneSlabs<L>,
+        b: &LaneSlabs<L>,
+    ) -> L::M {
         by_normals::<L, K>(l, self.turn, self.gap_a, a, b)
     }
 
     /// Lanes in which a slab normal of B separates the pair.
     #[inline(always)]
-    pub fn by_normals_of_b<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
+    pub fn by_normals_of_b<const K: usize>(
+        &self,
+        l: L,
+        a: &LaneSlabs<L>,
+        b: &LaneSlabs<L>,
+    ) -> L::M {
         let back = [self.column(0), self.column(1), self.column(2)];
         by_normals::<L, K>(l, back, self.gap_b, b, a)
     }
@@ -97,7 +107,7 @@ impl<L: Lanes> Frames<L> {
     /// nearly parallel edges) is skipped, because the error bounds are relative to its length, and
     /// normals separate such pairs.
     #[cfg_attr(not(unoptimised), inline(always))]
-    pub fn by_edges<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
+    pub fn by_edges<const K: usize>(&self, l: L, a: &LaneSlabs<L>, b: &LaneSlabs<L>) -> L::M {
         let all = l.bits(l.first(L::WIDTH));
         let (zero, quarter) = (l.splat(0.0), l.splat(0.25));
         let mut separated = l.first(0);
@@ -135,8 +145,8 @@ fn by_normals<L: Lanes, const K: usize>(
     l: L,
     turn: [Vector<L>; 3],
     gap: Vector<L>,
-    own: &Slabs<L>,
-    other: &Slabs<L>,
+    own: &LaneSlabs<L>,
+    other: &LaneSlabs<L>,
 ) -> L::M {
     let all = l.bits(l.first(L::WIDTH));
     let [x, y, z] = [
@@ -239,8 +249,8 @@ mod tests {
 
     #[test]
     fn combinations_and_products_are_those_of_whole_numbers() {
-        struct Of([f32; 3], [f32; 3]);
-        impl Kernel for Of {
+        struct CombineAndCross([f32; 3], [f32; 3]);
+        impl Kernel for CombineAndCross {
             type Output = ([f32; 13], [f32; 3], f32);
             #[inline(always)]
             fn run<L: Lanes>(self, l: L) -> Self::Output {
@@ -254,7 +264,7 @@ mod tests {
         }
         let (n, v) = ([2.0, -3.0, 5.0], [1.0, 10.0, 100.0]);
         for tier in Tier::available() {
-            let (combined, crossed, product) = dispatch(tier, Of(n, v));
+            let (combined, crossed, product) = dispatch(tier, CombineAndCross(n, v));
             let expected =
                 COEFFICIENTS.map(|c| (0..3).map(|i| f32::from(c[i]) * v[i]).sum::<f32>());
             assert_eq!(combined, expected, "{tier}");
@@ -263,11 +273,11 @@ mod tests {
         }
     }
 
-    /// Boxes of these half edges, the second turned and moved: whether an edge × edge axis
+    /// BoxPair of these half edges, the second turned and moved: whether an edge × edge axis
     /// separates them, for k = 6.
-    struct Boxes([[f32; 3]; 2], Rotation, [f32; 3]);
+    struct BoxPair([[f32; 3]; 2], Rotation, [f32; 3]);
 
-    impl Kernel for Boxes {
+    impl Kernel for BoxPair {
         type Output = bool;
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> bool {
@@ -276,7 +286,7 @@ mod tests {
                 for (end, x) in ends.iter_mut().zip(half) {
                     *end = [l.splat(x); 2];
                 }
-                Slabs { ends }
+                LaneSlabs { ends }
             });
             let row = |turn: [[f64; 3]; 3], t: [f32; 3]| {
                 let mut row = [l.splat(0.0); ROW];
@@ -289,13 +299,13 @@ mod tests {
                 row
             };
             let still = rotation([0.0, 0.0, 0.0, 1.0]);
-            let frames = Frames::new(l, row(still, [0.0; 3]), row(self.1, self.2));
+            let frames = PairFrames::new(l, row(still, [0.0; 3]), row(self.1, self.2));
             let separated = l.bits(frames.by_edges::<6>(l, &slabs[0], &slabs[1]));
             separated & 1 != 0
         }
     }
 
-    impl Boxes {
+    impl BoxPair {
         /// How far, in plain f64, the best axis long enough to be asked separates the two.
         fn gap(&self) -> f64 {
             let Self(halves, turn, way) = self;
@@ -330,7 +340,7 @@ mod tests {
             for _ in 0..2000 {
                 let halves = [(); 2].map(|()| [(); 3].map(|()| 1.25 + next()));
                 let turn = rotation([next(), next(), next(), 1.5 + next()]);
-                let boxes = Boxes(halves, turn, [(); 3].map(|()| 3.0 * next()));
+                let boxes = BoxPair(halves, turn, [(); 3].map(|()| 3.0 * next()));
                 let gap = boxes.gap();
                 if gap.abs() > 1e-3 {
                     assert_eq!(dispatch(tier, boxes), gap > 0.0, "{tier}: {gap}");

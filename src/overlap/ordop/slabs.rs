@@ -12,7 +12,7 @@ use crate::update::row::SHAPE;
 
 /// The ends of each lane's slabs.
 #[derive(Clone, Copy)]
-pub struct Slabs<L: Lanes> {
+pub struct LaneSlabs<L: Lanes> {
     /// For each direction in the order of K26: the end in that direction, and the one in the
     /// opposite direction. Directions that the set lacks have zeros.
     pub ends: [[L::F; 2]; 13],
@@ -30,7 +30,7 @@ impl<L: Lanes> DirectionSigns<L> {
     }
 }
 
-impl<L: Lanes> Slabs<L> {
+impl<L: Lanes> LaneSlabs<L> {
     /// Loads the slabs of each lane's shape, with the K half-spaces that all tables have. `shapes`
     /// are as stored in rows.
     #[inline(always)]

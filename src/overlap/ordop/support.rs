@@ -8,12 +8,12 @@
 //! No vertices are needed, rounding keeps λ ≥ 0, and the bound reports .9 % more pairs than the
 //! vertices would.
 
-use super::slabs::{DirectionSigns, Slabs};
+use super::slabs::{DirectionSigns, LaneSlabs};
 use crate::simd::Lanes;
 
 /// Upper bound of the support in direction e, in the coordinates of the DOP's own basis.
 #[cfg_attr(not(unoptimised), inline(always))]
-pub fn support<L: Lanes, const K: usize>(l: L, slabs: &Slabs<L>, e: [L::F; 3]) -> L::F {
+pub fn support<L: Lanes, const K: usize>(l: L, slabs: &LaneSlabs<L>, e: [L::F; 3]) -> L::F {
     let signs = DirectionSigns::of(l, e);
     let size = [l.abs(e[0]), l.abs(e[1]), l.abs(e[2])];
     match K {
@@ -31,7 +31,12 @@ pub fn support<L: Lanes, const K: usize>(l: L, slabs: &Slabs<L>, e: [L::F; 3]) -
 /// on the diagonal that is bent over the lowest coordinate, and the lead of the largest on its
 /// axis.
 #[inline(always)]
-fn support_14<L: Lanes>(l: L, slabs: &Slabs<L>, signs: DirectionSigns<L>, size: [L::F; 3]) -> L::F {
+fn support_14<L: Lanes>(
+    l: L,
+    slabs: &LaneSlabs<L>,
+    signs: DirectionSigns<L>,
+    size: [L::F; 3],
+) -> L::F {
     let (low, [ab, ac, bc]) = minima(l, size);
     let half = l.splat(0.5);
     // The median is the largest of the pairwise minima.
@@ -48,7 +53,7 @@ fn support_14<L: Lanes>(l: L, slabs: &Slabs<L>, signs: DirectionSigns<L>, size: 
 #[inline(always)]
 fn support_18<L: Lanes>(
     l: L,
-    slabs: &Slabs<L>,
+    slabs: &LaneSlabs<L>,
     signs: DirectionSigns<L>,
     [a, b, c]: [L::F; 3],
 ) -> L::F {
@@ -65,7 +70,12 @@ fn support_18<L: Lanes>(
 /// All groups: the lowest coordinate on the cube diagonal, the median's lead over it on a face
 /// diagonal, and the largest's lead on its axis.
 #[inline(always)]
-fn support_26<L: Lanes>(l: L, slabs: &Slabs<L>, signs: DirectionSigns<L>, size: [L::F; 3]) -> L::F {
+fn support_26<L: Lanes>(
+    l: L,
+    slabs: &LaneSlabs<L>,
+    signs: DirectionSigns<L>,
+    size: [L::F; 3],
+) -> L::F {
     let (low, [ab, ac, bc]) = minima(l, size);
     let [xy, xz, yz] = slabs.pairs(l, signs);
     let pairs = ((ab - low) * xy + (ac - low) * xz) + (bc - low) * yz;
@@ -83,7 +93,12 @@ fn minima<L: Lanes>(l: L, [a, b, c]: [L::F; 3]) -> (L::F, [L::F; 3]) {
 /// The axes' part where diagonals take the rest: the lead of the largest coordinate over the
 /// second.
 #[inline(always)]
-fn leads<L: Lanes>(l: L, slabs: &Slabs<L>, signs: DirectionSigns<L>, [a, b, c]: [L::F; 3]) -> L::F {
+fn leads<L: Lanes>(
+    l: L,
+    slabs: &LaneSlabs<L>,
+    signs: DirectionSigns<L>,
+    [a, b, c]: [L::F; 3],
+) -> L::F {
     let zero = l.splat(0.0);
     let (lead_a, lead_b) = (l.max(a - l.max(b, c), zero), l.max(b - l.max(a, c), zero));
     let lead_c = l.max(c - l.max(a, b), zero);
@@ -108,7 +123,7 @@ mod tests {
             let ends = self.0.map(|ends| ends.map(|end| l.splat(end)));
             let e = self.1.map(|x| l.splat(x));
             let mut bound = [0.0; MAX_WIDTH];
-            l.store(support::<L, K>(l, &Slabs { ends }, e), &mut bound);
+            l.store(support::<L, K>(l, &LaneSlabs { ends }, e), &mut bound);
             bound[0]
         }
     }

@@ -10,7 +10,7 @@ use crate::simd::ROW;
 use crate::volume::{DirectionSet, OrDop, Shape};
 
 /// Floats in a shape's table, which has two rows.
-pub const TABLE: usize = 2 * ROW;
+pub const FLOATS_PER_TABLE: usize = 2 * ROW;
 
 /// All 13 directions in the order of K26, as integer coefficients over the basis.
 pub const COEFFICIENTS: [[i8; 3]; 13] = [
@@ -154,8 +154,8 @@ impl SlabTables {
     }
 }
 
-fn table(ordop: &OrDop, centre: [f32; 3], reach: f32) -> [f32; TABLE] {
-    let mut table = [0.0; TABLE];
+fn table(ordop: &OrDop, centre: [f32; 3], reach: f32) -> [f32; FLOATS_PER_TABLE] {
+    let mut table = [0.0; FLOATS_PER_TABLE];
     let columns = ordop.basis.columns;
     let scale = norm(columns[0]);
     for (slab, &member) in members_of(2 * ordop.lo.len()).iter().enumerate() {

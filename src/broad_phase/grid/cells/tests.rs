@@ -4,7 +4,7 @@ use super::*;
 /// two each way; three cells of each must not share a place.
 #[test]
 fn rows_of_a_wrapped_table_lie_apart() {
-    let bounds = Bounds {
+    let bounds = BallBounds {
         lo: [0.0; 3],
         hi: [1e6; 3],
         widest: 1.0,
@@ -39,7 +39,7 @@ fn bounds_beyond_the_contract_get_some_cells() {
         f32::NAN,
     ];
     for [lo, hi, widest] in (0..9 * 9 * 9).map(|i| [i % 9, i / 9 % 9, i / 81]) {
-        let bounds = Bounds {
+        let bounds = BallBounds {
             lo: [ends[lo], 0.0, 1.0],
             hi: [ends[hi], ends[hi], 2.0],
             widest: ends[widest].max(0.0),
@@ -55,14 +55,14 @@ fn bounds_beyond_the_contract_get_some_cells() {
 #[test]
 fn the_farthest_centre_falls_in_the_last_cell() {
     for (n, radius) in (1..200u16).zip([0.954, 1.0, 1e-9, 7.0].into_iter().cycle()) {
-        let widest = Bounds {
+        let widest = BallBounds {
             widest: radius,
-            ..Bounds::EMPTY
+            ..BallBounds::EMPTY
         };
         let size = Cells::fit(&widest, 1000, TableLayout::Box).size();
         let far = ((f64::from(n) + 0.5) * size) as f32;
         for lo in [0.0, (f64::from(far) - (f64::from(n) + 0.5) * size) as f32] {
-            let bounds = Bounds {
+            let bounds = BallBounds {
                 lo: [lo; 3],
                 hi: [far, lo, lo],
                 widest: radius,
@@ -99,7 +99,7 @@ fn cells_of_a_box_are_as_small_as_its_bodies_allow() {
             for widest in [0.01, 0.5, 3.0, 1000.0] {
                 let lo = [-7.0, 3.0, 100.0];
                 let hi = [0, 1, 2].map(|i| lo[i] + sides[i]);
-                let cells = Cells::fit(&Bounds { lo, hi, widest }, bodies, TableLayout::Box);
+                let cells = Cells::fit(&BallBounds { lo, hi, widest }, bodies, TableLayout::Box);
                 let most = CELLS_PER_BODY * bodies as f64 + SPARE_CELLS;
                 let needed = 2.0 * f64::from(widen(widest)) * (1.0 + 1.0 / 65536.0);
                 let in_box = |size: f64| -> f64 {
@@ -121,7 +121,7 @@ fn cells_of_a_box_are_as_small_as_its_bodies_allow() {
 
 /// Cells of size 2 and a little, so many each way.
 fn cells(count: [u8; 3]) -> Cells {
-    let bounds = Bounds {
+    let bounds = BallBounds {
         lo: [0.0; 3],
         hi: count.map(|n| 2.0 * f32::from(n) - 2.0),
         widest: 1.0,
@@ -161,7 +161,7 @@ fn a_box_has_as_few_cells_as_looks_allow() {
 #[test]
 fn cells_far_from_the_origin_are_as_small_as_others() {
     let lo = 2.0_f32.powi(34);
-    let bounds = Bounds {
+    let bounds = BallBounds {
         lo: [lo; 3],
         hi: [lo + 4096.0; 3],
         widest: 1.0,

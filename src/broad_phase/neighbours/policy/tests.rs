@@ -4,7 +4,7 @@ impl Policy {
     /// That makes its first list with a skin of so many radii, all of this size.
     pub(in super::super) fn of_typical(typical: f64) -> Self {
         Self {
-            radii: Radii::Typical,
+            radii: RadiusKind::Typical,
             sizes: SizeSummary::new(typical, typical),
             ..Self::default()
         }
@@ -33,7 +33,7 @@ fn frames(speeds: [f64; 2]) -> (u32, u32, Policy) {
             *since += 1;
             let drifts = speeds.map(|speed| speed * f64::from(*since));
             let [own, typical] = drifts;
-            let drift = if policy.radii == Radii::Own {
+            let drift = if policy.radii == RadiusKind::Own {
                 own
             } else {
                 typical
@@ -76,10 +76,10 @@ fn slow_bodies_are_followed_and_fast_ones_searched_for() {
 #[test]
 fn skins_are_measured_by_the_radii_that_last_longer() {
     for (speeds, radii) in [
-        ([0.4, 0.05], Radii::Typical),
-        ([5.0, 0.05], Radii::Typical),
-        ([0.05, 0.4], Radii::Own),
-        ([0.05, 0.0499], Radii::Own),
+        ([0.4, 0.05], RadiusKind::Typical),
+        ([5.0, 0.05], RadiusKind::Typical),
+        ([0.05, 0.4], RadiusKind::Own),
+        ([0.05, 0.0499], RadiusKind::Own),
     ] {
         let (made, served, policy) = frames(speeds);
         assert_eq!(policy.radii, radii, "{speeds:?}");
@@ -95,10 +95,10 @@ fn a_skin_is_a_share_or_a_length_and_brings_its_cube_of_pairs() {
         sizes: SizeSummary::new(3.0, 3.0),
         ..Policy::default()
     };
-    assert_eq!(of(Radii::Own, 1).skin(), Skin::share(0.125));
-    assert_eq!(of(Radii::Typical, 1).skin(), Skin::length(0.375));
+    assert_eq!(of(RadiusKind::Own, 1).skin(), Skin::share(0.125));
+    assert_eq!(of(RadiusKind::Typical, 1).skin(), Skin::length(0.375));
     assert_eq!(Policy::default().skin(), Skin::share(0.25));
-    for radii in [Radii::Own, Radii::Typical] {
+    for radii in [RadiusKind::Own, RadiusKind::Typical] {
         let policy = of(radii, 1);
         assert_eq!(policy.wider(), 1.125 * 1.125 * 1.125);
         let widest = 1.375f64 / 1.125;
@@ -112,12 +112,12 @@ fn a_skin_is_a_share_or_a_length_and_brings_its_cube_of_pairs() {
 fn one_that_jumps_tells_nothing_of_the_others() {
     let never = f64::INFINITY;
     for (radii, served, drifts, speeds) in [
-        (Radii::Own, 4, [0.5, 3.0], [0.125, 0.75]),
-        (Radii::Own, 4, [0.51, 3.0], [0.25 / 3.5, never]),
-        (Radii::Typical, 4, [3.0, 0.5], [0.75, 0.125]),
-        (Radii::Typical, 2, [3.0, 0.51], [never, 0.25 / 1.5]),
-        (Radii::Own, 1, [9.0, 0.1], [9.0, 0.1]),
-        (Radii::Typical, 1, [0.1, 9.0], [0.1, 9.0]),
+        (RadiusKind::Own, 4, [0.5, 3.0], [0.125, 0.75]),
+        (RadiusKind::Own, 4, [0.51, 3.0], [0.25 / 3.5, never]),
+        (RadiusKind::Typical, 4, [3.0, 0.5], [0.75, 0.125]),
+        (RadiusKind::Typical, 2, [3.0, 0.51], [never, 0.25 / 1.5]),
+        (RadiusKind::Own, 1, [9.0, 0.1], [9.0, 0.1]),
+        (RadiusKind::Typical, 1, [0.1, 9.0], [0.1, 9.0]),
     ] {
         let policy = Policy {
             radii,
@@ -136,7 +136,7 @@ fn a_list_that_was_too_long_is_tried_again_seldom() {
         let made = policy.next().is_some();
         if made {
             policy.overflowed();
-            assert_eq!((policy.radii, policy.skin), (Radii::Own, 0));
+            assert_eq!((policy.radii, policy.skin), (RadiusKind::Own, 0));
         }
         made
     });
@@ -148,22 +148,71 @@ fn a_list_that_was_too_long_is_tried_again_seldom() {
 /// candidates. No skin is the grid's frames.
 #[test]
 fn the_next_skin_is_the_cheapest_to_the_pair() {
-    const FAR: f64 = f64::INFINITY;
-    let own = |skin| Some((Radii::Own, skin));
-    let typical = |skin| Some((Radii::Typical, skin));
+    const INFINITE_DRIFT: f64 = f64::INFINITY;
+    let own = |skin| Some((RadiusKind::Own, skin));
+    let typical = |skin| Some((RadiusKind::Typical, skin));
     for (at, served, drifts, candidates, pairs, next) in [
-        (own(3), 2, [0.3, FAR], 6, 3_837_626, [own(4), None]),
-        (own(3), 3, [0.26, FAR], 4, 6_009_424, [own(5), own(2)]),
-        (own(0), 2, [0.1, FAR], 5, 18_812_129, [own(3), None]),
-        (own(3), 10, [0.27, FAR], 6, 2_195_551, [own(4), own(3)]),
-        (own(2), 5, [0.2, FAR], 0, 7_728_640, [own(1), None]),
-        (own(3), 2, [0.4, FAR], 3, 1_434_156, [own(3), None]),
-        (own(4), 2, [0.33, FAR], 1, 4_149_165, [own(5), None]),
+        (
+            own(3),
+            2,
+            [0.3, INFINITE_DRIFT],
+            6,
+            3_837_626,
+            [own(4), None],
+        ),
+        (
+            own(3),
+            3,
+            [0.26, INFINITE_DRIFT],
+            4,
+            6_009_424,
+            [own(5), own(2)],
+        ),
+        (
+            own(0),
+            2,
+            [0.1, INFINITE_DRIFT],
+            5,
+            18_812_129,
+            [own(3), None],
+        ),
+        (
+            own(3),
+            10,
+            [0.27, INFINITE_DRIFT],
+            6,
+            2_195_551,
+            [own(4), own(3)],
+        ),
+        (
+            own(2),
+            5,
+            [0.2, INFINITE_DRIFT],
+            0,
+            7_728_640,
+            [own(1), None],
+        ),
+        (
+            own(3),
+            2,
+            [0.4, INFINITE_DRIFT],
+            3,
+            1_434_156,
+            [own(3), None],
+        ),
+        (
+            own(4),
+            2,
+            [0.33, INFINITE_DRIFT],
+            1,
+            4_149_165,
+            [own(5), None],
+        ),
         (own(3), 3, [9.0, 0.1], 6, 7_692_074, [own(4), None]),
         (
             typical(5),
             100,
-            [FAR, 0.376],
+            [INFINITE_DRIFT, 0.376],
             10,
             2_458_240,
             [typical(2), typical(1)],
@@ -196,7 +245,7 @@ fn the_next_skin_is_the_cheapest_to_the_pair() {
                 is_by_boxes: false,
                 served,
                 wait: 0,
-                pause: FIRST_PAUSE,
+                pause: INITIAL_PAUSE_FRAMES,
             };
             let pairs = pairs + more;
             policy.ended(&list(pairs, candidates * pairs as u64, drifts));
@@ -228,12 +277,18 @@ fn lists_of_long_boxes_have_a_length_for_a_skin_and_wider_ones() {
         sizes: long,
         ..slow
     });
-    assert_eq!((policy.radii, SKINS[policy.skin]), (Radii::Typical, 0.75));
+    assert_eq!(
+        (policy.radii, SKINS[policy.skin]),
+        (RadiusKind::Typical, 0.75)
+    );
     policy.overflowed();
-    assert_eq!((policy.radii, policy.skin), (Radii::Typical, 0));
+    assert_eq!((policy.radii, policy.skin), (RadiusKind::Typical, 0));
     policy.skin = 7;
     policy.turn_to(false, || cubes);
-    assert_eq!((policy.radii, SKINS[policy.skin]), (Radii::Typical, 0.375));
+    assert_eq!(
+        (policy.radii, SKINS[policy.skin]),
+        (RadiusKind::Typical, 0.375)
+    );
     assert_eq!(policy.more_candidates(), policy.wider());
     let mut policy = Policy::default();
     policy.turn_to(true, || giant);

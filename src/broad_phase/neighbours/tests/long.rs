@@ -1,9 +1,9 @@
 //! Lists of long boxes, of which the balls of a finder, cubes about them, tell little.
 
-use super::Followed;
+use super::TrackedBodies;
 use crate::bodies::Aabb;
 use crate::broad_phase::ends::grown;
-use crate::broad_phase::neighbours::{Neighbours, State, Volume};
+use crate::broad_phase::neighbours::{ListState, Neighbours, Volume};
 use crate::broad_phase::{Boxes, EndSlots};
 use crate::rounding::cube::{Cube, SCALE};
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
@@ -25,7 +25,7 @@ impl Kernel for CubeAbout {
 
 /// Boxes with sides 1 : 8 : 64 in any order, the last ones of which stand still.
 struct Needles {
-    bodies: Followed,
+    bodies: TrackedBodies,
     boxes: Vec<Aabb>,
     are_long: bool,
 }
@@ -44,7 +44,7 @@ impl Needles {
             Aabb::new(end(-1.0), end(1.0))
         };
         let boxes: Vec<Aabb> = (0..620).map(around).collect();
-        let mut bodies = Followed::new(500, vec![[0.0; 4]; 620]);
+        let mut bodies = TrackedBodies::new(500, vec![[0.0; 4]; 620]);
         bodies.finder = Neighbours::new(Volume::Cube);
         Self {
             bodies,
@@ -63,7 +63,7 @@ impl Needles {
         bodies.step_with(Some(Boxes { all, are_long }));
     }
 
-    fn state(&self) -> State {
+    fn state(&self) -> ListState {
         self.bodies.finder.state
     }
 
@@ -85,7 +85,7 @@ fn a_list_of_long_boxes_holds_the_pairs_whose_grown_ones_meet_and_each_once() {
     for _ in 0..2 {
         needles.step();
     }
-    assert_eq!(needles.state(), State::Made);
+    assert_eq!(needles.state(), ListState::Made);
     assert!(needles.bodies.finder.policy.is_by_boxes());
     let (listed, grown) = (needles.bodies.candidates(true), needles.grown());
     let moving = needles.bodies.moving;
@@ -142,7 +142,7 @@ fn a_list_of_long_boxes_is_followed_until_an_end_leaves_its_grown_box() {
         } else {
             to.next_down()
         };
-        for (to, state) in [(to, State::Followed), (beyond, State::Made)] {
+        for (to, state) in [(to, ListState::Followed), (beyond, ListState::Made)] {
             needles.step();
             *end(&mut needles.boxes[body], axis, is_upper) = to;
             needles.step();
@@ -173,6 +173,10 @@ fn lists_are_made_by_boxes_in_frames_of_long_ones_alone() {
         }
         let finder = &needles.bodies.finder;
         let found = (finder.state, finder.policy.is_by_boxes());
-        assert_eq!(found, (State::Followed, by_boxes), "{are_long}, {jumps}");
+        assert_eq!(
+            found,
+            (ListState::Followed, by_boxes),
+            "{are_long}, {jumps}"
+        );
     }
 }
