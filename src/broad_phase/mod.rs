@@ -35,7 +35,7 @@ pub use block::{Block, MOST_CANDIDATES};
 pub use bounds::BallBounds;
 pub use ends::{Boxes, EndSlots};
 pub use grid::{Cells, Grid, TableLayout};
-use neighbours::List;
+use neighbours::NeighbourList;
 pub use neighbours::{Neighbours, Volume};
 pub use slot_test::{BallTest, SlotTest, list_slots};
 pub use slots::{Balls, SlotBodies, Slots};
@@ -72,7 +72,7 @@ enum CandidateSource<'a> {
     AllPairs(&'a AllPairs),
     Grid(&'a Grid),
     Sweep(&'a Sweep),
-    List(&'a List),
+    List(&'a NeighbourList),
 }
 
 /// Which places get other bodies.
