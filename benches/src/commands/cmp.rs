@@ -1,4 +1,4 @@
-//! `sdop cmp`: two records side by side.
+//! `sdop cmp`: compares two records.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -13,9 +13,9 @@ use super::output::{csv_text, json_with_reason, print, rows};
 
 /// Compare two records: counts must be equal, times are ratios with intervals
 ///
-/// Rows that both have are compared; one line counts those that only one of them has. Counts that
-/// differ are named. Times are listed as the second over the first, the largest change first, the
-/// control last; "same" where the intervals of both meet, "?" where a record has no intervals.
+/// Compares the rows that both records have; one line counts the rows that only one of them has.
+/// Counts that differ are listed. Times are shown as second / first, the largest change first and
+/// the control last: "same" if the intervals overlap, "?" if a record has no intervals.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop cmp data/record/epyc-2core-avx512/reproduce data/record/xeon-2core-avx512/reproduce\n         \
@@ -23,17 +23,17 @@ use super::output::{csv_text, json_with_reason, print, rows};
                   Exit codes: 0 counts are equal, 1 counts differ or a time grew by more than --fail-slower, 2 bad input."
 )]
 pub struct Args {
-    /// The first record: a directory, or COMMIT:DIRECTORY as it was in a commit of this repository
+    /// The first record: a directory, or COMMIT:DIRECTORY for a state in this repository's history
     first: String,
     /// The second record
     second: String,
-    /// Exit with 1 when a time has grown by more than so many percent and its interval says so
+    /// Exit with 1 if a time has grown by more than this many percent, confirmed by its interval
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     fail_slower: Option<f64>,
-    /// Rows of times that are listed
+    /// How many rows of times to list
     #[arg(long, value_name = "N", default_value_t = 15)]
     most: usize,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -55,7 +55,7 @@ enum Format {
 /// Runs the command.
 ///
 /// # Errors
-/// A directory that holds no whole record; two experiments.
+/// A directory without a complete record; records of different experiments.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let [first, second] = [place(&args.first)?, place(&args.second)?];
     let comparison = compare(first.path(), second.path())?;

@@ -1,4 +1,4 @@
-//! `sdop cost`: the formula per strategy, predicted against measured.
+//! `sdop cost`: the formula's predicted time and the measured time, per strategy.
 
 pub mod lines;
 
@@ -20,35 +20,34 @@ use super::reproduce::draw_costs;
 use super::scene_args::{MachineArgs, SceneArgs};
 use super::{Outcome, prices};
 
-/// Frames of a pass when neither the scene nor a flag wants fewer.
+/// Frames per pass, unless the scene or a flag has fewer.
 const FRAMES: u32 = 200;
 const EFFORT: Effort = Effort {
     turns: 3,
     builds: 9,
 };
 
-/// What each strategy costs: predicted by the formula against measured
+/// Predict each strategy's cost by the formula, and measure it
 ///
 /// T = Co + Nu·Cu + F + Nv·Cv: construction, updates, pair finding, tests. The paper's equation has
-/// no F. Counts are those of the scene's runs; prices come from other seeds, other numbers of
-/// bodies and other boxes, whose frames take turns with the scene's, so that the formula predicts.
-/// Warm frames follow one another; before a cold one other cullers ran. The residual is measured
-/// over predicted, less one. Without --strategy, every strategy is measured that the scene has
-/// settings for.
+/// no F. Counts come from the scene's runs. Prices come from other seeds, numbers of bodies and
+/// boxes, whose frames take turns with the scene's, so that T is a true prediction. Warm frames
+/// follow one another; before a cold frame other cullers ran. The residual is measured / predicted
+/// - 1. Without --strategy, all strategies are measured for which the scene has settings.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Passes to measure, apart in time: the scene's seed and those after it
+    /// Passes to measure, at different times: with the scene's seed and those after it
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: u64,
     #[command(flatten)]
     machine: MachineArgs,
-    /// Draw the terms and the measured times into this SVG file
+    /// Draw the terms and the measured times to this SVG file
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// How the result is printed; CSV has a line a term
+    /// Output format; CSV has one line per term
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -246,8 +245,8 @@ fn percents(residual: &Estimate) -> [String; 2] {
     ]
 }
 
-/// What each volume of each strategy counts, what one update and one test cost, and the terms that
-/// both make.
+/// The counts of each volume of each strategy, the prices of an update and a test, and the
+/// resulting terms.
 fn volume_rows(report: &Report) -> Table {
     let mut rows = table(&[
         "strategy",

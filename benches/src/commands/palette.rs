@@ -1,4 +1,4 @@
-//! Colours of the figures: those that the colour-blind tell apart (Okabe & Ito 2008), and greys.
+//! Colours of the figures: a palette for colour-blind readers (Okabe & Ito 2008), and greys.
 
 use plotters::style::RGBColor;
 

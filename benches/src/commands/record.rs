@@ -1,4 +1,4 @@
-//! `sdop record`: runs an experiment and keeps what it measured, with where it comes from.
+//! `sdop record`: runs an experiment and stores its measurements with their provenance.
 
 mod shared;
 mod steps;
@@ -18,41 +18,40 @@ use super::output::{print, rows};
 use super::scene_args::MachineArgs;
 use super::sweep::{SHARING, SweepArgs};
 
-/// Run an experiment and keep its measurements under data/record
+/// Run an experiment and store its measurements under data/record
 ///
-/// Writes the experiment's tables and record.json: command, commit, date, machine, compiler, load
-/// before and after, and the digest of every file and input. Without an experiment, lists them.
-/// Experiments that are sweeps (reproduce, tradeoff, verify) can be shared by ranks of mpirun or
-/// made in shards; others are measured in one process.
+/// Writes the experiment's tables and record.json, which has the command, commit, date, machine,
+/// compiler, load before and after, and the digest of every file and input. Without an experiment,
+/// lists all of them. Sweeps (reproduce, tradeoff, verify) can be shared by ranks of mpirun or
+/// split into shards; other experiments are measured in one process.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop record\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick\n          \
     mpirun -n 64 sdop record verify --name my-cluster\n          sdop record verify --name my-cluster --shard 3/64, and for all: --merge"
 )]
 pub struct Args {
-    /// The experiments; kernels and peers stand for all of theirs
+    /// The experiments; kernels and peers mean all experiments in their group
     experiments: Vec<String>,
-    /// What the machine is called in data/record
+    /// The machine's name in data/record
     #[arg(long, value_name = "NAME", default_value = "here")]
     name: String,
-    /// Where records go
+    /// Output directory for records
     #[arg(long, value_name = "DIR", default_value = "data/record")]
     out: PathBuf,
-    /// Describe the files that are there already instead of measuring; they keep the commit that
-    /// last touched them
+    /// Describe existing files instead of measuring; they keep the commit that last changed them
     #[arg(long)]
     adopt: bool,
     /// A note for readers of the record
     #[arg(long, value_name = "TEXT")]
     note: Option<String>,
-    /// Make the record of the shards that --shard left beside it
+    /// Make the record from the shards that --shard wrote
     #[arg(long, conflicts_with_all = ["adopt", "shard", "share_cores"])]
     merge: bool,
     #[command(flatten)]
     sweep: SweepArgs,
     #[command(flatten)]
     machine: MachineArgs,
-    /// Further arguments of the experiment, behind --
+    /// Further arguments for the experiment, after --
     #[arg(last = true)]
     more: Vec<String>,
 }

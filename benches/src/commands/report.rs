@@ -1,5 +1,4 @@
-//! `sdop report`: renders every page's numbers from the records, or checks that they are what the
-//! records say.
+//! `sdop report`: renders the numbers on all pages from the records, or checks them.
 
 mod far;
 
@@ -68,26 +67,26 @@ const MACROS: &str = "paper/quantities.jinja";
 /// whole page.
 const TEMPLATES: &str = "paper/templates";
 
-/// Render the numbers of README and the other pages from data/record
+/// Render the numbers in README and the other pages from data/record
 ///
-/// A template paper/templates/pages/PAGE gives a whole page. Other pages carry blocks between <!--
+/// A template paper/templates/pages/PAGE gives a whole page. Other pages have blocks between <!--
 /// BEGIN NAME --> and <!-- END NAME -->, from the template paper/templates/NAME.md. Templates read
-/// records by csv("EXPERIMENT/FILE"), md, json, text, record and records, choose rows by where and
-/// one, and round by fixed, sig, thousands and percent. Every record's digests are checked first,
-/// so a digit changed by hand is found wherever it stands, in a page or in a record. A number must
-/// look the same on every page. A record that is older than the code it measures must have its
-/// commit named on the pages that quote it. data/record/quoted.toml names the machine whose records
-/// are quoted.
+/// records with csv("EXPERIMENT/FILE"), md, json, text, record and records, select rows with where
+/// and one, and round with fixed, sig, thousands and percent. The digests of all records are
+/// checked first, so that a digit changed by hand is found in pages and in records. A number must
+/// look the same on every page. If a record is older than the code that it measures, pages that
+/// quote it must name its commit. data/record/quoted.toml names the machine whose records are
+/// quoted.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop report\n          sdop report --check\n          sdop report --quantities"
 )]
 pub struct Args {
-    /// Change nothing; exit with 1 when a page would change, a record was changed, two pages give a
-    /// number differently, or an old record isn't called old
+    /// Change nothing; exit with 1 if a page would change, a record was changed, two pages show a
+    /// number differently, or a page doesn't name the commit of an old record
     #[arg(long)]
     check: bool,
-    /// List the numbers that stand on more than one page
+    /// List the numbers that are on more than one page
     #[arg(long)]
     quantities: bool,
     /// The repository

@@ -1,4 +1,4 @@
-//! `sdop run`: simulate and cull one scene, and say what it counted and cost.
+//! `sdop run`: simulates and culls one scene, and prints counters and times.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -28,10 +28,10 @@ use super::scene_args::{MachineArgs, SceneArgs};
 
 /// Simulate and cull one scene
 ///
-/// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of
-/// each stage, what single frames take, and hashes. Counters and hashes depend on scene, seed and
-/// flags alone, not on the CPU or threads; with --budget-us they depend on the clock. Under mpirun,
-/// ranks share the scene and report the same pairs; built with the feature `mpi`.
+/// Runs the effects that the scene lists, culls every frame, and prints counters, the seconds of
+/// each stage, percentiles of single frames, and hashes. Counters and hashes depend only on scene,
+/// seed and flags, not on the CPU or threads; with --budget-us they depend on the clock. Under
+/// mpirun (with the feature `mpi`), ranks share the scene and report the same pairs.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
@@ -40,18 +40,17 @@ pub struct Args {
     /// Write every frame's poses and pairs to this file, as lines of JSON
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Have the record say, too, which meshes truly meet, decided in exact arithmetic: slow for
-    /// large scenes
+    /// Add to the record which meshes meet, decided in exact arithmetic; slow for large scenes
     #[arg(long, requires = "record")]
     truth: bool,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     #[command(flatten)]
     scene: SceneArgs,
     #[command(flatten)]
     machine: MachineArgs,
-    /// Threads that cull; nothing but time depends on their number
+    /// Number of threads; only times depend on it
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
 }
@@ -77,7 +76,7 @@ struct Report<'a> {
     counters: Map<String, Value>,
     seconds: Terms,
     frame_seconds: Percentiles,
-    /// What else the machine did.
+    /// Other load on the machine.
     conditions: Conditions,
     effects: Vec<EffectLine>,
     volumes_sha256: &'a str,
@@ -87,7 +86,7 @@ struct Report<'a> {
     ranks: Option<&'a [RankLine]>,
 }
 
-/// The terms of T: those of culling, and what borders between ranks add.
+/// The terms of T: those of culling, and those of the borders between ranks.
 #[derive(Serialize)]
 struct Terms {
     #[serde(flatten)]
@@ -96,7 +95,7 @@ struct Terms {
     border: Option<BorderSeconds>,
 }
 
-/// What ranks say besides.
+/// Additional results of ranks.
 type Shared<'a> = Option<(BorderSeconds, &'a [RankLine])>;
 
 #[derive(Serialize)]
@@ -109,8 +108,7 @@ struct EffectLine {
 /// Runs the command.
 ///
 /// # Errors
-/// A bad scene, settings that it can't have, a body that leaves the contract, a recording that
-/// can't be written.
+/// An invalid scene or settings, a body that leaves the contract, a record that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     #[cfg(feature = "mpi")]
     if sdop_bench::mpi::launched() > 1 {
@@ -325,7 +323,7 @@ fn write_text(
     }
 }
 
-/// Seconds by stage. Construction happens once, so it has no time a frame.
+/// Seconds per stage. Construction happens once, so it has no time per frame.
 fn stages(seconds: &Terms, frames: u32) -> comfy_table::Table {
     let Terms {
         culling: seconds,

@@ -19,11 +19,11 @@ use super::output::{print, progress};
 #[derive(clap::Args)]
 #[command(next_help_heading = "Many machines")]
 pub struct SweepArgs {
-    /// Do part i of n, every n-th unit of the work, and leave it in the output directory for `sdop
-    /// merge`
+    /// Do shard i of n, every n-th unit of the work, and write it to the output directory for
+    /// `sdop merge`
     #[arg(long, value_name = "i/n")]
     shard: Option<Shard>,
-    /// Under mpirun, let ranks on one machine time side by side
+    /// Under mpirun, let ranks on one machine measure times at the same time
     #[arg(long)]
     share_cores: bool,
 }
@@ -34,8 +34,8 @@ pub const SHARING: [&str; 2] = ["--shard", "--share-cores"];
 /// Receives results in the order of units.
 type Take<'a> = &'a mut dyn FnMut(usize, &str) -> miette::Result<()>;
 
-/// Begins a command whose work may be shared: ranks but the first wait until that has found the
-/// arguments good.
+/// Begins a command whose work may be shared: other ranks wait until the first one has checked the
+/// arguments.
 ///
 /// # Errors
 /// A shard by one of many ranks.

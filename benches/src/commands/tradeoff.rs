@@ -1,4 +1,4 @@
-//! `sdop tradeoff`: what each step of accuracy costs in time on one scene, and when it pays.
+//! `sdop tradeoff`: what accuracy costs in time on one scene, and when it pays.
 
 mod plot;
 mod tables;
@@ -22,12 +22,13 @@ use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::{MachineArgs, SceneArgs};
 use super::sweep::{self, SweepArgs};
 
-/// What accuracy costs in time, for every volume and strategy
+/// Measure precision and time for every volume and strategy
 ///
-/// Culls sample frames of the scene with every volume and strategy, compares with the exact truth
-/// about the meshes, then measures the time of frames that follow one another (warm) and of frames
-/// between which others ran (cold). Counts depend on scene and flags alone; seconds are this
-/// machine's. Given the JSON of an earlier run instead of a scene, prints and draws that.
+/// Culls sample frames of the scene with every volume and strategy, compares the pairs with the
+/// exact intersections of the meshes, and measures the time of frames that follow one another
+/// (warm) and of frames before which other cullers ran (cold). Counts depend only on scene and
+/// flags; times are those of this machine. If the argument is the JSON of an earlier run, prints
+/// and draws that.
 #[derive(clap::Args)]
 #[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
     Examples: sdop tradeoff data/scenes/paper-500.toml --out target/tradeoff\n          \
@@ -37,26 +38,26 @@ pub struct Args {
     scene: SceneArgs,
     #[command(flatten)]
     machine: MachineArgs,
-    /// Fewer seeds, frames and pairs: wide intervals in a quarter of the time
+    /// A shorter run with fewer seeds, frames and pairs: wider intervals in a quarter of the time
     #[arg(long)]
     quick: bool,
-    /// Runs, each with a seed of its own from the scene's on [default: 5, or 2 with --quick]
+    /// Runs, with consecutive seeds from the scene's on [default: 5, or 2 with --quick]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: Option<u64>,
-    /// Print every table, not only the recommendation and what it rests on
+    /// Print all tables, not only the recommendation and its basis
     #[arg(long)]
     all: bool,
-    /// Write the figures, JSON and CSV into this directory; of a record, `sdop report` makes the
-    /// page paper/tradeoff.md
+    /// Write figures, JSON and CSV to this directory; from a record, `sdop report` makes the page
+    /// paper/tradeoff.md
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write the figures into this directory instead
+    /// Write the figures to this directory instead
     #[arg(long, value_name = "DIR", requires = "out")]
     paper: Option<PathBuf>,
-    /// Where exact truths are kept between runs [default: sdop/truth in the user's cache directory]
+    /// Cache of exact answers between runs [default: sdop/truth in the user's cache directory]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! `sdop verify`: the optimised culler against the exact reference, on hard cases, seeded rounds
+//! `sdop verify`: judges the optimised culler by the exact reference, on hard cases, seeded rounds
 //! and scenes.
 
 mod report;
@@ -26,13 +26,14 @@ use report::Report;
 
 /// Judge the optimised culler by the exact reference
 ///
-/// Hard cases first, then seeded rounds (a probe among bodies that nearly touch it, and a random
-/// crowd, for every k and axes), then the scenes given, meshes included. Strategies, overlap tests,
-/// finders, k, axes, update modes, SIMD tiers and numbers of threads meet in every combination; the
-/// matrix at the end says how often. Each list is held against the exact answers and against that
-/// of all-pairs. Given boxes are held against their definition. A missed pair, a list that differs
-/// from all-pairs' and an empty cell of the matrix end in exit code 1, the first two with the
-/// smallest scene that shows it. A run that --time cuts short is INCOMPLETE: exit code 3.
+/// Runs hard cases, then seeded rounds (a probe among bodies that nearly touch it, and a random
+/// crowd, for every k and axes), then the given scenes with their meshes. Strategies, overlap
+/// tests, finders, k, axes, update modes, SIMD tiers and numbers of threads are tested in every
+/// combination; the matrix at the end counts them. Each list is compared with the exact answers and
+/// with the list of all-pairs; lists of boxes are compared with their definition. The exit code is
+/// 1 for a missed pair, a list that differs from that of all-pairs, or an empty cell of the matrix;
+/// for the first two, the smallest scene that shows it is written. A run that --time cuts short is
+/// INCOMPLETE: exit code 3.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100\n          \
@@ -40,7 +41,7 @@ use report::Report;
     sdop verify --seeds 10000 --shard 3/64 --out shards"
 )]
 pub struct Args {
-    /// Scenes to run and judge, meshes included
+    /// Scenes to run and judge, with their meshes
     scenes: Vec<PathBuf>,
     /// One group of hard cases instead of all; may be repeated
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FILES.iter().map(|file| file.0)))]
@@ -51,25 +52,25 @@ pub struct Args {
     /// The first seed
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     first_seed: u64,
-    /// Start no round after so many seconds; without all rounds the result is INCOMPLETE, exit code
-    /// 3
+    /// Start no new round after this many seconds; if rounds are missing, the result is INCOMPLETE,
+    /// exit code 3
     #[arg(long, value_name = "S", conflicts_with = "shard")]
     time: Option<u64>,
     /// Frames of each scene
     #[arg(long, value_name = "N", default_value_t = 20)]
     frames: usize,
-    /// One SIMD tier alone, instead of all that the CPU has
+    /// Only this SIMD tier, instead of all that the CPU has
     #[arg(long, value_name = "TIER")]
     simd: Option<Tier>,
-    /// Where the scene that shows a missed pair is written, and shards
+    /// Output directory for shards and for the scene that shows a missed pair
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
-    /// Write the hard cases' exact answers and their page into this directory, and judge nothing
+    /// Only write the hard cases' exact answers and their page to this directory
     #[arg(long, value_name = "DIR")]
     record_hard_cases: Option<PathBuf>,
     #[command(flatten)]
     files: ReadArgs,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     #[command(flatten)]

@@ -26,39 +26,39 @@ use rows::Tables;
 /// Run the paper's experiments: Table 1, Figs 12 to 14, costs, claims
 ///
 /// For 50, 150, 300, 350 and 500 objects in one box, and 500 in a small one, every strategy culls
-/// the same seeded trajectories. Counts and hashes are equal on every CPU; times are medians over
-/// warm frames with intervals over seeds. Results are written as CSV, JSON and SVG; of a record
-/// (`sdop record reproduce`), `sdop report` makes the page paper/summary.md. The exit code is 1
-/// when the sequential and the listed S-DOP report different pairs.
+/// the same seeded trajectories. Counts and hashes are the same on every CPU; times are medians
+/// over warm frames with intervals over seeds. Results are written as CSV, JSON and SVG; from a
+/// record (`sdop record reproduce`), `sdop report` makes the page paper/summary.md. The exit code
+/// is 1 if sequential and batch S-DOP report different pairs.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop reproduce --quick\n          sdop reproduce --out results --seeds 20\n          \
     sdop reproduce --seeds 640 --shard 3/10 --out shards"
 )]
 pub struct Args {
-    /// A look at everything within seconds: few seeds, wide intervals
+    /// A short run that takes seconds: few seeds, wide intervals
     #[arg(long)]
     quick: bool,
     /// Runs of each scene [default: 64, with --quick 5]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: Option<u64>,
-    /// Frames a run [default: 400, with --quick 100]
+    /// Frames per run [default: 400, with --quick 100]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
     #[command(flatten)]
     sweep: SweepArgs,
-    /// Where tables go
+    /// Output directory for tables
     #[arg(long, value_name = "DIR", default_value = "target/reproduce")]
     out: PathBuf,
-    /// Where figures go, in a directory of that name [default: the same]
+    /// Output directory for figures [default: the same]
     #[arg(long, value_name = "DIR")]
     paper: Option<PathBuf>,
-    /// Where the paper's scenes are
+    /// Directory of the paper's scenes
     #[arg(long, value_name = "DIR", default_value = "data/scenes")]
     scenes: PathBuf,
     #[command(flatten)]
     machine: MachineArgs,
-    /// What is printed: the main numbers, or all results as JSON, or Table 1 as CSV
+    /// Output format: the main numbers, all results as JSON, or Table 1 as CSV
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
