@@ -1,5 +1,5 @@
-//! Hashes that make results comparable across machines: of the reported pairs, and of every volume
-//! of a scene. Two machines' pairs are comparable only where their volumes agree.
+//! Hashes of the reported pairs and of all volumes of a scene, to compare results between machines.
+//! Pairs are comparable only if the volumes agree.
 
 use std::fmt::Write as _;
 

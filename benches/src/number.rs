@@ -1,4 +1,5 @@
-//! Numbers of a scene file, checked while they are read so that an error points at the very number.
+//! Number types of a scene file. They are checked while they are read, so that an error points at
+//! the number.
 
 use std::fmt;
 

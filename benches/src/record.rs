@@ -1,4 +1,4 @@
-//! Lines of a run record ([`sdop_judge::record`]) for scenes and culled frames.
+//! The lines of a run record ([`sdop_judge::record`]) for scenes and culled frames.
 
 use sdop::counters::Counters;
 use sdop::settings::Strategy;

@@ -6,9 +6,9 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 /// Slots in the check: whole vectors in every tier.
 pub const SLOTS_PER_CHECK: usize = 2 * MAX_WIDTH;
 
-/// Tests slot 0 against all of [`SLOTS_PER_CHECK`] slots, and as many pairs as a block. All touch. The test's
-/// columns have no padding and the block's hits no room after them, so starting another vector
-/// panics.
+/// Tests slot 0 against all of [`SLOTS_PER_CHECK`] slots, and as many pairs as a block. All touch.
+/// The test's columns have no padding and the block's hits no room after them, so starting another
+/// vector panics.
 pub fn check(test: &impl SlotTest) {
     struct Touching<'a, T>(&'a T);
     impl<T: SlotTest> Kernel for Touching<'_, T> {

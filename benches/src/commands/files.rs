@@ -52,7 +52,7 @@ pub fn read(path: &Path) -> miette::Result<String> {
 pub const COMMAND: &str = "SDOP_COMMAND";
 
 /// The command that repeats these results: `sdop record`'s, or this one. Absolute paths are
-/// shortened, and flags that only share out work are dropped.
+/// replaced by `DIR`, and flags that only share out work are dropped.
 pub fn command() -> String {
     if let Ok(command) = std::env::var(COMMAND) {
         return command;

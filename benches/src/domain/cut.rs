@@ -1,15 +1,16 @@
-//! Recursive bisection: which rank owns which part of space.
+//! [`Cuts`]: recursive bisection of space, one cell per rank.
 //!
-//! Ranks are halved again and again, and space with them: each plane has as many of its part's ball
-//! centres below as its lower ranks have a share in, across the axis along which these centres
-//! reach farthest. A plane is an f32 that is one of the coordinates, found digit by digit from
-//! counts that are summed over ranks (a radix selection), so no rank ever sees another's bodies,
-//! and the planes depend on the set of centres alone, not on who holds which. A centre below a
-//! plane is owned below, one on it or beyond above: a comparison of two f32, which every rank
-//! decides alike.
+//! The ranks are halved repeatedly, and space with them. Each plane is perpendicular to the axis of
+//! largest extent of its part's ball centres, and the number of centres below it is the share of
+//! the lower ranks. A plane is one of the f32 coordinates, found digit by digit from counts that
+//! are summed over ranks (a radix selection). No rank sees another's bodies, and the planes depend
+//! only on the set of centres, not on which rank holds them. A centre below a plane belongs to the
+//! lower side, one on or above it to the upper side, which is the same comparison of two f32 on
+//! every rank.
 //!
-//! Partitioners that are kept (coupe, the METIS family) work on a mesh or points in one memory; MPI
-//! ones are C and another installation. Selection over ranks is shorter than what would bind them.
+//! Maintained partitioners (coupe, the METIS family) need a mesh or points in one memory, and those
+//! with MPI are C libraries with their own installation. Selection over ranks is shorter than a
+//! binding to them.
 
 use super::float_key::{key, of_key};
 use crate::network::Network;

@@ -1,4 +1,4 @@
-//! What can go wrong on one of many ranks, and how the others learn of it.
+//! Errors on one of many ranks, and how the others learn of them.
 
 use miette::Diagnostic;
 use thiserror::Error;

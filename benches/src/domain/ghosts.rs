@@ -1,4 +1,4 @@
-//! Ghosts: who sends which bodies where, and the poses that follow until owners change.
+//! Ghosts: which bodies are sent to which rank, and their poses until owners change.
 
 use super::body_columns::{BodyColumns, BodyMessage, read_poses, write_pose};
 use super::cut::Cuts;

@@ -1,4 +1,4 @@
-//! One of many ranks: its frames, one after the other, in step with the others.
+//! [`Rank`]: one of many ranks, which culls its frames in step with the others.
 
 use std::time::Instant;
 

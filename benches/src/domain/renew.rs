@@ -1,5 +1,5 @@
-//! Owners and ghosts found anew: bodies migrate, and space is cut where their numbers have grown
-//! unequal.
+//! Renewals: owners and ghosts are determined again, bodies migrate, and space is cut again if the
+//! ranks' numbers of bodies have become unequal.
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! A whole run on many ranks, and what they say of it together.
+//! Running a scene on many ranks, and the combined results.
 
 use serde::Serialize;
 

@@ -1,5 +1,5 @@
-//! Brownian kicks: each step a share of the dynamic bodies, drawn with replacement, gets a new
-//! velocity (Broadmark's brownian scene kicks about N/100, Serpa & Rodrigues 2019).
+//! Brownian kicks: in each step a share of the dynamic bodies, drawn with replacement, gets a new
+//! velocity (about N/100 in Broadmark's brownian scene, Serpa & Rodrigues 2019).
 
 use std::ops::Range;
 

@@ -1,6 +1,5 @@
-//! Gravity: v ← v + dt·a, the same for all bodies. With a period the acceleration turns about an
-//! axis, which keeps a box of bodies stirred (Broadmark's rotating-gravity scene, Serpa & Rodrigues
-//! 2019).
+//! Gravity: v ← v + dt·a, the same for all bodies. With a period, the acceleration rotates about an
+//! axis, which stirs a box of bodies (Broadmark's rotating-gravity scene, Serpa & Rodrigues 2019).
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -20,7 +19,7 @@ use sdop::bodies::Bodies;
 pub struct Settings {
     /// Acceleration at the start, world frame.
     pub acceleration: [Real; 3],
-    /// Seconds a full turn takes; absent: the acceleration is constant.
+    /// Seconds per full turn; `None` for a constant acceleration.
     pub period: Option<Positive>,
     /// The axis about which it turns, right-handed; z when absent.
     pub axis: Option<[Real; 3]>,
@@ -77,7 +76,7 @@ impl<'de> Visitor<'de> for Either {
 struct Gravity {
     dt: f32,
     acceleration: [f64; 3],
-    /// Unit axis and turns a step.
+    /// Unit axis, and turns per step.
     turning: Option<([f64; 3], f64)>,
     steps: u64,
 }

@@ -178,8 +178,8 @@ impl Grid {
         self.starts[0] = 0;
     }
 
-    /// Chooses the cells: wide enough that touching spheres lie in neighbouring ones also after
-    /// rounding, and no more than about one a body.
+    /// Chooses the cells: wide enough that touching spheres are in neighbouring cells even after
+    /// rounding, and at most about one per body.
     fn fit(&mut self, spheres: &[Sphere]) {
         let along = |axis: usize| spheres.iter().map(move |sphere| sphere.centre[axis]);
         let widest = spheres

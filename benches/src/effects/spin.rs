@@ -1,6 +1,6 @@
 //! Free rotation about a fixed world axis: q ← normalise(q + ½dt·ωq), with ω a pure quaternion
 //! (first order, then back to unit length). The scene draws each dynamic body's ω: any direction, a
-//! rate in radians a second.
+//! rate in radians per second.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use sdop::bodies::Bodies;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Range of angular speeds, radians a second.
+    /// Range of angular speeds, radians per second.
     pub rate: Interval,
 }
 

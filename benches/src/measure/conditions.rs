@@ -1,4 +1,5 @@
-//! Whether the machine did other work while it measured: who quotes a time should know.
+//! Whether the machine had other load during a measurement, so that readers know which times not to
+//! quote.
 
 use serde::{Deserialize, Serialize};
 

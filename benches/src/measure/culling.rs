@@ -1,5 +1,5 @@
-//! A culler of this library as a contestant: with its stage clock, and behind it the convex hulls
-//! where they are wanted.
+//! A culler of this library as a contestant, timed per stage, and optionally followed by a test of
+//! convex hulls.
 
 use std::time::Instant;
 
@@ -19,9 +19,9 @@ use sdop_judge::contestant::Contestant;
 pub struct Stages {
     /// World-space updates.
     pub update: f64,
-    /// Finding candidates and the first volume test, with all that no other stage claims.
+    /// Finding candidates and the first volume test, and everything that no other stage includes.
     pub finding: f64,
-    /// The or-DOP test, with what it costs to hand pairs to it where that is timed with it.
+    /// The or-DOP test, including the cost of passing pairs to it if that is timed together.
     pub refining: f64,
     /// The convex hulls' test.
     pub hulls: f64,
@@ -34,8 +34,8 @@ impl Stages {
         self.update + self.finding + self.refining + self.hulls
     }
 
-    /// Without some seconds of waiting: taken off the longest stage, where the interruption most
-    /// likely fell.
+    /// The stages without some seconds of waiting, which are subtracted from the longest stage,
+    /// where the interruption most likely was.
     #[must_use]
     pub fn without(mut self, waited: f64) -> Self {
         let stages = [
@@ -52,8 +52,7 @@ impl Stages {
     }
 }
 
-/// A culler of this library with its stage clock, and behind it the convex hulls where they are
-/// wanted.
+/// A culler of this library, timed per stage, and optionally followed by a test of convex hulls.
 #[derive(Debug)]
 pub struct Culling {
     culler: Culler,
@@ -67,7 +66,7 @@ impl Culling {
     /// Culls bodies by some settings.
     ///
     /// # Errors
-    /// Settings that can't be carried out, bodies that the culler refuses.
+    /// Invalid settings or bodies.
     pub fn new(
         shapes: &[Shape],
         bodies: &Bodies,
@@ -88,7 +87,7 @@ impl Culling {
         })
     }
 
-    /// The same with each reported pair tested by its convex hulls.
+    /// Adds a test of each reported pair by its convex hulls.
     #[must_use]
     pub fn with_hulls(mut self, shapes: &[Shape]) -> Self {
         let start = Instant::now();
@@ -100,7 +99,7 @@ impl Culling {
     /// Whether every frame so far was culled.
     ///
     /// # Errors
-    /// The first frame that the culler refused: none of a scene's own.
+    /// The error of the first rejected frame; frames of a scene are never rejected.
     pub fn accepted(&self) -> Result<(), CullError> {
         self.refused.clone().map_or(Ok(()), Err)
     }
@@ -111,7 +110,7 @@ impl Culling {
         self.last
     }
 
-    /// Seconds that making it took, its shapes' volumes not included.
+    /// Seconds of building it, without the shapes' volumes.
     #[must_use]
     pub fn construct_seconds(&self) -> f64 {
         self.construct

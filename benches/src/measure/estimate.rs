@@ -7,7 +7,7 @@
 use serde::{Deserialize, Deserializer, Serialize};
 use special::{Beta as _, Gamma as _};
 
-/// How often an interval covers the truth.
+/// The probability that an interval covers the true value.
 pub const CONFIDENCE: f64 = 0.95;
 
 /// A mean over seeds.
@@ -24,7 +24,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// From one value a seed.
+    /// The estimate from one value per seed.
     #[must_use]
     pub fn of(values: &[f64]) -> Self {
         let n = values.len() as f64;
@@ -42,9 +42,9 @@ impl Estimate {
         }
     }
 
-    /// From values in the order of time, such as medians of runs apart. Neighbours in time share
-    /// what the machine did: with the correlation ρ of each value with the next, n values tell as
-    /// much as n(1 − ρ)/(1 + ρ) independent ones.
+    /// The estimate from values in the order of time, such as medians of separate runs. Values that
+    /// are close in time share the machine's load: with the correlation ρ of consecutive values, n
+    /// values have the information of n(1 − ρ)/(1 + ρ) independent ones.
     #[must_use]
     pub fn in_order(values: &[f64]) -> Self {
         let plain = Self::of(values);

@@ -1,15 +1,15 @@
-//! One protocol of timing: contestants take turns on the same frames, on one thread.
+//! The protocol of all timing: contestants take turns on the same frames, on one thread.
 //!
-//! In its turn a contestant takes some consecutive frames, then the next one does. Turns share out
-//! what the machine does meanwhile (other processes, clock changes) among all alike, and their
-//! order is drawn anew each time, since a contestant that always followed the same one would always
-//! find the caches that it leaves. The first frame of a turn is *cold*: others ran in between.
-//! Those after it are *warm*: a culler's frames follow one another, as in a simulation. Which of
-//! the two a number is next to it.
+//! In its turn a contestant takes several consecutive frames, then the next one does. Other load
+//! (other processes, clock changes) therefore affects all contestants alike. The order of turns is
+//! random in each round, because a contestant that always followed the same one would always find
+//! that one's data in the caches. The first frame of a turn is *cold*, because others ran in
+//! between. The following ones are *warm*: frames of one culler in sequence, as in a simulation.
+//! Every number says which of the two it is.
 //!
-//! A machine that does other work takes the processor away in the midst of a frame, the likelier
-//! the longer the frame is: what a thread waited for a processor is taken off where the system
-//! tells it ([`Waiting`]), and counted.
+//! Other load may interrupt a frame, with a probability that grows with its length. Time that a
+//! thread waited for a processor is subtracted if the system reports it ([`Waiting`]), and is
+//! recorded.
 
 use std::time::Instant;
 
@@ -23,40 +23,40 @@ use sdop::bodies::Bodies;
 use sdop::choice::choices;
 use sdop_judge::contestant::Contestant;
 
-/// Where the draws of the order of turns start.
+/// The seed of the order of turns.
 const SEED: u64 = 0x5a3e_7100_0000_0000;
-/// Bodies of the frames that are prepared at once: their poses stay in the second-level cache until
-/// they are culled.
+/// The most bodies, over all frames, whose poses are prepared at once: they stay in the
+/// second-level cache until they are culled.
 const PREPARED_BODIES: usize = 1 << 13;
-/// From this many seconds on, waiting is looked at before and after a frame: looking takes a
-/// microsecond or two and leaves its traces in the caches, and short frames are rarely interrupted.
+/// Waiting is only measured for frames of at least this many seconds. The measurement takes one or
+/// two microseconds and disturbs the caches, and short frames are rarely interrupted.
 const LEAST_WATCHED_SECONDS: f64 = 100e-6;
 /// The most frames of a turn.
 const MOST_FRAMES: usize = 8;
 
 choices! {
-    /// What a culler finds in the caches when it is timed.
+    /// The state of the caches when a culler is timed.
     Regime, "timing regime", {
-        /// Its own last frame: frames follow one another, as in a simulation.
+        /// Data of its own previous frame: frames follow one another, as in a simulation.
         Warm = "warm",
-        /// What others left: they ran in between.
+        /// Data of other cullers, which ran in between.
         Cold = "cold",
     }
 }
 
 /// One timed frame.
 pub struct Timed<'a, C> {
-    /// Which contestant, counted as given.
+    /// The number of the contestant, in the given order.
     pub number: usize,
     /// The contestant after the frame.
     pub contestant: &'a mut C,
     /// Which frame of the turn.
     pub frame: usize,
-    /// What it took, without what the thread waited for a processor.
+    /// The frame's time, without waiting for a processor.
     pub seconds: f64,
-    /// What it waited.
+    /// The time of waiting for a processor.
     pub waited: f64,
-    /// How the contestant came to it.
+    /// Whether the frame was warm or cold.
     pub regime: Regime,
 }
 
@@ -67,7 +67,7 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// Rounds whose orders are drawn from a stream of their own.
+    /// Rounds whose orders are drawn from a separate stream.
     #[must_use]
     pub fn from_stream(stream: u32) -> Self {
         Self {
@@ -75,8 +75,8 @@ impl Turns {
         }
     }
 
-    /// Every contestant takes every frame of the round: all frames in one turn each. `each` sees
-    /// what was timed.
+    /// Runs a round: every contestant takes all frames of the round in one turn. `each` gets every
+    /// timed frame.
     pub fn round<Frame, C: Contestant<Frame>>(
         &mut self,
         contestants: &mut [C],
@@ -114,7 +114,7 @@ impl Turns {
         }
     }
 
-    /// In which order the contestants of the next round take their turns.
+    /// The order of the contestants' turns in the next round.
     fn order(&mut self, contestants: usize) -> Vec<usize> {
         let mut order: Vec<usize> = (0..contestants).collect();
         let mut draws = Stream::new(SEED, self.round);
@@ -126,8 +126,8 @@ impl Turns {
     }
 }
 
-/// How many consecutive frames of a scene with so many bodies make a turn: at least two, of which
-/// one is warm.
+/// How many consecutive frames a turn has for a scene with `bodies` bodies: at least two, one of
+/// which is warm.
 #[must_use]
 pub fn turn_frames(bodies: usize) -> usize {
     (PREPARED_BODIES / bodies.max(1)).clamp(2, MOST_FRAMES)
@@ -141,7 +141,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// Adds the last frame of a contestant, without what it waited for a processor.
+    /// Adds the last frame of a contestant, without waiting.
     pub fn push(&mut self, timed: &Timed<'_, Culling>) {
         let stages = timed.contestant.last().without(timed.waited);
         self.of_mut(timed.regime).push(stages);
@@ -163,8 +163,8 @@ impl Times {
         }
     }
 
-    /// Medians over frames, stage by stage, such that they add up to the median of whole frames:
-    /// what the stages' medians lack of it, interruptions included, counts as finding.
+    /// Medians over frames per stage, which add up to the median of whole frames: the difference,
+    /// including interruptions, counts as finding.
     #[must_use]
     pub fn medians(&self, regime: Regime) -> Stages {
         let of = |stage: fn(&Stages) -> f64| median(self.of(regime).iter().map(stage).collect());
@@ -184,7 +184,7 @@ impl Times {
         Quartiles::of(self.of(regime).iter().map(Stages::total).collect())
     }
 
-    /// Mean seconds of a frame of either regime.
+    /// Mean seconds per frame over both regimes.
     #[must_use]
     pub fn mean(&self) -> f64 {
         mean(self.warm.iter().chain(&self.cold))
@@ -216,7 +216,7 @@ pub struct Quartiles {
 }
 
 impl Quartiles {
-    /// Of some values; 0 of none.
+    /// The quartiles of some values; 0 for an empty list.
     #[must_use]
     pub fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
@@ -233,7 +233,7 @@ impl Quartiles {
         }
     }
 
-    /// The means of several, each of its own frames.
+    /// The means of the quartiles of several sets of frames.
     #[must_use]
     pub fn mean(all: &[Self]) -> Self {
         let over = |value: fn(&Self) -> f64| all.iter().map(value).sum::<f64>() / all.len() as f64;
@@ -245,8 +245,8 @@ impl Quartiles {
     }
 }
 
-/// The poses of the next turn's frames, none after the last; seconds of the steps are appended to
-/// `steps`.
+/// The poses of the next turn's frames; none after the last frame. Seconds of the steps are
+/// appended to `steps`.
 ///
 /// # Errors
 /// A body that leaves the contract.
@@ -279,7 +279,7 @@ pub fn time<T>(repeats: usize, mut work: impl FnMut() -> T) -> f64 {
     median((0..repeats).map(run).collect())
 }
 
-/// The median, or the mean of the two middle values; 0 of none.
+/// The median, or the mean of the two middle values; 0 for an empty list.
 #[must_use]
 pub fn median(values: Vec<f64>) -> f64 {
     Quartiles::of(values).median

@@ -1,5 +1,4 @@
-//! Ranks as threads of one process: the same calls without MPI, for tests and for machines that
-//! have none.
+//! The network between threads of one process, for tests and for machines without MPI.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 

@@ -1,4 +1,4 @@
-//! What the columns of a recorded table are: what names a row, what is counted, what is measured.
+//! The kinds of columns in a recorded table: names of rows, counts, measurements.
 
 use serde_json::Value;
 

@@ -1,4 +1,4 @@
-//! Two records side by side: counts must be equal, times are ratios with intervals.
+//! Comparing two records: counts must be equal, times are ratios with intervals.
 
 use std::collections::BTreeMap;
 use std::path::Path;

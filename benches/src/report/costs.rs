@@ -1,5 +1,5 @@
-//! The formula on every scene of the paper's kind: `sdop cost`, on a machine that does nothing else
-//! and on one that does.
+//! The experiments `cost/quiet` and `cost/loaded`: `sdop cost` on all scenes like the paper's, on
+//! an idle machine and on a loaded one.
 
 use super::experiment::Step;
 

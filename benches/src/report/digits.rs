@@ -1,5 +1,4 @@
-//! Numbers as pages show them, and which recorded number stands where: one number must look the
-//! same on every page.
+//! Formatting numbers for pages, and checking that a recorded number looks the same on every page.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};

@@ -1,4 +1,4 @@
-//! The runs of the filter in physics engines, `examples/rapier` and `examples/bullet`.
+//! The experiments with the filter in physics engines, `examples/rapier` and `examples/bullet`.
 
 use super::experiment::Step;
 

@@ -1,5 +1,5 @@
-//! The experiments that can be recorded: the steps of each, and which of its files every machine
-//! must find alike.
+//! The experiments that can be recorded: their steps, and which files must be the same on every
+//! machine.
 
 use super::costs;
 use super::engines::{BULLET, RAPIER_CONTACTS, RAPIER_TIMES};

@@ -1,4 +1,4 @@
-//! `record.json`: what a directory of measurements says of itself.
+//! `record.json`: the description of a directory of measurements.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -68,7 +68,7 @@ pub enum ManifestError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The manifest is none.

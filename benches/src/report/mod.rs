@@ -1,5 +1,5 @@
-//! Measurements that can be cited: what a record says of itself, how two records compare, and pages
-//! that take every number from a record.
+//! Measurements that can be cited: records, comparing two records, and pages that take every number
+//! from a record.
 //!
 //! A record is a directory `data/record/<machine>/<experiment>` of tables and one [`Manifest`],
 //! which holds the command, the commit, the machine and a digest of every file. A page quotes

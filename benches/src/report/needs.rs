@@ -1,4 +1,4 @@
-//! What an experiment needs: files of a checkout, and programs beyond this one.
+//! What an experiment needs: files of a checkout, and other programs.
 
 use std::path::{Path, PathBuf};
 

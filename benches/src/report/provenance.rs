@@ -1,4 +1,4 @@
-//! Where a measurement comes from: the code, the caches and what else the machine did.
+//! The provenance of a measurement: the code, the caches and other load on the machine.
 
 use std::path::Path;
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! All records of the repository, read and checked once each.
+//! All records of the repository, each read and checked once.
 //!
 //! A path is `machine/experiment/file`, or `experiment/file`: then it is the machine's that
 //! `quoted.toml` names, so that every page quotes the same record of an experiment.

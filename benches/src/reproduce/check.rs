@@ -1,4 +1,4 @@
-//! Claims and the numbers that bear on them: a verdict is computed, never written down.
+//! Claims and the numbers that decide them. Verdicts are computed, never written by hand.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! The sphere percentage without a simulation.
+//! The closed form of the sphere percentage, without a simulation.
 //!
 //! Two points uniform in a cube of side L are within 2r of each other with probability
 //!

@@ -1,4 +1,4 @@
-//! The runs: every scene with every seed, all strategies side by side on the same frames.
+//! The runs: every scene with every seed, all strategies on the same frames.
 
 use std::path::{Path, PathBuf};
 

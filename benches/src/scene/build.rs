@@ -1,5 +1,4 @@
-//! From a scene file to a scene: each group is checked, its shapes are made, its bodies are placed
-//! by the seed.
+//! Building a scene from its file: groups are checked, shapes built, and bodies placed by the seed.
 
 use std::ops::Range;
 

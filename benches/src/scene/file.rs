@@ -1,5 +1,4 @@
-//! A scene file as written: TOML into plain structures, every value checked as far as it is
-//! alone.
+//! A scene file as written: TOML as plain structures. Each value is checked on its own.
 
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
@@ -33,17 +32,17 @@ pub struct SceneFile {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
-    /// What records and tables call the scene.
+    /// The scene's name in records and tables.
     pub name: String,
-    /// Where all random draws start.
+    /// The seed of all random draws.
     #[serde(default = "first_seed")]
     pub seed: u64,
-    /// Which draws are a body's own.
+    /// How bodies share random draws.
     #[serde(default = "by_group")]
     pub seeding: Seeding,
     /// Frames to cull: the initial state and `frames − 1` steps.
     pub frames: NonZeroU32,
-    /// Seconds a step.
+    /// Seconds per step.
     #[serde(default = "sixtieth")]
     pub dt: Positive,
     /// The walls, centred on the origin.
@@ -65,7 +64,7 @@ pub struct SceneSpec {
 pub struct BoxSpec {
     /// Distance between opposite walls.
     pub side: Option<Spanned<Positive>>,
-    /// Mean number of sphere overlaps a body, edges ignored, instead of the side.
+    /// Mean number of sphere overlaps per body, ignoring the walls, instead of the side.
     pub partners: Option<Spanned<Positive>>,
 }
 
@@ -96,7 +95,7 @@ pub struct GroupSpec {
     pub fixed: bool,
     /// Initial speed; directions are drawn.
     pub speed: Option<Spanned<Interval>>,
-    /// Explicit initial velocities, one a pose.
+    /// Explicit initial velocities, one per pose.
     pub velocities: Option<Spanned<Vec<Spanned<[f32; 3]>>>>,
     /// How seeded bodies are spread over the box.
     pub placement: Option<Spanned<Placement>>,
@@ -123,11 +122,12 @@ pub enum Placement {
 }
 
 choices! {
-    /// Which draws are a body's own.
+    /// How bodies share random draws.
     Seeding, "seeding", {
-        /// Bodies of a group draw one after the other: who wants the last must draw for all.
+        /// Bodies of a group draw from one stream in order, so that the last one's draws require
+        /// all others.
         ByGroup = "by-group",
-        /// Each body has streams of its own, so that any share of a scene can be made without the
+        /// Each body has its own streams, so that any part of a scene can be built without the
         /// rest.
         ByBody = "by-body",
     }

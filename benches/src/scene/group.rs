@@ -1,4 +1,4 @@
-//! A group of alike bodies as a scene file lists it, its keys checked against each other.
+//! A group of bodies in a scene file, with its keys checked against each other.
 
 use std::ops::Range;
 

@@ -29,11 +29,11 @@ use sdop::volume::Shape;
 pub struct Scene {
     /// What records and tables call it.
     pub name: String,
-    /// Where all random draws started.
+    /// The seed of all random draws.
     pub seed: u64,
     /// Frames to cull: the initial state and `frames − 1` steps.
     pub frames: u32,
-    /// Seconds a step.
+    /// Seconds per step.
     pub dt: f32,
     /// Distance between opposite walls of the box about the origin, if there is one.
     pub side: Option<f32>,

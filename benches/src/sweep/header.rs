@@ -1,4 +1,5 @@
-//! What units belong to: results of different code, settings or input don't go together.
+//! [`Header`]: which work units belong to. Results with different code, settings or input can't be
+//! merged.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Debug, Write as _};

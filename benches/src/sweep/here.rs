@@ -1,4 +1,4 @@
-//! Units done by this process alone, as many at a time as the usual pool has threads.
+//! Running units in this process, as many at a time as the default pool has threads.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;

@@ -1,4 +1,4 @@
-//! Results taken in the order of units, in whichever they come.
+//! [`InOrder`]: passes on results in the order of units, in whatever order they arrive.
 
 use std::collections::BTreeMap;
 

@@ -92,7 +92,7 @@ impl Cells {
     /// Cells for `bodies` balls within the bounds, as large as the largest radius requires; in the
     /// layout of a box they are larger if the table would be too long.
     pub fn fit(bounds: &BallBounds, bodies: usize, layout: TableLayout) -> Self {
-        // BallBounds that aren't finite come from bodies that break the contract. They get some cells,
+        // Bounds that aren't finite come from bodies that break the contract. They get some cells,
         // so that this ends.
         let [lo, hi] = [bounds.lo, bounds.hi].map(|end| end.map(finite));
         let longest = (0..3).map(|i| hi[i] - lo[i]).fold(0.0, f64::max);

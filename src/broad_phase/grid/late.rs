@@ -9,8 +9,9 @@ use std::ops::Range;
 
 use super::{FRAMES_PER_REORDER, Grid, GridLevel};
 
-/// How many late bodies, of any sizes, are accepted: [`LEAST_LATE_LIMIT`], or one in [`BODIES_PER_LATE`] bodies,
-/// but at most [`MOST_LATE_LIMIT`], because all of them may be in one cell.
+/// How many late bodies, of any sizes, are accepted: [`LEAST_LATE_LIMIT`], or one in
+/// [`BODIES_PER_LATE`] bodies, but at most [`MOST_LATE_LIMIT`], because all of them may be in one
+/// cell.
 const LEAST_LATE_LIMIT: usize = 64;
 const BODIES_PER_LATE: usize = 16;
 const MOST_LATE_LIMIT: usize = 4096;

@@ -273,7 +273,7 @@ mod tests {
         }
     }
 
-    /// BoxPair of these half edges, the second turned and moved: whether an edge × edge axis
+    /// Boxes of these half edges, the second turned and moved: whether an edge × edge axis
     /// separates them, for k = 6.
     struct BoxPair([[f32; 3]; 2], Rotation, [f32; 3]);
 

@@ -9,7 +9,7 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
 use crate::update::RowsByNumber;
 use crate::volume::DirectionSet;
 
-/// PairBlock per block: all are tested with the first bodies' normals before the survivors take the
+/// Pairs per block: all are tested with the first bodies' normals before the survivors take the
 /// other axes, so that the survivors' frames fit into the first-level cache.
 const PAIRS_PER_BLOCK: usize = 128;
 
@@ -33,9 +33,9 @@ pub struct OrDopColumns<'a> {
 /// The counts of a range of pair tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TestOutcome {
-    /// PairBlock tested.
+    /// Pairs tested.
     pub tests: u64,
-    /// PairBlock that none of the tried axes separates.
+    /// Pairs that none of the tried axes separates.
     pub hits: u64,
 }
 
@@ -276,7 +276,7 @@ impl PairBlock {
     }
 }
 
-/// PairBlock of a block that the first bodies' normals don't separate, with their frames.
+/// Pairs of a block that the first bodies' normals don't separate, with their frames.
 struct SurvivorBlock {
     pairs: PairBlock,
     frames: [[f32; PAIRS_PER_BLOCK + MAX_WIDTH]; NUMBERS_PER_FRAMES],
