@@ -146,8 +146,9 @@ pub const fn pair_count(bodies: u64, statics: u64) -> u64 {
 mod tests {
     use super::*;
 
+    /// Pairs of two statics do not count.
     #[test]
-    fn pairs_of_two_statics_do_not_count() {
+    fn static_pairs_do_not_count() {
         assert_eq!(pair_count(0, 0), 0);
         assert_eq!(pair_count(5, 0), 10);
         assert_eq!(pair_count(5, 2), 9);

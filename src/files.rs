@@ -205,8 +205,9 @@ mod tests {
         names
     }
 
+    /// A file has its name only when it is finished.
     #[test]
-    fn a_file_has_its_name_only_when_it_is_finished() {
+    fn file_appears_when_finished() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.txt");
         let mut file = Whole::create(&path).unwrap();
@@ -247,9 +248,10 @@ mod tests {
         assert!(!at("a.txt.4000000002.part").exists());
     }
 
+    /// Devices are written to and never replaced and a full one says so.
     #[cfg(target_os = "linux")]
     #[test]
-    fn devices_are_written_to_and_never_replaced_and_a_full_one_says_so() {
+    fn devices_are_never_replaced() {
         write(Path::new("/dev/null"), "anything").unwrap();
         let full = write(Path::new("/dev/full"), "anything");
         assert_eq!(full.unwrap_err().kind(), ErrorKind::StorageFull);
@@ -257,9 +259,10 @@ mod tests {
         assert!(!kind.is_file());
     }
 
+    /// A link stays a link and permissions stay.
     #[cfg(unix)]
     #[test]
-    fn a_link_stays_a_link_and_permissions_stay() {
+    fn links_and_permissions_stay() {
         use std::os::unix::fs::PermissionsExt as _;
         let directory = tempfile::tempdir().unwrap();
         let [file, link] = ["file", "link"].map(|name| directory.path().join(name));

@@ -61,8 +61,8 @@
 //! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and
 //!   at most 2⁶⁰.
 //! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair
-//!   once, and its order depends on the finder and the frames so far, never on the CPU or the
-//!   number of threads; [`PairList::sorted`] gives an order of its own.
+//!   once. Its order depends on the finder and on earlier frames, never on the CPU or the number of
+//!   threads; [`PairList::sorted`] sorts it.
 //! - **Poses** are taken as anything that turns into arrays: `[f32; 4]` and `[f32; 3]`, or glam's
 //!   `Quat` and `Vec3`.
 //!

@@ -200,8 +200,9 @@ impl FromIterator<[u32; 2]> for PairList {
 mod tests {
     use super::*;
 
+    /// A list grows past any room and keeps every pair.
     #[test]
-    fn a_list_grows_past_any_room_and_keeps_every_pair() {
+    fn growing_list_keeps_every_pair() {
         let pairs: Vec<_> = (0..5000u32).map(|i| [i, 2 * i + 1]).collect();
         let list: PairList = pairs.iter().copied().collect();
         assert_eq!(list.iter().collect::<Vec<_>>(), pairs);
@@ -211,8 +212,9 @@ mod tests {
         assert_eq!(twice.first()[9_999], 4_999);
     }
 
+    /// Pairs from one on are kept in their order.
     #[test]
-    fn pairs_from_one_on_are_kept_in_their_order() {
+    fn kept_pairs_stay_in_order() {
         let mut list: PairList = (0..9).map(|i| [i, 20 - i]).collect();
         list.keep_from(3, |[i, j]| i % 2 == 1 && j != 15);
         let kept: Vec<_> = list.iter().collect();
@@ -221,8 +223,9 @@ mod tests {
         assert_eq!(list.len(), 5);
     }
 
+    /// A list takes little more than it needs and gives it back.
     #[test]
-    fn a_list_takes_little_more_than_it_needs_and_gives_it_back() {
+    fn list_memory_is_bounded() {
         let mut list = PairList::default();
         for pair in 0..100_000 {
             list.push(pair, pair + 1);

@@ -290,8 +290,9 @@ mod tests {
     use super::*;
     use crate::simd::FpMode;
 
+    /// Others are woken for frames that are worth it and always for nothing.
     #[test]
-    fn others_are_woken_for_frames_that_are_worth_it_and_always_for_nothing() {
+    fn threads_wake_for_enough_work() {
         let work = |candidates| FrameWork {
             updates: 100,
             candidates,
@@ -310,8 +311,9 @@ mod tests {
         assert_eq!(always.get().threads(), 2);
     }
 
+    /// Too many threads are refused at once.
     #[test]
-    fn too_many_threads_are_refused_at_once() {
+    fn too_many_threads_are_rejected() {
         for threads in [MOST_THREADS + 1, 5_000, usize::MAX] {
             let refused = Threads::new(threads).unwrap_err().to_string();
             let wanted = format!("cannot start {threads} threads: at most 1024 can be asked for");
@@ -336,8 +338,9 @@ mod tests {
         }
     }
 
+    /// Ranges cover each number once on any number of threads.
     #[test]
-    fn ranges_cover_each_number_once_on_any_number_of_threads() {
+    fn ranges_cover_each_number_once() {
         for threads in [1, 3] {
             let threads = Threads::new(threads).unwrap();
             for (len, size, expected) in [(0, 4, 0), (3, 4, 1), (4, 4, 1), (33, 4, 9), (79, 8, 10)]
@@ -353,8 +356,9 @@ mod tests {
         }
     }
 
+    /// All ranges hold unless one does not wherever it is.
     #[test]
-    fn all_ranges_hold_unless_one_does_not_wherever_it_is() {
+    fn one_failing_range_is_found() {
         for threads in [1, 3] {
             let threads = Threads::new(threads).unwrap();
             let all_but = |bad| threads.all(79, 8, |range| !range.contains(&bad));
@@ -369,8 +373,9 @@ mod tests {
         assert_eq!(*asked.lock().unwrap(), [0, 8, 16], "the others are spared");
     }
 
+    /// A waiting worker of another pool starts no other job.
     #[test]
-    fn a_worker_of_another_pool_that_waits_takes_up_no_other_job() {
+    fn waiting_worker_starts_no_job() {
         thread_local!(static BUSY: Cell<bool> = const { Cell::new(false) });
         let job = || {
             assert!(!BUSY.replace(true), "a job on top of another");

@@ -1,6 +1,6 @@
-//! Proofs speak of code: when a function or constant that a lemma is about changes, the lemma has
-//! to be looked at. Beside each lemma, `paper/proofs/code.toml` keeps a digest of the code that it
-//! was last read with.
+//! Proofs are about code: if a function or constant of a lemma changes, the lemma has to be read
+//! again. For each lemma, `paper/proofs/code.toml` has digests of the code with which it was last
+//! compared.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 
 const TABLE: &str = "paper/proofs/code.toml";
 
-/// Set, it makes [`the_code_is_what_the_lemmas_were_read_with`] write the digests of today.
+/// Set, it makes [`lemmas_were_read_with_this_code`] write the digests of today.
 const RENEW: &str = "SDOP_LEMMAS_READ";
 
 #[derive(Deserialize)]
@@ -114,8 +114,9 @@ fn digest(file: &str, name: &str) -> String {
     hash[..8].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// The code is what the lemmas were read with.
 #[test]
-fn the_code_is_what_the_lemmas_were_read_with() {
+fn lemmas_were_read_with_this_code() {
     let mut changed = Vec::new();
     let mut renewed = fs::read_to_string(TABLE).unwrap();
     for About {
@@ -149,8 +150,9 @@ fn the_code_is_what_the_lemmas_were_read_with() {
     );
 }
 
+/// Every script and every theorem is about some code.
 #[test]
-fn every_script_and_every_theorem_is_about_some_code() {
+fn every_script_names_its_code() {
     let table = table();
     assert!(table.about.iter().all(|about| !about.code.is_empty()));
     let named: BTreeSet<String> = table.about.iter().flat_map(|a| a.scripts.clone()).collect();
@@ -170,8 +172,9 @@ fn every_script_and_every_theorem_is_about_some_code() {
     assert_eq!(lemmas, theorems.collect());
 }
 
+/// A digest is of the code and not of its layout.
 #[test]
-fn a_digest_is_of_the_code_and_not_of_its_layout() {
+fn digest_ignores_layout() {
     let source = "
         /// Doc.
         const SIZES: [f64; 2] = [1.0, 2.0]; // two

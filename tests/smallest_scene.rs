@@ -33,8 +33,9 @@ fn lying_crowd() -> (Shapes, Ledger) {
     (shapes, ledger.unwrap())
 }
 
+/// A lying ball is found out and shrinks to two bodies.
 #[test]
-fn a_lying_ball_is_found_out_and_shrinks_to_two_bodies() {
+fn wrong_ball_shrinks_to_two_bodies() {
     let (shapes, ledger) = lying_crowd();
     assert!(ledger.missed() > 0);
     for (row, count) in &ledger.rows {
@@ -57,8 +58,9 @@ fn a_lying_ball_is_found_out_and_shrinks_to_two_bodies() {
     assert_eq!(scene.cull, smallest.settings);
 }
 
+/// A scene without a miss is not shrunk.
 #[test]
-fn a_scene_without_a_miss_is_not_shrunk() {
+fn complete_scene_is_not_shrunk() {
     let (shapes, ledger) = lying_crowd();
     let honest = Failure {
         settings: CullSettings::all_pairs(),

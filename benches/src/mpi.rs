@@ -181,8 +181,9 @@ mod started {
 mod tests {
     use super::*;
 
+    /// Launchers say how many ranks there are.
     #[test]
-    fn launchers_say_how_many_ranks_there_are() {
+    fn launchers_set_the_rank_count() {
         let told = |vars: &[(&str, &str)]| {
             ranks(|name| {
                 let var = vars.iter().find(|(known, _)| *known == name);

@@ -36,8 +36,9 @@ impl Percentiles {
 mod tests {
     use super::*;
 
+    /// Each is the least value that so many do not exceed.
     #[test]
-    fn each_is_the_least_value_that_so_many_do_not_exceed() {
+    fn percentiles_use_nearest_rank() {
         for (values, [p50, p99, most]) in [
             (0, [0.0; 3]),
             (1, [1.0; 3]),

@@ -60,7 +60,7 @@ impl Shape {
         })
     }
 
-    /// The same shape with an oriented box of its own (`directions` K6) for the `obb` strategy.
+    /// The shape with another oriented box (`directions` K6) for the `obb` strategy.
     ///
     /// # Errors
     /// As [`Shape::new`].

@@ -94,8 +94,9 @@ pub(crate) fn refuse(
 mod tests {
     use super::*;
 
+    /// As many bodies are taken as can be numbered.
     #[test]
-    fn as_many_bodies_are_taken_as_can_be_numbered() {
+    fn body_limit_is_enforced() {
         assert_eq!(check_number(0), Ok(()));
         assert_eq!(check_number(MOST_BODIES), Ok(()));
         let told = check_number(MOST_BODIES + 1).map_err(|error| error.to_string());
@@ -106,9 +107,10 @@ mod tests {
         );
     }
 
+    /// An error names a body of a share by its number in the whole scene.
     #[cfg(feature = "internals")]
     #[test]
-    fn a_body_of_a_share_is_told_by_its_number_in_the_whole() {
+    fn error_uses_scene_body_number() {
         let own = ContractError {
             body: 3,
             quantity: "shape",

@@ -35,8 +35,9 @@ impl Default for Groups {
 mod tests {
     use super::*;
 
+    /// Bodies collide when each is in a group that the other collides with.
     #[test]
-    fn bodies_collide_when_each_is_in_a_group_that_the_other_collides_with() {
+    fn groups_must_collide_mutually() {
         for (member, mask) in [(0b01, 0b10), (0b10, 0b01), (0b01, 0b01)] {
             let one = Groups { member, mask };
             for other in (0..16).map(|bits| Groups {

@@ -118,8 +118,9 @@ impl Places {
 mod tests {
     use super::*;
 
+    /// An order names bodies or their places and shapes follow.
     #[test]
-    fn an_order_names_bodies_or_their_places_and_shapes_follow() {
+    fn reorder_takes_bodies_or_places() {
         let mut bodies = Bodies::default();
         for body in 0..4 {
             bodies.push(10 + body, body != 1, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);

@@ -81,15 +81,17 @@ mod tests {
         );
     }
 
+    /// Each line of a column is read and hardly one twice.
     #[test]
-    fn each_line_of_a_column_is_read_and_hardly_one_twice() {
+    fn every_cache_line_is_read() {
         leaves_no_line_out::<3>();
         leaves_no_line_out::<4>();
         leaves_no_line_out::<6>();
     }
 
+    /// Columns of which less than half is wanted or that are too long are left alone.
     #[test]
-    fn columns_of_which_less_than_half_is_wanted_or_that_are_too_long_are_left_alone() {
+    fn sparse_or_long_columns_are_skipped() {
         assert!(!read::<4>(101, 51).is_empty() && read::<4>(101, 50).is_empty());
         let longest = MOST_BYTES / 16;
         assert!(!read::<4>(longest, longest).is_empty());

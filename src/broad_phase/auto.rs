@@ -63,8 +63,9 @@ impl Population {
 mod tests {
     use super::*;
 
+    /// Few bodies go to all pairs many to lists and dear tests to the grid.
     #[test]
-    fn few_bodies_go_to_all_pairs_many_to_lists_and_dear_tests_to_the_grid() {
+    fn auto_picks_by_count_and_cost() {
         let pick = |bodies, widest, cheap_test| {
             let radii = [2.0, 2.0_f32 * widest];
             Population {

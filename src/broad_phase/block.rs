@@ -194,8 +194,9 @@ impl RunWriter<'_> {
 mod tests {
     use super::*;
 
+    /// Runs of any length follow each other without gaps.
     #[test]
-    fn runs_of_any_length_follow_each_other_without_gaps() {
+    fn runs_are_packed_without_gaps() {
         let mut page = BlockPage::new();
         let mut pen = page.restart(64);
         let (mut short, mut long) = (Vec::new(), Vec::new());

@@ -324,8 +324,9 @@ mod tests {
         finder
     }
 
+    /// Every finder has a vector of entries after its slots.
     #[test]
-    fn every_finder_has_a_vector_of_entries_behind_its_slots() {
+    fn every_finder_pads_its_slots() {
         for &finder in Finder::ALL {
             for bodies in [1, 2, 70] {
                 let (finder, padded) = (arranged(finder, bodies), bodies + MAX_WIDTH);
@@ -341,15 +342,17 @@ mod tests {
         }
     }
 
+    /// A finder holds a ball and a name for each body.
     #[test]
-    fn a_finder_holds_a_ball_and_a_name_for_each_body() {
+    fn finder_bytes_cover_balls_and_names() {
         for &finder in Finder::ALL {
             assert!(arranged(finder, 1000).bytes() >= 20 * 1000, "{finder}");
         }
     }
 
+    /// Cells are kept for bodies that stay as long as the same finder suits.
     #[test]
-    fn cells_are_kept_for_bodies_that_stay_as_long_as_the_same_finder_suits() {
+    fn staying_bodies_keep_their_cells() {
         for (finder, next, name, kept) in [
             (Finder::Grid, Finder::Grid, Finder::Grid, true),
             (

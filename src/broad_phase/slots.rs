@@ -120,8 +120,9 @@ fn resize<T: Copy>(column: &mut Vec<T>, len: usize, empty: T) {
 mod tests {
     use super::*;
 
+    /// Behind the slots is a vector of finite entries.
     #[test]
-    fn behind_the_slots_is_a_vector_of_finite_entries() {
+    fn slots_are_padded_with_finite_entries() {
         let (mut slots, mut balls) = (Slots::default(), Balls::new(7));
         assert_eq!((balls.len(), balls.padded.len()), (7, 7 + MAX_WIDTH));
         for len in [0, 1, 5, 40, 3] {

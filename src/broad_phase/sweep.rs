@@ -212,8 +212,9 @@ fn ordered(x: f32) -> u32 {
 mod tests {
     use super::*;
 
+    /// Keys sort by value and stay in order when equal.
     #[test]
-    fn keys_sort_by_value_and_stay_in_order_when_equal() {
+    fn radix_sort_is_stable() {
         let keys = [
             3.0,
             -1e-40,
@@ -235,8 +236,9 @@ mod tests {
         }
     }
 
+    /// Bytes are those of all columns used or not.
     #[test]
-    fn bytes_are_those_of_all_columns_used_or_not() {
+    fn bytes_count_all_columns() {
         let mut sweep = Sweep::default();
         assert_eq!(sweep.bytes(), 0);
         sweep.slots.names = Vec::with_capacity(1);
@@ -248,8 +250,9 @@ mod tests {
         assert_eq!(sweep.bytes(), 88_444);
     }
 
+    /// Places follow the slots of moving bodies now and then.
     #[test]
-    fn places_follow_the_slots_of_moving_bodies_now_and_then() {
+    fn places_are_reordered_periodically() {
         let mut sweep = Sweep::default();
         let mut order = vec![9];
         for age in 1..=3 * FRAMES_PER_REORDER {
@@ -270,8 +273,9 @@ mod tests {
         }
     }
 
+    /// Moving and static bodies have parts of their own.
     #[test]
-    fn moving_and_static_bodies_have_parts_of_their_own() {
+    fn moving_and_static_have_parts() {
         let parts = |moving, len| {
             let sweep = Sweep {
                 moving,
@@ -287,7 +291,7 @@ mod tests {
     /// Spreads are 1.5 times as large at exactly √1.5 times the extent; the mean counts, and the
     /// place does not.
     #[test]
-    fn the_axis_turns_to_where_centres_spread_half_as_much_more() {
+    fn axis_follows_the_spread() {
         let turned = |from: usize, columns: [[i8; 6]; 3]| {
             let ball = |i: usize| {
                 let [x, y, z] = columns.map(|column| f32::from(column[i]));
@@ -315,8 +319,9 @@ mod tests {
         assert_eq!(turned(1, [none; 3]), (1, true));
     }
 
+    /// Behind the ends is a vector of finite ones.
     #[test]
-    fn behind_the_ends_is_a_vector_of_finite_ones() {
+    fn ends_are_padded_with_finite_entries() {
         let mut sweep = Sweep::default();
         for bodies in [1, 3, 2] {
             let places = Places {

@@ -144,8 +144,9 @@ impl CullerBuilder {
 mod tests {
     use super::*;
 
+    /// A builder keeps each choice and no other.
     #[test]
-    fn a_builder_keeps_each_choice_and_no_other() {
+    fn builder_keeps_each_choice() {
         let built = Culler::builder()
             .threads(3)
             .worth_waking(7)

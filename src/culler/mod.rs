@@ -56,7 +56,7 @@ use crate::{
 /// Finds the pairs of bodies that might touch, frame after frame: for a fixed set of bodies whose
 /// poses change.
 ///
-/// A clone continues as the original would, on threads of its own.
+/// A clone continues as the original would, on its own threads.
 #[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 pub struct Culler {

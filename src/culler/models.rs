@@ -183,8 +183,9 @@ fn without_last(free: &mut Vec<u32>, all: usize) -> usize {
 mod tests {
     use super::*;
 
+    /// Free numbers at the end are dropped.
     #[test]
-    fn free_numbers_at_the_end_are_dropped() {
+    fn free_tail_numbers_are_dropped() {
         for (mut free, all, left, kept) in [
             (vec![], 5, 5, vec![]),
             (vec![4, 1, 3], 5, 3, vec![1]),

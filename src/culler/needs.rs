@@ -72,8 +72,9 @@ mod tests {
     use super::*;
     use crate::counters::VolumeCounters;
 
+    /// Work is each volume of moving bodies and the tests of the frame before.
     #[test]
-    fn work_is_each_volume_of_moving_bodies_and_the_tests_of_the_frame_before() {
+    fn work_adds_updates_and_tests() {
         let counted = |tests| VolumeCounters {
             tests,
             ..VolumeCounters::default()

@@ -71,8 +71,9 @@ mod tests {
     use crate::broad_phase::Slots;
     use crate::broad_phase::whole_vectors::{SLOTS, check};
 
+    /// Boxes that fill their vectors cost no vector more.
     #[test]
-    fn boxes_that_fill_their_vectors_cost_no_vector_more() {
+    fn full_vectors_cost_no_more() {
         let mut slots = Slots {
             balls: vec![[1.5, 1.5, 1.5, 0.5]; SLOTS],
             names: (0..SLOTS as u32).collect(),

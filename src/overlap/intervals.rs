@@ -99,14 +99,16 @@ mod tests {
     use super::*;
     use crate::broad_phase::whole_vectors::{SLOTS, check};
 
+    /// Slabs that fill their vectors cost no vector more.
     #[test]
-    fn slabs_that_fill_their_vectors_cost_no_vector_more() {
+    fn full_slab_vectors_cost_no_more() {
         let [lo, hi] = [1.0, 2.0].map(|end| vec![vec![end; SLOTS]; 3]);
         check(&IntervalSlots { lo, hi });
     }
 
+    /// Columns have the order of slots, followed by a vector of finite ends.
     #[test]
-    fn columns_have_the_order_of_slots_and_a_vector_of_finite_ends_behind_it() {
+    fn columns_follow_slot_order() {
         let mut slots = IntervalSlots::default();
         for bodies in [1, 3, 2] {
             // Of each place and slab, ends that are like no others.

@@ -32,8 +32,9 @@ mod tests {
     use crate::broad_phase::Slots;
     use crate::broad_phase::whole_vectors::{SLOTS, check};
 
+    /// Balls that fill their vectors cost no vector more.
     #[test]
-    fn balls_that_fill_their_vectors_cost_no_vector_more() {
+    fn full_ball_vectors_cost_no_more() {
         let mut slots = Slots {
             balls: vec![[1.0; 4]; SLOTS],
             ..Slots::default()

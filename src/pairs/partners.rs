@@ -189,8 +189,9 @@ mod tests {
         }
     }
 
+    /// A list is replaced apart from its partners.
     #[test]
-    fn a_list_is_replaced_apart_from_its_partners() {
+    fn replacing_leaves_partner_lists() {
         let list: PairList = [[0, 3], [1, 3], [2, 4]].into_iter().collect();
         let mut partners = Partners::of(&list, 5);
         partners.extend_to(6);

@@ -73,8 +73,9 @@ mod tests {
     use super::*;
     use crate::rounding::sphere::inflate_radius;
 
+    /// Touching balls may meet across a border and balls apart may not.
     #[test]
-    fn touching_balls_may_meet_across_a_border_and_balls_apart_may_not() {
+    fn touching_balls_meet_across_borders() {
         for radius in [0.0, exp2(-80) as f32, 0.3, 1.0, 1.0e9] {
             let w = reach(inflate_radius(radius));
             let touching = 2.0 * f64::from(radius);
@@ -85,8 +86,9 @@ mod tests {
         }
     }
 
+    /// A giant goes to the small and not they to it.
     #[test]
-    fn a_giant_goes_to_the_small_and_not_they_to_it() {
+    fn giants_go_to_small_bodies() {
         let (giant, small) = (reach(100.0), reach(1.0));
         assert!(may_meet(100.5, giant, small, 0.0) && !may_meet(101.5, giant, small, 0.0));
         assert!(may_meet(1.5, small, giant, 0.0) && !may_meet(2.5, small, giant, 0.0));
@@ -96,8 +98,9 @@ mod tests {
         );
     }
 
+    /// Drift is any coordinate's and growth.
     #[test]
-    fn drift_is_any_coordinate_s_and_growth() {
+    fn drift_includes_growth() {
         let then = ([1.0, 2.0, 3.0], 1.0);
         assert!(stays(then, then, 0.0), "who doesn't move needs no skin");
         assert!(stays(([1.2, 1.8, 3.2], 1.0), then, 0.25));
@@ -112,8 +115,9 @@ mod tests {
         assert!(!stays(([1.0e9, 2.0, 3.0], 1.0), then, 0.25));
     }
 
+    /// A box reaches by its error and no farther.
     #[test]
-    fn a_box_reaches_by_its_error_and_no_farther() {
+    fn box_reach_includes_its_error() {
         for (inflated, farthest, shape) in [(2.5_f32, 3.0e6_f32, 7.0e5_f32), (2.5e-6, 3.0, 0.75)] {
             let t = [0.25, -farthest, 1.5];
             let size = f64::from(farthest) + f64::from(shape);
@@ -126,8 +130,9 @@ mod tests {
         }
     }
 
+    /// A skin is its share and no more.
     #[test]
-    fn a_skin_is_its_share_and_no_more() {
+    fn skin_is_its_share() {
         for (reach, share) in [(8.0, 0.25), (0.3, 0.7), (7.0e5, 0.125)] {
             let (skin, exact) = (f64::from(skin(reach, share)), f64::from(reach) * share);
             assert!(exact * (1.0 - exp2(-21)) < skin && skin <= exact, "{skin}");
@@ -135,8 +140,9 @@ mod tests {
         assert_eq!(skin(8.0, 0.0), 0.0);
     }
 
+    /// A box reaches farther where its ends are rounded farther.
     #[test]
-    fn a_box_reaches_farther_where_its_ends_are_rounded_farther() {
+    fn box_reach_grows_with_rounding() {
         let near = reach_of_box(1.0, [0.0; 3], 1.0);
         let far = reach_of_box(1.0, [0.0, -4.0e6, 0.0], 1.0);
         assert!(reach(1.0) < near && near < 1.00001);
@@ -146,8 +152,9 @@ mod tests {
         );
     }
 
+    /// What is just within reach may meet.
     #[test]
-    fn what_is_just_within_reach_may_meet() {
+    fn bodies_just_within_reach_meet() {
         // 2 + min(2, 1) + 2·½.
         assert!(may_meet(4.0, 2.0, 1.0, 0.5) && !may_meet(4.0_f64.next_up(), 2.0, 1.0, 0.5));
     }

@@ -181,7 +181,7 @@ mod tests {
         /// The nearest ends that an f32 can tell apart, and those that touch: inner cubes thin
         /// next to the outer ones.
         #[test]
-        fn thin_boxes_side_by_side_are_told_apart(
+        fn thin_neighbouring_boxes_are_apart(
             thin in -30_i32..2, offset in -8.0_f32..8.0, steps in -3_i32..4, axis in 0_usize..3,
         ) {
             let width = 2.0_f32.powi(thin);
@@ -246,7 +246,7 @@ mod tests {
 
     /// What is too wide loses nothing, and has the boxes themselves looked at for no reason.
     #[test]
-    fn cubes_are_no_wider_than_their_boxes_and_know_as_much_as_they_can() {
+    fn cubes_are_as_tight_as_possible() {
         let within = |found: f32, exact: f64| {
             let found = f64::from(found);
             assert!(
@@ -263,8 +263,9 @@ mod tests {
         within(less_than_sure(0.0), 2e-30_f32.into());
     }
 
+    /// A box without an extent has a cube with one.
     #[test]
-    fn a_box_without_an_extent_has_a_cube_with_one() {
+    fn empty_box_has_a_cube() {
         let about = About(&[[1.0; 2], [-8.0; 2], [40.0; 2]]);
         let found = dispatch(Tier::SCALAR, about);
         assert_eq!(found, ([0.125, -1.0, 5.0, FLOOR], FLOOR, true));

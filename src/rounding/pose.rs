@@ -163,16 +163,18 @@ pub fn refit(lo: f64, hi: f64, reach: f32, t: [f32; 3]) -> (f32, f32) {
 mod tests {
     use super::*;
 
+    /// Any norm and sign of a quaternion is the same rotation.
     #[test]
-    fn any_norm_and_sign_of_a_quaternion_is_the_same_rotation() {
+    fn quaternion_norm_and_sign_are_free() {
         let q = [0.5, -0.25, 0.125, 1.0];
         for scale in [-1.0, 2.0f32.powi(60), -(2.0f32.powi(-100))] {
             assert_eq!(rotation(q.map(|x| x * scale)), rotation(q));
         }
     }
 
+    /// A quarter turn about z takes x to y.
     #[test]
-    fn a_quarter_turn_about_z_takes_x_to_y() {
+    fn quarter_turn_takes_x_to_y() {
         let turn = rotation([0.0, 0.0, 1.0, 1.0]);
         assert_eq!(
             transform(&turn, [1.0, 2.0, 3.0], [10.0, 0.0, 0.0]),
@@ -185,8 +187,9 @@ mod tests {
         );
     }
 
+    /// A refitted extent grows with the distance from the origin.
     #[test]
-    fn a_refitted_extent_grows_with_the_distance_from_the_origin() {
+    fn refit_margin_grows_with_distance() {
         let width = |t: f32| {
             let (lo, hi) = refit(-1.0, 1.0, 1.0, [0.0, t, 0.0]);
             f64::from(hi) - f64::from(lo)
@@ -196,8 +199,9 @@ mod tests {
         assert!(width(-(2.0f32.powi(60))) > 2.0 * exp2(60) * REFIT_MARGIN);
     }
 
+    /// An extent of nothing at the origin grows by the floor.
     #[test]
-    fn an_extent_of_nothing_at_the_origin_grows_by_the_floor() {
+    fn empty_extent_grows_by_floor() {
         let (lo, hi) = refit(0.0, 0.0, 0.0, [0.0; 3]);
         assert!(f64::from(lo) <= -REFIT_FLOOR && REFIT_FLOOR <= f64::from(hi));
     }

@@ -139,8 +139,9 @@ impl Scheme {
 mod tests {
     use super::*;
 
+    /// Every row has tests that its stages and flow can carry out.
     #[test]
-    fn every_row_has_tests_that_its_stages_and_flow_can_carry_out() {
+    fn scheme_rows_are_consistent() {
         for strategy in Strategy::ALL {
             let Scheme {
                 first,

@@ -155,8 +155,9 @@ mod tests {
         list
     }
 
+    /// Bytes are those of all lists and the colliding set alone is kept.
     #[test]
-    fn bytes_are_those_of_all_lists_and_the_colliding_set_alone_is_kept() {
+    fn shrinking_keeps_the_colliding_set() {
         let task = |pairs| Task {
             out: list(pairs),
             block: list(10 * pairs),
@@ -172,7 +173,7 @@ mod tests {
             portion: list(80),
             ..Scratch::default()
         };
-        // Two numbers a pair, and a vector more after each column.
+        // Two numbers per pair, and one vector after each column.
         let pairs = 3 * 1111 + 650_087 + 12 * crate::simd::MAX_WIDTH;
         assert_eq!(scratch.pair_bytes(), 8 * pairs);
         scratch.candidates.clear();

@@ -148,8 +148,9 @@ mod tests {
 
     const APEXES: [[f32; 3]; 3] = [[0.0; 3], [1000.0, -500.0, 250.0], [-0.5, 0.25, 4096.0]];
 
+    /// A cone reaches as far as its range to the ulp.
     #[test]
-    fn a_cone_reaches_as_far_as_its_range_to_the_ulp() {
+    fn cone_range_is_exact() {
         let body = |apex| {
             let mut bodies = Bodies::default();
             bodies.push(0, true, [0.0, 0.0, 0.0, 2.0], apex);
@@ -174,10 +175,10 @@ mod tests {
         }
     }
 
-    /// Sideways at 90° and straight behind at 180° are on the rim, whatever an axis' length has
-    /// rounded.
+    /// Directions at right angles (90°) and opposite to the axis (180°) are on the rim, however the
+    /// axis' length was rounded.
     #[test]
-    fn what_lies_on_the_rim_is_in_the_cone() {
+    fn cone_includes_its_rim() {
         for apex in APEXES {
             for (way, _) in CONE_DIRECTIONS {
                 let cone = |half_angle: f32| ViewCone {
@@ -202,7 +203,7 @@ mod tests {
 
     /// A mesh may lie off the origin that its cone looks from.
     #[test]
-    fn a_body_that_looks_is_of_interest_when_its_centre_is_in_the_cone() {
+    fn looking_body_follows_its_centre() {
         let mut bodies = Bodies::default();
         bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [5.0, 6.0, 7.0]);
         let cone = ViewCone {
@@ -218,9 +219,9 @@ mod tests {
     }
 
     /// Bodies 2·10⁻⁵ of their distance to either side of the rim, where f32 can place them: an apex
-    /// or an angle a little off tells.
+    /// or an angle that is slightly off is detected.
     #[test]
-    fn a_cone_s_rim_is_where_its_angle_says() {
+    fn cone_rim_matches_its_angle() {
         let distance = 64.0_f64;
         for apex in APEXES {
             for half_angle in [1.0_f32, 30.0, 90.0, 135.0, 179.0] {
@@ -256,7 +257,7 @@ mod tests {
     /// Of two centres that are neighbours in f32, one in the cone and one not, integers say which:
     /// cosines of ½, 0 and −½.
     #[test]
-    fn neighbours_on_either_side_of_the_rim_are_told_apart() {
+    fn rim_separates_f32_neighbours() {
         let mut random = ChaCha8Rng::seed_from_u64(11);
         let mut below = |most: i64| i64::from(random.next_u32()) % (2 * most + 1) - most;
         let whole = |v: [i64; 3]| v.map(|x| x as f32);

@@ -143,8 +143,9 @@ mod tests {
 
     use super::*;
 
+    /// A task that panics leaves no other waiting.
     #[test]
-    fn a_task_that_panics_leaves_no_other_waiting() {
+    fn panicking_task_wakes_others() {
         let (done, is_done) = mpsc::channel();
         std::thread::spawn(move || {
             let mut handed_over = 0;

@@ -305,8 +305,9 @@ mod tests {
         })
     }
 
+    /// Pairs are near whose places a window holds stretch by stretch.
     #[test]
-    fn pairs_are_near_whose_places_a_window_holds_stretch_by_stretch() {
+    fn window_decides_near_stretches() {
         // The first three places are those that move.
         let is_near = |pairs: &[[u32; 2]]| {
             let list: PairList = pairs.iter().copied().collect();
@@ -323,8 +324,9 @@ mod tests {
         assert!(!is_near(&pairs));
     }
 
+    /// The places of pairs go from the least to the greatest.
     #[test]
-    fn the_places_of_pairs_go_from_the_least_to_the_greatest() {
+    fn places_cover_all_pairs() {
         for tier in Tier::available() {
             let pairs: [&[u32]; 2] = [&[7, 9, 8], &[5, 30, 6]];
             assert_eq!(places_of(tier, 40, pairs), [5..31, 0..0]);
@@ -336,8 +338,9 @@ mod tests {
         }
     }
 
+    /// Rows made on demand count as updates and take an update's time.
     #[test]
-    fn rows_made_on_demand_count_as_updates_and_take_an_update_s_time() {
+    fn lazy_rows_count_as_updates() {
         let [eager, lazy] = [Updates::Eager, Updates::Lazy].map(refined);
         assert_eq!([eager, lazy].map(|t| t.refining.updates), [0, 3]);
         assert_eq!(eager.update_seconds, 0.0);

@@ -128,8 +128,9 @@ mod tests {
         (out.iter().collect(), totals)
     }
 
+    /// A thread has four tasks unless there is less work.
     #[test]
-    fn a_thread_has_four_tasks_unless_there_is_less_work() {
+    fn threads_get_four_tasks() {
         for (threads, units, tasks) in [(1, 100, 1), (3, 100, 12), (3, 5, 5), (2, 0, 1)] {
             let (shares, totals) = shares(threads, units);
             assert_eq!(shares.len(), tasks, "{units} units");

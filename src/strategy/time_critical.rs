@@ -260,16 +260,18 @@ impl History {
 mod tests {
     use super::*;
 
+    /// Distances are relative to the sum of radii.
     #[test]
-    fn distances_are_relative_to_the_sum_of_radii() {
+    fn distances_are_relative_to_radii() {
         let spheres = [[9.0; 4], [1.0, 2.0, 3.0, 1.0], [-3.0, 6.0, -4.0, 2.0]];
         // Apart by (4, −4, 7), whose length is 9, of radii that are 3 together.
         assert_eq!(relative_distance(&spheres, [1, 2]), 9.0);
     }
 
+    /// Answers have ranks in the order of frames.
     #[cfg(feature = "serde")]
     #[test]
-    fn answers_have_ranks_in_the_order_of_frames() {
+    fn answer_ranks_follow_frames() {
         let mut history = History::default();
         history.remember([[0, 5], [0, 2], [3, 4]].into_iter(), 2, 7);
         history.remember([[3, 4], [0, 5], [1, 2]].into_iter(), 1, 900);
@@ -283,8 +285,9 @@ mod tests {
         assert_eq!(other.answers().0, [([0, 5], 1), ([3, 4], 2)]);
     }
 
+    /// Answers are kept and buffers are given back.
     #[test]
-    fn answers_are_kept_and_buffers_are_given_back() {
+    fn shrinking_keeps_the_answers() {
         let mut history = History::default();
         history.remember([[0, 1], [0, 2], [3, 4]].into_iter(), 2, 7);
         history.remember([[3, 4], [0, 1]].into_iter(), 1, 9);

@@ -57,8 +57,9 @@ impl DerefMut for AlignedRows {
 mod tests {
     use super::*;
 
+    /// Rows lie on lines and stay when their number changes.
     #[test]
-    fn rows_lie_on_lines_and_stay_when_their_number_changes() {
+    fn rows_stay_aligned_on_resize() {
         let mut lines = AlignedRows::default();
         assert!(lines.is_empty());
         for len in [3, 100, 7, 40, 1000] {

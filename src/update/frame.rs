@@ -208,8 +208,9 @@ mod tests {
 
     use super::*;
 
+    /// A record has the unit to the bit.
     #[test]
-    fn a_record_has_the_unit_to_the_bit() {
+    fn shape_record_is_exact() {
         for (x, y, z, w) in [(0, 0, 0, 1), (1, 2, 3, 4), (-5, 7, 0, 11), (1, 0, 0, 1000)] {
             let basis = Basis::from_integer_quaternion([x, y, z, w]).unwrap();
             let frame = ShapeFrame {

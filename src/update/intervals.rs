@@ -232,7 +232,7 @@ mod tests {
 
     /// To round outward once more would lose no pair, and report some that are apart.
     #[test]
-    fn without_a_margin_slabs_are_one_place_wider_than_the_body_and_with_one_by_that() {
+    fn slabs_grow_by_their_margin() {
         let half = [1.0, 2.5, 0.75];
         let [x, y, z] = half.map(|half| 2.0 * half);
         let mesh = ProceduralShape::Box { x, y, z }.build().expect("a box");
@@ -268,8 +268,9 @@ mod tests {
         }
     }
 
+    /// A cube contains its box and is as small as the box is wide.
     #[test]
-    fn a_cube_contains_its_box_and_is_as_small_as_the_box_is_wide() {
+    fn cube_contains_its_box_tightly() {
         let mut random = ChaCha8Rng::seed_from_u64(3);
         let mut next = || (random.next_u32() >> 8) as f32 * exp2(-24) as f32;
         for n in 0..1000 {
@@ -290,9 +291,9 @@ mod tests {
         }
     }
 
-    /// Mirrored slabs meet as the true ones do, so that no list of pairs tells them apart.
+    /// Mirrored slabs meet exactly if the true ones do, so lists of pairs can't distinguish them.
     #[test]
-    fn slabs_are_those_of_the_vertices_in_the_world() {
+    fn slabs_fit_posed_vertices() {
         let vertices = [[1.0, 2.0, 3.0], [-2.0, 0.5, 1.0], [0.25, -4.0, -0.5]];
         let mut hull = [F64x8::splat(0.0); 3];
         for (axis, eight) in hull.iter_mut().enumerate() {

@@ -137,8 +137,9 @@ mod tests {
         f64::from(size) >= sum && f64::from(size.next_down().next_down()) <= sum
     }
 
+    /// A frame has the sizes of its shape and grows by the margin to the ulp.
     #[test]
-    fn a_frame_has_the_sizes_of_its_shape_and_grows_by_the_margin_to_the_ulp() {
+    fn shape_frame_grows_by_margin() {
         for centre in [[0.0; 3], [0.5, -3.0, 0.125]] {
             let shape = boxed(centre);
             let frame = ShapeFrame::new(&shape, &shape.ordop.basis);
@@ -183,8 +184,9 @@ mod tests {
         answers[0]
     }
 
+    /// A body off its ball's centre is judged by its pose and others by their ball.
     #[test]
-    fn a_body_off_its_ball_s_centre_is_judged_by_its_pose_and_others_by_their_ball() {
+    fn eccentric_bodies_are_checked_by_pose() {
         let shapes = [boxed([0.0; 3]), boxed([LIMIT / 4.0, 0.0, 0.0])];
         let (still, no_turn, at) = ([0.0, 0.0, 0.0, 1.0], [0.0; 4], [3.0, -7.0, 0.5]);
         let [near, edge, beyond] = [LIMIT / 2.0, LIMIT, LIMIT.next_up()].map(|x| [x, 0.0, 0.0]);

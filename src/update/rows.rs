@@ -347,8 +347,9 @@ mod tests {
             .collect()
     }
 
+    /// Every lane of every tier computes what one f64 would.
     #[test]
-    fn every_lane_of_every_tier_computes_what_one_f64_would() {
+    fn every_lane_matches_plain_f64() {
         let shapes = shapes();
         let frames: ShapeFrames = shapes
             .iter()

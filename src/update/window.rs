@@ -114,7 +114,7 @@ mod tests {
     /// Stretches that follow each other, that go back, that leave some out, and that are too long
     /// for the ring that is there.
     #[test]
-    fn the_rows_of_covered_places_are_those_of_an_update() {
+    fn window_rows_match_an_update() {
         let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
         let shape = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
         let mut bodies = Bodies::default();

@@ -75,8 +75,9 @@ impl DirectionSet {
 mod tests {
     use super::*;
 
+    /// Each set has k over two directions and none twice.
     #[test]
-    fn each_set_has_k_over_two_directions_and_none_twice() {
+    fn direction_sets_have_k_halves() {
         for (set, k) in DirectionSet::ALL.iter().zip([6, 14, 18, 26]) {
             assert_eq!((set.k(), set.to_string()), (k, k.to_string()));
             let directions = set.coefficients();

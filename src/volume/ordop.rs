@@ -129,8 +129,9 @@ mod tests {
         lo.ceil() as i128 <= exact && exact <= hi.floor() as i128
     }
 
+    /// The exact sum of products lies within its bounds.
     #[test]
-    fn the_exact_sum_of_products_lies_within_its_bounds() {
+    fn dot_bounds_contain_exact_sum() {
         let big = 1 << 30;
         // Two equal losses; what is lost is all that is left; nothing is lost; losses of other
         // signs.
@@ -149,8 +150,9 @@ mod tests {
         }
     }
 
+    /// An end at zero is no negative zero.
     #[test]
-    fn an_end_at_zero_is_no_negative_zero() {
+    fn zero_end_is_positive_zero() {
         for x in [0.0, -0.0] {
             let (lo, hi) = slab(DVec3::X, &[[x, x, x]]);
             assert_eq!([lo, hi].map(f32::to_bits), [0, 0]);

@@ -97,7 +97,7 @@ mod tests {
     /// Of a box with these half sides, wherever it is: (bc·a² + (ab + ca)·a²/3)/(ab + bc + ca)
     /// along a, in units of its diagonal.
     #[test]
-    fn the_covariance_of_a_box_is_that_of_its_surface_in_its_own_size() {
+    fn box_covariance_is_its_surface_s() {
         let [a, b, c] = [1.0, 2.0, 4.0];
         let area = a * b + b * c + c * a;
         let along = |x: f64| x * x * (area / 3.0 + 2.0 / 3.0 * (a * b * c / x)) / area;
@@ -116,8 +116,9 @@ mod tests {
         }
     }
 
+    /// Principal axes are found unless two of them tie.
     #[test]
-    fn axes_are_told_where_no_two_of_them_tie() {
+    fn tied_axes_are_detected() {
         let axes = |x, y, z| principal_rotation(DMat3::from_diagonal(DVec3::new(x, y, z)));
         let wanted = DMat3::from_cols(DVec3::Y, DVec3::X, DVec3::NEG_Z);
         for size in [1.0, 1e6, 1e-6] {
@@ -134,8 +135,9 @@ mod tests {
         assert_eq!(axes(0.0, 0.0, 0.0), None);
     }
 
+    /// The largest component is positive the first one of equals.
     #[test]
-    fn the_largest_component_is_positive_the_first_one_of_equals() {
+    fn largest_component_is_positive() {
         for (v, sign) in [
             ([-3.0, 1.0, 2.0], -1.0),
             ([1.0, -2.0, 1.9], -1.0),

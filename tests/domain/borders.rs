@@ -1,4 +1,4 @@
-//! Hard cases at borders, with the exact reference and one process as judges.
+//! Hard cases at borders between ranks, compared with the exact reference and with one process.
 
 use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
@@ -22,7 +22,7 @@ fn shape(name: &str, radius: f32) -> Shape {
     Shape::build(&mesh, &spec).unwrap()
 }
 
-/// Bodies of shape 0 unless said otherwise, all moving.
+/// Bodies of shape 0 unless noted, all moving.
 fn bodies(of: impl IntoIterator<Item = (u32, [f32; 3])>) -> Bodies {
     let mut columns = Bodies::default();
     for (shape, at) in of {
@@ -127,7 +127,7 @@ fn a_giant_over_all_domains() {
 
 /// All centres in one point: one rank owns all, the others nothing. And fewer bodies than ranks.
 #[test]
-fn all_in_one_domain_and_empty_ranks() {
+fn empty_ranks_are_fine() {
     let shapes = [shape("box", 1.0), shape("icosphere", 0.25)];
     let one_point = (0..20).map(|i| (i % 2, [7.0, -3.0, 0.5]));
     judge("one point", &shapes, &[bodies(one_point)]);
@@ -219,7 +219,7 @@ fn near_touching_pairs_on_either_side() {
 /// Pairs that stand as far apart as the skin lets them be forgotten, and then come to touch, each
 /// by a little less than a skin: the ghosts found before must have been those that are needed now.
 #[test]
-fn pairs_that_come_together_by_a_skin_each() {
+fn pairs_approach_by_a_skin() {
     let ball = shape("icosphere", 1.0);
     let (reach, step) = (ball.ball.radius, 0.4999 * ball.ball.radius);
     let frame = |apart: f32| {

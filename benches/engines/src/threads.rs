@@ -51,8 +51,9 @@ mod tests {
 
     use super::*;
 
+    /// What is done outside is no pool's work.
     #[test]
-    fn what_is_done_outside_is_no_pool_s_work() {
+    fn outside_work_leaves_the_pool() {
         let threads = Threads::new(2).unwrap();
         let number = rayon::current_thread_index;
         let [inside, outside] = threads.run(|| [number(), outside_of_pools(number)]);

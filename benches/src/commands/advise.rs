@@ -9,7 +9,7 @@ use super::output::{Format, emit, rows};
 use super::scene_args::{MachineArgs, SceneArgs};
 
 /// The default price of a narrow-phase check, in nanoseconds.
-const CHECK: f64 = 1000.0;
+const DEFAULT_CHECK_NANOSECONDS: f64 = 1000.0;
 
 /// Which volume, axes and finder to use for a scene, with the settings to paste
 ///
@@ -23,7 +23,7 @@ pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
     /// Price of a narrow-phase check of a pair that doesn't meet, in nanoseconds
-    #[arg(long, value_name = "X", default_value_t = CHECK, value_parser = nanoseconds)]
+    #[arg(long, value_name = "X", default_value_t = DEFAULT_CHECK_NANOSECONDS, value_parser = nanoseconds)]
     narrow_ns: f64,
     #[command(flatten)]
     machine: MachineArgs,

@@ -40,9 +40,9 @@ pub struct Args {
 }
 
 /// A contestant that returns answers from a file.
-struct Given(Result<Vec<Answer>, Stop>);
+struct StoredAnswers(Result<Vec<Answer>, Stop>);
 
-impl Subject for Given {
+impl Subject for StoredAnswers {
     fn answer(&self, _case: &Case, _claim: Claim) -> Result<Vec<Answer>, Stop> {
         self.0.clone()
     }
@@ -74,7 +74,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         None => Ok(recorded(args, read.pairs)?),
     };
     let mut verdict =
-        examine_given(&Given(answers), &options, vec![read.case]).into_diagnostic()?;
+        examine_given(&StoredAnswers(answers), &options, vec![read.case]).into_diagnostic()?;
     if let Some(why) = read.lacks {
         // A miss in the existing frames counts even if others are missing.
         for case in &mut verdict.cases {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use miette::{IntoDiagnostic as _, WrapErr as _};
-use sdop_bench::report::{Change, Code, Comparison, compare};
+use sdop_bench::report::{CodeVersion, MeasuredChange, RecordComparison, compare};
 use tempfile::TempDir;
 
 use super::Outcome;
@@ -35,12 +35,12 @@ pub struct Args {
     most: usize,
     /// Output format
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: ComparisonFormat,
 }
 
 /// How a comparison is printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-enum Format {
+enum ComparisonFormat {
     /// For people.
     #[default]
     Table,
@@ -61,17 +61,19 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let comparison = compare(first.path(), second.path())?;
     let why = why(&comparison, args.fail_slower);
     let text = match args.format {
-        Format::Table => table(&comparison, args.most),
-        Format::Markdown => markdown(&comparison, args.most),
-        Format::Json => json_with_reason(&comparison, why.as_deref())?,
-        Format::Csv => csv_text(serde_json::to_value(&comparison.changes).into_diagnostic()?)?,
+        ComparisonFormat::Table => table(&comparison, args.most),
+        ComparisonFormat::Markdown => markdown(&comparison, args.most),
+        ComparisonFormat::Json => json_with_reason(&comparison, why.as_deref())?,
+        ComparisonFormat::Csv => {
+            csv_text(serde_json::to_value(&comparison.changes).into_diagnostic()?)?
+        }
     };
     print(text.trim_end())?;
     Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
 /// What differs that should not.
-fn why(comparison: &Comparison, fail_slower: Option<f64>) -> Option<String> {
+fn why(comparison: &RecordComparison, fail_slower: Option<f64>) -> Option<String> {
     let (differences, slowest) = (comparison.differences.len(), 100.0 * comparison.slowest());
     if differences > 0 {
         return Some(format!("{differences} results differ that should be equal"));
@@ -83,13 +85,13 @@ fn why(comparison: &Comparison, fail_slower: Option<f64>) -> Option<String> {
 }
 
 /// Where a record can be read.
-enum Place {
+enum RecordLocation {
     Directory(PathBuf),
     /// A copy out of a commit.
     Copy(TempDir),
 }
 
-impl Place {
+impl RecordLocation {
     fn path(&self) -> &Path {
         match self {
             Self::Directory(path) => path,
@@ -99,17 +101,17 @@ impl Place {
 }
 
 /// A directory, or what a commit had there.
-fn place(named: &str) -> miette::Result<Place> {
+fn place(named: &str) -> miette::Result<RecordLocation> {
     let directory = PathBuf::from(named);
     match named.split_once(':') {
         Some((commit, path)) if !directory.exists() => {
             let copy = tempfile::tempdir().into_diagnostic()?;
-            Code::extract(Path::new("."), commit, path, copy.path())
+            CodeVersion::extract(Path::new("."), commit, path, copy.path())
                 .into_diagnostic()
                 .wrap_err_with(|| format!("cannot read {path} of commit {commit}"))?;
-            Ok(Place::Copy(copy))
+            Ok(RecordLocation::Copy(copy))
         }
-        _ => Ok(Place::Directory(directory)),
+        _ => Ok(RecordLocation::Directory(directory)),
     }
 }
 
@@ -120,7 +122,7 @@ fn percent(text: &str) -> Result<f64, String> {
     }
 }
 
-fn verdict(change: &Change) -> &'static str {
+fn verdict(change: &MeasuredChange) -> &'static str {
     match change.same {
         Some(true) => "same",
         Some(false) if change.ratio > 1.0 => "slower",
@@ -129,7 +131,7 @@ fn verdict(change: &Change) -> &'static str {
     }
 }
 
-fn cells(change: &Change) -> Vec<String> {
+fn cells(change: &MeasuredChange) -> Vec<String> {
     let interval = change
         .interval
         .map_or_else(String::new, |[low, high]| format!("{low:.2} to {high:.2}"));
@@ -142,7 +144,7 @@ fn cells(change: &Change) -> Vec<String> {
     ]
 }
 
-fn head(comparison: &Comparison) -> String {
+fn head(comparison: &RecordComparison) -> String {
     let [a, b] = &comparison.ids;
     let mut out = format!(
         "{a} and {b}: {} files equal to the bit{}",
@@ -167,20 +169,24 @@ fn head(comparison: &Comparison) -> String {
             difference.file, difference.row, difference.first, difference.second
         );
     }
-    for note in comparison.notes.iter().take(NOTES) {
+    for note in comparison.notes.iter().take(MOST_NOTES) {
         let _ = writeln!(out, "note: {note}");
     }
-    if comparison.notes.len() > NOTES {
-        let _ = writeln!(out, "and {} notes more", comparison.notes.len() - NOTES);
+    if comparison.notes.len() > MOST_NOTES {
+        let _ = writeln!(
+            out,
+            "and {} notes more",
+            comparison.notes.len() - MOST_NOTES
+        );
     }
     out
 }
 
 /// Notes that are shown.
-const NOTES: usize = 10;
+const MOST_NOTES: usize = 10;
 
 /// How many times are listed of how many.
-fn tail(comparison: &Comparison, most: usize) -> String {
+fn tail(comparison: &RecordComparison, most: usize) -> String {
     let same = comparison
         .changes
         .iter()
@@ -198,7 +204,7 @@ const HEADER: [&str; 5] = [
     "verdict",
 ];
 
-fn table(comparison: &Comparison, most: usize) -> String {
+fn table(comparison: &RecordComparison, most: usize) -> String {
     let listed = &comparison.changes[..most.min(comparison.changes.len())];
     let mut out = head(comparison);
     if !listed.is_empty() {
@@ -208,7 +214,7 @@ fn table(comparison: &Comparison, most: usize) -> String {
     out + &tail(comparison, most)
 }
 
-fn markdown(comparison: &Comparison, most: usize) -> String {
+fn markdown(comparison: &RecordComparison, most: usize) -> String {
     let mut out = head(comparison) + "\n| " + &HEADER.join(" | ") + " |\n|---|---|--:|---|---|\n";
     for change in comparison.changes.iter().take(most) {
         out.push_str("| ");

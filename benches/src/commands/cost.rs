@@ -21,7 +21,7 @@ use super::scene_args::{MachineArgs, SceneArgs};
 use super::{Outcome, prices};
 
 /// Frames per pass, unless the scene or a flag has fewer.
-const FRAMES: u32 = 200;
+const DEFAULT_FRAMES: u32 = 200;
 const EFFORT: Effort = Effort {
     turns: 3,
     builds: 9,
@@ -85,7 +85,10 @@ fn measure(args: &Args) -> miette::Result<Report> {
     let plan = Plan {
         strategies,
         passes: args.seeds,
-        frames: args.scene.frames().unwrap_or(FRAMES.min(scene.frames)),
+        frames: args
+            .scene
+            .frames()
+            .unwrap_or(DEFAULT_FRAMES.min(scene.frames)),
         effort: EFFORT,
         tier: args.machine.tier(),
     };

@@ -45,7 +45,7 @@ pub struct Args {
 
 /// What is printed.
 #[derive(Serialize)]
-struct Report {
+struct MeshReport {
     name: String,
     file: String,
     written: Option<String>,
@@ -90,7 +90,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
+fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<MeshReport> {
     let topology = Topology::of(mesh);
     let total = topology.total();
     let spec = ShapeSpec {
@@ -101,7 +101,7 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
     let hull = Hull::of(&shape.vertices);
     let centre = shape.ball.centre;
     let [x, y, z] = std::array::from_fn(|i| shape.offset[i] + f64::from(centre[i]));
-    Ok(Report {
+    Ok(MeshReport {
         name: mesh.name.clone(),
         file: args.file.display().to_string(),
         written: args.to.as_ref().map(|path| path.display().to_string()),
@@ -141,14 +141,14 @@ fn of_used_vertices(mesh: &TriangleMesh) -> TriangleMesh {
     mesh
 }
 
-fn text(report: &Report) -> String {
+fn text(report: &MeshReport) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write_text(&mut text, report);
     text
 }
 
-fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
+fn write_text(out: &mut String, report: &MeshReport) -> std::fmt::Result {
     let (closed, all) = (report.closed_components, report.components);
     let state = match closed {
         _ if closed == all => "closed".to_owned(),
@@ -220,12 +220,12 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
 }
 
 /// Whether a volume is negligible compared with the ball's.
-fn is_flat(volume: f64, report: &Report) -> bool {
+fn is_flat(volume: f64, report: &MeshReport) -> bool {
     let radius = report.ball[3];
     volume <= 1e-9 * radius.powi(3)
 }
 
 /// A volume; values far below the ball's are rounding errors.
-fn volume(volume: f64, report: &Report) -> String {
+fn volume(volume: f64, report: &MeshReport) -> String {
     decimal(if is_flat(volume, report) { 0.0 } else { volume })
 }

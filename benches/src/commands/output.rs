@@ -23,7 +23,7 @@ pub enum Format {
 
 /// Keys that are not flattened in CSV, because their form differs from run to run and the header
 /// must not.
-const WHOLE: [&str; 2] = ["interest", "budget"];
+const UNFLATTENED_KEYS: [&str; 2] = ["interest", "budget"];
 
 /// Prints `value` in `format`. In CSV, a list has one line per element, any other value a single
 /// line.
@@ -187,7 +187,7 @@ fn flatten(key: &str, value: Value, row: &mut Vec<(String, String)>) {
     match value {
         Value::Null => row.push((key.to_owned(), String::new())),
         Value::String(text) => row.push((key.to_owned(), text)),
-        Value::Object(fields) if !WHOLE.contains(&key) => {
+        Value::Object(fields) if !UNFLATTENED_KEYS.contains(&key) => {
             for (name, field) in fields {
                 flatten(&inner(&name), field, row);
             }
@@ -216,8 +216,9 @@ mod tests {
     use super::*;
     use serde_json::json;
 
+    /// Csv flattens objects and named lists and keeps settings whole.
     #[test]
-    fn csv_flattens_objects_and_named_lists_and_keeps_settings_whole() {
+    fn csv_flattens_all_but_settings() {
         let value = json!({
             "scene": "a,b", "budget": {"tests": 5}, "interest": null,
             "counters": {"tests": 1, "hits": 2},
@@ -230,8 +231,9 @@ mod tests {
         assert_eq!(text, expected);
     }
 
+    /// Numbers for people have six digits and no exponent where they need none.
     #[test]
-    fn numbers_for_people_have_six_digits_and_no_exponent_where_they_need_none() {
+    fn printed_numbers_have_six_digits() {
         for (x, text) in [
             (32.536_16, "32.5362"),
             (-0.0, "0"),
@@ -246,8 +248,9 @@ mod tests {
         }
     }
 
+    /// Csv of records has the union of their columns.
     #[test]
-    fn csv_of_records_has_the_union_of_their_columns() {
+    fn csv_header_unites_all_columns() {
         let text = csv_text(json!([{"a": 1}, {"b": 2, "a": 3}])).unwrap_or_default();
         assert_eq!(text, "a,b\n1,\n3,2\n");
     }

@@ -22,5 +22,5 @@ pub const TESTS: [RGBColor; 3] = [
     RGBColor(64, 45, 140),
 ];
 pub const GREY: RGBColor = RGBColor(110, 110, 110);
-/// Lines behind the data.
+/// Lines in the background.
 pub const PALE: RGBColor = RGBColor(225, 225, 225);

@@ -10,7 +10,9 @@ use std::time::{Duration, Instant};
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_bench::measure::machine::Machine;
 use sdop_bench::mpi;
-use sdop_bench::report::{Code, Experiment, FILE, Load, Manifest, Step, experiments};
+use sdop_bench::report::{
+    CodeVersion, Experiment, ExperimentStep, FILE, Load, Manifest, experiments,
+};
 
 use super::Outcome;
 use super::files::{COMMAND, write};
@@ -145,7 +147,7 @@ fn place(args: &Args, experiment: &str) -> PathBuf {
     args.out.join(&args.name).join(experiment)
 }
 
-/// The experiment of a name, or all that it stands for.
+/// The experiment of that name, or all experiments of that group.
 fn named(name: &str) -> miette::Result<Vec<&'static Experiment>> {
     let belongs = |experiment: &&Experiment| {
         let rest = experiment.name.strip_prefix(name);
@@ -172,7 +174,8 @@ fn say(directory: &Path) -> miette::Result<()> {
     ))
 }
 
-/// Measures into a directory beside, and puts it in its place when it is whole.
+/// Measures into a temporary directory next to the record's, and renames it when the record is
+/// complete.
 fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
     let part = prepare(directory)?;
     let (before, start) = (Load::now(), Instant::now());
@@ -249,7 +252,12 @@ fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> 
     }
     let mut more = args.more.clone();
     if let Some(tier) = args.machine.asked() {
-        let ours = |step: &Step| matches!(step, Step::Sdop(_) | Step::SdopPrints(..));
+        let ours = |step: &ExperimentStep| {
+            matches!(
+                step,
+                ExperimentStep::Sdop(_) | ExperimentStep::SdopPrints(..)
+            )
+        };
         if !experiment.steps.iter().all(ours) {
             return Err(miette!(
                 help = "only what sdop runs itself takes a level",
@@ -282,7 +290,7 @@ fn execute(args: &Args, experiment: &Experiment, out: &Path) -> miette::Result<(
 fn complete(
     args: &Args,
     experiment: &Experiment,
-    step: &Step,
+    step: &ExperimentStep,
     out: &Path,
 ) -> miette::Result<(Command, Option<&'static str>)> {
     let (mut command, file) = steps::command(step, out)?;
@@ -336,9 +344,9 @@ fn adopt(
             known.map_or_else(String::new, |experiment| command_line(experiment, args));
     }
     manifest.caches.clear();
-    let touched = Code::last_touching(Path::new("."), directory);
+    let touched = CodeVersion::last_touching(Path::new("."), directory);
     if let Some((commit, day)) = touched {
-        manifest.code = Code::at(Path::new("."), &commit);
+        manifest.code = CodeVersion::at(Path::new("."), &commit);
         manifest.date = day;
     }
     manifest.note.clone_from(&args.note);

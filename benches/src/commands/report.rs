@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop_bench::report::{Code, Quantities, Store, pages};
+use sdop_bench::report::{CodeVersion, Quantities, Store, pages};
 
 use super::Outcome;
 use super::files::write;
 use super::output::{print, rows};
 
 /// Pages that people write, with blocks whose numbers come from records or without any.
-const WRITTEN: [&str; 10] = [
+const PAGES_WITH_BLOCKS: [&str; 10] = [
     "README.md",
     "paper/results.md",
     "ARCHITECTURE.md",
@@ -58,7 +58,7 @@ const FIGURES: [(&str, &str); 8] = [
 ];
 
 /// The table that a figure is drawn from, and the figure.
-const FAR: (&str, &str) = ("kernels/far/far.csv", "paper/figures/far.svg");
+const FAR_FIGURE: (&str, &str) = ("kernels/far/far.csv", "paper/figures/far.svg");
 
 /// Macros that pages share.
 const MACROS: &str = "paper/quantities.jinja";
@@ -120,7 +120,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
             problems.extend(figure(args, &whole.place(from), &text, to)?);
         }
     }
-    if let (table, to) = FAR
+    if let (table, to) = FAR_FIGURE
         && whole.is_recorded(table)
     {
         let text = far::draw(&whole.table(table)?)?;
@@ -135,8 +135,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         .collect();
     let wholes = root.join(pages::WHOLE);
     let wholes = self::templates(&wholes, &wholes)?;
-    let now = Code::here(&args.root);
-    let written = WRITTEN
+    let now = CodeVersion::here(&args.root);
+    let written = PAGES_WITH_BLOCKS
         .into_iter()
         .filter(|page| args.root.join(page).is_file())
         .map(|page| (page, None));
@@ -145,8 +145,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         .map(|(page, template)| (page.as_str(), Some(template.as_str())));
     let pages: Vec<(&str, Option<&str>)> = written.chain(made).collect();
     for (page, template) in &pages {
-        // A store of its own knows which records the page quotes.
-        let sources = pages::Sources {
+        // A separate store per page records which records it quotes.
+        let sources = pages::PageSources {
             store: Arc::new(Store::new(&records)?),
             macros: macros.clone(),
             templates: templates.clone(),
@@ -237,13 +237,13 @@ fn figure(args: &Args, from: &str, text: &str, to: &str) -> miette::Result<Optio
     Ok(None)
 }
 
-/// Renders or checks one page, of its own template or with blocks; what is wrong with it.
+/// Renders or checks one page, from its template or with blocks. Returns what is wrong with it.
 fn one_page(
     args: &Args,
     page: &str,
     template: Option<&str>,
-    sources: &pages::Sources,
-    now: Option<&Code>,
+    sources: &pages::PageSources,
+    now: Option<&CodeVersion>,
 ) -> miette::Result<Vec<String>> {
     let path = args.root.join(page);
     let text = match std::fs::read_to_string(&path) {
@@ -289,7 +289,7 @@ fn first_difference(page: &str, text: &str, rendered: &str) -> String {
 }
 
 /// Records used by a page that are older than the code, and whose commit the page doesn't name.
-fn unnamed_age(page: &str, text: &str, store: &Store, now: Option<&Code>) -> Vec<String> {
+fn unnamed_age(page: &str, text: &str, store: &Store, now: Option<&CodeVersion>) -> Vec<String> {
     let Some(now) = now else {
         return Vec::new();
     };

@@ -74,7 +74,7 @@ struct Report<'a> {
     simd: &'static str,
     threads: usize,
     counters: Map<String, Value>,
-    seconds: Terms,
+    seconds: RunTerms,
     frame_seconds: Percentiles,
     /// Other load on the machine.
     conditions: Conditions,
@@ -88,7 +88,7 @@ struct Report<'a> {
 
 /// The terms of T: those of culling, and those of the borders between ranks.
 #[derive(Serialize)]
-struct Terms {
+struct RunTerms {
     #[serde(flatten)]
     culling: Seconds,
     #[serde(flatten)]
@@ -96,7 +96,7 @@ struct Terms {
 }
 
 /// Additional results of ranks.
-type Shared<'a> = Option<(BorderSeconds, &'a [RankLine])>;
+type RankResults<'a> = Option<(BorderSeconds, &'a [RankLine])>;
 
 #[derive(Serialize)]
 struct EffectLine {
@@ -158,7 +158,7 @@ fn print(
     scene: &Scene,
     summary: &Summary,
     conditions: Conditions,
-    shared: Shared<'_>,
+    shared: RankResults<'_>,
 ) -> miette::Result<()> {
     let (tier, threads) = (args.machine.tier(), args.threads.into());
     let report = report(scene, (tier, threads), summary, conditions, shared);
@@ -170,7 +170,7 @@ fn report<'a>(
     (tier, threads): (Tier, usize),
     summary: &'a Summary,
     conditions: Conditions,
-    shared: Shared<'a>,
+    shared: RankResults<'a>,
 ) -> Report<'a> {
     let CullSettings {
         strategy,
@@ -200,7 +200,7 @@ fn report<'a>(
         simd: tier.name(),
         threads,
         counters: counters(*strategy, &summary.counters),
-        seconds: Terms {
+        seconds: RunTerms {
             culling: summary.seconds,
             border: shared.map(|(border, _)| border),
         },
@@ -324,8 +324,8 @@ fn write_text(
 }
 
 /// Seconds per stage. Construction happens once, so it has no time per frame.
-fn stages(seconds: &Terms, frames: u32) -> comfy_table::Table {
-    let Terms {
+fn stages(seconds: &RunTerms, frames: u32) -> comfy_table::Table {
+    let RunTerms {
         culling: seconds,
         border,
     } = seconds;

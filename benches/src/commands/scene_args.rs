@@ -188,7 +188,7 @@ fn interest(text: &str) -> Result<Interest, String> {
         format!("[{text}]")
     };
     let read = ValueDeserializer::parse(&value).and_then(Interest::deserialize);
-    // clap shows no help text of its own for an error, so it goes into the message.
+    // clap does not print help texts of errors, so it is part of the message.
     let hint = "body indices as in 0,5,7 or a cone as in { body = 0, direction = [0, 0, 1], half_angle = 30 }";
     read.map_err(|error| format!("interest: {}; {hint}", error.message()))
 }
@@ -211,8 +211,9 @@ mod tests {
 
     use super::{Interest, interest};
 
+    /// Interest reads as a list or a cone.
     #[test]
-    fn interest_reads_as_a_list_or_a_cone() {
+    fn interest_parses_list_and_cone() {
         let list = interest("0, 5,7").unwrap();
         assert_eq!(list, Interest::Bodies(vec![0, 5, 7]));
         let cone = interest("{ body = 3, direction = [0, 0, 1], half_angle = 30 }").unwrap();

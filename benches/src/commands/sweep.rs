@@ -32,7 +32,7 @@ pub struct SweepArgs {
 pub const SHARING: [&str; 2] = ["--shard", "--share-cores"];
 
 /// Receives results in the order of units.
-type Take<'a> = &'a mut dyn FnMut(usize, &str) -> miette::Result<()>;
+type TakeResult<'a> = &'a mut dyn FnMut(usize, &str) -> miette::Result<()>;
 
 /// Begins a command whose work may be shared: other ranks wait until the first one has checked the
 /// arguments.
@@ -81,7 +81,7 @@ impl SweepArgs {
         &self,
         work: &dyn Sweep,
         directory: &Path,
-        take: Take,
+        take: TakeResult,
     ) -> miette::Result<Option<f64>> {
         let start = Instant::now();
         let header = work.header()?;
@@ -118,7 +118,12 @@ impl SweepArgs {
 
     /// Does this rank's part of the work; whether this is rank 0, which takes all results.
     #[cfg(feature = "mpi")]
-    fn on_ranks(&self, work: &dyn Sweep, header: &Header, take: Take) -> miette::Result<bool> {
+    fn on_ranks(
+        &self,
+        work: &dyn Sweep,
+        header: &Header,
+        take: TakeResult,
+    ) -> miette::Result<bool> {
         let ranks = Ranks::start();
         let first = ranks.rank == 0;
         if first {
@@ -145,7 +150,7 @@ impl SweepArgs {
 }
 
 /// Does these units in this process.
-fn units(work: &dyn Sweep, units: Vec<usize>, take: Take) -> miette::Result<()> {
+fn units(work: &dyn Sweep, units: Vec<usize>, take: TakeResult) -> miette::Result<()> {
     let bar = progress(units.len() as u64, "units");
     let mut order = InOrder::new(units.clone(), take);
     let mut on = |unit, result| {

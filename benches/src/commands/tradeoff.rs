@@ -73,7 +73,7 @@ impl Args {
 
 /// A result with where it comes from.
 #[derive(Serialize, Deserialize)]
-struct Recorded {
+struct RecordedTradeoff {
     command: String,
     machine: Machine,
     #[serde(flatten)]
@@ -104,7 +104,12 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         return Ok(Outcome::Passed);
     }
     let settings = comparison.settings();
-    args.tell(&Recorded::new(command(), findings, &settings, before)?)
+    args.tell(&RecordedTradeoff::new(
+        command(),
+        findings,
+        &settings,
+        before,
+    )?)
 }
 
 /// What merged shards give.
@@ -118,12 +123,12 @@ pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Out
         findings.take(result)?;
     }
     let (line, unknown) = (merged.header.line.clone(), Conditions::default());
-    let recorded = Recorded::new(line, findings, &settings, unknown)?;
+    let recorded = RecordedTradeoff::new(line, findings, &settings, unknown)?;
     write_all(out, out, &recorded)?;
     print(&recorded, format, tables::brief)
 }
 
-impl Recorded {
+impl RecordedTradeoff {
     fn new(
         command: String,
         findings: Findings,
@@ -141,7 +146,7 @@ impl Recorded {
 
 impl Args {
     /// Writes and prints what was asked for.
-    fn tell(&self, recorded: &Recorded) -> miette::Result<Outcome> {
+    fn tell(&self, recorded: &RecordedTradeoff) -> miette::Result<Outcome> {
         if let Some(directory) = &self.out {
             let paper = self.paper.as_ref().unwrap_or(directory);
             write_all(directory, paper, recorded)?;
@@ -156,7 +161,7 @@ impl Args {
 }
 
 fn print(
-    recorded: &Recorded,
+    recorded: &RecordedTradeoff,
     format: Format,
     text: fn(&Tradeoff) -> String,
 ) -> miette::Result<Outcome> {
@@ -201,14 +206,14 @@ fn recorded(path: &Path) -> Option<&Path> {
         .then_some(path)
 }
 
-fn read(path: &Path) -> miette::Result<Recorded> {
+fn read(path: &Path) -> miette::Result<RecordedTradeoff> {
     serde_json::from_str(&files::read(path)?)
         .into_diagnostic()
         .wrap_err_with(|| format!("{} is no result of sdop tradeoff", path.display()))
 }
 
 /// Writes the numbers to one directory, the figures to another.
-fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Result<()> {
+fn write_all(numbers: &Path, paper: &Path, recorded: &RecordedTradeoff) -> miette::Result<()> {
     let result = &recorded.result;
     let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
     let csv = csv_text(serde_json::to_value(tidy::lines(result)).into_diagnostic()?)?;

@@ -94,7 +94,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     sweep::enter(&args.sweep)?;
     let run = verification(args)?;
-    let mut taken = Taken::default();
+    let mut taken = UnitTotals::default();
     let mut take = |unit, result: &str| taken.take(&run, unit, result);
     let Some(seconds) = args.sweep.run(&run, &args.out, &mut take)? else {
         return Ok(Outcome::Passed);
@@ -110,7 +110,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
     let settings = merged.header.settings().into_diagnostic()?;
     let run = Verification::new(settings)?;
-    let mut taken = Taken::default();
+    let mut taken = UnitTotals::default();
     for (&unit, result) in &merged.done {
         taken.take(&run, unit, result)?;
     }
@@ -121,7 +121,7 @@ fn verification(args: &Args) -> miette::Result<Verification> {
     let deadline = args.time.map(Duration::from_secs);
     // A time beyond the clock's end is none.
     let deadline = deadline.and_then(|time| Instant::now().checked_add(time));
-    // A scene that can't be built is said before the long work.
+    // A scene that can't be built is reported before the long work.
     let most = args.files.max_bytes();
     let build = |path: &PathBuf| SceneFile::read_within(path, most).and_then(|file| file.build());
     let scenes = args.scenes.iter().map(build);
@@ -151,7 +151,7 @@ fn verification(args: &Args) -> miette::Result<Verification> {
 
 /// What units have given.
 #[derive(Default)]
-struct Taken {
+struct UnitTotals {
     /// How many.
     units: usize,
     ledgers: BTreeMap<Origin, Ledger>,
@@ -159,7 +159,7 @@ struct Taken {
     failed: BTreeMap<Origin, usize>,
 }
 
-impl Taken {
+impl UnitTotals {
     fn take(&mut self, run: &Verification, unit: usize, result: &str) -> miette::Result<()> {
         self.units += 1;
         for (origin, ledger, failed) in run.take(unit, result)? {

@@ -14,7 +14,7 @@ use sdop_bench::view::{Culled, Page, Show, decide_truth};
 use super::Outcome;
 use super::output::{print, progress};
 use super::scene_args::{MachineArgs, SceneArgs};
-use input::Input;
+use input::ViewInput;
 
 /// Write a page that shows a run: bodies, pairs, volumes and counts, frame by frame
 ///
@@ -67,7 +67,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let tier = args.machine.tier();
     let (page, name, broken) =
         match input::read(&args.scene, args.run, args.answers.as_deref(), tier)? {
-            Input::Show(mut show, broken) => {
+            ViewInput::Show(mut show, broken) => {
                 let culled = culled(args, &show)?;
                 if !args.no_truth {
                     let bar = progress(show.frames.len() as u64, "which meshes meet");
@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
                 let page = Page::new(&show, &culled, tier)?;
                 (page, show.header.scene, broken)
             }
-            Input::Broken(error) => {
+            ViewInput::Broken(error) => {
                 let path = args.scene.path();
                 let stem = path.file_stem().unwrap_or(path.as_os_str());
                 (

@@ -220,8 +220,9 @@ mod tests {
         }
     }
 
+    /// A change keeps the order of numbers.
     #[test]
-    fn a_change_keeps_the_order_of_numbers() {
+    fn change_keeps_number_order() {
         let mut held = BodyColumns::default();
         held.change(
             |_| true,

@@ -29,7 +29,7 @@ pub enum DomainError {
     Elsewhere {
         /// The first rank in trouble.
         rank: usize,
-        /// What it said.
+        /// Its message.
         message: String,
     },
 }

@@ -8,8 +8,8 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::Start;
-use super::{Effect, Made, Velocities};
+use super::InitialState;
+use super::{BuiltEffect, Effect, Velocities};
 use crate::number::{Positive, Real, vector};
 use sdop::bodies::Bodies;
 
@@ -36,14 +36,14 @@ struct Table {
 
 impl<'de> Deserialize<'de> for Settings {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Either)
+        deserializer.deserialize_any(GravityVisitor)
     }
 }
 
 /// Reads an acceleration alone, or a table with it.
-struct Either;
+struct GravityVisitor;
 
-impl<'de> Visitor<'de> for Either {
+impl<'de> Visitor<'de> for GravityVisitor {
     type Value = Settings;
 
     fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -81,7 +81,7 @@ struct Gravity {
     steps: u64,
 }
 
-pub(super) fn new(settings: &Settings, start: &Start<'_>) -> Made {
+pub(super) fn new(settings: &Settings, start: &InitialState<'_>) -> BuiltEffect {
     if settings.axis.is_some() && settings.period.is_none() {
         return Err((
             "an axis without a period".to_owned(),

@@ -30,7 +30,7 @@ use sdop::volume::Shape;
 
 /// The initial state of a scene, from which effects are built.
 #[derive(Clone, Copy, Debug)]
-pub struct Start<'a> {
+pub struct InitialState<'a> {
     /// The seed of all random draws.
     pub seed: u64,
     /// Seconds per step.
@@ -88,7 +88,7 @@ pub struct EffectError {
 }
 
 /// What `new` of an effect returns: the effect, or a problem and a hint.
-type Made = Result<Box<dyn Effect>, (String, &'static str)>;
+type BuiltEffect = Result<Box<dyn Effect>, (String, &'static str)>;
 
 /// Declares the effects in the order in which a step applies them; the names are the keys of
 /// `[effects]`.
@@ -114,7 +114,7 @@ macro_rules! effects {
         }
 
         /// The listed effects and the place of each in [`NAMES`].
-        fn listed(spec: &EffectsSpec, start: &Start<'_>) -> Result<Vec<(usize, Box<dyn Effect>)>, EffectError> {
+        fn listed(spec: &EffectsSpec, start: &InitialState<'_>) -> Result<Vec<(usize, Box<dyn Effect>)>, EffectError> {
             let mut list = Vec::new();
             let mut place = 0;
             $(if let Some(settings) = &spec.$name {
@@ -171,7 +171,7 @@ impl Effects {
     ///
     /// # Errors
     /// An effect that the scene can't have, such as walls without a box.
-    pub fn new(spec: &EffectsSpec, start: &Start<'_>) -> Result<Self, EffectError> {
+    pub fn new(spec: &EffectsSpec, start: &InitialState<'_>) -> Result<Self, EffectError> {
         let running = listed(spec, start)?;
         let report = |&name| EffectReport {
             name,

@@ -6,8 +6,8 @@ use std::ops::Range;
 
 use serde::Deserialize;
 
-use super::Start;
-use super::{Effect, Made, Velocities};
+use super::InitialState;
+use super::{BuiltEffect, Effect, Velocities};
 use crate::number::Interval;
 use sdop::bodies::Bodies;
 
@@ -23,7 +23,7 @@ struct Spin {
     half_dt: f32,
 }
 
-pub(super) fn new(_: &Settings, start: &Start<'_>) -> Made {
+pub(super) fn new(_: &Settings, start: &InitialState<'_>) -> BuiltEffect {
     Ok(Box::new(Spin {
         half_dt: 0.5 * start.dt,
     }))

@@ -150,8 +150,9 @@ mod tests {
         assert_eq!(Estimate::of(&[2.0]).half_width, f64::INFINITY);
     }
 
+    /// Drifting values have less information than scattered ones.
     #[test]
-    fn what_drifts_tells_less_than_what_scatters() {
+    fn drift_widens_the_interval() {
         let drift: Vec<f64> = (0..20).map(f64::from).collect();
         let mut scatter = drift.clone();
         (0..20).for_each(|i| scatter.swap(i, (7 * i + 3) % 20));
@@ -168,8 +169,9 @@ mod tests {
         assert_eq!(Estimate::in_order(&jumping), Estimate::of(&jumping));
     }
 
+    /// The p value crosses five percent at the interval's end.
     #[test]
-    fn the_p_value_crosses_five_percent_at_the_interval_s_end() {
+    fn p_value_matches_interval_end() {
         let estimate = Estimate::of(&[1.0, 2.0, 3.0, 4.0, 5.0, 9.0]);
         let [lo, hi] = estimate.interval();
         for end in [lo, hi] {
@@ -178,8 +180,9 @@ mod tests {
         assert!((estimate.p_value(estimate.mean) - 1.0).abs() < 1e-12);
     }
 
+    /// Chi squared tail is the table's.
     #[test]
-    fn chi_squared_tail_is_the_table_s() {
+    fn chi_squared_tail_matches_table() {
         assert!((chi_squared_p(7.815, 3.0) - 0.05).abs() < 1e-4);
     }
 }

@@ -37,7 +37,7 @@ const MOST_FRAMES: usize = 8;
 choices! {
     /// The state of the caches when a culler is timed.
     Regime, "timing regime", {
-        /// Data of its own previous frame: frames follow one another, as in a simulation.
+        /// Data of the same culler's previous frame: frames follow one another, as in a simulation.
         Warm = "warm",
         /// Data of other cullers, which ran in between.
         Cold = "cold",
@@ -289,8 +289,9 @@ pub fn median(values: Vec<f64>) -> f64 {
 mod tests {
     use super::*;
 
+    /// Median is the middle or the mean of the two.
     #[test]
-    fn median_is_the_middle_or_the_mean_of_the_two() {
+    fn median_of_odd_and_even_counts() {
         assert_eq!(median(vec![]), 0.0);
         assert_eq!(median(vec![3.0]), 3.0);
         assert_eq!(median(vec![9.0, 1.0, 2.0]), 2.0);
@@ -301,9 +302,9 @@ mod tests {
 
     /// Notes which frames it was given, by their numbers of bodies.
     #[derive(Default)]
-    struct Noting(Vec<usize>);
+    struct FrameRecorder(Vec<usize>);
 
-    impl Contestant for Noting {
+    impl Contestant for FrameRecorder {
         fn frame(&mut self, frame: &Bodies) {
             self.0.push(frame.len());
         }
@@ -313,13 +314,15 @@ mod tests {
         }
     }
 
+    /// Every contestant takes every frame in order and another begins.
     #[test]
-    fn every_contestant_takes_every_frame_in_order_and_another_begins() {
+    fn contestants_alternate_over_all_frames() {
         let frame = |bodies: usize| Bodies {
             shape: vec![0; bodies],
             ..Bodies::default()
         };
-        let mut contestants: Vec<Noting> = (0..3).map(|_| Noting::default()).collect();
+        let mut contestants: Vec<FrameRecorder> =
+            (0..3).map(|_| FrameRecorder::default()).collect();
         let (mut turns, mut begins) = (Turns::default(), Vec::new());
         for round in 0..20 {
             let mut calls = Vec::new();

@@ -20,10 +20,10 @@ mod provenance;
 mod store;
 mod table;
 
-pub use compare::{Change, Comparison, compare};
+pub use compare::{MeasuredChange, RecordComparison, compare};
 pub use digits::{Quantities, Quantity};
-pub use experiment::{Experiment, Step, experiments};
+pub use experiment::{Experiment, ExperimentStep, experiments};
 pub use manifest::{FILE, Manifest, ManifestError};
-pub use provenance::{Code, Load, caches};
+pub use provenance::{CodeVersion, Load, caches};
 pub use store::{Store, StoreError};
 pub use table::{Table, TableError};

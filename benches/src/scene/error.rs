@@ -74,12 +74,12 @@ pub struct TextError {
 
 /// A scene file's name and text: what an error needs to point at a place.
 #[derive(Clone, Debug)]
-pub(super) struct Source {
+pub(super) struct SceneText {
     pub(super) file: String,
     pub(super) text: String,
 }
 
-impl Source {
+impl SceneText {
     pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         match files::read_text(path, max_bytes) {

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
-use super::error::{SceneError, Source};
+use super::error::{SceneError, SceneText};
 use crate::effects::EffectsSpec;
 use crate::number::{Factors, Interval, Positive, Real};
 use sdop::choice::choices;
@@ -20,7 +20,7 @@ use sdop::volume::Origin;
 /// [`SceneFile::build`].
 #[derive(Clone, Debug)]
 pub struct SceneFile {
-    pub(super) source: Source,
+    pub(super) source: SceneText,
     pub(super) directory: PathBuf,
     /// Larger meshes are refused.
     pub(super) max_bytes: u64,
@@ -161,7 +161,7 @@ impl SceneFile {
     /// As [`SceneFile::read`], and a file with more bytes.
     pub fn read_within(path: &Path, max_bytes: u64) -> Result<Self, SceneError> {
         let directory = path.parent().unwrap_or(Path::new("")).to_owned();
-        let file = Self::parse_source(Source::read(path, max_bytes)?, directory)?;
+        let file = Self::parse_source(SceneText::read(path, max_bytes)?, directory)?;
         Ok(Self { max_bytes, ..file })
     }
 
@@ -171,14 +171,14 @@ impl SceneFile {
     /// # Errors
     /// As [`SceneFile::read`].
     pub fn parse(text: &str, file: &str, directory: &Path) -> Result<Self, SceneError> {
-        let source = Source {
+        let source = SceneText {
             file: file.to_owned(),
             text: text.to_owned(),
         };
         Self::parse_source(source, directory.to_owned())
     }
 
-    fn parse_source(source: Source, directory: PathBuf) -> Result<Self, SceneError> {
+    fn parse_source(source: SceneText, directory: PathBuf) -> Result<Self, SceneError> {
         match read_spec(&source.text) {
             Ok(spec) => Ok(Self {
                 source,

@@ -19,7 +19,7 @@ pub use file::SceneFile;
 pub use fine::FineTranslations;
 pub use share::Share;
 
-use crate::effects::{EffectError, Effects, EffectsSpec, Start, Velocities};
+use crate::effects::{EffectError, Effects, EffectsSpec, InitialState, Velocities};
 use sdop::bodies::Bodies;
 use sdop::settings::CullSettings;
 use sdop::volume::Shape;
@@ -69,7 +69,7 @@ impl Scene {
     /// An effect that the scene can't have, such as walls without a box.
     pub fn start_effects(&self) -> Result<Effects, EffectError> {
         let share = self.share();
-        let start = Start {
+        let start = InitialState {
             seed: self.seed,
             dt: self.dt,
             side: self.side,

@@ -41,7 +41,7 @@ pub trait Sweep: Sync {
     /// Does a unit: its result as a line of text, which any process can take.
     ///
     /// # Errors
-    /// What stands against it.
+    /// Why the unit can't be done.
     fn run(&self, unit: usize) -> miette::Result<String>;
 
     /// Whether a unit is timed, so that none may run next to it on a machine.

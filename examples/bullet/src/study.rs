@@ -22,7 +22,7 @@ pub struct Study {
 /// Steps with and without the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timed {
-    /// As Bullet comes: processor time of the stepping thread, milliseconds a step.
+    /// Bullet without a filter: processor time of the stepping thread in milliseconds per step.
     pub plain_ms: f64,
     /// The same with the filter.
     pub filtered_ms: f64,

@@ -41,8 +41,9 @@ fn no_scene_loses_a_contact() {
     }
 }
 
+/// Margins that are left out are seen.
 #[test]
-fn margins_that_are_left_out_are_seen() {
+fn missing_margins_are_detected() {
     let dropped = |kind| {
         let plans = plans().filter(move |plan| plan.kind == kind);
         plans

@@ -212,8 +212,9 @@ mod tests {
         -f32::NAN,
     ];
 
+    /// Coordinates are refused for an ulp beyond the limit.
     #[test]
-    fn coordinates_are_refused_for_an_ulp_beyond_the_limit() {
+    fn coordinates_beyond_limit_are_rejected() {
         for count in [1, 2, 40] {
             let fine = vec![[LIMIT, -LIMIT, -0.0]; count];
             assert_eq!(check_vectors("translation", &fine, 7), Ok(()));
@@ -229,8 +230,9 @@ mod tests {
         }
     }
 
+    /// Balls are refused in every lane for an ulp beyond the limit.
     #[test]
-    fn balls_are_refused_in_every_lane_for_an_ulp_beyond_the_limit() {
+    fn balls_beyond_limit_are_rejected() {
         for tier in Tier::available() {
             for count in [0, 1, 16, 17, 50] {
                 let fine = vec![[LIMIT, -LIMIT, 0.0, f32::MAX]; count];

@@ -146,7 +146,7 @@ mod tests {
 
     /// In a table this short the rows of a fourth cell overlap those of the first.
     #[test]
-    fn a_look_that_spans_many_cells_of_a_short_table_finds_each_body_once() {
+    fn wide_search_finds_each_once() {
         for radius in [0.9, 1.0, 1.5, 2.1, 3.0, 40.0] {
             let balls: Vec<[f32; 4]> = (0..TARGETS + SEEKERS)
                 .map(|i| {
@@ -200,7 +200,7 @@ mod tests {
     /// A look at a row costs fifteen tests: of n bodies in a box of c cells, s of which a seeker
     /// may reach, cells are looked through when 15·s_y·s_z < n·(1 − s_x·s_y·s_z/c).
     #[test]
-    fn cells_are_looked_through_where_their_rows_cost_less_than_all_bodies() {
+    fn search_mode_follows_row_cost() {
         for (radius, cells, most) in [
             (0.5, [10, 4, 2], 116),
             (1.5, [20, 8, 6], 431),
@@ -226,16 +226,18 @@ mod tests {
         }
     }
 
+    /// The fewer bodies seek among all and the second of as many.
     #[test]
-    fn the_fewer_bodies_seek_among_all_and_the_second_of_as_many() {
+    fn fewer_bodies_seek() {
         let level = |bodies| level(bodies, 0.5, [1; 3], TableLayout::Box);
         for (a, b) in [(2, 3), (3, 3), (3, 2)] {
             assert_eq!(plan(&level(a), &level(b)), (a < b, LevelSearch::All));
         }
     }
 
+    /// Only seekers of similar size search a wrapped table.
     #[test]
-    fn a_wrapped_table_is_looked_through_by_seekers_of_its_own_size_alone() {
+    fn wrapped_table_needs_similar_seekers() {
         let target = level(10_000, 0.5, [200; 3], TableLayout::Wrapped);
         for (radius, search) in [(0.5, LevelSearch::Cells), (0.6, LevelSearch::All)] {
             let seeker = level(1, radius, [1; 3], TableLayout::Box);

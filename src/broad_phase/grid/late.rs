@@ -77,8 +77,9 @@ mod tests {
         grid
     }
 
+    /// Those that stay keep their levels and the late ones share one.
     #[test]
-    fn those_that_stay_keep_their_levels_and_the_late_ones_share_one() {
+    fn late_bodies_share_one_level() {
         let radius = |i: usize| if i.is_multiple_of(50) { 64.0 } else { 1.0 };
         let balls: Vec<_> = (0..2000)
             .map(|i| [2.0 * i as f32, 0.0, 0.0, radius(i)])
@@ -116,8 +117,9 @@ mod tests {
         assert_eq!((ranges(&grid).len(), grid.moving_levels), (0, 0));
     }
 
+    /// Many late bodies are worth a plan.
     #[test]
-    fn many_late_bodies_are_worth_a_plan() {
+    fn many_late_bodies_trigger_a_plan() {
         let balls: Vec<_> = (0..3200).map(|i| [2.0 * i as f32, 0.0, 0.0, 1.0]).collect();
         for (late, keeps) in [(64, true), (213, true), (214, false), (3200, false)] {
             let mut grid = planned(&balls);

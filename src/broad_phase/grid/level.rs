@@ -314,15 +314,17 @@ mod tests {
         check([4, 1], [1, 4]);
     }
 
+    /// Other names with the same sum are detected.
     #[test]
     #[cfg_attr(debug_assertions, should_panic(expected = "each body has one slot"))]
-    fn others_of_the_same_sum_are_told() {
+    fn names_of_equal_sum_differ() {
         check([2, 3], [1, 4]);
     }
 
+    /// Other names with the same sum of squares are detected.
     #[test]
     #[cfg_attr(debug_assertions, should_panic(expected = "each body has one slot"))]
-    fn others_of_the_same_sum_of_squares_are_told() {
+    fn names_of_equal_squares_differ() {
         check([0, 5], [3, 4]);
     }
 
@@ -353,7 +355,7 @@ mod tests {
 
     /// A box that breathes allocates nothing.
     #[test]
-    fn a_table_that_grows_takes_an_eighth_to_spare() {
+    fn growing_table_has_spare_room() {
         let mut level = GridLevel::new(0..100, TableLayout::Box);
         let names: Vec<u32> = (0..100).collect();
         let sorted = |level: &mut GridLevel, step: f32| {
@@ -380,7 +382,7 @@ mod tests {
 
     /// Bodies are shared by cells, and those of a cell stay in the order of places.
     #[test]
-    fn many_bodies_are_sorted_alike_on_any_number_of_threads() {
+    fn threads_sort_many_bodies_alike() {
         let len = FEWEST_SHARED_BODIES + 1000;
         let ball = |i: usize| {
             let [x, y, z] = [7919, 104_729, 1_299_709].map(|p| (i * p % 1009) as f32);

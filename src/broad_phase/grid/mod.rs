@@ -318,8 +318,9 @@ mod tests {
         }
     }
 
+    /// Levels are planned anew when candidates have more than doubled after a pause.
     #[test]
-    fn levels_are_planned_anew_when_candidates_have_more_than_doubled_after_a_pause() {
+    fn doubled_candidates_trigger_a_plan() {
         assert!(Grid::default().needs_plan(1) && !Grid::default().needs_plan(0));
         let mut grid = planned(5);
         assert!(!grid.needs_plan(10), "the first frame after a plan");
@@ -336,8 +337,9 @@ mod tests {
         assert!(grid.needs_plan(10));
     }
 
+    /// Places that follow the slots move static bodies only where they have another order.
     #[test]
-    fn places_that_follow_the_slots_move_static_bodies_only_where_they_have_another_order() {
+    fn following_slots_keeps_sorted_statics() {
         let mut grid = planned(2);
         (grid.fixed_sorted, grid.slots.names) = (true, vec![1, 0, 3, 2, 0, 0]);
         let mut order = vec![9];
@@ -357,8 +359,9 @@ mod tests {
         assert_eq!(grid.age, FRAMES_PER_PLAN_CHECK + 3);
     }
 
+    /// Only moving levels grow, and parts know whether they move.
     #[test]
-    fn moving_levels_alone_grow_and_their_parts_are_told() {
+    fn only_moving_levels_grow() {
         let mut grid = planned(3);
         let half = Reach::with_skin(Skin::share(0.5));
         grid.set_reach(half);
@@ -378,8 +381,9 @@ mod tests {
         assert_eq!(moves, [[true, true], [true, false], [false, true]]);
     }
 
+    /// A part is cut without gaps or overlap.
     #[test]
-    fn a_part_is_cut_without_gaps_or_overlap() {
+    fn parts_cover_without_overlap() {
         let whole = GridPart {
             slots: 3..40,
             seeker: 1,
@@ -393,8 +397,9 @@ mod tests {
         assert!(parts.iter().all(|part| part.seeker == 1 && part.level == 2));
     }
 
+    /// Bytes are those of all columns used or not.
     #[test]
-    fn bytes_are_those_of_all_columns_used_or_not() {
+    fn bytes_count_all_columns() {
         let mut grid = planned(2);
         assert_eq!(grid.bytes(), 0);
         grid.slots.balls = Vec::with_capacity(1);

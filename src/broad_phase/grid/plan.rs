@@ -107,8 +107,9 @@ mod tests {
         (0..small).map(near).chain((0..wide).map(far)).collect()
     }
 
+    /// Giants leave crowds of small bodies and no others.
     #[test]
-    fn giants_leave_crowds_of_small_bodies_and_no_others() {
+    fn giants_leave_small_crowds() {
         let alone = |range: Range<u32>| (range.collect::<Vec<_>>(), TableLayout::Box);
         // In the mean (n² + 1)/(n + 1) bodies are in a body's cell: 4 at most, and they stay.
         for small in 1..5 {
@@ -123,8 +124,9 @@ mod tests {
         assert_eq!(planned(&[]), []);
     }
 
+    /// A wide body is wider than half of the widest.
     #[test]
-    fn a_wide_body_is_wider_than_half_of_the_widest() {
+    fn wide_means_over_half_the_widest() {
         let mut balls = giants(50, 1);
         balls.extend([[5000.0, 0.0, 0.0, 50.0], [6000.0, 0.0, 0.0, 50.1]]);
         let levels = planned(&balls);
@@ -133,8 +135,9 @@ mod tests {
         assert_eq!(levels[2].0, (0..50).collect::<Vec<_>>());
     }
 
+    /// A table is wrapped where that halves the crowd.
     #[test]
-    fn a_table_is_wrapped_where_that_halves_the_crowd() {
+    fn wrapping_halves_a_crowd() {
         let diagonal = |n: usize, step: f32| {
             let at = |i: usize| i as f32 * step;
             let balls: Vec<_> = (0..n).map(|i| [at(i), at(i), at(i), 0.5]).collect();
@@ -147,8 +150,9 @@ mod tests {
         assert_eq!(diagonal(8, 1.5), [TableLayout::Box]);
     }
 
+    /// A crowd is the sum over bodies of those in their cells.
     #[test]
-    fn a_crowd_is_the_sum_over_bodies_of_those_in_their_cells() {
+    fn crowd_sums_cell_occupancy() {
         let at = |x: f32| [x, 0.0, 0.0, 0.5];
         let balls = [0.0, 50.0, 0.1, 50.1, 50.2, 100.0].map(at);
         let cells = Cells::fit(
@@ -160,8 +164,9 @@ mod tests {
         assert_eq!(fit(&balls).1, 14);
     }
 
+    /// Four bodies in a cell stay together and five part.
     #[test]
-    fn four_bodies_in_a_cell_stay_together_and_five_part() {
+    fn five_in_a_cell_split() {
         for small in 1..8 {
             // With the wide one, n in one cell: n² in the sum over them.
             let mut balls = vec![[0.0, 0.0, 0.0, 0.01]; small];
@@ -171,8 +176,9 @@ mod tests {
         }
     }
 
+    /// Bodies of all sizes have 24 levels and no more.
     #[test]
-    fn bodies_of_all_sizes_have_24_levels_and_no_more() {
+    fn levels_are_at_most_24() {
         let octave = |i: i32| [0.0, 0.0, 0.0, 0.5_f32.powi(i)];
         // The last four share a level.
         for (octaves, expected) in [(20, 17), (26, 23), (27, 24), (28, 24), (60, 24)] {
@@ -181,8 +187,9 @@ mod tests {
         }
     }
 
+    /// A table is wrapped if and only if that halves the crowd.
     #[test]
-    fn a_table_is_wrapped_if_and_only_if_that_halves_the_crowd() {
+    fn wrapping_requires_halving() {
         let mut wrapped = [0; 2];
         for (n, step) in (2..120).flat_map(|n| [0.7_f32, 1.0, 1.5, 4.0].map(|step| (n, step))) {
             let at = |i: usize| i as f32 * step;

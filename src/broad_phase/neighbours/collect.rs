@@ -168,8 +168,9 @@ mod tests {
         }
     }
 
+    /// Runs of any length from any slots are kept in their order.
     #[test]
-    fn runs_of_any_length_from_any_slots_are_kept_in_their_order() {
+    fn runs_keep_their_order() {
         let len = 3 * MOST_CANDIDATES;
         // One in sixteen is far away, so that hits don't come in whole vectors.
         let is_far = |slot: usize| slot % 16 == 7;

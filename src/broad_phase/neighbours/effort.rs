@@ -81,8 +81,9 @@ mod tests {
         }
     }
 
+    /// An effort is over beyond either limit.
     #[test]
-    fn an_effort_is_over_beyond_either_limit() {
+    fn search_ends_beyond_either_limit() {
         let limits = SearchLimits {
             pairs: 10,
             candidates: 100,

@@ -301,8 +301,9 @@ mod tests {
         column
     }
 
+    /// A column that is full gets room of one and a half times what is needed.
     #[test]
-    fn a_column_that_is_full_gets_room_of_one_and_a_half_times_what_is_needed() {
+    fn full_column_grows_by_half() {
         for (spare, more, room) in [(1.0, 1, 151), (2.0, 1, 303), (1.0, 20, 180), (0.5, 1, 101)] {
             let mut column = hundred(100);
             reserve(&mut column, more, spare);
@@ -313,8 +314,9 @@ mod tests {
         assert_eq!(column.capacity(), 120, "what fits moves nothing");
     }
 
+    /// A list leaves room for the next one where it has none to spare.
     #[test]
-    fn a_list_leaves_room_for_the_next_one_where_it_has_none_to_spare() {
+    fn full_list_leaves_room() {
         for (capacity, spare, room) in [
             (100, 1.0, 100),
             (199, 2.0, 300),
@@ -352,8 +354,9 @@ mod tests {
         assert_eq!(chunk.codes.len(), 3 + MAX_WIDTH);
     }
 
+    /// Bytes are those of all chunks used or not.
     #[test]
-    fn bytes_are_those_of_all_chunks_used_or_not() {
+    fn bytes_count_all_chunks() {
         let mut list = NeighbourList::default();
         assert_eq!(list.bytes(), 0);
         list.chunks = Vec::with_capacity(5);

@@ -263,7 +263,7 @@ impl Neighbours {
         &self.grid
     }
 
-    /// Notes how many candidates a frame had.
+    /// Records how many candidates a frame had.
     pub(super) fn observe(&mut self, candidates: u64) {
         if self.state == ListState::Searching {
             self.grid.observe(candidates);

@@ -174,8 +174,9 @@ mod tests {
     use crate::simd::Tier;
     use crate::threads::Threads;
 
+    /// The farthest counts wherever it is in every tier.
     #[test]
-    fn the_farthest_counts_wherever_it_is_in_every_tier() {
+    fn farthest_drift_is_found() {
         let pool = Threads::default();
         for n in [1, 15, 16, 33, BALLS_PER_TASK + 1] {
             let then: Vec<_> = (0..n).map(|i| [i as f32, 2.0, -3.0, 4.0]).collect();
@@ -204,8 +205,9 @@ mod tests {
         }
     }
 
+    /// Balls that shrink or stay or have no radius are no trouble.
     #[test]
-    fn balls_that_shrink_or_stay_or_have_no_radius_are_no_trouble() {
+    fn shrinking_or_empty_balls_are_fine() {
         let pool = Threads::default();
         let executor = pool.executor(Tier::SCALAR);
         let motion = |now| LargestDrift::of(executor, now, &[[0.0, 0.0, 0.0, 1.0]; 2], 1.0);
@@ -216,8 +218,9 @@ mod tests {
         assert_eq!(motion, LargestDrift::default());
     }
 
+    /// The typical radius is that of equal ones and leans to the wide.
     #[test]
-    fn the_typical_radius_is_that_of_equal_ones_and_leans_to_the_wide() {
+    fn typical_radius_leans_to_wide() {
         let typical = |radii: &[f32]| typical_radius(radii.len(), |body| [radii[body]; 3]);
         for n in [1, 2, 300, 10_000] {
             let found = typical(&vec![3.0; n]);
@@ -237,7 +240,7 @@ mod tests {
     /// What a skin adds to the pairs of boxes, next to what it adds to those of balls of the
     /// typical radius.
     #[test]
-    fn the_typical_radius_of_long_boxes_brings_as_many_pairs() {
+    fn typical_radius_of_long_boxes() {
         let sides = [
             [0.125, 1.0, 8.0],
             [8.0, 1.0, 0.125],
@@ -261,8 +264,9 @@ mod tests {
         assert!((3.0 / typical / growth - 1.0).abs() < 1e-6, "{typical}");
     }
 
+    /// Sixteen times the smallest radius is typical and more is not.
     #[test]
-    fn sixteen_times_the_smallest_radius_is_typical_and_more_is_not() {
+    fn typical_radius_has_a_ratio_limit() {
         let typical =
             |wide: f32| typical_radius(256, |body| [if body == 0 { wide } else { 1.0 }; 3]);
         // One of x among 255 of 1: sixteen at x = 39.82.

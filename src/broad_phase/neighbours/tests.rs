@@ -133,8 +133,9 @@ fn scattered(thin: bool) -> TrackedBodies {
     TrackedBodies::new(500, (0..620).map(place).collect())
 }
 
+/// A list holds the pairs whose grown balls touch and each once.
 #[test]
-fn a_list_holds_the_pairs_whose_grown_balls_touch_and_each_once() {
+fn list_has_each_touching_pair_once() {
     // A skin of 0.25 radii, their own or typical ones of this size.
     let skins = [
         (Policy::default(), [0.25, 0.0]),
@@ -177,10 +178,10 @@ fn holds_what_touches(bodies: &TrackedBodies, skin: [f64; 2]) {
     assert!(between[0] > 100_000 && between[1] > 500, "{between:?}");
 }
 
-/// A small ball moves by a skin of its own in every frame, which is far less than one of a typical
-/// radius.
+/// A small ball moves by a skin of its radius in every frame, which is far less than one of a
+/// typical radius.
 #[test]
-fn where_small_bodies_are_as_fast_as_wide_ones_the_second_list_lasts() {
+fn second_list_lasts_for_mixed_sizes() {
     let mut bodies = scattered(false);
     bodies.balls[9][3] = 0.1;
     let mut states = Vec::new();
@@ -199,8 +200,9 @@ fn where_small_bodies_are_as_fast_as_wide_ones_the_second_list_lasts() {
     assert!(!(0..=16).any(is_share), "{skin:?}");
 }
 
+/// A list is followed until a body has drifted by its skin.
 #[test]
-fn a_list_is_followed_until_a_body_has_drifted_by_its_skin() {
+fn list_lasts_until_skin_drift() {
     let mut bodies = scattered(false);
     for frame in 0..6 {
         bodies.step();
@@ -267,8 +269,9 @@ fn clusters(bodies: usize, first: &[usize], last: &[usize]) -> TrackedBodies {
     TrackedBodies::new(bodies, places.into_iter().map(ball).collect())
 }
 
+/// A list may have eight pairs per body with the widest skin, and no more.
 #[test]
-fn a_list_of_eight_pairs_a_body_with_the_widest_skin_is_made_and_no_longer_one() {
+fn list_length_has_a_limit() {
     // 8·1000/(1.375/1.25)³ + 256 = 6266.5, and twice as many bodies are in two parts of the grid's
     // work.
     for (bodies, first, last, pairs, is_made) in [
@@ -287,8 +290,9 @@ fn a_list_of_eight_pairs_a_body_with_the_widest_skin_is_made_and_no_longer_one()
     }
 }
 
+/// Bytes are those of the grid and the list.
 #[test]
-fn bytes_are_those_of_the_grid_and_the_list() {
+fn bytes_count_grid_and_list() {
     let mut bodies = scattered(false);
     for _ in 0..2 {
         bodies.step();
@@ -302,8 +306,9 @@ fn bytes_are_those_of_the_grid_and_the_list() {
     assert_eq!(finder.bytes(), 4000);
 }
 
+/// Bodies that come end a list and where it served one frame the next ones are the grids.
 #[test]
-fn bodies_that_come_end_a_list_and_where_it_served_one_frame_the_next_ones_are_the_grids() {
+fn new_bodies_end_a_list() {
     for (frames, makes) in [(2, false), (3, true), (6, true)] {
         let mut bodies = scattered(false);
         for _ in 0..frames {

@@ -1,4 +1,5 @@
-//! `.tri` files: one extension for several formats, which are told apart by structure and counts.
+//! `.tri` files: one extension for several formats, which are distinguished by structure and
+//! counts.
 //!
 //! | name | header | vertex | face | described by |
 //! |---|---|---|---|---|

@@ -247,8 +247,9 @@ mod tests {
         lanes[0]
     }
 
+    /// Combinations and products are those of whole numbers.
     #[test]
-    fn combinations_and_products_are_those_of_whole_numbers() {
+    fn combinations_match_integer_arithmetic() {
         struct CombineAndCross([f32; 3], [f32; 3]);
         impl Kernel for CombineAndCross {
             type Output = ([f32; 13], [f32; 3], f32);
@@ -331,8 +332,9 @@ mod tests {
         }
     }
 
+    /// Edges separate boxes as plain arithmetic says.
     #[test]
-    fn edges_separate_boxes_as_plain_arithmetic_says() {
+    fn edge_axes_match_plain_arithmetic() {
         let mut random = ChaCha8Rng::seed_from_u64(17);
         let mut next = || (random.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0;
         for tier in Tier::available() {

@@ -51,8 +51,9 @@ mod tests {
     use super::super::table::{COEFFICIENTS, members_of};
     use super::*;
 
+    /// Edges are all cross products of the normals up to sign and length.
     #[test]
-    fn edges_are_all_cross_products_of_the_normals_up_to_sign_and_length() {
+    fn edges_are_normals_cross_products() {
         for k in [6, 14, 18, 26] {
             let mut found = std::collections::BTreeSet::new();
             for &i in members_of(k) {

@@ -77,7 +77,7 @@ mod tests {
                 .iter()
                 .flat_map(|m| [length(m).sqrt(); 2])
                 .collect();
-            // Written out: taken from the code, a margin would be as wide as whatever stands there.
+            // Written out, so that the test does not take the margin from the code.
             let factor = reach(&table, k, 0.0) / (1.0 + 1.0 / 4096.0);
             let cosine = directions().map(|e| nearest(k, e)).fold(1.0, f64::min);
             let support = directions()
@@ -91,8 +91,9 @@ mod tests {
         }
     }
 
+    /// A centre far from the origin reaches farther.
     #[test]
-    fn a_centre_far_from_the_origin_reaches_farther() {
+    fn far_centre_reaches_farther() {
         let table = [1.0; 6];
         let gained = reach(&table, 6, 4096.0) - reach(&table, 6, 0.0);
         // 4096 of 2^-20.

@@ -1,10 +1,10 @@
 //! [`LaneSlabs`]: the slab ends of a vector of or-DOPs, one per lane, as columns. An end is
 //! selected by signs, without a memory access.
 //!
-//! Each lane has a shape of its own, so ends can't be broadcast, and gathering them one by one
-//! takes 144 gathers per vector at k = 18, which was two thirds of the test's time. Instead all
-//! ends of each lane's shape are loaded once, and every look-up is one to seven selections by the
-//! sign bits of the direction.
+//! Each lane has its own shape, so ends can't be broadcast, and gathering them one by one takes 144
+//! gathers per vector at k = 18, which was two thirds of the test's time. Instead all ends of each
+//! lane's shape are loaded once, and every look-up is one to seven selections by the sign bits of
+//! the direction.
 
 use super::table::{SlabTables, each_direction};
 use crate::simd::{Lanes, MAX_WIDTH, ROW};

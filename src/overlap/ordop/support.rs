@@ -146,7 +146,7 @@ mod tests {
     /// A bound is linear in the ends: one end of 1 among zeros reveals its multiplier, and all of
     /// them put e together again.
     #[test]
-    fn multipliers_are_no_less_than_zero_and_make_up_the_direction() {
+    fn multipliers_reproduce_the_direction() {
         for tier in Tier::available() {
             for k in [6, 14, 18, 26] {
                 for e in directions() {
@@ -171,7 +171,7 @@ mod tests {
     /// About a ball of radius 1, whose slabs end at the lengths of their normals, the multipliers
     /// are the best there are.
     #[test]
-    fn a_ball_s_bound_is_the_polytope_s_own_support() {
+    fn ball_bound_is_optimal() {
         let length = |c: [i8; 3]| f32::from(c.iter().map(|x| x * x).sum::<i8>()).sqrt();
         let ball = COEFFICIENTS.map(|c| [length(c); 2]);
         let [of_two, of_three] = [2.0_f32, 3.0].map(f32::sqrt);

@@ -186,8 +186,9 @@ mod tests {
     use crate::mesh::shapes::ProceduralShape;
     use crate::volume::ShapeSpec;
 
+    /// Members are the directions of each set.
     #[test]
-    fn members_are_the_directions_of_each_set() {
+    fn members_match_each_set() {
         for &directions in DirectionSet::ALL {
             let members = members_of(directions.k()).iter();
             let places = members.clone().map(|&m| place_of(m, directions.k()));
@@ -201,7 +202,7 @@ mod tests {
 
     /// Rows and columns give the same numbers.
     #[test]
-    fn columns_are_the_rows_of_up_to_sixteen_shapes() {
+    fn columns_transpose_the_rows() {
         let box_of = |z: u16| {
             let mesh = ProceduralShape::Box {
                 x: 1.0,

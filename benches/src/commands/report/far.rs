@@ -19,7 +19,7 @@ const COLOURS: [RGBColor; 3] = [VERMILION, BLUE, GREEN];
 
 /// Points of each series, by its name.
 type Curves = BTreeMap<String, Vec<(f64, f64)>>;
-type Drawn = Result<(), Box<dyn Error>>;
+type DrawResult = Result<(), Box<dyn Error>>;
 
 /// The figure, as SVG.
 ///
@@ -44,7 +44,7 @@ pub fn draw(table: &Table) -> miette::Result<String> {
     };
     let mut text = String::new();
     let area = SVGBackend::with_string(&mut text, (960, 720)).into_drawing_area();
-    let panels = |area: &DrawingArea<SVGBackend<'_>, Shift>| -> Drawn {
+    let panels = |area: &DrawingArea<SVGBackend<'_>, Shift>| -> DrawResult {
         area.fill(&WHITE)?;
         let (upper, lower) = area.split_vertically(360);
         let y = "pairs lost or gained, % (log)";
@@ -71,13 +71,13 @@ fn point(row: &Map<String, Value>) -> Option<(&str, f64, [f64; 2])> {
     Some((series, number("distance")?, [share, number("ns_per_body")?]))
 }
 
-/// One quantity against distance, a curve a series.
+/// One quantity against distance, one curve per series.
 fn panel<Y>(
     area: &DrawingArea<SVGBackend<'_>, Shift>,
     curves: &Curves,
     title: &str,
     values: Y,
-) -> Drawn
+) -> DrawResult
 where
     Y: plotters::coord::ranged1d::AsRangedCoord<Value = f64>,
     Y::CoordDescType: plotters::coord::ranged1d::ValueFormatter<f64>,

@@ -12,7 +12,7 @@ use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::measure::conditions::Conditions;
 pub use sdop_bench::reproduce::units::NAME;
 use sdop_bench::reproduce::units::{ExperimentSettings, Experiments};
-use sdop_bench::reproduce::{Plan, Results};
+use sdop_bench::reproduce::{ExperimentPlan, Results};
 use sdop_bench::sweep::{Merged, Sweep as _};
 
 use super::Outcome;
@@ -64,13 +64,13 @@ pub struct Args {
 }
 
 /// How much is run by default.
-struct Size {
+struct RunSize {
     seeds: u64,
     frames: u32,
     effort: Effort,
 }
 
-const QUICK: Size = Size {
+const QUICK: RunSize = RunSize {
     seeds: 5,
     frames: 100,
     effort: Effort {
@@ -78,7 +78,7 @@ const QUICK: Size = Size {
         builds: 3,
     },
 };
-const FULL: Size = Size {
+const FULL: RunSize = RunSize {
     seeds: 64,
     frames: 400,
     effort: Effort {
@@ -103,7 +103,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let machine = experiments.settings().machine;
     let paper = args.paper.as_ref().unwrap_or(&args.out);
     let tables = Tables::new(&results, &machine, command(), before);
-    let written = Written {
+    let written = OutputPlace {
         numbers: &args.out,
         paper,
         seconds,
@@ -126,7 +126,7 @@ pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Out
     let unknown = Conditions::default();
     let line = merged.header.line.clone();
     let tables = Tables::new(&results, &settings.machine, line, unknown);
-    let written = Written {
+    let written = OutputPlace {
         numbers: out,
         paper: out,
         seconds: merged.seconds,
@@ -137,13 +137,13 @@ pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Out
 }
 
 /// Where results go, and how long they took.
-struct Written<'a> {
+struct OutputPlace<'a> {
     numbers: &'a Path,
     paper: &'a Path,
     seconds: f64,
 }
 
-impl Written<'_> {
+impl OutputPlace<'_> {
     fn write(&self, tables: &Tables, format: Format, why: Option<&str>) -> miette::Result<()> {
         write_tables(self.numbers, tables)?;
         figures::draw_all(&self.paper.join("figures"), tables)?;
@@ -156,7 +156,7 @@ impl Written<'_> {
     }
 }
 
-fn plan(args: &Args) -> miette::Result<Plan> {
+fn plan(args: &Args) -> miette::Result<ExperimentPlan> {
     let size = if args.quick { QUICK } else { FULL };
     let seeds = args.seeds.unwrap_or(size.seeds);
     let frames = args.frames.unwrap_or(size.frames);
@@ -169,7 +169,13 @@ fn plan(args: &Args) -> miette::Result<Plan> {
         ));
     }
     let tier = args.machine.tier();
-    Ok(Plan::new(&args.scenes, seeds, frames, size.effort, tier))
+    Ok(ExperimentPlan::new(
+        &args.scenes,
+        seeds,
+        frames,
+        size.effort,
+        tier,
+    ))
 }
 
 /// Says so if sequential and listed S-DOP did not report the same pairs in every run.

@@ -57,7 +57,7 @@ fn same(network: &MpiNetwork, (work, scene): (u64, Scene)) -> miette::Result<Sce
     }
 }
 
-/// All frames of a share; the scene without its bodies, and what is to be told of it.
+/// Runs all frames of a share. Returns the scene without its bodies, and the results.
 fn frames(args: &Args, network: &MpiNetwork, scene: Scene) -> Option<(Scene, DomainSummary)> {
     let about = without_bodies(&scene);
     let bar = (network.rank() == 0).then(|| progress(about.frames.into(), &about.name));

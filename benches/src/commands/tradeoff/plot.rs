@@ -272,8 +272,9 @@ fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
 mod tests {
     use super::*;
 
+    /// Names of near points lie above one another and far ones stay.
     #[test]
-    fn names_of_near_points_lie_above_one_another_and_far_ones_stay() {
+    fn near_labels_are_stacked() {
         let points = [(100, 300), (110, 298), (105, 297), (600, 300)];
         let tops: Vec<i32> = label_offsets(&points)
             .iter()

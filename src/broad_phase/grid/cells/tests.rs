@@ -3,7 +3,7 @@ use super::*;
 /// Rows that one body looks through, its own and the others' views of it included, differ by up to
 /// two each way; three cells of each must not share a place.
 #[test]
-fn rows_of_a_wrapped_table_lie_apart() {
+fn wrapped_rows_are_disjoint() {
     let bounds = BallBounds {
         lo: [0.0; 3],
         hi: [1e6; 3],
@@ -25,8 +25,9 @@ fn rows_of_a_wrapped_table_lie_apart() {
     }
 }
 
+/// Bounds beyond the contract get some cells.
 #[test]
-fn bounds_beyond_the_contract_get_some_cells() {
+fn invalid_bounds_get_some_cells() {
     let ends = [
         0.0,
         -0.0,
@@ -52,8 +53,9 @@ fn bounds_beyond_the_contract_get_some_cells() {
     }
 }
 
+/// The farthest centre falls in the last cell.
 #[test]
-fn the_farthest_centre_falls_in_the_last_cell() {
+fn farthest_centre_is_in_last_cell() {
     for (n, radius) in (1..200u16).zip([0.954, 1.0, 1e-9, 7.0].into_iter().cycle()) {
         let widest = BallBounds {
             widest: radius,
@@ -87,7 +89,7 @@ fn the_farthest_centre_falls_in_the_last_cell() {
 /// A box's table has room for every body's cell; its cells are as small as that and the widest body
 /// allow, within a sixteenth.
 #[test]
-fn cells_of_a_box_are_as_small_as_its_bodies_allow() {
+fn box_cells_are_minimal() {
     let mut larger = 0;
     for bodies in [0, 1, 10, 300, 5000, 100_000] {
         for sides in [
@@ -134,7 +136,7 @@ fn cells(count: [u8; 3]) -> Cells {
 /// An empty cell lies after each row, and an empty row after each layer that has more than one;
 /// the table ends with the last cell that the last body looks at.
 #[test]
-fn a_box_has_as_few_cells_as_looks_allow() {
+fn box_table_is_minimal() {
     for (count, row, layer, farthest) in [
         ([10, 4, 2], 11, 55, 66),
         ([10, 1, 2], 11, 11, 11),
@@ -158,8 +160,9 @@ fn a_box_has_as_few_cells_as_looks_allow() {
     }
 }
 
+/// Cells far from the origin are as small as others.
 #[test]
-fn cells_far_from_the_origin_are_as_small_as_others() {
+fn far_cells_are_as_small() {
     let lo = 2.0_f32.powi(34);
     let bounds = BallBounds {
         lo: [lo; 3],

@@ -54,8 +54,9 @@ fn frames(speeds: [f64; 2]) -> (u32, u32, Policy) {
     (made, served, policy)
 }
 
+/// Slow bodies are followed and fast ones searched for.
 #[test]
-fn slow_bodies_are_followed_and_fast_ones_searched_for() {
+fn only_slow_bodies_are_followed() {
     let mut before = 0;
     for speed in [0.0, 0.001, 0.01, 0.03, 0.1] {
         let (made, served, _) = frames([speed; 2]);
@@ -73,8 +74,9 @@ fn slow_bodies_are_followed_and_fast_ones_searched_for() {
     }
 }
 
+/// Skins are measured by the radii that last longer.
 #[test]
-fn skins_are_measured_by_the_radii_that_last_longer() {
+fn skins_use_longer_lasting_radii() {
     for (speeds, radii) in [
         ([0.4, 0.05], RadiusKind::Typical),
         ([5.0, 0.05], RadiusKind::Typical),
@@ -87,8 +89,9 @@ fn skins_are_measured_by_the_radii_that_last_longer() {
     }
 }
 
+/// A skin is a share or a length and brings its cube of pairs.
 #[test]
-fn a_skin_is_a_share_or_a_length_and_brings_its_cube_of_pairs() {
+fn skin_multiplies_pairs_by_cube() {
     let of = |radii, skin| Policy {
         radii,
         skin,
@@ -109,7 +112,7 @@ fn a_skin_is_a_share_or_a_length_and_brings_its_cube_of_pairs() {
 /// Within two skins a body has gone straight on; beyond, it has jumped, unless the list served no
 /// frame but its own.
 #[test]
-fn one_that_jumps_tells_nothing_of_the_others() {
+fn jumping_body_is_ignored() {
     let never = f64::INFINITY;
     for (radii, served, drifts, speeds) in [
         (RadiusKind::Own, 4, [0.5, 3.0], [0.125, 0.75]),
@@ -129,8 +132,9 @@ fn one_that_jumps_tells_nothing_of_the_others() {
     }
 }
 
+/// A list that was too long is tried again seldom.
 #[test]
-fn a_list_that_was_too_long_is_tried_again_seldom() {
+fn overflow_lengthens_the_pause() {
     let mut policy = Policy::of_typical(1.0);
     let made = (0..4000).filter(|_| {
         let made = policy.next().is_some();
@@ -147,7 +151,7 @@ fn a_list_that_was_too_long_is_tried_again_seldom() {
 /// its place: the skin of the next one, up to so many pairs and with a pair more, each with so many
 /// candidates. No skin is the grid's frames.
 #[test]
-fn the_next_skin_is_the_cheapest_to_the_pair() {
+fn next_skin_is_the_cheapest() {
     const INFINITE_DRIFT: f64 = f64::INFINITY;
     let own = |skin| Some((RadiusKind::Own, skin));
     let typical = |skin| Some((RadiusKind::Typical, skin));
@@ -258,7 +262,7 @@ fn the_next_skin_is_the_cheapest_to_the_pair() {
 
 /// Sizes of boxes that are longer than wide, of cubes next to them, and where no length suits all.
 #[test]
-fn lists_of_long_boxes_have_a_length_for_a_skin_and_wider_ones() {
+fn long_boxes_use_length_skins() {
     let [long, cubes, giant] =
         [(3.0, 24.0), (2.0, 2.0), (0.0, 5.0)].map(|(a, b)| SizeSummary::new(a, b));
     let mut policy = Policy::default();

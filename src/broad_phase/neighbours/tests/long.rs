@@ -79,8 +79,9 @@ impl Needles {
     }
 }
 
+/// A list of long boxes holds the pairs whose grown ones meet and each once.
 #[test]
-fn a_list_of_long_boxes_holds_the_pairs_whose_grown_ones_meet_and_each_once() {
+fn long_box_list_has_each_pair() {
     let mut needles = Needles::within(40.0);
     for _ in 0..2 {
         needles.step();
@@ -100,8 +101,9 @@ fn a_list_of_long_boxes_holds_the_pairs_whose_grown_ones_meet_and_each_once() {
     assert!(wanted.len() > 600, "{}", wanted.len());
 }
 
+/// Bytes are those of the grid the list and the grown boxes.
 #[test]
-fn bytes_are_those_of_the_grid_the_list_and_the_grown_boxes() {
+fn bytes_count_grown_boxes_too() {
     let mut needles = Needles::within(40.0);
     for _ in 0..2 {
         needles.step();
@@ -126,7 +128,7 @@ fn end(aabb: &mut Aabb, axis: usize, is_upper: bool) -> &mut f32 {
 
 /// The cube about a box stays as it is when a short side grows.
 #[test]
-fn a_list_of_long_boxes_is_followed_until_an_end_leaves_its_grown_box() {
+fn long_list_lasts_until_end_leaves() {
     for (body, axis, is_upper) in [0, 1, 17, 499]
         .into_iter()
         .flat_map(|body| [0, 1, 2].map(|axis| (body, axis)))
@@ -154,7 +156,7 @@ fn a_list_of_long_boxes_is_followed_until_an_end_leaves_its_grown_box() {
 /// A list of boxes serves while cubes decide, and one of cubes while they don't; the next one is
 /// made as the frame has it.
 #[test]
-fn lists_are_made_by_boxes_in_frames_of_long_ones_alone() {
+fn only_long_boxes_make_box_lists() {
     let mut needles = Needles::within(200.0); // or cubes had too many neighbours
     for (are_long, jumps, by_boxes) in [
         (true, false, true),

@@ -9,11 +9,11 @@ use sdop_bench::reproduce::paper_name;
 use sdop_bench::reproduce::rates::{ELSEWHERE, Rate};
 
 use super::style::{anchored, colour, ends, label, quiet, text, titled};
-use super::{Area, Drawn};
+use super::{Area, DrawResult};
 use crate::commands::reproduce::rows::{Tables, distinct};
 
 /// One panel a scene and F.
-pub fn draw(area: &Area<'_>, tables: &Tables) -> Drawn {
+pub fn draw(area: &Area<'_>, tables: &Tables) -> DrawResult {
     let bodies = tables.rates.iter().map(|rate| rate.bodies);
     let most = bodies.max().unwrap_or(0);
     let of_most = || tables.rates.iter().filter(|rate| rate.bodies == most);
@@ -53,7 +53,7 @@ fn bars<X>(
     range: X,
     floor: f64,
     unit: &str,
-) -> Drawn
+) -> DrawResult
 where
     X: AsRangedCoord<Value = f64>,
     X::CoordDescType: ValueFormatter<f64>,
@@ -80,7 +80,7 @@ where
 }
 
 /// One strategy's rate, with its value to the right and its name to the left.
-fn bar<X>(chart: &mut Chart<'_, '_, X>, rate: &Rate, y: f64, floor: f64) -> Drawn
+fn bar<X>(chart: &mut Chart<'_, '_, X>, rate: &Rate, y: f64, floor: f64) -> DrawResult
 where
     X: Ranged<ValueType = f64>,
 {
