@@ -1,4 +1,4 @@
-//! The numbers that a formula may be written over.
+//! [`Number`]: the kinds of numbers over which formulas are written.
 //!
 //! A decision is the sign of a polynomial in the input. Written once over [`Number`], the same
 //! polynomial is guessed in f64, bounded in intervals ([`crate::exact::interval`]) and computed

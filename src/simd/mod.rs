@@ -2,8 +2,7 @@
 //! the floating-point mode that they run in.
 //!
 //! A kernel is written once, generic over [`Lanes`], with plain `+ − ×`, comparisons and table
-//! look-ups and never a fused multiply-add, so that every tier computes the same bits (design,
-//! section 4). [`Tier`] says which tiers this CPU has; holding one proves it. [`dispatch`] compiles
+//! look-ups and never a fused multiply-add, so that every tier computes the same bits. [`Tier`] says which tiers this CPU has; holding one proves it. [`dispatch`] compiles
 //! the kernel once a tier, inside a function with that tier's target features, and calls the one
 //! that the level names.
 //!

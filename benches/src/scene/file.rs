@@ -28,7 +28,7 @@ pub struct SceneFile {
     pub spec: SceneSpec,
 }
 
-/// The keys of a scene file (design, section 7).
+/// The keys of a scene file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {

@@ -1,5 +1,5 @@
-//! Bullet finds no contact that the filter would reject, the filter rejects something, and a margin
-//! that is left out is seen.
+//! Bullet finds no contact that the filter would reject, the filter rejects something, and a
+//! missing margin is detected.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

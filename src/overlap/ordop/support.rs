@@ -1,5 +1,4 @@
-//! Support of an or-DOP in any direction, bounded from its slabs alone by weak duality (design,
-//! section 4.5).
+//! Support of an or-DOP in any direction, bounded from its slabs alone by weak duality.
 //!
 //! If e = Σ λᵢdᵢ with λ ≥ 0, then h(e) ≤ Σ λᵢhᵢ, the dual of the linear program that maximises e·x
 //! over the slabs. The multipliers below are the optimal ones for a DOP whose slabs are all tight

@@ -1,4 +1,5 @@
-//! Parry's own dispatcher, counted: what reaches the narrow phase, and what it costs.
+//! Counts and times calls of parry's dispatcher: which pairs reach the narrow phase, and at what
+//! cost.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
