@@ -1,13 +1,13 @@
-//! Borders between domains: how far from its ball's centre a body can matter, and which bodies a
-//! domain must know of.
+//! Borders between domains: within which distance of its ball's centre a body can be in a pair, and
+//! of which bodies a domain needs copies.
 //!
-//! Many ranks share a world. Each owns the bodies whose ball's f32 centre lies in its cell, a box,
-//! and a pair is reported by the owner of the body with the smaller [`reach`], of two equal ones by
-//! that of the lower number. So the owner of i must know each j with w_j ≥ w_i that may be reported
+//! Many ranks share a world. Each owns the bodies whose ball's f32 centre is in its cell, a box. A
+//! pair is reported by the owner of the body with the smaller [`reach`], or with the lower number
+//! if both are equal. Therefore the owner of i needs every j with w_j ≥ w_i that may be reported
 //! with i. Reported ⇒ |c_i − c_j|∞ ≤ w_i + w_j (below), and c_i lies in the cell, so j is no
-//! farther from it than w_i + w_j ≤ w_j + min(w_j, W), W the largest reach of a body that the
-//! cell's rank owns: what [`may_meet`] asks. A giant among small bodies goes to every cell that it
-//! reaches, and nothing comes to it.
+//! farther from it than w_i + w_j ≤ w_j + min(w_j, W), where W is the largest reach of a body that
+//! the cell's rank owns: the condition of [`may_meet`]. A giant among small bodies is sent to every
+//! cell that it reaches, and no body is sent to it.
 //!
 //! Reported ⇒ |c_i − c_j|∞ ≤ w_i + w_j: for balls and for oriented volumes, which are binned by
 //! balls of their own, w is [`widen`]'s radius, and `finder.g` proves |Δ| ≤ (R_i + R_j)(1 + 4u) for
@@ -28,13 +28,12 @@ pub const BOX_FLOOR: f64 = exp2(-110);
 /// skin.
 pub const DRIFT_FACTOR: f64 = 1.0 - exp2(-20);
 
-/// How far from its centre a ball of inflated radius R can matter: w.
+/// w: the distance from its centre within which a ball of inflated radius R can be in a pair.
 pub const fn reach(inflated: f32) -> f32 {
     widen(inflated)
 }
 
-/// The same where the body is tested by a world-aligned box around vertices no farther than ρ from
-/// its origin, at t.
+/// w for a body at t that is tested by a world-aligned box around vertices within ρ of its origin.
 pub fn reach_of_box(inflated: f32, t: [f32; 3], reach_of_shape: f32) -> f32 {
     let size =
         t.iter().fold(0.0, |m: f64, x| m.max(f64::from(x.abs()))) + f64::from(reach_of_shape);
@@ -53,7 +52,7 @@ pub fn may_meet(distance: f64, reach: f32, widest: f32, skin: f32) -> bool {
 /// than the skin.
 pub fn stays(now: ([f32; 3], f32), then: ([f32; 3], f32), skin: f32) -> bool {
     let further = |now: f32, then: f32| f64::from(now) - f64::from(then);
-    // NaN is no growth of 0, and stays nowhere.
+    // A NaN is not a growth of 0, and never stays.
     let grown = if now.1 <= then.1 {
         0.0
     } else {

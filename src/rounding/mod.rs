@@ -4,8 +4,8 @@
 //! its exact value by a known multiple of the unit roundoff u = 2⁻²⁴. Each volume is inflated
 //! *once*, when it is built or updated, by more than that, and the tests then compare without any
 //! margin: `cull ⇔ d² > s·s` and `cull ⇔ τ > h_A + h_B` never separate two bodies that meet in
-//! exact real arithmetic. A margin in the volume costs nothing in the pair loop, and one written
-//! bound a volume can be proved; an epsilon in each comparison can't.
+//! exact real arithmetic. A margin in the volume costs nothing in the pair loop, and one bound per
+//! volume can be proved; an epsilon in each comparison can't.
 //!
 //! Model of a machine operation, of which every bound here is a consequence: the result is x(1+ε)+φ
 //! with |ε| ≤ u and

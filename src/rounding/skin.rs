@@ -1,4 +1,4 @@
-//! Skins: how far a ball may drift before a list of neighbours must be made anew.
+//! Skins: how far a ball may drift before a list of neighbours must be built again.
 //!
 //! A list holds the pairs that come within reach while each ball's drift, the distance that its
 //! centre has moved plus what its radius has grown since, is at most its budget B. The drift is
