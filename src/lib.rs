@@ -71,8 +71,8 @@
 //! ```text
 //!  mesh ──▶ volume ──▶ bodies ──▶ update ──▶ broad_phase ──▶ overlap ──▶ pairs
 //!  check    ball,      poses as   volumes    candidates      survivors   i < j
-//!           hull,      columns    into the   (who might      (who does
-//!           or-DOP                world      meet)           not miss)
+//!           hull,      columns    in the     (might          (not
+//!           or-DOP                world      meet)           separated)
 //!  ╰─────── once ──────╯          ╰───────── each frame: Culler::cull ───────╯
 //! ```
 //!

@@ -65,8 +65,8 @@ fn whole(text: &str, ends_with_brace: bool) -> Option<&str> {
     None
 }
 
-/// The blocks that begin with `word`, and behind it have `name` as a word of its own before `{`,
-/// `(`, `<`, `:` or a space.
+/// The blocks that begin with `word` followed by `name` as a whole word, before `{`, `(`, `<`, `:`
+/// or a space.
 fn starts<'a>(source: &'a str, word: &str, name: &str) -> impl Iterator<Item = &'a str> {
     let (word, name) = (word.to_owned(), name.to_owned());
     let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';

@@ -1,5 +1,4 @@
-//! Records: what is written reads back, and whatever is wrong with one is said with its line and a
-//! remedy.
+//! Records: what is written reads back, and every error names its line and a remedy.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -142,8 +142,8 @@ fn pair_loops_match_the_culler() {
     }
 }
 
-/// As the scenes stand, an interpretation's percentages are those of the runs; others differ, and
-/// the likeliest stands first.
+/// With the scenes as they are, an interpretation's percentages are those of the runs; others
+/// differ, and the likeliest comes first.
 #[test]
 fn interpretations_are_swept_from_the_scenes() {
     let mut plan = plan(1, Tier::detect());

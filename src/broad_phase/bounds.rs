@@ -40,7 +40,7 @@ impl BallBounds {
 }
 
 /// The numbers of four balls, a multiple of every tier's vectors. Each of the sixteen positions has
-/// extremes of its own, so every tier compares the same numbers in the same order.
+/// separate extremes, so every tier compares the same numbers in the same order.
 const NUMBERS_PER_CHUNK: usize = 16;
 
 struct FindExtremes<'a>(&'a [[f32; 4]]);

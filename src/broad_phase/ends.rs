@@ -18,8 +18,8 @@ use crate::threads::{Executor, Threads};
 /// Boxes that one thread sorts into slots, or checks, at a time.
 const BOXES_PER_TASK: usize = 4096;
 
-/// The boxes behind a finder's balls, which stand for the cubes around them at an eighth of their
-/// size.
+/// The boxes from which a finder's balls were made. A ball represents the cube around its box, at
+/// an eighth of the cube's size.
 #[derive(Clone, Copy, Debug)]
 pub struct Boxes<'a> {
     /// The boxes, indexed by name.

@@ -143,8 +143,8 @@ fn common_length_moves_lose_nothing() {
     }
 }
 
-/// Bodies that keep their course, by so many of the radii that `pace` makes of theirs a frame, and
-/// turn round now and then.
+/// Moves bodies on straight courses and turns them round now and then. `speeds` are in units of the
+/// radius that `pace` returns for the body's own, per frame.
 fn fly(
     scene: &Scene,
     pace: impl Fn(f32) -> f32,

@@ -263,7 +263,7 @@ impl Neighbours {
         &self.grid
     }
 
-    /// Records how many candidates a frame had.
+    /// Records the frame's number of candidates.
     pub(super) fn observe(&mut self, candidates: u64) {
         if self.state == ListState::Searching {
             self.grid.observe(candidates);

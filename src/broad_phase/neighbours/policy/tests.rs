@@ -22,9 +22,9 @@ fn list(pairs: usize, candidates: u64, [own, typical]: [f64; 2]) -> EndedList {
     }
 }
 
-/// What 2000 frames come to in which the fastest body moves by so many radii each, its own or
-/// typical ones, where a list without a skin has 0.75 pairs a body: lists made, frames that one
-/// served, and the policy by then.
+/// Runs the policy for 2000 frames and returns lists made, frames that a list served, and the
+/// policy at the end. The fastest body moves by `speeds` per frame, in its own radii and in typical
+/// ones; a list without a skin has 0.75 pairs per body.
 fn frames(speeds: [f64; 2]) -> (u32, u32, Policy) {
     let (mut policy, mut since) = (Policy::default(), None);
     let (mut made, mut served) = (0, 0);
