@@ -143,7 +143,7 @@ fn common_length_moves_lose_nothing() {
     }
 }
 
-/// Moves bodies on straight courses and turns them round now and then. `speeds` are in units of the
+/// Moves bodies on straight courses and turns them round now and then. `speed` is in units of the
 /// radius that `pace` returns for the body's own, per frame.
 fn fly(
     scene: &Scene,
