@@ -45,7 +45,8 @@
 //! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of
 //! bodies; in a [`World`] they come and go, with stable ids, groups, contact margins, f64
 //! translations and events. If you have boxes already, use [`BoxCuller`] or [`BoxWorld`]: they
-//! report exactly the pairs of boxes that meet.
+//! report exactly the pairs of boxes that meet. A [`QueryIndex`] finds the bodies of a world that
+//! touch a volume or a line.
 //!
 //! # Conventions
 //!
@@ -114,6 +115,7 @@ pub mod culler;
 #[cfg(feature = "shapes")]
 pub mod mesh;
 pub mod pairs;
+pub mod query;
 pub mod settings;
 #[cfg(feature = "shapes")]
 pub mod volume;
@@ -150,6 +152,7 @@ pub use culler::{Culler, CullerBuilder};
 #[cfg(feature = "shapes")]
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
 pub use pairs::PairList;
+pub use query::{Line, QueryIndex, QueryVolume};
 pub use settings::Finder;
 #[cfg(feature = "shapes")]
 pub use settings::{

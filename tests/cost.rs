@@ -9,7 +9,8 @@ use std::sync::LazyLock;
 use sdop::counters::pair_count;
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
-use sdop_bench::cost::calibrate::{Calibration, Effort, scenes};
+use sdop_bench::cost::calibrate::{Calibration, Effort};
+use sdop_bench::cost::design::scenes;
 use sdop_bench::cost::pass::{Observer, Simulated, pass};
 use sdop_bench::cost::predict::Terms;
 use sdop_bench::cost::table::cost;
@@ -102,30 +103,68 @@ fn counts_follow_the_formula_and_are_equal_on_every_tier() {
 #[test]
 fn calibration_never_sees_the_scene_it_predicts() {
     let scene = scene();
-    let mut sizes = Vec::new();
+    let mut kinds = Vec::new();
     for calibration in scenes(&scene) {
-        let n = calibration.bodies.len();
-        let apart = |ratio: f64| (ratio - 1.0).abs() > 0.1;
-        assert!(apart(n as f64 / scene.bodies.len() as f64));
-        assert!(apart(f64::from(
-            calibration.side.unwrap() / scene.side.unwrap()
-        )));
-        assert!(
-            scene
-                .bodies
-                .translation
-                .iter()
-                .all(|t| !calibration.bodies.translation.contains(t))
-        );
+        let placed = &calibration.bodies.translation;
+        assert!(scene.bodies.translation.iter().all(|t| !placed.contains(t)));
         let half = 0.5 * calibration.side.unwrap();
-        let inside = |t: &[f32; 3]| t.iter().all(|x| x.abs() <= half);
-        assert!(calibration.bodies.translation.iter().all(inside));
-        sizes.push((n, calibration.side.unwrap().to_bits()));
+        assert!(placed.iter().all(|t| t.iter().all(|x| x.abs() <= half)));
+        kinds.push((calibration.bodies.len(), half.to_bits()));
     }
-    let cases = sizes.len();
-    sizes.sort_unstable();
-    sizes.dedup();
-    assert_eq!(sizes.len(), cases, "two calibration scenes are alike");
+    let cases = kinds.len();
+    kinds.sort_unstable();
+    kinds.dedup();
+    assert_eq!(kinds.len(), cases, "two calibration scenes are alike");
+}
+
+/// Prices belong to a kind of scene: what is peculiar to one must not enter.
+#[test]
+fn scenes_of_one_kind_share_their_calibration() {
+    let mut other = scene();
+    other.seed += 1;
+    other.side = other.side.map(|side| 3.0 * side);
+    other
+        .bodies
+        .translation
+        .iter_mut()
+        .for_each(|t| t[0] += 1.0);
+    for (one, other) in scenes(&scene()).zip(scenes(&other)) {
+        assert_eq!(one.bodies.translation, other.bodies.translation);
+        assert_eq!((one.seed, one.side), (other.seed, other.side));
+    }
+}
+
+/// What tells prices apart: at one size hits alone vary, and tests are no multiple of bodies.
+#[test]
+fn calibration_varies_one_count_at_a_time() {
+    let scene = scene();
+    let mut by_size = std::collections::BTreeMap::new();
+    for calibration in scenes(&scene) {
+        let (tier, spheres) = (Tier::detect(), [Variant::spheres(&calibration.cull)]);
+        let mut frames = Simulated::new(&calibration, FRAMES).unwrap();
+        let passed = pass(&calibration, &spheres, tier, &mut frames, None, &mut ()).unwrap();
+        let sphere = passed.culled[0].counts.culler.sphere;
+        let all = by_size
+            .entry(calibration.bodies.len())
+            .or_insert_with(Vec::new);
+        all.push(sphere);
+    }
+    assert!(by_size.len() >= 4);
+    let mut tests_per_body = Vec::new();
+    for (bodies, all) in &by_size {
+        let first = all[0];
+        let fixed = |of: &sdop::counters::VolumeCounters| (of.updates, of.tests);
+        assert!(all.iter().all(|of| fixed(of) == fixed(&first)), "{bodies}");
+        tests_per_body.push(first.tests as f64 / *bodies as f64);
+        let hits: Vec<u64> = all.iter().map(|of| of.hits).collect();
+        assert!(hits.is_sorted(), "{bodies}: {hits:?}");
+        let [least, most] = [hits[0], hits[hits.len() - 1]];
+        assert!(most > 20 * least.max(1), "{bodies}: {hits:?}");
+    }
+    let [fewest, .., most] = tests_per_body[..] else {
+        panic!("one size");
+    };
+    assert!(most > 5.0 * fewest, "{tests_per_body:?}");
 }
 
 #[test]
@@ -162,7 +201,8 @@ fn every_volume_gets_prices_and_terms_that_add_up() {
                 let what = format!("{} {regime} {price:?}", variant.name);
                 // So few frames may give the tests' time to the call; the stage has a price all the
                 // same.
-                let stage = costs.frame + costs.body + costs.handle + costs.hit + costs.miss;
+                let stage =
+                    costs.frame + costs.body + costs.row + costs.handle + costs.hit + costs.miss;
                 let tests = passed.culled[at].counts.of(price.volume).tests;
                 let many = tests > 32 * u64::from(passed.culled[at].frames);
                 assert!(stage > 0.0 || !many, "{what}");
@@ -172,15 +212,23 @@ fn every_volume_gets_prices_and_terms_that_add_up() {
                     costs.update,
                     costs.frame,
                     costs.body,
+                    costs.row,
                     costs.handle,
                     costs.hit,
                     costs.miss,
+                    costs.further,
                 ];
                 assert!(all.iter().all(|cost| (0.0..1.0).contains(cost)), "{what}");
             }
         }
         for of in variants.iter().enumerate() {
-            let cost = cost((&scene.name, scene.bodies.len()), of, &[&passed], *regime).unwrap();
+            let cost = cost(
+                (&scene.name, scene.bodies.len()),
+                of,
+                (&[&passed], &[&passed]),
+                *regime,
+            )
+            .unwrap();
             let sum = cost.sum(Terms::recurring);
             let parts = cost.sum(|t| t.update) + cost.sum(|t| t.finding) + cost.sum(|t| t.test);
             assert!((sum / cost.frame.predicted.mean - 1.0).abs() < 1e-12);

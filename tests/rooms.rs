@@ -27,6 +27,7 @@ const LIBRARY: &[&str] = &[
     "culler",
     "world",
     "boxes",
+    "query",
     "c",
 ];
 const JUDGE: &[&str] = &["contestant", "json", "record", "ours", REST];

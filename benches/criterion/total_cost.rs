@@ -1,9 +1,9 @@
 //! The paper's formula: Co, Cu, F and Cv of hits and misses from calibration scenes, whole frames
-//! with another seed, and at the end the predicted and measured time and the residual of every
+//! of other scenes, and at the end the predicted and measured time and the residual of every
 //! strategy.
 //!
 //! An iteration is a pass, as in `sdop cost`, with another seed each time. Criterion shows the mean
-//! seconds per frame. `cargo bench --bench total_cost` takes a few minutes.
+//! seconds per frame of every strategy. `cargo bench --bench total_cost` takes two minutes.
 
 mod common;
 
@@ -14,12 +14,13 @@ use sdop::simd::Tier;
 use sdop_bench::cost::calibrate::{Calibration, Effort};
 use sdop_bench::cost::pass::{Pass, Simulated, pass};
 use sdop_bench::cost::study::possible;
-use sdop_bench::cost::table::{cost, prices};
+use sdop_bench::cost::table::{Cost, PriceRow, cost, prices};
+use sdop_bench::measure::estimate::Estimate;
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::measure::variant::Variant;
 use sdop_bench::scene::SceneFile;
 
-/// What is predicted; calibration scenes have other numbers of bodies and other boxes.
+/// What is predicted. They have the same shapes, and bodies for the same cache: one set of prices.
 const SCENES: [&str; 3] = ["paper-300", "paper-500", "crowded-500"];
 /// Frames per pass.
 const FRAMES: u32 = 96;
@@ -29,47 +30,61 @@ const EFFORT: Effort = Effort {
 };
 
 fn total_cost(criterion: &mut Criterion) {
-    let mut lines = Vec::new();
+    let mut scenes = Vec::new();
     for name in SCENES {
         let mut file = common::scene_file(name);
         let scene = file.build().unwrap_or_else(|error| panic!("{error}"));
-        for strategy in possible(&scene) {
-            let variant = Variant::strategy(&scene.cull, strategy);
-            let variants = std::slice::from_ref(&variant);
-            let mut calibration = Calibration::new(&scene, variants, Tier::detect(), EFFORT)
-                .unwrap_or_else(|error| panic!("{error}"));
-            let mut passes: Vec<Pass> = Vec::new();
-            let mut group = criterion.benchmark_group("total cost");
-            // Durations are of single frames, and a pass has a hundred with as many again of
-            // calibration.
-            group
-                .sampling_mode(SamplingMode::Flat)
-                .sample_size(10)
-                .warm_up_time(Duration::from_micros(200))
-                .measurement_time(Duration::from_millis(1));
-            group.bench_function(BenchmarkId::new(name, strategy), |bencher| {
-                bencher.iter_custom(|iterations| {
-                    let mut seconds = 0.0;
-                    for _ in 0..iterations {
-                        file.spec.seed += 1;
-                        let pass = another_pass(&file, variants, &mut calibration);
-                        seconds += pass.culled[0].times.mean();
-                        passes.push(pass);
-                    }
-                    Duration::from_secs_f64(seconds)
-                });
+        let strategies = possible(&scene).into_iter();
+        let variants: Vec<Variant> = strategies
+            .map(|strategy| Variant::strategy(&scene.cull, strategy))
+            .collect();
+        let mut calibration = Calibration::new(&scene, &variants, Tier::detect(), EFFORT)
+            .unwrap_or_else(|error| panic!("{error}"));
+        let mut passes: Vec<Pass> = Vec::new();
+        let mut group = criterion.benchmark_group("total cost");
+        // Durations are of single frames, and a pass has a hundred after a round of calibration.
+        group
+            .sampling_mode(SamplingMode::Flat)
+            .sample_size(10)
+            .warm_up_time(Duration::from_micros(200))
+            .measurement_time(Duration::from_millis(1));
+        group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+            bencher.iter_custom(|iterations| {
+                let mut seconds = 0.0;
+                for _ in 0..iterations {
+                    file.spec.seed += 1;
+                    let pass = another_pass(&file, &variants, &mut calibration);
+                    let culled = pass.culled.iter();
+                    seconds += culled.map(|culled| culled.times.mean()).sum::<f64>();
+                    passes.push(pass);
+                }
+                Duration::from_secs_f64(seconds)
             });
-            group.finish();
-            lines.extend(line(&scene.name, scene.bodies.len(), &variant, &passes));
+        });
+        group.finish();
+        scenes.push((scene, variants, passes));
+    }
+    let priced: Vec<&Pass> = scenes.iter().flat_map(|(.., passes)| passes).collect();
+    println!("\nPrices for warm frames, ns (Co: ms); ± is a 95 % interval over rounds\n");
+    println!(
+        "| strategy | volume | cache | Co | Cu | F per frame | per body | per body with hits \
+         | per listed pair | Cv hit | miss | further slab |"
+    );
+    println!("|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
+    for price in prices(&priced, Regime::Warm) {
+        println!("{}", price_line(&price));
+    }
+    println!("\nWarm frames, Nu·Cu + F + Nv·Cv; ± is a 95 % interval over passes\n");
+    println!("| scene | strategy | predicted µs | measured µs | residual % | what fails |");
+    println!("|---|---|--:|--:|--:|---|");
+    for (scene, variants, passes) in &scenes {
+        let passes: Vec<&Pass> = passes.iter().collect();
+        for of in variants.iter().enumerate() {
+            let scene = (&scene.name[..], scene.bodies.len());
+            let cost = cost(scene, of, (&passes, &priced), Regime::Warm);
+            println!("{}", cost.as_ref().map_or_else(String::new, line));
         }
     }
-    println!("\nWarm frames, T = Co + Nu·Cu + F + Nv·Cv; ± is a 95 % interval over passes\n");
-    println!(
-        "| scene | strategy | Co ms | Cu ns | F ns per frame | per body | per listed pair | Cv hit ns | miss ns \
-         | predicted µs | measured µs | residual % |"
-    );
-    println!("|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
-    lines.iter().for_each(|line| println!("{line}"));
 }
 
 fn another_pass(file: &SceneFile, variants: &[Variant], calibration: &mut Calibration) -> Pass {
@@ -89,30 +104,43 @@ fn another_pass(file: &SceneFile, variants: &[Variant], calibration: &mut Calibr
     made().unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn line(scene: &str, bodies: usize, variant: &Variant, passes: &[Pass]) -> Option<String> {
-    let passes: Vec<&Pass> = passes.iter().collect();
-    let cost = cost((scene, bodies), (0, variant), &passes, Regime::Warm)?;
-    let prices = prices(&passes, Regime::Warm);
-    let joined = |price: &dyn Fn(usize) -> f64| {
-        let volumes = (0..prices.len()).map(|at| format!("{:.2}", price(at)));
-        volumes.collect::<Vec<_>>().join(" + ")
+fn price_line(price: &PriceRow) -> String {
+    let number = |estimate: &Estimate, unit: f64| {
+        let of = estimate.scaled(unit);
+        format!("{:.2} ± {:.2}", of.mean, of.half_width)
     };
-    Some(format!(
-        "| {scene} | {} | {} | {} | {} | {} | {} | {} | {} | {:.2} | {:.2} ± {:.2} | {:+.1} ± {:.1} |",
-        variant.name,
-        joined(&|at| 1e3 * prices[at].construct.mean),
-        joined(&|at| 1e9 * prices[at].update.mean),
-        joined(&|at| 1e9 * prices[at].frame.mean),
-        joined(&|at| 1e9 * prices[at].body.mean),
-        joined(&|at| 1e9 * prices[at].handle.mean),
-        joined(&|at| 1e9 * prices[at].hit.mean),
-        joined(&|at| 1e9 * prices[at].miss.mean),
+    let level = price.level.map_or("", |level| level.name());
+    let ns = [
+        &price.update,
+        &price.frame,
+        &price.body,
+        &price.row,
+        &price.handle,
+        &price.hit,
+        &price.miss,
+        &price.further,
+    ]
+    .map(|estimate| number(estimate, 1e9));
+    let (variant, volume) = (&price.variant, price.volume);
+    let construct = number(&price.construct, 1e3);
+    format!(
+        "| {variant} | {volume} | {level} | {construct} | {} |",
+        ns.join(" | ")
+    )
+}
+
+fn line(cost: &Cost) -> String {
+    let fails = cost.fails.map_or("", |assumption| assumption.name());
+    format!(
+        "| {} | {} | {:.2} | {:.2} ± {:.2} | {:+.1} ± {:.1} | {fails} |",
+        cost.scene,
+        cost.variant,
         1e6 * cost.frame.predicted.mean,
         1e6 * cost.frame.measured.mean,
         1e6 * cost.frame.measured.half_width,
         100.0 * cost.frame.residual.mean,
         100.0 * cost.frame.residual.half_width,
-    ))
+    )
 }
 
 criterion_group!(benches, total_cost);

@@ -23,7 +23,10 @@ import sdop
 from libraries import LIBRARIES, Array, Collected, version_of
 
 FRAMES = 8
-"""Frames that a round goes through; the time is per frame."""
+"""Frames that a round goes through at most; the time is per frame."""
+SLOW = 0.1
+"""Seconds per frame above which a library goes through one frame per round, in fewer rounds."""
+FEW_ROUNDS = 7
 PAIRS_PER_BOX = 2.0
 SEED = 44
 
@@ -66,12 +69,14 @@ def check(name: str, answer: Array | Collected, wanted: Array) -> None:
         raise SystemExit(f"{name} has other pairs than numpy's or sdop's: no time is worth printing")
 
 
-def in_turns(calls: dict[str, Callable[[], float]], rounds: int) -> dict[str, list[float]]:
+def in_turns(calls: dict[str, Callable[[], float]], rounds: dict[str, int]) -> dict[str, list[float]]:
     """Each call's values, one per round; a first round warms up."""
     taken: dict[str, list[float]] = {name: [] for name in calls}
     order = random.Random(SEED)
-    for turn in range(rounds + 1):
+    for turn in range(max(rounds.values()) + 1):
         for name in order.sample(sorted(calls), len(calls)):
+            if turn > rounds[name]:
+                continue
             value = calls[name]()
             if turn:
                 taken[name].append(value)
@@ -82,23 +87,29 @@ def box_pairs(n: int, rounds: int) -> list[dict]:
     frames = frames_of_boxes(n)
     made = {it.name: it(frames[0]) for it in LIBRARIES if n <= it.most}
     counted = 0
+    slowest = dict.fromkeys(made, 0.0)
     for frame in frames:
         reference = made.get("numpy, all pairs", made["sdop.box_pairs"])
         wanted = in_order(reference(frame))
         counted += len(wanted)
         for name, call in made.items():
-            check(name, call(frame), wanted)
+            start = time.perf_counter()
+            answer = call(frame)
+            slowest[name] = max(slowest[name], time.perf_counter() - start)
+            check(name, answer, wanted)
 
-    def timed(call: Callable[[Array], object]) -> Callable[[], float]:
+    def timed(call: Callable[[Array], object], shown: list[Array]) -> Callable[[], float]:
         def run() -> float:
             start = time.perf_counter()
-            for frame in frames:
+            for frame in shown:
                 call(frame)
-            return (time.perf_counter() - start) / len(frames)
+            return (time.perf_counter() - start) / len(shown)
 
         return run
 
-    taken = in_turns({name: timed(call) for name, call in made.items()}, rounds)
+    slow = {name for name, seconds in slowest.items() if seconds > SLOW}
+    calls = {name: timed(call, frames[:1] if name in slow else frames) for name, call in made.items()}
+    taken = in_turns(calls, {name: min(rounds, FEW_ROUNDS) if name in slow else rounds for name in made})
     found = {it.name: it for it in LIBRARIES}
     return [
         {
@@ -107,7 +118,7 @@ def box_pairs(n: int, rounds: int) -> list[dict]:
             "version": version_of(found[name]),
             "pairs_per_frame": counted / len(frames),
             "seconds": median(values),
-            "times_ours": median([value / ours for value, ours in zip(values, taken["sdop.box_pairs"], strict=True)]),
+            "times_ours": median([value / ours for value, ours in zip(values, taken["sdop.box_pairs"], strict=False)]),
         }
         for name, values in taken.items()
     ]
@@ -161,12 +172,15 @@ def machine() -> dict:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small sizes and few rounds")
-    quick = parser.parse_args().quick
-    sizes = [100, 1_000] if quick else [1_000, 10_000, 100_000]
+    parser.add_argument("--sizes", type=int, nargs="+", help="numbers of boxes for the second table alone")
+    arguments = parser.parse_args()
+    quick = arguments.quick
+    sizes = arguments.sizes or ([100, 1_000] if quick else [1_000, 10_000, 100_000])
     rounds = 5 if quick else 21
+    called = [] if arguments.sizes else [500] if quick else [500, 100_000]
     record = {
         "machine": machine(),
-        "overhead": [row for n in ([500] if quick else [500, 100_000]) for row in overhead(n, rounds)],
+        "overhead": [row for n in called for row in overhead(n, rounds)],
         "box_pairs": [row for n in sizes for row in box_pairs(n, rounds)],
     }
     print(json.dumps(record, indent=1))

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sdop::{Body, BodyId, Finder, Groups, Strategy};
+use sdop::{Body, BodyId, Finder, Groups, Motion, Strategy};
 
 use super::arrays::{check_length, id_column, pairs, rows, wide_rows};
 use super::errors::{locked, refused, with_help};
@@ -98,7 +98,11 @@ impl World {
         let (member, mask) = groups;
         let body = Body {
             shape,
-            dynamic,
+            motion: if dynamic {
+                Motion::Dynamic
+            } else {
+                Motion::Fixed
+            },
             rotation,
             translation,
             margin,
@@ -163,7 +167,7 @@ impl World {
         named.set_item("rotation", body.rotation)?;
         named.set_item("translation", body.translation)?;
         named.set_item("margin", body.margin)?;
-        named.set_item("dynamic", body.dynamic)?;
+        named.set_item("dynamic", body.motion.is_dynamic())?;
         named.set_item("groups", (body.groups.member, body.groups.mask))?;
         Ok(named)
     }

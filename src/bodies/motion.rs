@@ -15,6 +15,15 @@ pub enum Motion {
 }
 
 impl Motion {
+    /// Of a body that is dynamic or fixed, and, unless fixed, at rest or not.
+    pub(crate) const fn of(is_dynamic: bool, is_resting: bool) -> Self {
+        match (is_dynamic, is_resting) {
+            (false, _) => Self::Fixed,
+            (true, true) => Self::Resting,
+            (true, false) => Self::Dynamic,
+        }
+    }
+
     /// Whether pairs with a fixed body are reported.
     #[must_use]
     pub const fn is_dynamic(self) -> bool {

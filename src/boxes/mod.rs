@@ -13,8 +13,6 @@ mod crowds;
 mod cubes;
 mod culler;
 mod frame;
-mod index;
-mod levels;
 mod movers;
 #[cfg(feature = "serde")]
 mod snapshot;

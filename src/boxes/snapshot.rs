@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::BoxWorld;
 use crate::bodies::{Aabb, Groups};
 use crate::world::{
-    IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, check_length, damaged,
+    IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, check_length, resting_column,
+    resting_slots,
 };
 
 /// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
@@ -38,11 +39,7 @@ impl BoxWorld {
             ids: IdsSnapshot::of(&self.ids),
             bounds: self.bounds.iter().map(bits).collect(),
             dynamic: self.dynamic.clone(),
-            resting: (0..)
-                .zip(&self.resting)
-                .filter(|(_, is_resting)| **is_resting)
-                .map(|(slot, _)| slot)
-                .collect(),
+            resting: resting_slots(&self.resting),
             groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
             pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
         }
@@ -70,13 +67,7 @@ impl BoxWorld {
             aabb.check(slot)?;
         }
         let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
-        let mut resting = vec![false; ids.slots()];
-        for &slot in &snapshot.resting {
-            match resting.get_mut(slot as usize) {
-                Some(is_resting) => *is_resting = true,
-                None => return damaged(format!("slot {slot} of {} is at rest", ids.slots())),
-            }
-        }
+        let resting = resting_column(&snapshot.resting, ids.slots())?;
 
         (self.ids, self.log, self.bounds) = (ids, log, bounds);
         self.dynamic.clone_from(&snapshot.dynamic);

@@ -2,13 +2,12 @@
 
 use super::BoxCullerBuilder;
 use super::frame::Frames;
-use super::movers::Movers;
 use crate::bodies::contract::check_number;
 use crate::bodies::{Aabb, Groups, Motion};
 use crate::counters::VolumeCounters;
 use crate::strategy::Output;
 use crate::threads::Threads;
-use crate::world::{BodyId, Events, Ids, LivePairs, WorldError, WorldPairs};
+use crate::world::{BodyId, Events, Ids, LivePairs, Movers, WorldError, WorldPairs};
 
 /// A box to be inserted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -224,11 +223,7 @@ impl BoxWorld {
     fn body_at(&self, slot: usize) -> BoxBody {
         BoxBody {
             bounds: self.bounds[slot],
-            motion: match (self.dynamic[slot], self.resting[slot]) {
-                (false, _) => Motion::Fixed,
-                (true, true) => Motion::Resting,
-                (true, false) => Motion::Dynamic,
-            },
+            motion: Motion::of(self.dynamic[slot], self.resting[slot]),
             groups: self.groups[slot],
         }
     }

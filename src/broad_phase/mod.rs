@@ -17,6 +17,7 @@ mod all_pairs;
 mod auto;
 mod block;
 mod bounds;
+mod box_index;
 mod ends;
 mod grid;
 #[cfg(debug_assertions)]
@@ -33,6 +34,7 @@ pub use auto::Population;
 use block::{BLOCK_BODIES, BlockPage, RunWriter};
 pub use block::{Block, MOST_CANDIDATES};
 pub use bounds::BallBounds;
+pub(crate) use box_index::{BoxIndex, IndexedBox, Search, tags};
 pub use ends::{Boxes, EndSlots};
 pub use grid::{Cells, Grid, TableLayout};
 use neighbours::NeighbourList;

@@ -12,6 +12,12 @@ pub struct Balls {
     padded: Vec<[f32; 4]>,
 }
 
+impl Default for Balls {
+    fn default() -> Self {
+        Self::new(0)
+    }
+}
+
 impl Balls {
     /// `len` balls of radius 0 at the origin.
     #[must_use]

@@ -33,11 +33,7 @@ impl From<SdopBoxBody> for BoxBody {
     fn from(body: SdopBoxBody) -> Self {
         Self {
             bounds: body.bounds,
-            motion: match (body.fixed, body.resting) {
-                (true, _) => Motion::Fixed,
-                (false, true) => Motion::Resting,
-                (false, false) => Motion::Dynamic,
-            },
+            motion: Motion::of(!body.fixed, body.resting),
             groups: body.groups,
         }
     }

@@ -7,7 +7,7 @@ use super::border::{
     SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back,
     saved, shared, tell,
 };
-use crate::bodies::Groups;
+use crate::bodies::{Groups, Motion};
 use crate::world::{Body, BodyId, World};
 
 /// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and
@@ -37,7 +37,7 @@ impl From<SdopBody> for Body {
     fn from(body: SdopBody) -> Self {
         Self {
             shape: body.shape,
-            dynamic: !body.fixed,
+            motion: Motion::of(!body.fixed, false),
             rotation: body.rotation,
             translation: body.translation,
             groups: body.groups,

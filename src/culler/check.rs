@@ -89,9 +89,9 @@ impl Culler {
             check_columns(bodies)?;
             check_numbers(&bodies.shape, self.models.frames.len())?;
             check_poses(bodies, 0..bodies.len())?;
-            self.settings.check(bodies.len())?;
-            if bodies.len() != self.fixed.len() {
-                self.groups = None;
+            self.setup.settings.check(bodies.len())?;
+            if bodies.len() != self.set.fixed.len() {
+                self.set.groups = None;
             }
             self.replace(bodies, &vec![true; bodies.len()]);
             Ok(())
@@ -101,11 +101,11 @@ impl Culler {
     /// Checks that the number of bodies and the `dynamic` flags have not changed.
     pub(super) fn check_set(&self, bodies: &Bodies) -> Result<(), CullError> {
         check_columns(bodies)?;
-        let (made_for, given) = (self.fixed.len(), bodies.len());
+        let (made_for, given) = (self.set.fixed.len(), bodies.len());
         let what = if given != made_for {
             format!("{given} bodies in place of {made_for}")
-        } else if bodies.dynamic != self.fixed.dynamic {
-            let mut flags = bodies.dynamic.iter().zip(&self.fixed.dynamic);
+        } else if bodies.dynamic != self.set.fixed.dynamic {
+            let mut flags = bodies.dynamic.iter().zip(&self.set.fixed.dynamic);
             let body = flags.position(|(now, then)| now != then).unwrap_or(0);
             let now = if bodies.dynamic[body] {
                 "dynamic"
@@ -124,7 +124,7 @@ impl Culler {
     pub(super) fn check_moved(&mut self, bodies: &Bodies) -> Result<(), CullError> {
         let outcome = check_poses(bodies, 0..bodies.len());
         if outcome.is_err() {
-            self.balls[..self.places.moving].fill([0.0; 4]);
+            self.volumes.balls[..self.set.places.moving].fill([0.0; 4]);
         }
         Ok(outcome?)
     }

@@ -19,6 +19,8 @@ mod portions;
 #[cfg(feature = "shapes")]
 mod replace;
 #[cfg(feature = "shapes")]
+mod sample;
+#[cfg(feature = "shapes")]
 mod shapes;
 
 #[cfg(feature = "shapes")]
@@ -29,12 +31,14 @@ pub use builder::CullerBuilder;
 #[cfg(feature = "shapes")]
 pub(crate) use check::FAR_SHAPE_HELP;
 pub use error::CullError;
+#[cfg(feature = "shapes")]
+pub(crate) use sample::FoundPairs;
 
 #[cfg(feature = "shapes")]
 use std::{ops::Range, time::Instant};
 
 #[cfg(feature = "shapes")]
-use self::{models::Models, needs::VolumeNeeds};
+use self::{models::Models, needs::VolumeNeeds, sample::Sample};
 #[cfg(all(feature = "shapes", feature = "serde"))]
 use crate::strategy::RefinementRanks;
 #[cfg(feature = "shapes")]
@@ -45,9 +49,12 @@ use crate::{
     counters::{Counters, Seconds},
     overlap::intervals::IntervalSlots,
     pairs::PairList,
-    settings::{CullSettings, Finder, Flow, Interest, Scheme, Updates},
+    settings::{CullSettings, Finder, Flow, Interest, Updates},
     simd::{Tier, in_default_mode},
-    strategy::{self, Inputs, Output, Scratch, SlotNames, Totals},
+    strategy::{
+        self, Arrangement, FrameVolumes, Inputs, Output, RowTiming, Scratch, Setup, SlotNames,
+        Totals,
+    },
     threads::FrameThreads,
     update::{Intervals, OrDopRows, UpdateInputs, update_spheres},
     volume::Shape,
@@ -60,15 +67,25 @@ use crate::{
 #[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 pub struct Culler {
-    settings: CullSettings,
-    /// Whether budgets are spent on pairs in the order of their body numbers, independent of the
-    /// finder and of earlier frames.
-    is_canonical: bool,
-    scheme: Scheme,
+    setup: Setup,
     needs: VolumeNeeds,
     tier: Tier,
     threads: FrameThreads,
     models: Models,
+    set: BodySet,
+    volumes: Volumes,
+    scratch: Scratch,
+    sample: Sample,
+    pairs: PairList,
+    counters: Counters,
+    seconds: Seconds,
+}
+
+/// What changes with the bodies and their places only: at [`Culler::refresh`], and when places are
+/// sorted anew.
+#[cfg(feature = "shapes")]
+#[derive(Clone, Debug)]
+struct BodySet {
     places: Places,
     groups: Option<Vec<Groups>>,
     /// What doesn't change between two frames, as of the last [`Culler::refresh`].
@@ -77,18 +94,22 @@ pub struct Culler {
     numbers: Vec<u32>,
     order: Vec<u32>,
     finder: PairFinder,
-    /// The balls that the finder bins, by place: the bounding spheres, or balls around the volumes
-    /// of a strategy without spheres.
+}
+
+/// The volumes that each frame updates, by place.
+#[cfg(feature = "shapes")]
+#[derive(Clone, Debug)]
+struct Volumes {
+    /// The balls that the finder bins: the bounding spheres, or balls around the volumes of a
+    /// strategy without spheres.
     balls: Balls,
     rows: OrDopRows,
     intervals: Option<Intervals>,
     interval_slots: IntervalSlots,
+    /// By body.
     interest: Vec<bool>,
-    scratch: Scratch,
-    pairs: PairList,
+    /// Counts frames from 1.
     stamp: u32,
-    counters: Counters,
-    seconds: Seconds,
 }
 
 #[cfg(feature = "shapes")]
@@ -120,34 +141,37 @@ impl Culler {
         let start = Instant::now();
         let n = bodies.shape.len();
         let (models, places) = (Models::new(shapes, settings), Places::new(bodies));
-        let scheme = settings.strategy.scheme();
-        let population = needs::population(scheme, &models, &places);
+        let setup = Setup::new(settings);
+        let population = needs::population(setup.scheme, &models, &places);
         let finder = PairFinder::new(settings.pairs, &population);
-        let needs = VolumeNeeds::of(scheme, settings.k, finder.name());
+        let needs = VolumeNeeds::of(setup.scheme, settings.k, finder.name());
         let directions = needs.intervals;
         threads.expect(needs.work(n as u64, &Totals::default()));
         let mut culler = Self {
-            settings: settings.clone(),
-            is_canonical: false,
-            scheme,
+            setup,
             needs,
             tier,
             threads,
             models,
-            places,
-            groups: None,
-            fixed: check::fixed(bodies),
-            numbers: (0..n as u32).collect(),
-            order: Vec::new(),
-            finder,
-            balls: Balls::new(n),
-            rows: OrDopRows::new(n),
-            intervals: directions.map(|directions| Intervals::new(directions, shapes, n)),
-            interval_slots: IntervalSlots::default(),
-            interest: vec![false; n],
+            set: BodySet {
+                places,
+                groups: None,
+                fixed: check::fixed(bodies),
+                numbers: (0..n as u32).collect(),
+                order: Vec::new(),
+                finder,
+            },
+            volumes: Volumes {
+                balls: Balls::new(n),
+                rows: OrDopRows::new(n),
+                intervals: directions.map(|directions| Intervals::new(directions, shapes, n)),
+                interval_slots: IntervalSlots::default(),
+                interest: vec![false; n],
+                stamp: 1,
+            },
             scratch: Scratch::default(),
+            sample: Sample::default(),
             pairs: PairList::default(),
-            stamp: 1,
             counters: Counters::default(),
             seconds: Seconds::default(),
         };
@@ -166,16 +190,16 @@ impl Culler {
     /// The column's length is not the number of bodies; the groups stay as they were.
     pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) -> Result<(), CullError> {
         if let Some(groups) = &groups {
-            check_column("groups", groups.len(), self.fixed.len())?;
+            check_column("groups", groups.len(), self.set.fixed.len())?;
         }
-        self.groups = groups;
+        self.set.groups = groups;
         Ok(())
     }
 
     /// From now on, a budget that would be spent on pairs in the order in which they are found is
     /// spent in the order of their body numbers.
     pub(crate) fn set_canonical(&mut self) {
-        self.is_canonical = true;
+        self.setup.is_canonical = true;
     }
 
     /// Exchanges the list of the last frame with `pairs`, whose memory is reused for the next
@@ -193,14 +217,14 @@ impl Culler {
     /// Replaces the refinement history by that of another culler.
     #[cfg(feature = "serde")]
     pub(crate) fn set_answers(&mut self, answers: &RefinementRanks) {
-        self.stamp = self.stamp.max(answers.latest());
+        self.volumes.stamp = self.volumes.stamp.max(answers.latest());
         self.scratch.set_answers(answers);
     }
 
     /// Sets the bodies of interest from now on.
     #[doc(hidden)]
     pub fn set_interest(&mut self, interest: Interest) {
-        self.settings.interest = Some(interest);
+        self.setup.settings.interest = Some(interest);
     }
 
     /// A body's ball centre, and the distance from it within which the body can be part of a pair
@@ -221,13 +245,13 @@ impl Culler {
     /// The pair finder in use: that of the settings, or the one that `auto` has picked.
     #[must_use]
     pub fn finder(&self) -> Finder {
-        self.finder.name()
+        self.set.finder.name()
     }
 
     /// Bytes that the pair finder holds.
     #[must_use]
     pub fn finder_bytes(&self) -> usize {
-        self.finder.bytes()
+        self.set.finder.bytes()
     }
 
     /// Candidates that the last frame tested to build a list of neighbours, in addition to the
@@ -235,7 +259,7 @@ impl Culler {
     /// plus 48 per body; a search that reaches this limit is abandoned and counts as the limit.
     #[must_use]
     pub fn list_tests(&self) -> u64 {
-        self.finder.list_tests()
+        self.set.finder.list_tests()
     }
 
     /// Culls one frame and returns the reported pairs: i < j, not both static, each once. Their
@@ -280,21 +304,21 @@ impl Culler {
         output: Output<'_>,
         start: Instant,
     ) -> Result<(), CullError> {
-        self.stamp += 1;
+        self.volumes.stamp += 1;
         self.reorder(bodies);
         let reordered = Instant::now();
-        let without_rows = strategy::makes_rows(&self.settings, &self.places, &output);
-        let moving = 0..self.places.moving;
+        let row_timing = RowTiming::of(&self.setup, &self.set.places, &output);
+        let moving = 0..self.set.places.moving;
         if !self.update_first(bodies, moving.clone()) {
             self.check_moved(bodies)?;
         }
-        if self.settings.updates == Updates::Eager && !without_rows {
+        if row_timing == RowTiming::BeforePairs {
             self.update_rows(bodies, moving);
         }
         self.count_updates();
         let updated = Instant::now();
         self.arrange();
-        let totals = self.run(bodies, output, without_rows);
+        let totals = self.run(bodies, output, row_timing);
 
         let finding = (reordered - start) + updated.elapsed();
         let refining = totals.refining_seconds + totals.update_seconds;
@@ -315,7 +339,7 @@ impl Culler {
     /// that list it.
     pub fn potentially_colliding(&self) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
         self.scratch.candidates.iter().map(|pair| {
-            let [a, b] = pair.map(|place| self.places.body[place as usize]);
+            let [a, b] = pair.map(|place| self.set.places.body[place as usize]);
             [a.min(b), a.max(b)]
         })
     }
@@ -332,31 +356,25 @@ impl Culler {
         &self.seconds
     }
 
-    /// Whether slots are named by place. or-DOPs and slabs are looked up by place; spheres alone
-    /// need only the body.
-    fn names_are_places(&self) -> bool {
-        self.needs.rows || self.needs.intervals.is_some()
-    }
-
     /// Updates what the first test needs, in a range of places: all volumes except the rows.
     /// Returns whether the poses are within the contract.
     fn update_first(&mut self, bodies: &Bodies, range: Range<usize>) -> bool {
-        let (frames, places) = (&self.models.frames, &self.places);
+        let (frames, places) = (&self.models.frames, &self.set.places);
         let executor = self.threads.get().executor(self.tier);
         let is_sound = if self.needs.balls {
-            let balls = &mut self.balls;
+            let balls = &mut self.volumes.balls;
             update_spheres(executor, balls, frames, bodies, places, range.clone())
         } else {
             check_poses(bodies, 0..bodies.len()).is_ok()
         };
-        if let Some(intervals) = &mut self.intervals {
+        if let Some(intervals) = &mut self.volumes.intervals {
             let posed = UpdateInputs {
                 frames,
                 bodies,
                 places,
                 balls: &[],
             };
-            intervals.update(executor, &mut self.balls, posed, range);
+            intervals.update(executor, &mut self.volumes.balls, posed, range);
         }
         is_sound
     }
@@ -369,20 +387,22 @@ impl Culler {
         let posed = UpdateInputs {
             frames: &self.models.frames,
             bodies,
-            places: &self.places,
-            balls: if self.needs.balls { &self.balls } else { &[] },
+            places: &self.set.places,
+            balls: self.needs.known(&self.volumes.balls),
         };
         let executor = self.threads.get().executor(self.tier);
-        self.rows.update(executor, posed, range, self.stamp);
+        self.volumes
+            .rows
+            .update(executor, posed, range, self.volumes.stamp);
     }
 
     fn count_updates(&mut self) {
-        let moved = self.places.moving as u64;
-        if let Some(volume) = self.scheme.first {
+        let moved = self.set.places.moving as u64;
+        if let Some(volume) = self.setup.scheme.first {
             self.counters.of_mut(volume).updates += moved;
         }
-        if let Some(volume) = self.scheme.refining
-            && self.settings.updates == Updates::Eager
+        if let Some(volume) = self.setup.scheme.refining
+            && self.setup.settings.updates == Updates::Eager
         {
             self.counters.of_mut(volume).updates += moved;
         }
@@ -390,80 +410,82 @@ impl Culler {
 
     /// Arranges the bodies and the volumes of the first test in slot order.
     fn arrange(&mut self) {
-        if self.scheme.flow == Flow::Nothing {
+        if self.setup.scheme.flow == Flow::Nothing {
             return;
         }
-        let names = if self.names_are_places() {
-            &self.numbers
-        } else {
-            &self.places.body
-        };
+        let names = self.needs.names(&self.set.numbers, &self.set.places);
         let pool = self.threads.get();
         let executor = pool.executor(self.tier);
-        self.finder
-            .arrange(executor, &self.places, &self.balls, names, None);
-        if let Some(intervals) = &self.intervals {
-            let order = &self.finder.names()[..self.places.len()];
-            self.interval_slots.fill(pool, order, &intervals.ends);
+        self.set
+            .finder
+            .arrange(executor, &self.set.places, &self.volumes.balls, names, None);
+        if let Some(intervals) = &self.volumes.intervals {
+            let order = &self.set.finder.names()[..self.set.places.len()];
+            self.volumes
+                .interval_slots
+                .fill(pool, order, &intervals.ends);
         }
     }
 
     /// Finds and tests pairs.
-    fn run(&mut self, bodies: &Bodies, output: Output<'_>, without_rows: bool) -> Totals {
-        if let Some(interest) = &self.settings.interest {
-            let frame = |body: usize| &self.models.frames[self.fixed.shape[body] as usize];
+    fn run(&mut self, bodies: &Bodies, output: Output<'_>, row_timing: RowTiming) -> Totals {
+        if let Some(interest) = &self.setup.settings.interest {
+            let frame = |body: usize| &self.models.frames[self.set.fixed.shape[body] as usize];
             let centre = |body: usize| {
                 let pose = (bodies.rotation[body], bodies.translation[body]);
                 let [x, y, z, _] = frame(body).sphere(pose.0, pose.1);
                 [x, y, z]
             };
-            strategy::mark(interest, bodies, centre, &mut self.interest);
+            strategy::mark(interest, bodies, centre, &mut self.volumes.interest);
         }
-        let body = &self.places.body;
-        let names = match self.names_are_places() {
+        let body = &self.set.places.body;
+        let names = match self.needs.by_place {
             false => SlotNames::Bodies,
-            true if self.finder.slots_are_places() => SlotNames::Slots(body),
+            true if self.set.finder.slots_are_places() => SlotNames::Slots(body),
             true => SlotNames::Places(body),
         };
         let inputs = Inputs {
             executor: self.threads.get().executor(self.tier),
-            settings: &self.settings,
-            is_canonical: self.is_canonical,
-            finder: &self.finder,
-            slots: self.finder.slots(&self.balls),
-            names,
-            posed: UpdateInputs {
-                frames: &self.models.frames,
-                bodies,
-                places: &self.places,
-                balls: if self.needs.balls { &self.balls } else { &[] },
-            },
-            groups: self.groups.as_deref(),
-            intervals: &self.interval_slots,
+            setup: &self.setup,
             tables: &self.models.tables,
-            interest: &self.interest,
-            stamp: self.stamp,
-            without_rows,
+            arranged: Arrangement {
+                finder: &self.set.finder,
+                slots: self.set.finder.slots(&self.volumes.balls),
+                names,
+                groups: self.set.groups.as_deref(),
+            },
+            volumes: FrameVolumes {
+                posed: UpdateInputs {
+                    frames: &self.models.frames,
+                    bodies,
+                    places: &self.set.places,
+                    balls: self.needs.known(&self.volumes.balls),
+                },
+                intervals: &self.volumes.interval_slots,
+                interest: &self.volumes.interest,
+                stamp: self.volumes.stamp,
+                row_timing,
+            },
         };
-        let totals = strategy::cull(inputs, &mut self.rows, &mut self.scratch, output);
+        let totals = strategy::cull(inputs, &mut self.volumes.rows, &mut self.scratch, output);
         self.count(&totals);
         totals
     }
 
     fn count(&mut self, totals: &Totals) {
-        if let Some(volume) = self.scheme.first {
+        if let Some(volume) = self.setup.scheme.first {
             *self.counters.of_mut(volume) += totals.first;
         }
-        if let Some(volume) = self.scheme.refining {
+        if let Some(volume) = self.setup.scheme.refining {
             *self.counters.of_mut(volume) += totals.refining;
         }
         self.counters.untested += totals.untested;
-        let candidates = match self.scheme.first {
+        let candidates = match self.setup.scheme.first {
             Some(_) => totals.first.tests,
             None => totals.refining.tests,
         };
-        self.finder.observe(candidates);
-        let work = self.needs.work(self.places.moving as u64, totals);
+        self.set.finder.observe(candidates);
+        let work = self.needs.work(self.set.places.moving as u64, totals);
         self.threads.expect(work);
     }
 }

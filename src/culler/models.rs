@@ -60,6 +60,11 @@ impl Models {
         self.hulls as usize - self.free_hulls.len()
     }
 
+    /// The slabs of a model, and its frame.
+    pub fn volumes(&self, model: u32) -> (&OrDop, &ShapeFrame) {
+        (&self.ordops[model as usize], &self.frames[model as usize])
+    }
+
     /// Adds the model of a shape and returns its number. Its hull has another number
     /// ([`ShapeFrame::hull`]), which counts from 0 in the order of these calls as long as no shape
     /// is removed.

@@ -17,6 +17,9 @@ pub(super) struct VolumeNeeds {
     pub rows: bool,
     /// World-aligned slabs.
     pub intervals: Option<DirectionSet>,
+    /// Slots named by place: rows and slabs are looked up by place, spheres alone need the body
+    /// only.
+    pub by_place: bool,
 }
 
 impl VolumeNeeds {
@@ -24,11 +27,23 @@ impl VolumeNeeds {
     pub fn of(scheme: Scheme, k: DirectionSet, finder: Finder) -> Self {
         // Oriented volumes are binned by balls; a finder that doesn't bin needs none.
         let binned = scheme.is_oriented_alone() && finder != Finder::AllPairs;
+        let (rows, intervals) = (scheme.refining.is_some(), scheme.slabs(k));
         Self {
             balls: binned || scheme.first == Some(TestedVolume::Sphere),
-            rows: scheme.refining.is_some(),
-            intervals: scheme.slabs(k),
+            rows,
+            intervals,
+            by_place: rows || intervals.is_some(),
         }
+    }
+
+    /// The names of slots: numbers of places, or the bodies in them.
+    pub fn names<'a>(&self, numbers: &'a [u32], places: &'a Places) -> &'a [u32] {
+        if self.by_place { numbers } else { &places.body }
+    }
+
+    /// The balls by place, or none if they are not updated.
+    pub fn known<'a>(&self, balls: &'a [[f32; 4]]) -> &'a [[f32; 4]] {
+        if self.balls { balls } else { &[] }
     }
 
     /// The work of a frame with `moving` moving bodies and the tests of the frame `like`.
@@ -95,6 +110,7 @@ mod tests {
                 balls,
                 rows,
                 intervals,
+                by_place: rows,
             };
             let work = needs.work(7, &like);
             assert_eq!(work.updates, 7 * volumes, "{needs:?}");

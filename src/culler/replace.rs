@@ -1,6 +1,7 @@
 //! Changing a culler's set of bodies, and reordering them.
 
 use super::needs;
+use super::sample::Sample;
 use super::{Culler, check};
 use crate::bodies::Bodies;
 use crate::broad_phase::{Balls, PairFinder, Reorder};
@@ -11,8 +12,8 @@ use crate::update::OrDopRows;
 impl Culler {
     /// Reads `bodies.shape` again after a change of margin class.
     pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
-        self.fixed.shape.clone_from(&bodies.shape);
-        self.places.reread_shapes(bodies);
+        self.set.fixed.shape.clone_from(&bodies.shape);
+        self.set.places.reread_shapes(bodies);
     }
 
     /// Changes the set of bodies to those that are `present`, and keeps what is known of the
@@ -20,9 +21,9 @@ impl Culler {
     pub(crate) fn exchange(&mut self, bodies: &Bodies, present: &[bool]) {
         in_default_mode(|| {
             let stays = self.take_places(bodies, present);
-            let population = needs::population(self.scheme, &self.models, &self.places);
-            let finder = self.settings.pairs;
-            if (self.finder).replace(finder, &population, &stays, self.places.moving) {
+            let population = needs::population(self.setup.scheme, &self.models, &self.set.places);
+            let finder = self.setup.settings.pairs;
+            if (self.set.finder).replace(finder, &population, &stays, self.set.places.moving) {
                 self.place_static(bodies); // the others in the frame to come
             } else {
                 self.begin(bodies);
@@ -35,8 +36,8 @@ impl Culler {
     #[doc(hidden)]
     pub fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         self.take_places(bodies, present);
-        let population = needs::population(self.scheme, &self.models, &self.places);
-        self.finder = PairFinder::new(self.settings.pairs, &population);
+        let population = needs::population(self.setup.scheme, &self.models, &self.set.places);
+        self.set.finder = PairFinder::new(self.setup.settings.pairs, &population);
         self.begin(bodies);
     }
 
@@ -44,40 +45,41 @@ impl Culler {
     /// stays. The next [`Self::exchange`] starts from nothing.
     pub(crate) fn forget(&mut self) {
         let hulls = self.models.shrink_to_fit();
-        if let Some(intervals) = &mut self.intervals {
+        if let Some(intervals) = &mut self.volumes.intervals {
             intervals.shrink_to(hulls);
             intervals.forget_bodies();
         }
         self.scratch.forget_lists();
+        self.sample = Sample::default();
         self.pairs.shrink_to_fit();
-        self.groups = None;
-        (self.places, self.fixed, self.order) = Default::default();
-        (self.interest, self.interval_slots) = Default::default();
-        (self.balls, self.rows) = (Balls::new(0), OrDopRows::default());
+        self.set.groups = None;
+        (self.set.places, self.set.fixed, self.set.order) = Default::default();
+        (self.volumes.interest, self.volumes.interval_slots) = Default::default();
+        (self.volumes.balls, self.volumes.rows) = (Balls::new(0), OrDopRows::default());
         self.replace(&Bodies::default(), &[]);
     }
 
     /// Assigns places to the bodies that are `present`. Returns, for each former place, whether its
     /// body kept its order.
     fn take_places(&mut self, bodies: &Bodies, present: &[bool]) -> Vec<bool> {
-        let stays = self.places.replace(&bodies.dynamic, present);
-        self.places.reread_shapes(bodies);
-        self.fixed = check::fixed(bodies);
-        let n = self.places.len();
-        self.numbers = (0..n as u32).collect();
-        self.balls.resize(n);
-        self.rows.resize(n);
-        if let Some(intervals) = &mut self.intervals {
+        let stays = self.set.places.replace(&bodies.dynamic, present);
+        self.set.places.reread_shapes(bodies);
+        self.set.fixed = check::fixed(bodies);
+        let n = self.set.places.len();
+        self.set.numbers = (0..n as u32).collect();
+        self.volumes.balls.resize(n);
+        self.volumes.rows.resize(n);
+        if let Some(intervals) = &mut self.volumes.intervals {
             intervals.resize(n);
         }
-        self.interest.resize(bodies.len(), false);
+        self.volumes.interest.resize(bodies.len(), false);
         stays
     }
 
     /// Computes all volumes except the rows of moving bodies, which each frame computes, and lets a
     /// new finder order and arrange them.
     pub(super) fn begin(&mut self, bodies: &Bodies) {
-        let (moving, all) = (self.places.moving, self.places.len());
+        let (moving, all) = (self.set.places.moving, self.set.places.len());
         self.update_first(bodies, 0..all);
         self.update_rows(bodies, moving..all);
         self.reorder(bodies);
@@ -86,7 +88,7 @@ impl Culler {
 
     /// Computes all volumes of static bodies.
     fn place_static(&mut self, bodies: &Bodies) {
-        let at_rest = self.places.moving..self.places.len();
+        let at_rest = self.set.places.moving..self.set.places.len();
         self.update_first(bodies, at_rest.clone());
         self.update_rows(bodies, at_rest);
     }
@@ -94,29 +96,30 @@ impl Culler {
     /// Lets the finder reorder places. Moving bodies are updated afterwards anyway; static ones are
     /// moved here.
     pub(super) fn reorder(&mut self, bodies: &Bodies) {
-        if self.scheme.flow == Flow::Nothing {
+        if self.setup.scheme.flow == Flow::Nothing {
             // Nothing is arranged yet, so there is no order to follow.
             return;
         }
-        let by_place = self.names_are_places();
-        let names = if by_place {
-            &self.numbers
-        } else {
-            &self.places.body
-        };
-        let (balls, order) = (&self.balls, &mut self.order);
-        let changed = self.finder.reorder(&self.places, balls, names, order);
+        let by_place = self.needs.by_place;
+        let names = self.needs.names(&self.set.numbers, &self.set.places);
+        let (balls, order) = (&self.volumes.balls, &mut self.set.order);
+        let changed = self
+            .set
+            .finder
+            .reorder(&self.set.places, balls, names, order);
         if changed == Reorder::None {
             return;
         }
-        self.places.reorder(&self.fixed, &mut self.order, by_place);
+        self.set
+            .places
+            .reorder(&self.set.fixed, &mut self.set.order, by_place);
         if changed == Reorder::All {
-            let (moving, all) = (self.places.moving, self.places.len());
+            let (moving, all) = (self.set.places.moving, self.set.places.len());
             self.update_first(bodies, 0..moving);
             if moving < all {
-                let fixed = std::mem::take(&mut self.fixed);
+                let fixed = std::mem::take(&mut self.set.fixed);
                 self.place_static(&fixed);
-                self.fixed = fixed;
+                self.set.fixed = fixed;
             }
         }
     }

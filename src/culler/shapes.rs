@@ -2,7 +2,8 @@
 
 use super::{CullError, Culler, check};
 use crate::simd::in_default_mode;
-use crate::volume::Shape;
+use crate::update::ShapeFrame;
+use crate::volume::{OrDop, Shape};
 
 impl Culler {
     /// Adds a shape and returns its number. Bodies have it by that number in `bodies.shape`, from
@@ -43,7 +44,7 @@ impl Culler {
     /// Removes a shape that no body has and no model is grown from. Its number will be reused.
     pub(crate) fn remove_shape(&mut self, model: u32) {
         let hull = self.models.remove_shape(model);
-        if let Some(intervals) = &mut self.intervals {
+        if let Some(intervals) = &mut self.volumes.intervals {
             intervals.clear(hull as usize);
         }
     }
@@ -59,6 +60,11 @@ impl Culler {
         self.models.remove(model);
     }
 
+    /// The slabs and the frame of a model.
+    pub(crate) fn volumes(&self, model: u32) -> (&OrDop, &ShapeFrame) {
+        self.models.volumes(model)
+    }
+
     /// The number of models: one more than the largest model number.
     pub(crate) fn models(&self) -> usize {
         self.models.frames.len()
@@ -66,7 +72,7 @@ impl Culler {
 
     fn set_hull(&mut self, model: u32, shape: &Shape) {
         let hull = self.models.frames[model as usize].hull();
-        if let Some(intervals) = &mut self.intervals {
+        if let Some(intervals) = &mut self.volumes.intervals {
             intervals.set(hull as usize, shape);
         }
     }

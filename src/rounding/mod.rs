@@ -18,6 +18,7 @@
 pub mod border;
 pub mod cube;
 pub mod pose;
+pub mod query;
 pub mod skin;
 pub mod slab;
 pub mod sphere;

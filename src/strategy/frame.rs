@@ -9,47 +9,99 @@ use crate::broad_phase::{PairFinder, SlotBodies};
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::ordop::SlabTables;
 use crate::pairs::PairList;
-use crate::settings::{CullSettings, Flow, Updates};
+use crate::settings::{CullSettings, Flow, Scheme, Updates};
 use crate::threads::Executor;
 use crate::update::{OrDopRows, UpdateInputs};
 
 /// Rows that fit into the second-level cache.
 const ROWS_IN_CACHE: usize = 1 << 14;
 
-/// The inputs of culling a frame, after volumes are updated and bodies are arranged in slots.
-#[derive(Clone, Copy)]
-pub(crate) struct Inputs<'a> {
-    pub executor: Executor<'a>,
-    pub settings: &'a CullSettings,
-    /// Whether budgets are spent on pairs in the order of their body numbers.
+/// The settings that a culler is made with.
+#[derive(Clone, Debug)]
+pub(crate) struct Setup {
+    pub settings: CullSettings,
+    /// The strategy's row in the table of strategies.
+    pub scheme: Scheme,
+    /// Whether budgets are spent on pairs in the order of their body numbers, independent of the
+    /// finder and of earlier frames.
     pub is_canonical: bool,
+}
+
+impl Setup {
+    pub fn new(settings: &CullSettings) -> Self {
+        Self {
+            settings: settings.clone(),
+            scheme: settings.strategy.scheme(),
+            is_canonical: false,
+        }
+    }
+}
+
+/// When the rows of bodies that move are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RowTiming {
+    /// Before pairs are found.
+    BeforePairs,
+    /// When pairs are listed, so that they are tested while the caches have their rows.
+    WhenListed,
+    /// Those that a pair needs, when it needs them: lazy updates.
+    OnDemand,
+}
+
+impl RowTiming {
+    /// Rows wait for the list only where a list is kept and caches don't hold all rows anyway.
+    pub fn of(setup: &Setup, places: &Places, output: &Output<'_>) -> Self {
+        match setup.settings.updates {
+            Updates::Lazy => Self::OnDemand,
+            Updates::Eager
+                if setup.scheme.flow == Flow::Batch
+                    && !output.is_in_portions()
+                    && places.moving > ROWS_IN_CACHE =>
+            {
+                Self::WhenListed
+            }
+            Updates::Eager => Self::BeforePairs,
+        }
+    }
+}
+
+/// Bodies in slots, as the finder has arranged them.
+#[derive(Clone, Copy)]
+pub(crate) struct Arrangement<'a> {
     pub finder: &'a PairFinder,
-    /// The slots that the finder has arranged.
     pub slots: SlotBodies<'a>,
     pub names: SlotNames<'a>,
-    /// The poses, and spheres by place if there are any.
-    pub posed: UpdateInputs<'a>,
     /// Each body's groups where not all collide with all.
     pub groups: Option<&'a [Groups]>,
+}
+
+/// What is new in each frame.
+#[derive(Clone, Copy)]
+pub(crate) struct FrameVolumes<'a> {
+    /// The poses, and spheres by place where there are any.
+    pub posed: UpdateInputs<'a>,
     pub intervals: &'a IntervalSlots,
-    pub tables: &'a SlabTables,
     /// Whether each body is of interest.
     pub interest: &'a [bool],
     /// The number of the frame, from 1.
     pub stamp: u32,
-    /// Whether the rows of this frame are not yet computed ([`makes_rows`]).
-    pub without_rows: bool,
+    pub row_timing: RowTiming,
+}
+
+/// The inputs of culling a frame, after volumes are updated and bodies are arranged in slots.
+#[derive(Clone, Copy)]
+pub(crate) struct Inputs<'a> {
+    pub executor: Executor<'a>,
+    pub setup: &'a Setup,
+    pub tables: &'a SlabTables,
+    pub arranged: Arrangement<'a>,
+    pub volumes: FrameVolumes<'a>,
 }
 
 impl Inputs<'_> {
-    /// Whether rows are computed only when a pair needs them.
-    pub(super) fn is_lazy(&self) -> bool {
-        self.settings.updates == Updates::Lazy
-    }
-
     /// The body in each place.
     pub(super) fn bodies_by_place(&self) -> &[u32] {
-        &self.posed.places.body
+        &self.volumes.posed.places.body
     }
 }
 
@@ -107,16 +159,6 @@ impl Scratch {
     }
 }
 
-/// Whether a strategy computes the rows of moving bodies itself, once their pairs are listed, so
-/// that they are tested while they are in the caches. If no list is kept, or all rows fit into the
-/// caches, they are computed before.
-pub(crate) fn makes_rows(settings: &CullSettings, places: &Places, output: &Output<'_>) -> bool {
-    settings.strategy.scheme().flow == Flow::Batch
-        && settings.updates == Updates::Eager
-        && !output.is_in_portions()
-        && places.moving > ROWS_IN_CACHE
-}
-
 /// Culls one frame by the strategy of the settings.
 pub(crate) fn cull(
     inputs: Inputs<'_>,
@@ -125,8 +167,9 @@ pub(crate) fn cull(
     output: Output<'_>,
 ) -> Totals {
     scratch.candidates.clear();
-    let (interest, lazy) = (Some(inputs.interest), inputs.is_lazy());
-    match inputs.settings.strategy.scheme().flow {
+    let interest = Some(inputs.volumes.interest);
+    let lazy = inputs.volumes.row_timing == RowTiming::OnDemand;
+    match inputs.setup.scheme.flow {
         Flow::Nothing => Totals::default(),
         Flow::FirstTest => listing::flow(inputs, scratch, output),
         // Lazy rows need the whole set before its first test.

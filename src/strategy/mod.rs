@@ -25,7 +25,7 @@ mod tasks;
 mod time_critical;
 
 #[cfg(feature = "shapes")]
-pub(crate) use frame::{Inputs, Scratch, cull, makes_rows};
+pub(crate) use frame::{Arrangement, FrameVolumes, Inputs, RowTiming, Scratch, Setup, cull};
 #[cfg(feature = "shapes")]
 pub use interest::PlacedCone;
 #[cfg(feature = "shapes")]

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::output::{Output, TaskOutput};
 use super::tasks::{Task, Tasks, split_work};
-use super::{Inputs, Totals};
+use super::{FrameVolumes, Inputs, RowTiming, Setup, Totals};
 use crate::counters::VolumeCounters;
 use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
@@ -28,15 +28,17 @@ pub(super) struct Refine<'a> {
 
 impl<'a> Refine<'a> {
     pub fn new(inputs: Inputs<'a>, rows: &'a OrDopRows) -> Self {
-        let settings = inputs.settings;
+        let Setup {
+            settings, scheme, ..
+        } = inputs.setup;
         Self {
             tier: inputs.executor.tier,
             columns: OrDopColumns {
                 rows: RowsByNumber::all(&rows.rows),
                 tables: inputs.tables,
-                overlap: settings.strategy.scheme().overlap(settings.overlap),
+                overlap: scheme.overlap(settings.overlap),
             },
-            body: &inputs.posed.places.body,
+            body: &inputs.volumes.posed.places.body,
         }
     }
 
@@ -145,7 +147,8 @@ impl<'a> Refiner<'a> {
         let Some(tasks) = tasks else {
             return self.refine_range(list, 0..list.len(), out);
         };
-        let in_windows = self.inputs.without_rows && self.are_near(list);
+        let in_windows =
+            self.inputs.volumes.row_timing == RowTiming::WhenListed && self.are_near(list);
         if !in_windows {
             self.make_rows(list, 0..list.len());
         }
@@ -160,7 +163,7 @@ impl<'a> Refiner<'a> {
             let pairs = units.start * unit..(units.end * unit).min(list.len());
             let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
             if in_windows {
-                refine.test_in_windows(self.inputs.posed, pairs, task);
+                refine.test_in_windows(self.inputs.volumes.posed, pairs, task);
             } else {
                 refine.test(pairs, &mut task.refining, &mut task.seconds, &mut task.out);
             }
@@ -176,7 +179,7 @@ impl<'a> Refiner<'a> {
     /// rows.
     fn are_near(&self, list: &PairList) -> bool {
         let Executor { tier, pool } = self.inputs.executor;
-        let moving = self.inputs.posed.places.moving;
+        let moving = self.inputs.volumes.posed.places.moving;
         pool.all(
             list.len(),
             STRETCHES_PER_TASK * PAIRS_PER_STRETCH,
@@ -209,27 +212,28 @@ impl<'a> Refiner<'a> {
     /// Computes the missing rows of this frame: with lazy updates those of some listed pairs,
     /// otherwise all.
     fn make_rows(&mut self, list: &PairList, range: Range<usize>) {
-        let Inputs {
-            executor,
+        let executor = self.inputs.executor;
+        let FrameVolumes {
             posed,
             stamp,
-            without_rows,
+            row_timing,
             ..
-        } = self.inputs;
+        } = self.inputs.volumes;
         let start = Instant::now();
-        if self.inputs.is_lazy() {
-            for column in [list.first(), list.second()] {
-                let wanted = &column[range.clone()];
-                let made = self
-                    .rows
-                    .update_missing(executor.tier, posed, wanted, stamp);
-                self.totals.refining.updates += made;
+        match row_timing {
+            RowTiming::BeforePairs => return,
+            RowTiming::WhenListed => {
+                let moving = 0..posed.places.moving;
+                self.rows.update(executor, posed, moving, stamp);
             }
-        } else if without_rows {
-            self.rows
-                .update(executor, posed, 0..posed.places.moving, stamp);
-        } else {
-            return;
+            RowTiming::OnDemand => {
+                for column in [list.first(), list.second()] {
+                    let wanted = &column[range.clone()];
+                    let tier = executor.tier;
+                    let made = self.rows.update_missing(tier, posed, wanted, stamp);
+                    self.totals.refining.updates += made;
+                }
+            }
         }
         self.totals.update_seconds += start.elapsed().as_secs_f64();
     }
@@ -246,7 +250,7 @@ mod tests {
     use crate::overlap::intervals::IntervalSlots;
     use crate::overlap::ordop::SlabTables;
     use crate::settings::{CullSettings, DirectionSet, Updates};
-    use crate::strategy::SlotNames;
+    use crate::strategy::{Arrangement, SlotNames};
     use crate::threads::Threads;
     use crate::update::{ShapeFrame, UpdateInputs};
     use crate::volume::{Shape, ShapeSpec};
@@ -275,21 +279,27 @@ mod tests {
         let slots = Slots::default();
         let inputs = Inputs {
             executor,
-            settings: &CullSettings {
+            setup: &Setup::new(&CullSettings {
                 updates,
                 ..CullSettings::default()
-            },
-            is_canonical: false,
-            finder: &PairFinder::AllPairs(AllPairs::default()),
-            slots: slots.arranged(),
-            names: SlotNames::Places(&places.body),
-            posed,
-            groups: None,
-            intervals: &IntervalSlots::default(),
+            }),
             tables: &SlabTables::new(DirectionSet::K18, [(&shape, &shape.ordop)]),
-            interest: &[],
-            stamp: 1,
-            without_rows: false,
+            arranged: Arrangement {
+                finder: &PairFinder::AllPairs(AllPairs::default()),
+                slots: slots.arranged(),
+                names: SlotNames::Places(&places.body),
+                groups: None,
+            },
+            volumes: FrameVolumes {
+                posed,
+                intervals: &IntervalSlots::default(),
+                interest: &[],
+                stamp: 1,
+                row_timing: match updates {
+                    Updates::Eager => RowTiming::BeforePairs,
+                    Updates::Lazy => RowTiming::OnDemand,
+                },
+            },
         };
         run(Refiner::new(inputs, &mut rows))
     }

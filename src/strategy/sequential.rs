@@ -35,7 +35,7 @@ pub(super) fn flow(
     let work = |parts: Range<usize>, task: &mut Task, outlet: &TaskOutput<'_, '_>| {
         refine_blocks(&listing, parts, &refine, interest, task, outlet);
     };
-    let units = inputs.finder.parts();
+    let units = inputs.arranged.finder.parts();
     split_work(
         inputs.executor.pool,
         &mut scratch.tasks,

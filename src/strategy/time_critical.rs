@@ -70,8 +70,8 @@ pub(super) fn flow(
         portion,
         ..
     } = scratch;
-    let order = inputs.settings.order;
-    let is_sorted = inputs.is_canonical || order != Order::AsFound;
+    let order = inputs.setup.settings.order;
+    let is_sorted = inputs.setup.is_canonical || order != Order::AsFound;
     let listed = match output {
         Output::Portions(sink) if !is_sorted => {
             let mut take = |candidates: &mut PairList| {
@@ -112,7 +112,7 @@ pub(super) fn flow(
         let pairs = candidates
             .iter()
             .map(|pair| pair.map(|place| bodies[place as usize]));
-        history.remember(pairs, tests, inputs.stamp);
+        history.remember(pairs, tests, inputs.volumes.stamp);
     }
     Totals {
         first: listed.first,
@@ -131,7 +131,7 @@ struct Spender<'a> {
 
 impl<'a> Spender<'a> {
     fn new(inputs: Inputs<'a>, rows: &'a mut OrDopRows) -> Self {
-        let (tests_left, deadline) = match inputs.settings.budget {
+        let (tests_left, deadline) = match inputs.setup.settings.budget {
             Some(Budget::Tests(tests)) => (usize::try_from(tests).unwrap_or(usize::MAX), None),
             Some(Budget::Microseconds(us)) => (
                 usize::MAX,
@@ -141,7 +141,7 @@ impl<'a> Spender<'a> {
         };
         Self {
             refiner: Refiner::new(inputs, rows),
-            body: &inputs.posed.places.body,
+            body: &inputs.volumes.posed.places.body,
             tests_left,
             deadline,
         }
@@ -178,17 +178,17 @@ impl<'a> Spender<'a> {
 
 /// Sorts the potentially colliding set into the order of refinement.
 fn arrange(inputs: Inputs<'_>, history: &mut History, candidates: &mut PairList) {
-    let order = inputs.settings.order;
+    let order = inputs.setup.settings.order;
     let History {
         refined, ranked, ..
     } = history;
     let body = inputs.bodies_by_place();
-    let of_no_interest = |&body: &u32| !inputs.interest[body as usize];
+    let of_no_interest = |&body: &u32| !inputs.volumes.interest[body as usize];
     let rank = |bodies: [u32; 2], places: [u32; 2]| match order {
         Order::AsFound => 0,
         Order::InterestFirst => u32::from(bodies.iter().all(of_no_interest)),
         // The bits of non-negative numbers sort as the values do.
-        Order::LargestOverlap => relative_distance(inputs.posed.balls, places).to_bits(),
+        Order::LargestOverlap => relative_distance(inputs.volumes.posed.balls, places).to_bits(),
         Order::OldestAnswer => refined.get(&bodies).copied().unwrap_or(0),
     };
     ranked.clear();

@@ -12,6 +12,7 @@ mod jacobi;
 mod ordop;
 mod principal;
 mod shape;
+mod swept;
 
 pub use ball::Ball;
 pub use basis::{Axes, Basis};

@@ -1,14 +1,14 @@
 //! What a world's bodies are made of.
 
-use crate::bodies::Groups;
+use crate::bodies::{Groups, Motion};
 
 /// A body to be inserted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Index into the world's shapes.
     pub shape: u32,
-    /// Whether it may move; pairs of two bodies that may not are never tested.
-    pub dynamic: bool,
+    /// Whether it moves; pairs of two fixed bodies are never tested.
+    pub motion: Motion,
     /// Orientation quaternion (x, y, z, w) of any non-zero norm.
     pub rotation: [f32; 4],
     /// Translation of the body origin, world frame.
@@ -38,7 +38,7 @@ impl Body {
     #[must_use]
     pub fn fixed(self) -> Self {
         Self {
-            dynamic: false,
+            motion: Motion::Fixed,
             ..self
         }
     }
@@ -50,7 +50,7 @@ impl Default for Body {
     fn default() -> Self {
         Self {
             shape: 0,
-            dynamic: true,
+            motion: Motion::Dynamic,
             rotation: [0.0, 0.0, 0.0, 1.0],
             translation: [0.0; 3],
             groups: Groups::ALL,

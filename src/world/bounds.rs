@@ -1,7 +1,7 @@
 //! A box about bodies, from which the origin of their f32 coordinates follows.
 
 use super::region::{Placed, Region};
-use crate::rounding::exp2;
+use crate::rounding::{LIMIT, exp2};
 
 /// How many cells wide a box may be whose bodies are placed about one origin, without a search for
 /// regions: rounding there is below 2⁻¹⁰ of the largest body.
@@ -11,11 +11,13 @@ const CELLS_PER_ORIGIN: f64 = 64.0;
 const LEAST_CELL: f64 = exp2(-149);
 
 /// The translations of some bodies, from `lo` to `hi`; no body reaches farther than `size`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
     lo: [f64; 3],
     hi: [f64; 3],
     size: f64,
+    /// Whether all translations can stay as they are.
+    pub are_placed: bool,
 }
 
 /// A cube from `lowest` on that holds the bodies of a region.
@@ -27,16 +29,32 @@ pub(super) struct Cube {
 }
 
 impl Bounds {
+    /// Of no body.
+    pub const EMPTY: Self = Self {
+        lo: [f64::INFINITY; 3],
+        hi: [f64::NEG_INFINITY; 3],
+        size: 0.0,
+        are_placed: true,
+    };
+
     pub fn of(bodies: impl Iterator<Item = Placed>) -> Self {
-        let (mut lo, mut hi, mut size) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], 0.0_f64);
-        for (_, t, reach) in bodies {
-            for axis in 0..3 {
-                lo[axis] = lo[axis].min(t[axis]);
-                hi[axis] = hi[axis].max(t[axis]);
-            }
-            size = size.max(reach);
+        let alone = |(_, t, size): Placed| Self {
+            lo: t,
+            hi: t,
+            size,
+            are_placed: is_placed(t),
+        };
+        bodies.map(alone).fold(Self::EMPTY, Self::union)
+    }
+
+    /// Of both sets.
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            lo: std::array::from_fn(|i| self.lo[i].min(other.lo[i])),
+            hi: std::array::from_fn(|i| self.hi[i].max(other.hi[i])),
+            size: self.size.max(other.size),
+            are_placed: self.are_placed && other.are_placed,
         }
-        Self { lo, hi, size }
     }
 
     /// A power of two, for which bodies that can meet are at most a 32nd apart.
@@ -89,6 +107,12 @@ impl Bounds {
     fn middle(&self) -> [f64; 3] {
         std::array::from_fn(|i| 0.5 * self.lo[i] + 0.5 * self.hi[i])
     }
+}
+
+/// Whether a translation can stay as it is: f32, and within the contract.
+pub(super) fn is_placed(t: [f64; 3]) -> bool {
+    t.iter()
+        .all(|&x| f64::from(x as f32) == x && x.abs() <= f64::from(LIMIT))
 }
 
 /// The smallest power of two that is no less than a positive normal number; 0 for 0.

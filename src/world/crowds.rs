@@ -1,6 +1,7 @@
 //! Crowds and streams: pairs in portions, a limit to their number, and memory that is given back.
 
 use super::ids::shrink_column;
+use super::local::Origins;
 use super::pair_log::WorldPairs;
 use super::{World, WorldError};
 
@@ -22,7 +23,7 @@ impl World {
         mut take: impl FnMut(WorldPairs<'_>) + Send,
     ) -> Result<u64, WorldError> {
         self.prepare()?;
-        self.log.take();
+        self.log.take(&self.ids);
         let generation = self.ids.generation();
         let pairs = self.culler.cull_in_portions(&self.bodies, |portion| {
             take(WorldPairs::new(portion, generation));
@@ -37,7 +38,10 @@ impl World {
     /// More pairs than that, with their number: there are no [`Self::pairs`] then, and the frame
     /// counts as culled. Otherwise as [`Self::cull`].
     pub fn cull_up_to(&mut self, limit: usize) -> Result<WorldPairs<'_>, WorldError> {
-        self.cull_with(|culler, bodies| culler.cull_up_to(bodies, limit).map(|_| ()))
+        if !self.cull_changed(limit) || self.log.pairs(&self.ids).len() > limit {
+            self.cull_all(|culler, bodies| culler.cull_up_to(bodies, limit).map(|_| ()))?;
+        }
+        Ok(self.log.pairs(&self.ids))
     }
 
     /// Bytes that lists of pairs hold: those of the last cull, those that events were last read of,
@@ -55,11 +59,14 @@ impl World {
         if self.place().is_ok() {
             self.sweep_margins(false);
         }
+        self.log.shrink_to_fit(&self.ids);
         let slots = self.ids.shrink();
         shrink_column(&mut self.bodies.shape, slots);
         shrink_column(&mut self.bodies.dynamic, slots);
         shrink_column(&mut self.bodies.rotation, slots);
         shrink_column(&mut self.bodies.translation, slots);
+        shrink_column(&mut self.resting, slots);
+        shrink_column(&mut self.is_of_interest, slots);
         shrink_column(&mut self.shape, slots);
         shrink_column(&mut self.translation, slots);
         shrink_column(&mut self.margin, slots);
@@ -69,7 +76,8 @@ impl World {
         shrink_column(&mut self.models, shapes);
         self.interest.shrink_to_fit();
         self.margins.shrink_to_fit();
-        self.log.shrink_to_fit();
+        self.movers.forget();
+        self.origins = Origins::default();
         self.culler.forget();
         (self.replaced, self.regrouped) = (true, true);
     }

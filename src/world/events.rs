@@ -9,7 +9,7 @@ use super::pair_log::{PairIds, Reported, WorldPairs};
 use crate::pairs::Partners;
 
 /// Changes are listed while they are at most one in so many pairs of both culls, and some more.
-const LISTED_SHARE: usize = 8;
+const LISTED_SHARE: usize = 2;
 const ALWAYS_LISTED: usize = 64;
 
 /// A change of one pair, or none: the lower slot first.
@@ -137,7 +137,7 @@ impl Events {
     }
 }
 
-/// Lists what has changed between two culls, unless it is much.
+/// Lists what has changed between two culls, unless it is most of all pairs.
 fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> {
     let [former, later] = [before, now].map(|reported| reported.slots.len());
     let most = (former + later) / LISTED_SHARE + ALWAYS_LISTED;
@@ -148,18 +148,23 @@ fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> 
     let slots = [before, now].map(|reported| (reported.slots.first(), reported.slots.second()));
     let ids = [before, now].map(|reported| reported.pairs().iter());
     let are_of_one_time = Arc::ptr_eq(&before.generation, &now.generation);
+    let key = |(first, second): (&[u32], &[u32]), at: usize| {
+        u64::from(first[at]) << 32 | u64::from(second[at])
+    };
     let pair = |list: usize, at: usize| ids[list].at([slots[list].0[at], slots[list].1[at]]);
     let (mut i, mut j) = (0, 0);
     while i < former && j < later {
-        let is_same = slots[0].0[i] == slots[1].0[j] && slots[0].1[i] == slots[1].1[j];
-        if is_same && (are_of_one_time || pair(0, i) == pair(1, j)) {
+        let (old, new) = (key(slots[0], i), key(slots[1], j));
+        // Equal slots are equal bodies, unless one was given away in between.
+        if old == new && (are_of_one_time || pair(0, i) == pair(1, j)) {
             (i, j) = (i + 1, j + 1);
             continue;
         }
-        if pair(0, i) < pair(1, j) {
+        if old <= new {
             ended.push(pair(0, i));
             i += 1;
-        } else {
+        }
+        if new <= old {
             begun.push(pair(1, j));
             j += 1;
         }

@@ -128,7 +128,7 @@ impl Ids {
     }
 
     /// The bodies that are there, by slot.
-    pub fn iter(&self) -> impl Iterator<Item = BodyId> + '_ {
+    pub fn iter(&self) -> impl Iterator<Item = BodyId> + Clone + '_ {
         let slots = (0..).zip(&self.present);
         slots
             .filter(|(_, is_present)| **is_present)

@@ -5,15 +5,18 @@
 //! placed about one origin; bodies in many far-apart places have an [origin per
 //! region](super::regions).
 
-use super::bounds::Bounds;
+use std::ops::Range;
+
+use super::bounds::{Bounds, is_placed};
+use super::bounds_tree::BoundsTree;
 use super::region::{Placed, Region};
 use super::regions::{Regions, regions};
 use super::{World, WorldError, offset};
 use crate::bodies::contract::is_within_limit;
-use crate::rounding::LIMIT;
 
 /// About which origin each slot's body is placed.
-enum Local {
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Local {
     /// All translations stay as they are.
     World,
     One(Region),
@@ -27,7 +30,14 @@ impl Local {
         if bodies.clone().all(|(_, t, _)| is_placed(t)) {
             return Self::World;
         }
-        let bounds = Bounds::of(bodies.clone());
+        Self::within(Bounds::of(bodies.clone()), bodies)
+    }
+
+    /// The same of bodies with these bounds: a look at each takes place only where they are wide.
+    fn within(bounds: Bounds, bodies: impl Iterator<Item = Placed>) -> Self {
+        if bounds.are_placed {
+            return Self::World;
+        }
         let many = bounds.is_wide().then(|| regions(bodies.collect(), bounds));
         match many.flatten() {
             Some(regions) => Self::Many(regions),
@@ -45,53 +55,108 @@ impl Local {
     }
 }
 
-/// Whether a translation can stay as it is: f32, and within the contract.
-fn is_placed(t: [f64; 3]) -> bool {
-    t.iter()
-        .all(|&x| f64::from(x as f32) == x && x.abs() <= f64::from(LIMIT))
+/// The origins of the last cull, and the bounds of all bodies, of which they follow.
+#[derive(Clone, Debug)]
+pub(super) struct Origins {
+    local: Local,
+    /// None while each cull looks at all bodies.
+    bounds: Option<BoundsTree>,
+}
+
+impl Default for Origins {
+    fn default() -> Self {
+        Self {
+            local: Local::World,
+            bounds: None,
+        }
+    }
 }
 
 impl World {
     /// Brings all bodies near local origins, in the models that their margins and rounding call
     /// for.
     pub(super) fn place(&mut self) -> Result<(), WorldError> {
-        let (ids, slots) = (&self.ids, 0..self.ids.slots());
-        let present = slots.filter(|&slot| ids.present()[slot]);
-        let local = Local::of(present.clone().map(|slot| self.placed(slot)));
-        let mut changed = false;
-        for slot in present {
-            let (translation, composed) = self.composed(slot);
-            let (place, moved) = local.place(slot, translation);
-            if !is_within_limit(&place) {
-                self.replaced = true; // some bodies have been placed
-                return Err(WorldError::Apart(ids.id(slot as u32)));
+        let local = Local::of(self.placed_in(0..self.ids.slots()));
+        self.origins.bounds = None;
+        self.place_all(local)
+    }
+
+    /// The same where some bodies have changed since the last cull: places these, and all others if
+    /// an origin has changed. Takes note of those whose place or model is another one now.
+    pub(super) fn place_changed(&mut self) -> Result<(), WorldError> {
+        let slots = self.ids.slots();
+        let bounds = self.origins.bounds.take();
+        let of_slots = |range: Range<usize>| Bounds::of(self.placed_in(range));
+        let bounds = match bounds.filter(|bounds| bounds.has_room_for(slots)) {
+            Some(mut bounds) => {
+                for &slot in self.movers.changed() {
+                    bounds.update(slot as usize, of_slots);
+                }
+                bounds
             }
-            let moved = moved + composed;
-            let shape = self.shape[slot] as usize;
-            let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
-            let grow = |model, margin| self.culler.grow(model, margin);
-            let model = self
-                .margins
-                .model(self.models[shape], reach, margin, moved, grow);
-            let is_new = self.bodies.shape[slot] != model;
-            let is_moved = self.bodies.translation[slot] != place;
-            changed |= is_new;
-            self.replaced |= !self.bodies.dynamic[slot] && (is_new || is_moved);
-            self.bodies.shape[slot] = model;
-            self.bodies.translation[slot] = place;
+            None => BoundsTree::new(slots, of_slots),
+        };
+        let local = Local::within(bounds.whole(), self.placed_in(0..slots));
+        self.origins.bounds = Some(bounds);
+        if local != self.origins.local {
+            return self.place_all(local);
         }
-        if changed && !self.replaced {
-            self.culler.reread_shapes(&self.bodies);
+        for number in 0..self.movers.changed().len() {
+            let slot = self.movers.changed()[number] as usize;
+            if self.ids.present()[slot] {
+                self.place_body(slot, &local)?;
+            }
         }
         Ok(())
     }
 
-    /// The body in a slot, as far as its place is concerned.
-    fn placed(&self, slot: usize) -> Placed {
+    /// Places all bodies about these origins, and takes note of those whose place or model is
+    /// another one then.
+    fn place_all(&mut self, local: Local) -> Result<(), WorldError> {
+        for slot in 0..self.ids.slots() {
+            if self.ids.present()[slot] && self.place_body(slot, &local)? {
+                self.movers.note(slot, &self.ids);
+            }
+        }
+        self.origins.local = local;
+        Ok(())
+    }
+
+    /// Places the body in a slot; whether its place or its model is another one then.
+    #[inline]
+    fn place_body(&mut self, slot: usize, local: &Local) -> Result<bool, WorldError> {
         let (translation, composed) = self.composed(slot);
-        let reach = f64::from(self.shapes[self.shape[slot] as usize].reach);
-        let size = reach + f64::from(self.margin[slot]) + composed;
-        (slot, translation, size)
+        let (place, moved) = local.place(slot, translation);
+        if !is_within_limit(&place) {
+            self.replaced = true; // some bodies have been placed
+            return Err(WorldError::Apart(self.ids.id(slot as u32)));
+        }
+        let moved = moved + composed;
+        let shape = self.shape[slot] as usize;
+        let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
+        let grow = |model, margin| self.culler.grow(model, margin);
+        let model = self
+            .margins
+            .model(self.models[shape], reach, margin, moved, grow);
+        let is_new = self.bodies.shape[slot] != model;
+        let is_moved = self.bodies.translation[slot] != place;
+        self.remodelled |= is_new;
+        self.replaced |= !self.bodies.dynamic[slot] && (is_new || is_moved);
+        self.bodies.shape[slot] = model;
+        self.bodies.translation[slot] = place;
+        Ok(is_new || is_moved)
+    }
+
+    /// The bodies in some slots, as far as their places are concerned.
+    fn placed_in(&self, slots: Range<usize>) -> impl Iterator<Item = Placed> + Clone + '_ {
+        let slots = slots.start..slots.end.min(self.ids.slots());
+        let present = slots.filter(move |&slot| self.ids.present()[slot]);
+        present.map(move |slot| {
+            let (translation, composed) = self.composed(slot);
+            let reach = f64::from(self.shapes[self.shape[slot] as usize].reach);
+            let size = reach + f64::from(self.margin[slot]) + composed;
+            (slot, translation, size)
+        })
     }
 
     /// The translation of the vertices of the body in a slot, and how far from the exact one it may

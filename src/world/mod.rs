@@ -6,17 +6,16 @@
 //! margin and posed at its f64 translation, meet in exact arithmetic, and one of them is dynamic,
 //! and their groups collide, the pair is reported.
 //!
-//! Bodies that come or go leave what is known of the others: until a sixteenth of all are new, the
-//! next cull takes a sort more, and places static bodies anew. Poses, margins and groups change at
-//! the price of a copy. Lists, and their order, depend on the bodies as they are now, never on the
-//! finder, the CPU or threads ([`World::cull`]).
+//! A frame costs time for what changes: bodies that were set, inserted or removed, their
+//! neighbours, and the pairs that begin or end ([`World`]). Lists, and their order, depend on the
+//! bodies as they are now, never on the finder, the CPU or threads ([`World::cull`]).
 //!
 //! ```
 //! use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};
 //!
 //! let cube = ProceduralShape::Box { x: 1.0, y: 1.0, z: 1.0 }.build()?;
 //! let mut world = World::new(vec![Shape::build(&cube, &ShapeSpec::default())?])?;
-//! let still = world.insert(Body { dynamic: false, ..Body::default() })?;
+//! let still = world.insert(Body::default().fixed())?;
 //! let moving = world.insert(Body { translation: [5.0, 0.0, 0.0], margin: 0.05, ..Body::default() })?;
 //! world.cull()?;
 //! assert_eq!(world.pairs().len(), 0);
@@ -30,7 +29,11 @@
 mod body;
 #[cfg(feature = "shapes")]
 mod bounds;
+#[cfg(feature = "shapes")]
+mod bounds_tree;
 mod change_log;
+#[cfg(feature = "shapes")]
+mod changed;
 #[cfg(feature = "shapes")]
 mod crowds;
 #[cfg(all(feature = "shapes", feature = "serde"))]
@@ -45,6 +48,7 @@ mod local;
 mod lookup;
 #[cfg(feature = "shapes")]
 mod margins;
+mod movers;
 #[cfg(feature = "shapes")]
 mod offset;
 mod pair_log;
@@ -60,8 +64,10 @@ mod saved;
 mod shapes;
 #[cfg(all(feature = "shapes", feature = "serde"))]
 mod snapshot;
+#[cfg(feature = "shapes")]
+mod volumes;
 
-pub use crate::bodies::Groups;
+pub use crate::bodies::{Groups, Motion};
 #[cfg(feature = "shapes")]
 pub use body::Body;
 pub use error::WorldError;
@@ -79,12 +85,17 @@ pub use snapshot::WorldSnapshot;
 
 pub(crate) use self::ids::{Ids, shrink_column};
 pub(crate) use self::live_pairs::LivePairs;
+pub(crate) use self::movers::Movers;
 #[cfg(feature = "serde")]
-pub(crate) use self::saved::{IdsSnapshot, PairsSnapshot, Version, check_length, damaged};
+pub(crate) use self::saved::{
+    IdsSnapshot, PairsSnapshot, Version, check_length, resting_column, resting_slots,
+};
+#[cfg(feature = "shapes")]
+pub(crate) use self::volumes::{ShapeVolumes, compose};
 #[cfg(feature = "shapes")]
 use self::{
+    local::Origins,
     margins::{Margins, check_margin},
-    pair_log::PairLog,
     shapes::{ShapeSlot, check_shape},
 };
 #[cfg(feature = "shapes")]
@@ -98,7 +109,21 @@ use crate::{
     volume::Shape,
 };
 
-/// Bodies in slots, and their culler.
+/// A long-lived set of bodies and their culler: ids that stay, bodies at rest, groups, margins,
+/// translations in f64, and pairs as a list or as events.
+///
+/// A frame costs time for the bodies that were inserted, removed or set to another value since the
+/// last cull, for their neighbours, and for the pairs that change: nothing for all others, however
+/// many there are. All bodies are looked at, and all pairs found anew, where more than an eighth
+/// has changed, under a strategy with a budget, in the first cull, and in the first one after a
+/// world was restored, after [`Self::shrink_to_fit`] and after [`Self::cull_in_portions`]. All are
+/// placed anew, and their pairs kept, in a frame in which local origins change, or in which bodies
+/// are in far-apart regions ([`World::cull`]). Whatever a frame costs, its pairs are those of the
+/// bodies as they are.
+///
+/// A body is dynamic, resting or fixed ([`Motion`]). Pairs of two fixed bodies are never reported.
+/// A body at rest keeps its pairs, with others at rest too: putting a body to rest or waking it
+/// ends no pair and begins none.
 ///
 /// A clone goes on as the original would, on threads that it starts for itself.
 #[cfg(feature = "shapes")]
@@ -107,8 +132,9 @@ pub struct World {
     shapes: Vec<ShapeSlot>,
     /// The culler's number of each shape.
     models: Vec<u32>,
-    /// One entry a slot; empty slots keep their last body's.
+    /// One entry a slot; empty slots keep their last body's. Those that aren't fixed are dynamic.
     bodies: Bodies,
+    resting: Vec<bool>,
     ids: Ids,
     shape: Vec<u32>,
     translation: Vec<[f64; 3]>,
@@ -116,10 +142,16 @@ pub struct World {
     groups: Vec<Groups>,
     margins: Margins,
     interest: Vec<BodyId>,
+    /// Whether each slot has a body of interest.
+    is_of_interest: Vec<bool>,
     culler: Culler,
-    log: PairLog,
+    origins: Origins,
+    log: LivePairs,
+    movers: Movers,
     /// Whether the culler must take up another set of bodies, or another pose of a static one.
     replaced: bool,
+    /// Whether some body has another model than the culler knows.
+    remodelled: bool,
     regrouped: bool,
 }
 
@@ -155,6 +187,7 @@ impl World {
             models: (0..shapes.len() as u32).collect(),
             shapes: shapes.iter().map(ShapeSlot::new).collect(),
             bodies: Bodies::default(),
+            resting: Vec::new(),
             ids: Ids::default(),
             shape: Vec::new(),
             translation: Vec::new(),
@@ -162,9 +195,13 @@ impl World {
             groups: Vec::new(),
             margins: Margins::default(),
             interest: Vec::new(),
+            is_of_interest: Vec::new(),
             culler,
-            log: PairLog::default(),
+            origins: Origins::default(),
+            log: LivePairs::default(),
+            movers: Movers::default(),
             replaced: false,
+            remodelled: false,
             regrouped: false,
         })
     }
@@ -178,6 +215,8 @@ impl World {
         self.check(slot, &body)?;
         if self.ids.take() {
             self.bodies.push(0, true, [0.0f32; 4], [0.0f32; 3]);
+            self.resting.push(false);
+            self.is_of_interest.push(false);
             self.shape.push(0);
             self.translation.push([0.0; 3]);
             self.margin.push(0.0);
@@ -186,6 +225,7 @@ impl World {
         }
         self.shapes[body.shape as usize].bodies += 1;
         self.put(slot, body);
+        self.movers.note(slot, &self.ids);
         self.replaced = true;
         Ok(self.ids.id(slot as u32))
     }
@@ -197,6 +237,8 @@ impl World {
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
         self.ids.remove(id)?;
         self.shapes[self.shape[id.slot()] as usize].bodies -= 1;
+        self.is_of_interest[id.slot()] = false;
+        self.movers.note(id.slot(), &self.ids);
         self.replaced = true;
         Ok(())
     }
@@ -225,22 +267,32 @@ impl World {
         self.ids().map(|id| (id, self.body_at(id.slot())))
     }
 
-    /// Changes a body in any of its properties. A dynamic body's pose may change by any amount:
-    /// nothing is assumed of the way between two culls.
+    /// Changes a body in any of its properties. A pose may change by any amount: nothing is assumed
+    /// of the way between two culls. A body that has all properties already costs nothing.
     ///
     /// # Errors
     /// A body that has been removed; a pose, shape or margin outside of the contract.
     pub fn set(&mut self, id: BodyId, body: Body) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
         self.check(slot, &body)?;
-        self.replaced |= !body.dynamic || !self.bodies.dynamic[slot];
+        let (is_dynamic, was_dynamic) = (body.motion.is_dynamic(), self.bodies.dynamic[slot]);
+        let is_same = self.is_at(slot, body.rotation, body.translation)
+            && body.margin.to_bits() == self.margin[slot].to_bits()
+            && body.shape == self.shape[slot]
+            && is_dynamic == was_dynamic
+            && body.groups == self.groups[slot];
+        if !is_same {
+            self.replaced |= !is_dynamic || !was_dynamic;
+            self.movers.note(slot, &self.ids);
+        }
         self.shapes[self.shape[slot] as usize].bodies -= 1;
         self.shapes[body.shape as usize].bodies += 1;
         self.put(slot, body);
         Ok(())
     }
 
-    /// Moves a body: a step or a teleport.
+    /// Moves a body: a step or a teleport. One that is there already costs nothing, and a body at
+    /// rest stays at rest.
     ///
     /// # Errors
     /// A body that has been removed; a pose outside of the contract.
@@ -253,10 +305,28 @@ impl World {
         let (rotation, translation) = (rotation.into(), translation.into());
         let slot = self.ids.slot(id)?;
         in_default_mode(|| check_pose(slot, &rotation, &translation))?;
-        self.replaced |= !self.bodies.dynamic[slot];
-        self.bodies.rotation[slot] = rotation;
-        self.translation[slot] = translation;
+        if !self.is_at(slot, rotation, translation) {
+            self.replaced |= !self.bodies.dynamic[slot];
+            self.movers.note(slot, &self.ids);
+            self.bodies.rotation[slot] = rotation;
+            self.translation[slot] = translation;
+        }
         Ok(())
+    }
+
+    /// Puts a body to rest, wakes it, or fixes it. The first two change no pair and cost nothing.
+    ///
+    /// # Errors
+    /// A body that has been removed.
+    pub fn set_motion(&mut self, id: BodyId, motion: Motion) -> Result<(), WorldError> {
+        let body = self.body(id)?;
+        self.set(id, Body { motion, ..body })
+    }
+
+    /// Whether the body in a slot has this pose, bit by bit.
+    fn is_at(&self, slot: usize, rotation: [f32; 4], translation: [f64; 3]) -> bool {
+        rotation.map(f32::to_bits) == self.bodies.rotation[slot].map(f32::to_bits)
+            && translation.map(f64::to_bits) == self.translation[slot].map(f64::to_bits)
     }
 
     /// The bodies of interest from now on, for the strategies that look for them.
@@ -267,7 +337,13 @@ impl World {
         for &id in ids {
             self.ids.slot(id)?;
         }
-        self.interest = ids.to_vec();
+        let former = std::mem::replace(&mut self.interest, ids.to_vec());
+        for id in former.iter().chain(ids) {
+            if self.contains(*id) {
+                self.is_of_interest[id.slot()] = false;
+                self.movers.note(id.slot(), &self.ids);
+            }
+        }
         self.look();
         Ok(())
     }
@@ -283,35 +359,43 @@ impl World {
     /// Bodies that can't be placed within 2⁶⁰ of an origin, which takes meshes far from their own
     /// origins; [`Self::pairs`] are still those of the cull before.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
-        self.cull_with(|culler, bodies| culler.cull(bodies).map(|_| ()))
+        if !self.cull_changed(usize::MAX) {
+            self.cull_all(|culler, bodies| culler.cull(bodies).map(|_| ()))?;
+        }
+        Ok(self.log.pairs(&self.ids))
     }
 
-    /// Culls by this function of the culler, which leaves the pairs in its list.
-    fn cull_with(
+    /// Finds all pairs anew by this function of the culler, which leaves them in its list.
+    fn cull_all(
         &mut self,
         cull: impl FnOnce(&mut Culler, &Bodies) -> Result<(), CullError>,
-    ) -> Result<WorldPairs<'_>, WorldError> {
+    ) -> Result<(), WorldError> {
         self.prepare()?;
-        let mut list = self.log.take();
+        let mut list = self.log.take(&self.ids);
         self.culler.swap_pairs(&mut list);
         let outcome = cull(&mut self.culler, &self.bodies);
         self.culler.swap_pairs(&mut list);
         self.log.put(list, &self.ids);
         outcome?;
-        Ok(self.log.pairs())
+        self.movers.all_found();
+        Ok(())
     }
 
-    /// Brings the culler up to date with the bodies.
+    /// Brings the culler up to date with the bodies, to find all pairs anew. Until
+    /// [`Movers::all_found`], the next cull does so too.
     fn prepare(&mut self) -> Result<(), WorldError> {
+        self.movers.lose_pairs();
         in_default_mode(|| self.place())?;
         self.sweep_margins(true);
-        if self.replaced {
+        if std::mem::take(&mut self.replaced) {
             self.culler.exchange(&self.bodies, self.ids.present());
-            self.replaced = false;
             if !self.interest.is_empty() {
                 self.look(); // another body may have taken the slot of one that was of interest
             }
+        } else if self.remodelled {
+            self.culler.reread_shapes(&self.bodies);
         }
+        self.remodelled = false;
         if self.regrouped {
             let all = self.groups.iter().all(|&groups| groups == Groups::ALL);
             self.culler
@@ -324,13 +408,14 @@ impl World {
 
     /// The pairs of the last cull, the lower slot first, sorted by slots.
     pub fn pairs(&self) -> impl ExactSizeIterator<Item = [BodyId; 2]> + '_ {
-        self.log.pairs().iter()
+        self.log.pairs(&self.ids).iter()
     }
 
     /// What the last cull reports that it didn't at the last call of this, and the other way round.
-    /// The events are apart from the world: bodies may be removed while they are read.
+    /// The events are apart from the world: bodies may be removed while they are read. Drop them
+    /// before the next cull, which otherwise copies the pairs.
     pub fn events(&mut self) -> Events {
-        self.log.events()
+        self.log.events(&self.ids)
     }
 
     /// Number of bodies.
@@ -369,17 +454,21 @@ impl World {
         self.culler.seconds()
     }
 
-    /// Tells the culler of the bodies of interest that are still there.
+    /// Marks the bodies of interest that are still there, and tells the culler of them.
     fn look(&mut self) {
         let living = |id: &BodyId| self.ids.slot(*id).is_ok();
         let slots = self.interest.iter().filter(|id| living(id));
-        let slots = slots.map(|id| id.slot).collect();
+        let slots: Vec<u32> = slots.map(|id| id.slot).collect();
+        for &slot in &slots {
+            self.is_of_interest[slot as usize] = true;
+        }
         self.culler.set_interest(Interest::Bodies(slots));
     }
 
     fn put(&mut self, slot: usize, body: Body) {
         self.regrouped |= self.groups[slot] != body.groups;
-        self.bodies.dynamic[slot] = body.dynamic;
+        self.bodies.dynamic[slot] = body.motion.is_dynamic();
+        self.resting[slot] = body.motion == Motion::Resting;
         self.bodies.rotation[slot] = body.rotation;
         self.shape[slot] = body.shape;
         self.translation[slot] = body.translation;
@@ -390,7 +479,7 @@ impl World {
     fn body_at(&self, slot: usize) -> Body {
         Body {
             shape: self.shape[slot],
-            dynamic: self.bodies.dynamic[slot],
+            motion: Motion::of(self.bodies.dynamic[slot], self.resting[slot]),
             rotation: self.bodies.rotation[slot],
             translation: self.translation[slot],
             groups: self.groups[slot],

@@ -7,7 +7,7 @@
 use crate::rounding::pose::{OFFSET_ERROR, rotate_of, rotation};
 
 /// Where the origin of a body's vertices lies, and how far from the exact place that may be.
-pub(super) fn compose(q: [f32; 4], t: [f64; 3], offset: [f64; 3]) -> ([f64; 3], f64) {
+pub(crate) fn compose(q: [f32; 4], t: [f64; 3], offset: [f64; 3]) -> ([f64; 3], f64) {
     if offset == [0.0; 3] {
         return (t, 0.0);
     }

@@ -24,7 +24,7 @@ type Cell = [f64; 3];
 const ROWS: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1.0], [1.0, -1.0], [1.0, 0.0], [1.0, 1.0]];
 
 /// All regions, and which of them each slot belongs to.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Regions {
     regions: Vec<Region>,
     of_slot: Vec<u32>,

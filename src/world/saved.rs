@@ -72,6 +72,25 @@ pub(crate) fn check_length(
     ))
 }
 
+/// The slots of bodies at rest, sorted.
+pub(crate) fn resting_slots(resting: &[bool]) -> Vec<u32> {
+    let slots = (0..).zip(resting);
+    let at_rest = slots.filter(|(_, is_resting)| **is_resting);
+    at_rest.map(|(slot, _)| slot).collect()
+}
+
+/// Whether the body in each slot is at rest.
+pub(crate) fn resting_column(at_rest: &[u32], slots: usize) -> Result<Vec<bool>, SnapshotError> {
+    let mut resting = vec![false; slots];
+    for &slot in at_rest {
+        match resting.get_mut(slot as usize) {
+            Some(is_resting) => *is_resting = true,
+            None => return damaged(format!("slot {slot} of {slots} is at rest")),
+        }
+    }
+    Ok(resting)
+}
+
 /// The version of a snapshot, which comes first in it. Another one isn't read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "u32", into = "u32")]

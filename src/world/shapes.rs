@@ -108,8 +108,12 @@ impl World {
     /// some body it is; other slab directions than the other shapes have. Nothing is replaced.
     pub fn replace_shape(&mut self, number: u32, shape: &Shape) -> Result<(), WorldError> {
         let at = self.shape_at(number)?;
-        for id in self.ids.iter().filter(|id| self.shape[id.slot()] == number) {
-            super::check_margin(id.slot(), shape.reach, self.margin[id.slot()])?;
+        let with_shape = self.ids.iter().map(|id| id.slot());
+        let with_shape: Vec<usize> = with_shape
+            .filter(|&slot| self.shape[slot] == number)
+            .collect();
+        for &slot in &with_shape {
+            super::check_margin(slot, shape.reach, self.margin[slot])?;
         }
         self.culler.replace_shape(self.models[at], shape)?;
         self.remove_grown(self.models[at]);
@@ -118,6 +122,9 @@ impl World {
             bodies,
             ..ShapeSlot::new(shape)
         };
+        for slot in with_shape {
+            self.movers.note(slot, &self.ids);
+        }
         self.replaced = true; // bodies that don't move have it, too
         Ok(())
     }

@@ -9,9 +9,13 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::saved::{IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged};
+use super::local::Origins;
+use super::saved::{
+    IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged, resting_column,
+    resting_slots,
+};
 use super::shapes::{ShapeSlot, check_shape};
-use super::{BodyId, Groups, World, check_margin, check_pose};
+use super::{BodyId, Groups, LivePairs, World, check_margin, check_pose};
 use crate::bodies::Bodies;
 use crate::strategy::RefinementRanks;
 
@@ -26,6 +30,9 @@ pub struct WorldSnapshot {
     ids: IdsSnapshot,
     shape: Vec<u32>,
     dynamic: Vec<bool>,
+    /// Slots of bodies at rest, sorted.
+    #[serde(default)]
+    resting: Vec<u32>,
     rotation: Vec<[u32; 4]>,
     translation: Vec<[u64; 3]>,
     margin: Vec<u32>,
@@ -80,6 +87,7 @@ impl World {
             ids: IdsSnapshot::of(&self.ids),
             shape: self.shape.clone(),
             dynamic: self.bodies.dynamic.clone(),
+            resting: resting_slots(&self.resting),
             rotation: self.bodies.rotation.iter().map(|q| q.map(bits)).collect(),
             translation: self
                 .translation
@@ -89,7 +97,7 @@ impl World {
             margin: self.margin.iter().copied().map(bits).collect(),
             groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
             interest: self.interest.clone(),
-            pairs: PairsSnapshot::of(&self.log),
+            pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
             answers: self.culler.answers().0,
         }
     }
@@ -142,7 +150,8 @@ impl World {
                 counts[shape as usize] += 1;
             }
         }
-        let log = snapshot.pairs.restored(&ids)?;
+        let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
+        let resting = resting_column(&snapshot.resting, slots)?;
         let answers = checked(&snapshot.answers, slots)?;
 
         self.bodies = Bodies {
@@ -151,7 +160,7 @@ impl World {
             rotation,
             translation: vec![[0.0; 3]; slots],
         };
-        (self.ids, self.log) = (ids, log);
+        (self.ids, self.log, self.resting) = (ids, log, resting);
         (self.shape, self.translation, self.margin) = (snapshot.shape.clone(), translation, margin);
         let groups = snapshot.groups.iter();
         self.groups = groups
@@ -161,8 +170,11 @@ impl World {
             shape.bodies = bodies;
         }
         self.interest.clone_from(&snapshot.interest);
+        self.is_of_interest = vec![false; slots];
         self.culler.set_answers(&answers);
         self.look();
+        self.movers.forget();
+        self.origins = Origins::default();
         (self.replaced, self.regrouped) = (true, true);
         Ok(())
     }

@@ -149,28 +149,6 @@ fn inconsistent_numbers_are_found() {
     assert!(said.contains("two ways to give one number"), "{said}");
 }
 
-/// A figure of a record is its copy.
-#[test]
-fn figure_is_copied_from_record() {
-    let root = repository();
-    let record = root.path().join("data/record/box/reproduce");
-    std::fs::create_dir_all(record.join("figures")).unwrap();
-    std::fs::write(record.join("figures/costs.svg"), "<svg>1.5 ms</svg>\n").unwrap();
-    std::fs::write(
-        root.path().join("data/record/quoted.toml"),
-        "machine = \"box\"\n",
-    )
-    .unwrap();
-    adopt(root.path(), "reproduce", "box");
-    let rendered = sdop(&["report", "--root", text(root.path())]);
-    assert_eq!(rendered.status.code(), Some(0));
-    assert_eq!(check(root.path()).0, Some(0));
-    edit(&root.path().join("paper/figures/costs.svg"), "1.5", "1.4");
-    let (code, said) = check(root.path());
-    assert_eq!(code, Some(1));
-    assert!(said.contains("paper/figures/costs.svg"), "{said}");
-}
-
 /// The figure and its part of a page appear with the record.
 #[test]
 fn figure_is_drawn_from_table() {
@@ -321,6 +299,21 @@ fn fresh_results_make_their_pages() {
         assert!(made.contains(last), "{page}");
         assert!(!made.contains("NaN"), "{page}");
     }
+    // Figures are drawn from the records' numbers: here by the program that has just drawn them.
+    for (record, name) in [
+        (&reproduced, "costs.svg"),
+        (&reproduced, "useful_tests.svg"),
+        (&compared, "tradeoff.svg"),
+    ] {
+        let own = std::fs::read_to_string(record.join("figures").join(name)).unwrap();
+        let drawn = std::fs::read_to_string(root.join("paper/figures").join(name)).unwrap();
+        assert_eq!(own, drawn, "{name}");
+    }
+    assert_eq!(check(root).0, Some(0));
+    edit(&root.join("paper/figures/costs.svg"), "Nu·Cu", "Nu·Cv");
+    let (code, said) = check(root);
+    assert_eq!(code, Some(1));
+    assert!(said.contains("paper/figures/costs.svg"), "{said}");
 }
 
 /// Two records compare by counts and by intervals.

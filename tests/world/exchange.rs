@@ -20,7 +20,7 @@ fn drifting(random: &mut Random, small: u32) -> Body {
     };
     Body {
         shape,
-        dynamic: random.below(5) > 0,
+        motion: super::motion(random.below(5) > 0),
         rotation: [(); 4].map(|()| random.unit()),
         translation: [(); 3].map(|()| f64::from(random.unit() * 14.0)),
         ..Body::default()
@@ -101,7 +101,7 @@ fn a_world_whose_few_bodies_come_and_go_loses_no_pair() {
 fn drift(random: &mut Random, ids: &[BodyId], worlds: &mut [World]) {
     for &id in ids {
         let mut body = worlds[0].body(id).unwrap();
-        if body.dynamic {
+        if body.motion.is_dynamic() {
             for x in &mut body.translation {
                 *x += f64::from(random.unit()) * 0.02;
             }

@@ -3,7 +3,7 @@
 
 use sdop::culler::Culler;
 use sdop::settings::{CullSettings, DirectionSet, Interest, Strategy};
-use sdop::world::{Body, BodyId, Groups, PairLookup, World, WorldError};
+use sdop::world::{Body, BodyId, Groups, Motion, PairLookup, World, WorldError};
 
 use super::shapes;
 
@@ -127,7 +127,7 @@ fn a_body_at_a_pose_moves_and_collides_with_all() {
     let (turn, place) = ([0.5, -0.5, 0.5, 0.5], [1.0, -2.0, 3.0]);
     let body = Body {
         shape: 2,
-        dynamic: true,
+        motion: Motion::Dynamic,
         rotation: turn,
         translation: place,
         groups: Groups::ALL,

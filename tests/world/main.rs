@@ -8,6 +8,7 @@ mod far;
 mod lives;
 mod many;
 mod margins;
+mod movers;
 mod pair_test;
 mod regions;
 mod saves;
@@ -21,7 +22,7 @@ use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Strategy, Updates};
 use sdop::volume::{Origin, Shape, ShapeSpec};
-use sdop::world::{Body, BodyId, Groups, PairLookup, World, WorldError};
+use sdop::world::{Body, BodyId, Groups, Motion, PairLookup, World, WorldError};
 
 struct Random(ChaCha8Rng);
 
@@ -38,7 +39,7 @@ impl Random {
     fn body(&mut self, shapes: u32) -> Body {
         Body {
             shape: self.below(shapes),
-            dynamic: self.below(4) > 0,
+            motion: motion(self.below(4) > 0),
             rotation: [(); 4].map(|()| self.unit()),
             translation: [(); 3].map(|()| f64::from(self.unit() * 6.0)),
             groups: Groups {
@@ -47,6 +48,15 @@ impl Random {
             },
             margin: 0.0,
         }
+    }
+}
+
+/// Of a body that moves, or of one that is fixed.
+fn motion(moves: bool) -> Motion {
+    if moves {
+        Motion::Dynamic
+    } else {
+        Motion::Fixed
     }
 }
 
@@ -102,7 +112,7 @@ fn afresh(shapes: &[Shape], way: &CullSettings, bodies: &HashMap<BodyId, Body>) 
     for id in &order {
         let body = bodies[id];
         let t = body.translation.map(|x| x as f32);
-        columns.push(body.shape, body.dynamic, body.rotation, t);
+        columns.push(body.shape, body.motion.is_dynamic(), body.rotation, t);
     }
     let settings = CullSettings {
         interest: Some(sdop::settings::Interest::Bodies(Vec::new())),

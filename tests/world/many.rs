@@ -55,7 +55,7 @@ fn drawn(random: &mut Random) -> Body {
         shape: random.below(SHAPES),
         margin,
         translation,
-        dynamic: random.below(4) > 0,
+        motion: super::motion(random.below(4) > 0),
         ..Body::default()
     }
 }
@@ -119,7 +119,7 @@ fn pairs_follow_from_their_own_bodies() {
                 let bodies: Vec<(BodyId, Body)> = world.bodies().collect();
                 for (at, (i, a)) in bodies.iter().enumerate() {
                     for (j, b) in &bodies[at + 1..] {
-                        if !a.dynamic && !b.dynamic {
+                        if !a.motion.is_dynamic() && !b.motion.is_dynamic() {
                             continue;
                         }
                         let is_reported = pairs.binary_search(&[*i, *j]).is_ok();

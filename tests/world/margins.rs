@@ -5,7 +5,7 @@ use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Strategy};
 use sdop::volume::{Axes, DirectionSet, Shape, ShapeSpec};
-use sdop::world::{Body, BodyId, World};
+use sdop::world::{Body, BodyId, Motion, World};
 use sdop_judge::ours::ways::{variants, ways};
 
 /// A cube of edge 2.
@@ -165,9 +165,9 @@ fn a_margin_that_changes_counts_from_the_next_cull_on() {
         ..Body::default()
     };
     for way in ways(k, axes) {
-        for dynamic in [true, false] {
+        for motion in [Motion::Dynamic, Motion::Fixed] {
             let first = Body {
-                dynamic,
+                motion,
                 ..Body::default()
             };
             let (mut world, [a, b]) = two(&way, &shape, [first, away]);

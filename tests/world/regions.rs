@@ -7,9 +7,9 @@ use sdop::culler::Culler;
 use sdop::mesh::{ProceduralShape, TriangleMesh};
 use sdop::settings::{CullSettings, Strategy};
 use sdop::volume::{Shape, ShapeSpec};
-use sdop::world::{Body, BodyId, World, WorldError};
+use sdop::world::{Body, BodyId, Motion, World, WorldError};
 
-use super::Random;
+use super::{Random, motion};
 
 /// Half the sides of cubes: ordinary ones, small ones and giants.
 const HALF: [f64; 3] = [1.0, 0.0625, 2048.0];
@@ -33,7 +33,7 @@ fn near(random: &mut Random, base: [f64; 3], wide: f64) -> Body {
     let unit = [(); 3].map(|()| f64::from(random.unit()));
     Body {
         shape: random.below(2),
-        dynamic: random.below(4) > 0,
+        motion: motion(random.below(4) > 0),
         translation: std::array::from_fn(|i| base[i] + wide * unit[i]),
         ..Body::default()
     }
@@ -50,7 +50,7 @@ fn assert_no_pair_is_missed(world: &World, pairs: &[[BodyId; 2]]) {
     let bodies: Vec<(BodyId, Body)> = world.bodies().collect();
     for (at, (i, a)) in bodies.iter().enumerate() {
         for (j, b) in &bodies[at + 1..] {
-            let asked = (a.dynamic || b.dynamic) && meet(a, b);
+            let asked = (a.motion.is_dynamic() || b.motion.is_dynamic()) && meet(a, b);
             let is_reported = pairs.binary_search(&[*i, *j]).is_ok();
             assert!(is_reported || !asked, "{a:?} {b:?}");
         }
@@ -93,10 +93,10 @@ fn pairs_follow_from_present_bodies() {
             let draw = random.below(8);
             if all_change && draw == 0 {
                 world.remove(id).unwrap();
-            } else if frame % 11 == 10 || (draw < 4 && (all_change || body.dynamic)) {
+            } else if frame % 11 == 10 || (draw < 4 && (all_change || body.motion.is_dynamic())) {
                 let moved = place(&mut random);
-                let dynamic = moved.dynamic || !all_change;
-                world.set(id, Body { dynamic, ..moved }).unwrap();
+                let motion = motion(moved.motion.is_dynamic() || !all_change);
+                world.set(id, Body { motion, ..moved }).unwrap();
             }
         }
         if all_change {
@@ -153,7 +153,7 @@ fn giants_elsewhere_add_few_pairs() {
         let mut one = world();
         for _ in 0..30 {
             let mut body = near(&mut random, base, 1.5);
-            (body.shape, body.dynamic) = (1, true);
+            (body.shape, body.motion) = (1, Motion::Dynamic);
             if place == 7 {
                 body.shape = 2;
             }
@@ -194,7 +194,7 @@ fn refusals_follow_from_present_bodies() {
     let mut seen = [0; 2];
     for frame in 0..400 {
         let body = |random: &mut Random| Body {
-            dynamic: random.below(3) > 0,
+            motion: motion(random.below(3) > 0),
             rotation: [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]][random.below(2) as usize],
             translation: std::array::from_fn(|i| match i {
                 0 => 1.1e18 * (f64::from(random.below(3)) - 1.0),
@@ -210,10 +210,10 @@ fn refusals_follow_from_present_bodies() {
             let draw = random.below(4);
             if all_change && draw == 0 {
                 world.remove(id).unwrap();
-            } else if draw < 2 && (all_change || was.dynamic) {
+            } else if draw < 2 && (all_change || was.motion.is_dynamic()) {
                 let next = body(&mut random);
-                let dynamic = next.dynamic || !all_change;
-                world.set(id, Body { dynamic, ..next }).unwrap();
+                let motion = motion(next.motion.is_dynamic() || !all_change);
+                world.set(id, Body { motion, ..next }).unwrap();
             }
         }
         if all_change {

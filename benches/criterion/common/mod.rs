@@ -14,7 +14,7 @@ use sdop::bodies::Bodies;
 use sdop::counters::{Counters, Seconds};
 use sdop::culler::Culler;
 use sdop::settings::{CullSettings, Strategy, TestedVolume};
-use sdop_bench::cost::calibrate;
+use sdop_bench::cost::design;
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::simulate::Trajectory;
 
@@ -43,8 +43,8 @@ pub fn scene(name: &str) -> Scene {
     scene_file(name).build().unwrap()
 }
 
-/// The calibration scenes of the paper's 500 objects, named by their number of bodies and the side
-/// of their box.
+/// The calibration scenes of the paper's objects, for as many as fit the cache of 500: named by
+/// their number of bodies and the side of their box.
 pub fn calibration_scenes() -> Vec<(String, Scene)> {
     let named = |scene: Scene| {
         (
@@ -52,7 +52,7 @@ pub fn calibration_scenes() -> Vec<(String, Scene)> {
             scene,
         )
     };
-    calibrate::scenes(&scene("paper-500")).map(named).collect()
+    design::scenes(&scene("paper-500")).map(named).collect()
 }
 
 /// The first frames of a scene.

@@ -11,6 +11,7 @@ mod check;
 mod cmp;
 mod completions;
 mod cost;
+mod curves;
 mod files;
 mod judge;
 mod man;

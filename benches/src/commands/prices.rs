@@ -4,16 +4,18 @@ use sdop_bench::cost::table::PriceRow;
 use sdop_bench::reproduce::Estimate;
 
 /// The columns, each with its unit.
-pub const COLUMNS: [&str; 9] = [
+pub const COLUMNS: [&str; 11] = [
     "strategy",
     "volume",
     "Co, ms",
     "Cu, ns",
     "F, ns per frame",
     "F, ns per body",
+    "F, ns per body with hits",
     "F, ns per listed pair",
     "Cv hit, ns",
     "Cv miss, ns",
+    "Cv further slab, ns",
 ];
 
 /// The cells, numbers written by `number`.
@@ -26,8 +28,10 @@ pub fn cells(price: &PriceRow, number: impl Fn(&Estimate) -> String) -> Vec<Stri
         ns(&price.update),
         ns(&price.frame),
         ns(&price.body),
+        ns(&price.row),
         ns(&price.handle),
         ns(&price.hit),
         ns(&price.miss),
+        ns(&price.further),
     ]
 }

@@ -9,9 +9,9 @@ use std::sync::Arc;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_bench::report::{CodeVersion, Quantities, Store, pages};
 
-use super::Outcome;
 use super::files::write;
 use super::output::{print, rows};
+use super::{Outcome, reproduce, tradeoff};
 
 /// Pages that people write, with blocks whose numbers come from records or without any.
 const PAGES_WITH_BLOCKS: [&str; 10] = [
@@ -27,38 +27,21 @@ const PAGES_WITH_BLOCKS: [&str; 10] = [
     "data/hard_cases/README.md",
 ];
 
-/// Figures that an experiment draws; they are part of its record, and these are copies.
-const FIGURES: [(&str, &str); 8] = [
-    ("reproduce/figures/costs.svg", "paper/figures/costs.svg"),
-    (
-        "reproduce/figures/frame_rates.svg",
-        "paper/figures/frame_rates.svg",
-    ),
-    (
-        "reproduce/figures/residuals.svg",
-        "paper/figures/residuals.svg",
-    ),
-    ("reproduce/figures/sphere.svg", "paper/figures/sphere.svg"),
-    (
-        "reproduce/figures/useful_tests.svg",
-        "paper/figures/useful_tests.svg",
-    ),
-    (
-        "tradeoff/figures/tradeoff.svg",
-        "paper/figures/tradeoff.svg",
-    ),
-    (
-        "tradeoff/figures/tradeoff-pays.svg",
-        "paper/figures/tradeoff-pays.svg",
-    ),
-    (
-        "tradeoff/figures/tradeoff-budget.svg",
-        "paper/figures/tradeoff-budget.svg",
-    ),
+/// Where figures are.
+const FIGURES: &str = "paper/figures";
+
+/// The figures that are made of a record's text, each with its file's name.
+type Figures = fn(&str) -> miette::Result<Vec<(String, String)>>;
+
+/// The results that figures are drawn from, by the program that is run, whatever drew those that
+/// the record has.
+const DRAWN: [(&str, Figures); 2] = [
+    ("reproduce/results.json", reproduce::figures_of),
+    ("tradeoff/tradeoff.json", tradeoff::figures_of),
 ];
 
 /// The table that a figure is drawn from, and the figure.
-const FAR_FIGURE: (&str, &str) = ("kernels/far/far.csv", "paper/figures/far.svg");
+const FAR_FIGURE: (&str, &str) = ("kernels/far/far.csv", "far.svg");
 
 /// Macros that pages share.
 const MACROS: &str = "paper/quantities.jinja";
@@ -115,9 +98,11 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
             problems.push(error.to_string());
         }
     }
-    for (from, to) in FIGURES {
+    for (from, draw) in DRAWN {
         if let Ok(text) = whole.text(from) {
-            problems.extend(figure(args, &whole.place(from), &text, to)?);
+            for (name, svg) in draw(&text).wrap_err_with(|| format!("cannot draw {from}"))? {
+                problems.extend(figure(args, &whole.place(from), &svg, &name)?);
+            }
         }
     }
     if let (table, to) = FAR_FIGURE
@@ -225,8 +210,9 @@ fn list(quantities: &Quantities) -> miette::Result<()> {
 }
 
 /// Writes a figure of the record that is quoted, or says that the one which is there differs.
-fn figure(args: &Args, from: &str, text: &str, to: &str) -> miette::Result<Option<String>> {
-    let path = args.root.join(to);
+fn figure(args: &Args, from: &str, text: &str, name: &str) -> miette::Result<Option<String>> {
+    let to = format!("{FIGURES}/{name}");
+    let path = args.root.join(&to);
     if std::fs::read_to_string(&path).is_ok_and(|copy| copy == text) {
         return Ok(None);
     }

@@ -221,11 +221,25 @@ fn write_all(numbers: &Path, paper: &Path, recorded: &RecordedTradeoff) -> miett
     write(&numbers.join("tradeoff.json"), &json)?;
     write(&numbers.join("tradeoff.csv"), &csv)?;
     write(&numbers.join("tradeoff-seeds.csv"), &seeds)?;
-    let figures = paper.join("figures");
-    write(&figures.join("tradeoff.svg"), &plot::precision(result)?)?;
-    write(
-        &figures.join("tradeoff-pays.svg"),
-        &plot::break_even(result)?,
-    )?;
-    write(&figures.join("tradeoff-budget.svg"), &plot::budget(result)?)
+    for (name, svg) in figures(result)? {
+        write(&paper.join("figures").join(name), &svg)?;
+    }
+    Ok(())
+}
+
+/// The figures of a record's `tradeoff.json`, each with its file's name.
+///
+/// # Errors
+/// Another text.
+pub fn figures_of(recorded: &str) -> miette::Result<Vec<(String, String)>> {
+    let recorded: RecordedTradeoff = serde_json::from_str(recorded).into_diagnostic()?;
+    figures(&recorded.result)
+}
+
+fn figures(result: &Tradeoff) -> miette::Result<Vec<(String, String)>> {
+    Ok(vec![
+        ("tradeoff.svg".into(), plot::precision(result)?),
+        ("tradeoff-pays.svg".into(), plot::break_even(result)?),
+        ("tradeoff-budget.svg".into(), plot::budget(result)?),
+    ])
 }

@@ -2,13 +2,18 @@
 //!
 //! An update stage follows Nu; finding follows frames, bodies, misses and hits; the second test
 //! follows its tests. Prices are therefore marginal: a hit costs what one more hit costs among the
-//! misses around it, with the vector of lanes that it keeps busy. A second test always sees about
-//! the same share of hits, so that no choice of scenes could tell the price of a hit from that of a
-//! miss: lists of known shares do ([`Split`]), and the frames themselves set the level.
+//! misses around it, with the vector of lanes that it keeps busy. Volumes are priced where they are
+//! alone: spheres under the strategy of spheres, or-DOPs under the sequential S-DOP of the same
+//! settings. What another strategy takes beyond them is its own: per frame, and per pair that it
+//! lists. A second test always sees about the same share of hits, so that no choice of scenes could
+//! tell the price of a hit from that of a miss: lists of known shares do ([`Split`]), and the
+//! frames themselves set the level.
 
 use super::VolumeCosts;
+use super::expected;
 use super::fit::{self, Measurement};
-use super::predict::{Price, Prices};
+use super::level::CacheLevel;
+use super::predict::{FirstTest, Price, Prices, Terms};
 use crate::hull_test::HullTest;
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::culling::Stages;
@@ -18,6 +23,7 @@ use crate::random::Stream;
 use sdop::bodies::Bodies;
 use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
+use sdop::settings::Strategy;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 
@@ -110,105 +116,105 @@ fn mixture(listed: &[[u32; 2]], kept: &[[u32; 2]], quarters: usize) -> Option<Pa
     Some(all.into_iter().collect())
 }
 
-/// The prices of spheres alone: an update, and a hit.
-pub(super) fn spheres(turns: &[Observed]) -> VolumeCosts {
-    alone(Volume::Sphere, turns)
+/// A variant's turns in a round.
+pub(super) struct Calibrated<'a> {
+    pub variant: &'a Variant,
+    pub turns: &'a [Observed],
+    /// Seconds of building each of its volumes of all shapes.
+    pub built: Vec<f64>,
+    pub splits: &'a [Split],
 }
 
-/// Explains a variant's turns. `built` has the seconds of building each volume of all shapes;
-/// `spheres` is what spheres alone cost on the same scenes.
-pub(super) fn prices(
-    variant: &Variant,
-    turns: &[Observed],
-    built: &[f64],
-    splits: &[Split],
-    spheres: &VolumeCosts,
-) -> Prices {
-    let volumes = variant.volumes();
-    let mut costs: Vec<VolumeCosts> = match *volumes.as_slice() {
-        [] => Vec::new(),
-        [only] => vec![alone(only, turns)],
-        // What hulls test is timed apart, and their poses are made with their tests.
-        [before, Volume::Hull] => vec![alone(before, turns), second(Volume::Hull, turns, splits)],
-        [before, last, ..] => {
-            let [per_frame, own] = update(last, turns, (before, spheres.update));
-            let one = first(before, turns, [per_frame, spheres.update], |s| s.finding);
-            let other = second(last, turns, splits);
-            let handle = (one.hit - spheres.hit).max(0.0);
-            let one = VolumeCosts {
-                handle,
-                hit: one.hit - handle,
-                ..one
-            };
-            vec![
-                one,
-                VolumeCosts {
-                    update: own,
-                    ..other
-                },
-            ]
+/// What holds for all variants of a round.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Round {
+    pub lanes: usize,
+    pub level: CacheLevel,
+}
+
+/// The prices of every variant. Among them are spheres alone, and for each that refines its
+/// [anchor].
+pub(super) fn prices(all: &[Calibrated<'_>], round: Round) -> Vec<Prices> {
+    let spheres = all
+        .iter()
+        .find(|one| one.variant.volumes() == [Volume::Sphere]);
+    let spheres = spheres.map_or_else(VolumeCosts::default, |one| {
+        alone(Volume::Sphere, one.turns, round.lanes)
+    });
+    let refined = |one: &Calibrated<'_>| {
+        let wanted = anchor(one.variant)?;
+        let is_anchor = |other: &&Calibrated<'_>| {
+            (&other.variant.settings, other.variant.hulls) == (&wanted.settings, false)
+        };
+        let anchor = all.iter().find(is_anchor)?;
+        Some(refining(anchor, &spheres, round.lanes))
+    };
+    let of = |one: &Calibrated<'_>| {
+        let costs = match *one.variant.volumes().as_slice() {
+            [] => Vec::new(),
+            [Volume::Sphere] => vec![spheres],
+            [only] => vec![alone(only, one.turns, round.lanes)],
+            [_, Volume::Hull] => vec![spheres, hulls(one)],
+            [_, ..] => {
+                let second = refined(one).unwrap_or_default();
+                vec![spheres, beyond(one, [spheres, second], round)]
+            }
+        };
+        Prices {
+            variant: one.variant.name.clone(),
+            level: round.level,
+            lanes: round.lanes,
+            volumes: constructed(one, costs),
         }
     };
-    let [empty, body] = fit::prices(
-        &turns
-            .iter()
-            .map(|turn| Measurement {
-                counts: [1.0, turn.bodies as f64],
-                seconds: turn.construct,
-            })
-            .collect::<Vec<_>>(),
-    );
-    for (costs, built) in costs.iter_mut().zip(built) {
+    all.iter().map(of).collect()
+}
+
+/// The variant under which the second volume of another is priced: every pair that spheres let
+/// through is tested, and none is stored; none where there is no second volume, or hulls are it.
+pub(super) fn anchor(variant: &Variant) -> Option<Variant> {
+    let [Volume::Sphere, second] = *variant.volumes().as_slice() else {
+        return None;
+    };
+    (second != Volume::Hull).then(|| Variant::strategy(&variant.settings, Strategy::SDopSequential))
+}
+
+/// With what building takes: each volume's own, and of the last one the culler's.
+fn constructed(one: &Calibrated<'_>, mut costs: Vec<VolumeCosts>) -> Vec<Price> {
+    let row = |turn: &Observed| Measurement::of([1.0, turn.bodies as f64], turn.construct);
+    let [empty, body] = fit::prices(&one.turns.iter().map(row).collect::<Vec<_>>());
+    for (costs, built) in costs.iter_mut().zip(&one.built) {
         costs.construct = *built;
     }
     if let Some(costs) = costs.last_mut() {
         costs.construct += empty;
         costs.construct_body = body;
     }
-    let volumes = volumes.into_iter().zip(costs);
-    Prices {
-        variant: variant.name.clone(),
-        volumes: volumes
-            .map(|(volume, costs)| Price { volume, costs })
-            .collect(),
-    }
+    let volumes = one.variant.volumes().into_iter().zip(costs);
+    volumes
+        .map(|(volume, costs)| Price { volume, costs })
+        .collect()
 }
 
-/// The prices of a volume that is tested alone, or first before hulls.
-fn alone(volume: Volume, turns: &[Observed]) -> VolumeCosts {
-    let updates = update(volume, turns, (volume, 0.0));
-    // Oriented volumes without a first test are tested where others refine.
-    first(volume, turns, updates, |stages| {
-        stages.finding + stages.refining
-    })
-}
-
-/// The prices of a first test, whose updates cost so much per frame and each.
-fn first(
-    volume: Volume,
-    turns: &[Observed],
-    [per_frame, update]: [f64; 2],
-    stage: fn(&Stages) -> f64,
-) -> VolumeCosts {
+/// The prices of a volume that is tested alone.
+fn alone(volume: Volume, turns: &[Observed], lanes: usize) -> VolumeCosts {
+    let [per_frame, update] = update(volume, turns, (volume, 0.0));
     let row = |turn: &Observed| {
-        let counters = turn.counts.of(volume);
-        Measurement {
-            counts: [
-                1.0,
-                turn.bodies as f64,
-                turn.per_frame(counters.tests - counters.hits),
-                turn.per_frame(counters.hits),
-            ],
-            seconds: stage(&turn.stages),
-        }
+        let first = FirstTest::of(volume, &turn.counts, turn.frames as f64, turn.bodies as f64);
+        // Oriented volumes without a first test are tested where others refine.
+        let seconds = turn.stages.finding + turn.stages.refining;
+        Measurement::of(first.counts(lanes), seconds)
     };
-    let [frame, body, miss, hit] = fit::prices(&turns.iter().map(row).collect::<Vec<_>>());
+    let found = fit::prices(&turns.iter().map(row).collect::<Vec<_>>());
+    let [frame, body, row, miss, hit, further] = found;
     VolumeCosts {
         update,
         frame: frame + per_frame,
         body,
+        row,
         hit,
         miss,
+        further,
         ..VolumeCosts::default()
     }
 }
@@ -218,40 +224,289 @@ fn update(volume: Volume, turns: &[Observed], (other, price): (Volume, f64)) -> 
     let row = |turn: &Observed| Measurement {
         counts: [1.0, turn.per_frame(turn.counts.of(volume).updates)],
         seconds: turn.stages.update - price * turn.per_frame(turn.counts.of(other).updates),
+        whole: turn.stages.update,
     };
     fit::prices(&turns.iter().map(row).collect::<Vec<_>>())
 }
 
-/// The prices of a second test: the level from the frames, hits and misses apart by the splits.
-fn second(volume: Volume, turns: &[Observed], splits: &[Split]) -> VolumeCosts {
-    let split = splits.iter().map(|split| split.0).sum::<f64>() / splits.len().max(1) as f64;
-    let row = |turn: &Observed| {
-        let counters = turn.counts.of(volume);
-        let of_hulls = volume == Volume::Hull;
-        Measurement {
-            counts: [
-                1.0,
-                if of_hulls {
-                    turn.per_frame(counters.updates)
-                } else {
-                    0.0
-                },
-                turn.per_frame(counters.tests),
-            ],
-            seconds: if of_hulls {
-                turn.stages.hulls
-            } else {
-                turn.stages.refining
-            } - split * turn.per_frame(counters.hits),
-        }
-    };
-    let rows: Vec<_> = turns.iter().map(row).collect();
-    let [frame, update, test] = fit::prices(&rows);
+/// Cu and Cv of or-DOPs after spheres, from the variant that refines and does nothing else.
+fn refining(anchor: &Calibrated<'_>, spheres: &VolumeCosts, lanes: usize) -> VolumeCosts {
+    let known = (Volume::Sphere, spheres.update);
+    let [_, update] = update(Volume::OrDop, anchor.turns, known);
+    let stage = |turn: &Observed| (Volume::OrDop, turn.stages.refining);
+    let [_, _, hit, miss] = second_test(anchor, lanes, stage);
+    VolumeCosts {
+        update,
+        hit,
+        miss,
+        ..VolumeCosts::default()
+    }
+}
+
+/// The prices of hulls behind spheres, whose poses are made with their tests.
+fn hulls(one: &Calibrated<'_>) -> VolumeCosts {
+    let [frame, update, hit, miss] = second_test(one, 1, |turn| (Volume::Hull, turn.stages.hulls));
     VolumeCosts {
         update,
         frame,
-        hit: (test + split).max(0.0),
-        miss: test,
+        hit,
+        miss,
         ..VolumeCosts::default()
+    }
+}
+
+/// A second test: per frame, per update (of hulls), a hit and a miss, which an idle lane costs as
+/// well. The level comes from the frames, what a hit costs more from the splits.
+fn second_test(
+    one: &Calibrated<'_>,
+    lanes: usize,
+    stage: impl Fn(&Observed) -> (Volume, f64),
+) -> [f64; 4] {
+    let split = one.splits.iter().map(|split| split.0).sum::<f64>();
+    let split = split / one.splits.len().max(1) as f64;
+    let row = |turn: &Observed| {
+        let (volume, seconds) = stage(turn);
+        let counters = turn.counts.of(volume);
+        let updates = if volume == Volume::Hull {
+            counters.updates
+        } else {
+            0
+        };
+        let tests = turn.per_frame(counters.tests);
+        Measurement {
+            counts: [
+                1.0,
+                turn.per_frame(updates),
+                tests + expected::idle(tests, lanes),
+            ],
+            seconds: seconds - split * turn.per_frame(counters.hits),
+            whole: seconds,
+        }
+    };
+    let [frame, update, test] = fit::prices(&one.turns.iter().map(row).collect::<Vec<_>>());
+    [frame, update, (test + split).max(0.0), test]
+}
+
+/// A second volume's prices with what a strategy takes beyond its volumes: per frame, and per pair
+/// that the first one lets through.
+fn beyond(one: &Calibrated<'_>, [first, second]: [VolumeCosts; 2], round: Round) -> VolumeCosts {
+    let volumes = one.variant.volumes().into_iter().zip([first, second]);
+    let known = Prices {
+        variant: String::new(),
+        level: round.level,
+        lanes: round.lanes,
+        volumes: volumes
+            .map(|(volume, costs)| Price { volume, costs })
+            .collect(),
+    };
+    let row = |turn: &Observed| {
+        let terms = known.predict(&turn.counts, turn.frames as u32, turn.bodies);
+        let explained: f64 = terms.iter().map(Terms::recurring).sum();
+        let whole = turn.stages.total();
+        Measurement {
+            counts: [1.0, turn.per_frame(turn.counts.of(Volume::Sphere).hits)],
+            seconds: whole - explained,
+            whole,
+        }
+    };
+    let [frame, handle] = fit::prices(&one.turns.iter().map(row).collect::<Vec<_>>());
+    VolumeCosts {
+        frame,
+        handle,
+        ..second
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cost::design;
+    use sdop::counters::VolumeCounters;
+    use sdop::settings::CullSettings;
+
+    const LANES: usize = 16;
+
+    /// Prices in ns, no two alike, of the size that they have.
+    fn known(volume: Volume) -> VolumeCosts {
+        let all = match volume {
+            Volume::Sphere => [2.2, 310.0, 8.0, 17.0, 0.9, 0.21, 0.0],
+            Volume::Aabb => [820.0, 640.0, 21.0, 12.0, 5.0, 0.12, 0.16],
+            Volume::Obb => [9.0, 900.0, 3.0, 0.0, 60.0, 10.0, 0.0],
+            _ => [14.0, 150.0, 0.0, 0.0, 19.0, 13.0, 0.0],
+        };
+        let [update, frame, body, row, hit, miss, further] = all.map(|ns| 1e-9 * ns);
+        VolumeCosts {
+            update,
+            frame,
+            body,
+            row,
+            hit,
+            miss,
+            further,
+            ..VolumeCosts::default()
+        }
+    }
+
+    /// Turns of the design's sizes and shares, counted as all pairs are and timed at the known
+    /// prices, with times that scatter by a hundredth. The seconds are summed here, term by term,
+    /// not by what is tested.
+    fn turns(first: Volume, refines: bool, handle: f64) -> Vec<Observed> {
+        let mut all = Vec::new();
+        for (number, (bodies, share)) in design::grid(CacheLevel::L2).into_iter().enumerate() {
+            let (n, moving) = (bodies as f64, (0.8 * bodies as f64).round());
+            let still = n - moving;
+            let tests = 0.5 * (n * (n - 1.0) - still * (still - 1.0));
+            let hits = (share * tests).round();
+            let counters = |updates, tests, hits| VolumeCounters {
+                updates: updates as u64,
+                tests: tests as u64,
+                hits: hits as u64,
+            };
+            let mut counts = Counts::default();
+            let own = counters(moving, tests, hits);
+            match first {
+                Volume::Sphere => counts.culler.sphere = own,
+                Volume::Aabb => counts.culler.aabb = own,
+                _ => counts.culler.obb = own,
+            }
+            let costs = known(first);
+            let rows = expected::rows(moving, n, tests, hits);
+            let further = tests * expected::further(tests, hits, LANES);
+            let scatter = 0.99 + 0.002 * f64::from(number as u32 * 7 % 11);
+            let mut stages = Stages {
+                update: moving * costs.update,
+                finding: costs.frame
+                    + n * costs.body
+                    + if first == Volume::Obb {
+                        0.0
+                    } else {
+                        rows * costs.row
+                    }
+                    + hits * costs.hit
+                    + (tests - hits) * costs.miss
+                    + further * costs.further,
+                ..Stages::default()
+            };
+            if refines {
+                let (second, kept) = (known(Volume::OrDop), (0.3 * hits).round());
+                counts.culler.ordop = counters(moving, hits, kept);
+                stages.update += moving * second.update;
+                stages.finding += second.frame + hits * handle;
+                let idle = expected::idle(hits, LANES);
+                stages.refining = kept * second.hit + (hits - kept + idle) * second.miss;
+            }
+            stages.update *= scatter;
+            stages.finding *= scatter;
+            stages.refining *= scatter;
+            all.push(Observed {
+                bodies,
+                frames: 1,
+                counts,
+                stages,
+                construct: 1e-6 + 2e-9 * n,
+            });
+        }
+        all
+    }
+
+    fn estimated(strategies: &[(Strategy, f64)]) -> Vec<Prices> {
+        let settings = CullSettings::default();
+        let variants: Vec<_> = strategies
+            .iter()
+            .map(|(strategy, handle)| (Variant::strategy(&settings, *strategy), *handle))
+            .collect();
+        let second = known(Volume::OrDop);
+        let splits = [Split(second.hit - second.miss)];
+        let observed: Vec<_> = variants
+            .iter()
+            .map(|(variant, handle)| match *variant.volumes().as_slice() {
+                [only] => turns(only, false, *handle),
+                _ => turns(Volume::Sphere, true, *handle),
+            })
+            .collect();
+        let all: Vec<_> = variants
+            .iter()
+            .zip(&observed)
+            .map(|((variant, _), turns)| Calibrated {
+                variant,
+                turns,
+                built: vec![1e-3; variant.volumes().len()],
+                splits: &splits,
+            })
+            .collect();
+        let round = Round {
+            lanes: LANES,
+            level: CacheLevel::L2,
+        };
+        prices(&all, round)
+    }
+
+    fn assert_near(what: &str, found: f64, truth: f64, within: f64) {
+        let off = if truth == 0.0 {
+            found / 1e-9
+        } else {
+            found / truth - 1.0
+        };
+        assert!(off.abs() < within, "{what}: {found:e} for {truth:e}");
+    }
+
+    #[test]
+    fn known_prices_are_found_again() {
+        for (strategy, volume) in [
+            (Strategy::Sphere, Volume::Sphere),
+            (Strategy::Aabb, Volume::Aabb),
+            (Strategy::Obb, Volume::Obb),
+        ] {
+            let found = estimated(&[(strategy, 0.0)]).remove(0).volumes[0].costs;
+            let truth = known(volume);
+            for (what, found, truth, within) in [
+                ("update", found.update, truth.update, 0.02),
+                ("frame", found.frame, truth.frame, 0.1),
+                ("body", found.body, truth.body, 0.3),
+                ("row", found.row, truth.row, 0.3),
+                ("hit", found.hit, truth.hit, 0.1),
+                ("miss", found.miss, truth.miss, 0.1),
+                ("further", found.further, truth.further, 0.1),
+            ] {
+                assert_near(&format!("{volume} {what}"), found, truth, within);
+            }
+        }
+    }
+
+    #[test]
+    fn a_volume_has_one_price_under_every_strategy() {
+        let found = estimated(&[
+            (Strategy::Sphere, 0.0),
+            (Strategy::SDopSequential, 2e-9),
+            (Strategy::SDopBatch, 3e-9),
+            (Strategy::SDopObjectOfInterest, 8e-9),
+        ]);
+        let [spheres, refined @ ..] = &found[..] else {
+            panic!("no spheres");
+        };
+        let truth = known(Volume::OrDop);
+        for (prices, handle) in refined.iter().zip([2e-9, 3e-9, 8e-9]) {
+            let [first, second] = [0, 1].map(|at| prices.volumes[at].costs);
+            let of_spheres = spheres.volumes[0].costs;
+            assert_eq!(
+                VolumeCosts {
+                    construct: 0.0,
+                    construct_body: 0.0,
+                    ..first
+                },
+                VolumeCosts {
+                    construct: 0.0,
+                    construct_body: 0.0,
+                    ..of_spheres
+                },
+                "{}",
+                prices.variant
+            );
+            assert_near("Cu", second.update, truth.update, 0.05);
+            assert_near("hit", second.hit, truth.hit, 0.05);
+            assert_near("miss", second.miss, truth.miss, 0.05);
+            assert_near("handle", second.handle, handle, 0.2);
+            assert_near("frame", second.frame, truth.frame, 0.3);
+        }
     }
 }

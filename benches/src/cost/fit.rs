@@ -1,9 +1,9 @@
 //! Prices from measurements: least squares without negative prices.
 //!
-//! A measured stage took Σ countⱼ·priceⱼ. Each row is divided by its seconds, so that the fit
-//! minimises the sum of squared *relative* residuals: a scene of fifty bodies weighs as much as one
-//! of six hundred. Prices can't be negative, and there are at most four of them: every subset of
-//! them is fitted freely, and the best one that came out positive wins.
+//! A measured stage took Σ countⱼ·priceⱼ. Each row is divided by the seconds of its stage, so that
+//! the fit minimises the sum of squared *relative* residuals: a scene of fifty bodies weighs as much
+//! as one of six hundred. Prices can't be negative, and there are at most six of them: every subset
+//! of them is fitted freely, and the best one that came out positive wins.
 
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
@@ -18,15 +18,30 @@ const OUTLYING: f64 = 4.0;
 pub struct Measurement<const N: usize> {
     /// Counts.
     pub counts: [f64; N],
-    /// Seconds; rows that took none are left out.
+    /// Seconds to be explained.
     pub seconds: f64,
+    /// Seconds of the whole that they are a part of, by which the residual is measured; rows that
+    /// took none are left out.
+    pub whole: f64,
+}
+
+impl<const N: usize> Measurement<N> {
+    /// A whole that is to be explained.
+    #[must_use]
+    pub fn of(counts: [f64; N], seconds: f64) -> Self {
+        Self {
+            counts,
+            seconds,
+            whole: seconds,
+        }
+    }
 }
 
 /// The prices ≥ 0 that explain `rows` best; all 0 where nothing was measured. Rows that lie far off
 /// (the machine did something else) are left out of a second fit.
 #[must_use]
 pub fn prices<const N: usize>(rows: &[Measurement<N>]) -> [f64; N] {
-    let rows: Vec<&Measurement<N>> = rows.iter().filter(|row| row.seconds > 0.0).collect();
+    let rows: Vec<&Measurement<N>> = rows.iter().filter(|row| row.whole > 0.0).collect();
     let first = positive_fit(&rows);
     let off = |row: &&Measurement<N>| relative_residual(row, &first).abs();
     let limit = OUTLYING * median(rows.iter().map(off).collect());
@@ -60,7 +75,7 @@ fn positive_fit<const N: usize>(rows: &[&Measurement<N>]) -> [f64; N] {
     best.0
 }
 
-/// (explained − measured)/measured.
+/// (explained − measured)/whole.
 fn relative_residual<const N: usize>(row: &Measurement<N>, prices: &[f64; N]) -> f64 {
     let explained: f64 = row
         .counts
@@ -68,7 +83,7 @@ fn relative_residual<const N: usize>(row: &Measurement<N>, prices: &[f64; N]) ->
         .zip(prices)
         .map(|(count, price)| count * price)
         .sum();
-    explained / row.seconds - 1.0
+    (explained - row.seconds) / row.whole
 }
 
 /// Ordinary least squares in the columns `used`; `None` when they can't be told apart.
@@ -78,7 +93,7 @@ fn free_fit<const N: usize>(rows: &[&Measurement<N>], used: &[usize]) -> Option<
         .iter()
         .map(|&j| {
             rows.iter()
-                .map(|row| row.counts[j] / row.seconds)
+                .map(|row| row.counts[j] / row.whole)
                 .fold(0.0, f64::max)
         })
         .collect();
@@ -86,10 +101,10 @@ fn free_fit<const N: usize>(rows: &[&Measurement<N>], used: &[usize]) -> Option<
         return None;
     }
     let matrix = Mat::from_fn(rows.len(), used.len(), |i, j| {
-        rows[i].counts[used[j]] / rows[i].seconds / scale[j]
+        rows[i].counts[used[j]] / rows[i].whole / scale[j]
     });
-    let ones = Mat::from_fn(rows.len(), 1, |_, _| 1.0);
-    let solution = matrix.col_piv_qr().solve_lstsq(&ones);
+    let seconds = Mat::from_fn(rows.len(), 1, |i, _| rows[i].seconds / rows[i].whole);
+    let solution = matrix.col_piv_qr().solve_lstsq(&seconds);
     let mut prices = [0.0; N];
     for (j, &column) in used.iter().enumerate() {
         prices[column] = solution[(j, 0)] / scale[j];
@@ -106,7 +121,7 @@ mod tests {
 
     fn row(counts: [f64; 3], prices: [f64; 3]) -> Measurement<3> {
         let seconds = counts.iter().zip(prices).map(|(c, p)| c * p).sum();
-        Measurement { counts, seconds }
+        Measurement::of(counts, seconds)
     }
 
     #[test]
@@ -132,10 +147,12 @@ mod tests {
                 let n = 40.0 * f64::from(i);
                 let mut row = row([n, 0.5 * n * n, (i * i % 7) as f64 * n], truth);
                 row.seconds *= 1.0 + 0.001 * f64::from(i % 3 - 1);
+                row.whole = row.seconds;
                 row
             })
             .collect();
         rows[4].seconds *= 3.0;
+        rows[4].whole *= 3.0;
         for (found, truth) in prices(&rows).iter().zip(truth) {
             assert!((found / truth - 1.0).abs() < 0.02, "{found} for {truth}");
         }
@@ -157,12 +174,6 @@ mod tests {
     #[test]
     fn nothing_measured_costs_nothing() {
         assert_eq!(prices::<2>(&[]), [0.0; 2]);
-        assert_eq!(
-            prices(&[Measurement {
-                counts: [1.0, 2.0],
-                seconds: 0.0
-            }]),
-            [0.0; 2]
-        );
+        assert_eq!(prices(&[Measurement::of([1.0, 2.0], 0.0)]), [0.0; 2]);
     }
 }

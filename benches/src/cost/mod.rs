@@ -1,11 +1,28 @@
 //! What culling costs: the paper's formula (equation 1) T = Nu·Cu + Nv·Cv + Co.
 //!
-//! Nu and Nv are [counted](crate::measure::counts); Cu, Cv and Co are [calibrated](calibrate) in
-//! the same [`pass`](mod@pass) as the frames that they predict, on other scenes.
+//! Nu and Nv are [counted](crate::measure::counts) in the run that is predicted. A price belongs to
+//! a machine, a volume (with the shapes that it bounds) and a declared regime: warm or cold frames,
+//! and the [cache level](level) of the working set. It is [calibrated](calibrate) on scenes of its
+//! own ([`design`]), none of which is ever predicted, and is the same wherever it is printed: of
+//! spheres under every strategy that begins with them, of or-DOPs under every strategy that refines
+//! by them. What a strategy pays beyond its volumes is a price of its own, in F.
+//!
+//! | price | identified by | in which stage |
+//! |---|---|---|
+//! | Cu | the number of bodies | update |
+//! | F per frame, per body | the number of bodies at one share of hits | finding |
+//! | F per body with hits | the share of hits at one number of bodies, while most bodies have none | finding |
+//! | Cv of a miss | tests, which grow as the square of bodies | finding, or refining for or-DOPs |
+//! | Cv of a hit | the share of hits at one number of bodies; of a second test, lists of known shares | the same |
+//! | Cv of a further slab | the share of hits: how many vectors of world-aligned slabs go on | finding |
+//! | F per listed pair | pairs that are listed for a second test, beyond what spheres alone take | finding, refining |
 
 pub mod calibrate;
+pub mod design;
+mod expected;
 mod explain;
 mod fit;
+pub mod level;
 pub mod pass;
 pub mod predict;
 pub mod study;
@@ -13,10 +30,9 @@ pub mod table;
 
 use serde::{Deserialize, Serialize};
 
-use sdop::counters::VolumeCounters;
-
 /// The prices of one volume, in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct VolumeCosts {
     /// Co: building the volume of every shape and an empty culler, once.
     pub construct: f64,
@@ -24,53 +40,19 @@ pub struct VolumeCosts {
     pub update: f64,
     /// Co: what each body adds to building the culler.
     pub construct_body: f64,
-    /// Per frame, whatever the number of bodies.
+    /// F per frame, whatever the number of bodies. Of a second volume, what its strategy adds.
     pub frame: f64,
-    /// Pair finding, per body and frame: arranging it for the finder and running over its
-    /// candidates.
+    /// F per body and frame: arranging it for the finder and running over its candidates.
     pub body: f64,
-    /// Pair finding, per pair that the first of two tests lets through: listing it for the second,
-    /// and with an object of interest selecting and merging it.
+    /// F per body that has a hit among its candidates: listing a vector of hits, full or not.
+    pub row: f64,
+    /// F per pair that the test before let through: listing it for this one, and with an object of
+    /// interest selecting and merging it.
     pub handle: f64,
     /// Cv of a pair that survives.
     pub hit: f64,
     /// Cv of a pair that is culled; it may leave at its first separating axis.
     pub miss: f64,
-}
-
-impl VolumeCosts {
-    /// Nu·Cu.
-    #[must_use]
-    pub fn update(&self, counters: &VolumeCounters) -> f64 {
-        counters.updates as f64 * self.update
-    }
-
-    /// Nv·Cv.
-    #[must_use]
-    pub fn test(&self, counters: &VolumeCounters) -> f64 {
-        let misses = counters.tests - counters.hits;
-        counters.hits as f64 * self.hit + misses as f64 * self.miss
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn prediction_prices_hits_and_misses_apart() {
-        let costs = VolumeCosts {
-            update: 2.0,
-            hit: 5.0,
-            miss: 3.0,
-            ..VolumeCosts::default()
-        };
-        let counters = VolumeCounters {
-            updates: 10,
-            tests: 7,
-            hits: 3,
-        };
-        assert_eq!(costs.update(&counters), 20.0);
-        assert_eq!(costs.test(&counters), 15.0 + 12.0);
-    }
+    /// Cv of a pair for each further slab that its vector is tested on, world-aligned volumes only.
+    pub further: f64,
 }

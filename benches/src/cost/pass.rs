@@ -1,4 +1,4 @@
-//! A pass: one run of a scene, whose frames take turns with those of its calibration, so that a
+//! A pass: a round of calibration, then one run of a scene. Rounds and runs alternate, so that a
 //! drift of the machine falls on the prices and on what they predict alike. Passes lie apart in
 //! time, and each is one observation.
 
@@ -33,7 +33,8 @@ pub struct Culled {
 pub struct Pass {
     /// A variant's work each.
     pub culled: Vec<Culled>,
-    /// A variant's prices each, for warm frames and for cold ones; of none without a calibration.
+    /// A variant's prices each, for warm frames and for cold ones, by the round before the run; of
+    /// none without a calibration.
     pub prices: [Vec<Prices>; 2],
     /// Median seconds of a simulation step.
     pub step: f64,
@@ -120,7 +121,7 @@ pub fn pass(
     variants: &[Variant],
     tier: Tier,
     frames: &mut dyn Frames,
-    mut calibration: Option<&mut Calibration>,
+    calibration: Option<&mut Calibration>,
     observer: &mut dyn Observer,
 ) -> Result<Pass, SimulationError> {
     let mut culled = vec![Culled::default(); variants.len()];
@@ -134,31 +135,20 @@ pub fn pass(
         built[at].push(construct);
         cullers.push(culler);
     }
-    if let Some(companion) = calibration.as_ref().and_then(|c| c.companion()) {
-        cullers.push(companion.culling(scene, tier)?);
-    }
-    let (all, mut turn, mut calibrated) = (frames.turns().max(1), 0, 0);
+    let (all, mut turn) = (frames.turns().max(1), 0);
     let builds = calibration
         .as_ref()
         .map_or(1, |calibration| calibration.builds_of_a_pass());
+    let prices = calibration.map_or_else(|| Ok(Default::default()), Calibration::round)?;
     let mut turns = Turns::default();
     while let Some((first, poses)) = frames.next_turn()? {
         turns.round(&mut cullers, &poses, |timed| {
-            if timed.number >= variants.len() {
-                return;
-            }
             culled[timed.number].times.push(&timed);
             culled[timed.number].frames += 1;
             observer.frame(timed.number, first + timed.frame as u32, timed.contestant);
         });
         observer.between_turns();
         turn += 1;
-        if let Some(calibration) = &mut calibration {
-            while calibrated * all < calibration.turns_of_a_pass() * turn {
-                calibration.turn(calibrated)?;
-                calibrated += 1;
-            }
-        }
         // Co is measured again and again between the turns, as often as wanted.
         if built
             .first()
@@ -178,7 +168,7 @@ pub fn pass(
     }
     Ok(Pass {
         culled,
-        prices: calibration.map_or_else(Default::default, Calibration::prices),
+        prices,
         step: frames.step(),
     })
 }

@@ -3,12 +3,15 @@
 //! > T = Co + Nu·Cu + F + Nv·Cv, summed over a variant's volumes
 //!
 //! is the paper's equation 1 with F, pair finding, as a stage of its own: a price per frame, one
-//! per body and frame, and one per pair that goes on to a second test: it is listed, and with an
-//! object of interest selected and merged. Cv is two prices, for hits and for misses.
+//! per body, one per body that has hits, and one per pair that goes on to a second test: it is
+//! listed, and with an object of interest selected and merged. Cv is two prices, for hits and for
+//! misses, and for world-aligned volumes a third, for slabs beyond the first.
 
 use serde::{Deserialize, Serialize};
 
 use super::VolumeCosts;
+use super::expected;
+use super::level::CacheLevel;
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::estimate::{Estimate, or_infinite};
 
@@ -24,10 +27,14 @@ pub struct Price {
 }
 
 /// Prices of one variant's volumes, in the order of its tests.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Prices {
     /// The variant's name.
     pub variant: String,
+    /// The level of the working set that they hold for.
+    pub level: CacheLevel,
+    /// Lanes of a vector of the tier that they hold for.
+    pub lanes: usize,
     /// A price a volume.
     pub volumes: Vec<Price>,
 }
@@ -45,6 +52,12 @@ pub struct Terms {
     pub tests: f64,
     /// Of which so many hit, per frame.
     pub hits: f64,
+    /// Bodies that have a hit, per frame, as expected from the counts.
+    #[serde(default)]
+    pub rows: f64,
+    /// Slabs that tests are compared on beyond the first, per frame, as expected from the counts.
+    #[serde(default)]
+    pub further: f64,
     /// Co: its part of the construction, in seconds, once.
     pub construct: f64,
     /// Nu·Cu.
@@ -107,6 +120,24 @@ impl TermWidths {
     }
 }
 
+impl TermWidths {
+    /// With those of another, independent, cause.
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Self {
+        let both = |width: fn(&Self) -> f64| width(self).hypot(width(other));
+        Self {
+            volume: self.volume,
+            updates: both(|w| w.updates),
+            tests: both(|w| w.tests),
+            hits: both(|w| w.hits),
+            construct: both(|w| w.construct),
+            update: both(|w| w.update),
+            finding: both(|w| w.finding),
+            test: both(|w| w.test),
+        }
+    }
+}
+
 impl Terms {
     /// What recurs each frame: all but the construction.
     #[must_use]
@@ -131,11 +162,61 @@ impl Terms {
             updates: over(|t| t.updates),
             tests: over(|t| t.tests),
             hits: over(|t| t.hits),
+            rows: over(|t| t.rows),
+            further: over(|t| t.further),
             construct: over(|t| t.construct),
             update: over(|t| t.update),
             finding: over(|t| t.finding),
             test: over(|t| t.test),
         })
+    }
+}
+
+/// What the time of a first test follows, per frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FirstTest {
+    bodies: f64,
+    rows: f64,
+    tests: f64,
+    hits: f64,
+    /// Whether it compares world-aligned slabs one after the other.
+    is_aligned: bool,
+}
+
+impl FirstTest {
+    /// What a volume counted in so many frames of so many bodies.
+    pub fn of(volume: Volume, counts: &Counts, frames: f64, bodies: f64) -> Self {
+        let counters = counts.of(volume);
+        let [moving, tests, hits] =
+            [counters.updates, counters.tests, counters.hits].map(|count| count as f64 / frames);
+        // Oriented volumes have no first test: each candidate is listed.
+        let (lists_hits, is_aligned) = match volume {
+            Volume::Sphere | Volume::Hull => (true, false),
+            Volume::Aabb | Volume::KDop => (true, true),
+            Volume::OrDop | Volume::Obb => (false, false),
+        };
+        Self {
+            bodies,
+            rows: if lists_hits {
+                expected::rows(moving, bodies, tests, hits)
+            } else {
+                0.0
+            },
+            tests,
+            hits,
+            is_aligned,
+        }
+    }
+
+    /// Frames, bodies, bodies with hits, misses, hits, further slabs.
+    pub fn counts(&self, lanes: usize) -> [f64; 6] {
+        let further = if self.is_aligned {
+            self.tests * expected::further(self.tests, self.hits, lanes)
+        } else {
+            0.0
+        };
+        let misses = self.tests - self.hits;
+        [1.0, self.bodies, self.rows, misses, self.hits, further]
     }
 }
 
@@ -145,27 +226,67 @@ impl Prices {
     #[must_use]
     pub fn predict(&self, counts: &Counts, frames: u32, bodies: usize) -> Vec<Terms> {
         let (frames, bodies) = (f64::from(frames), bodies as f64);
-        let refines = self.volumes.len() > 1;
         let terms = |(place, price): (usize, &Price)| {
             let (costs, counters) = (&price.costs, counts.of(price.volume));
-            // All that the first test lets through, whether the second then tests it or not.
-            let handed_on = if place == 0 && refines {
-                counters.hits as f64 / frames
-            } else {
-                0.0
+            let first = FirstTest::of(price.volume, counts, frames, bodies);
+            let [_, _, rows, misses, hits, further] = first.counts(self.lanes);
+            let rows = if place == 0 { rows } else { 0.0 };
+            // All that the test before lets through, whether it is then tested or not.
+            let before = place
+                .checked_sub(1)
+                .and_then(|before| self.volumes.get(before));
+            let handed_on = before.map_or(0, |before| counts.of(before.volume).hits);
+            let idle = match (place, price.volume) {
+                (1.., Volume::OrDop) => expected::idle(first.tests, self.lanes),
+                _ => 0.0,
             };
             Terms {
                 volume: price.volume,
                 updates: counters.updates as f64 / frames,
-                tests: counters.tests as f64 / frames,
-                hits: counters.hits as f64 / frames,
+                tests: first.tests,
+                hits,
+                rows,
+                further,
                 construct: costs.construct + bodies * costs.construct_body,
-                update: costs.update(&counters) / frames,
-                finding: costs.frame + bodies * costs.body + handed_on * costs.handle,
-                test: costs.test(&counters) / frames,
+                update: costs.update * counters.updates as f64 / frames,
+                finding: costs.frame
+                    + bodies * costs.body
+                    + rows * costs.row
+                    + handed_on as f64 / frames * costs.handle
+                    + idle * costs.miss,
+                test: hits * costs.hit + misses * costs.miss + further * costs.further,
             }
         };
         self.volumes.iter().enumerate().map(terms).collect()
+    }
+
+    /// The mean of several rounds' prices; `None` of none.
+    #[must_use]
+    pub fn mean<'a>(rounds: impl Iterator<Item = &'a Self> + Clone) -> Option<Self> {
+        let mut mean = rounds.clone().next()?.clone();
+        let n = rounds.clone().count() as f64;
+        for (at, price) in mean.volumes.iter_mut().enumerate() {
+            let over = |value: fn(&VolumeCosts) -> f64| {
+                rounds
+                    .clone()
+                    .map(|round| value(&round.volumes[at].costs))
+                    .sum::<f64>()
+                    / n
+            };
+            price.costs = VolumeCosts {
+                construct: over(|c| c.construct),
+                update: over(|c| c.update),
+                construct_body: over(|c| c.construct_body),
+                frame: over(|c| c.frame),
+                body: over(|c| c.body),
+                row: over(|c| c.row),
+                handle: over(|c| c.handle),
+                hit: over(|c| c.hit),
+                miss: over(|c| c.miss),
+                further: over(|c| c.further),
+            };
+        }
+        Some(mean)
     }
 }
 
@@ -181,6 +302,8 @@ mod tests {
             updates: 3.0,
             tests: 4.0,
             hits: 1.0,
+            rows: 0.0,
+            further: 0.0,
             construct: 9.0,
             update,
             finding: 0.0,
@@ -212,13 +335,16 @@ mod tests {
             handle,
             hit,
             miss: 1.0,
+            ..VolumeCosts::default()
         };
         let price = |volume, costs| Price { volume, costs };
         let prices = Prices {
             variant: String::new(),
+            level: CacheLevel::L1,
+            lanes: 1,
             volumes: vec![
-                price(Volume::Sphere, costs(10.0, 1.0, 3.0)),
-                price(Volume::OrDop, costs(0.0, 7.0, 0.0)),
+                price(Volume::Sphere, costs(10.0, 1.0, 0.0)),
+                price(Volume::OrDop, costs(0.0, 7.0, 3.0)),
             ],
         };
         let volume = |updates, tests, hits| VolumeCounters {
@@ -239,10 +365,71 @@ mod tests {
             .iter()
             .map(|t| [t.construct, t.update, t.finding, t.test])
             .collect();
-        // Two of the four listed pairs are of each frame: 10 + 4·5 + 2·3.
-        assert_eq!(parts, [[104.0, 8.0, 36.0, 6.0], [104.0, 8.0, 0.0, 11.0]]);
-        assert_eq!(terms[0].recurring(), 50.0);
+        // Two of the four listed pairs are of each frame: 10 + 4·5, and 2·3 for the second test.
+        assert_eq!(parts, [[104.0, 8.0, 30.0, 6.0], [104.0, 8.0, 6.0, 11.0]]);
+        assert_eq!(terms[0].recurring(), 44.0);
         assert_eq!(terms[0].in_paper(), 14.0);
-        assert!(Prices::default().predict(&counts, 2, 4).is_empty());
+        let none = Prices {
+            volumes: Vec::new(),
+            ..prices.clone()
+        };
+        assert!(none.predict(&counts, 2, 4).is_empty());
+    }
+
+    /// Each price is multiplied by its own count and by no other's.
+    #[test]
+    fn every_price_has_a_count_of_its_own() {
+        let volume = |updates, tests, hits| VolumeCounters {
+            updates,
+            tests,
+            hits,
+        };
+        let counts = Counts {
+            culler: Counters {
+                aabb: volume(300, 9000, 700),
+                ..Counters::default()
+            },
+            hulls: VolumeCounters::default(),
+        };
+        let seconds = |costs| {
+            let prices = Prices {
+                variant: String::new(),
+                level: CacheLevel::L1,
+                lanes: 16,
+                volumes: vec![Price {
+                    volume: Volume::Aabb,
+                    costs,
+                }],
+            };
+            let terms = prices.predict(&counts, 10, 40);
+            terms.iter().map(Terms::recurring).sum::<f64>()
+        };
+        let none = VolumeCosts::default();
+        for (costs, count) in [
+            (
+                VolumeCosts {
+                    update: 1.0,
+                    ..none
+                },
+                30.0,
+            ),
+            (VolumeCosts { frame: 1.0, ..none }, 1.0),
+            (VolumeCosts { body: 1.0, ..none }, 40.0),
+            (VolumeCosts { hit: 1.0, ..none }, 70.0),
+            (VolumeCosts { miss: 1.0, ..none }, 830.0),
+            (
+                VolumeCosts { row: 1.0, ..none },
+                expected::rows(30.0, 40.0, 900.0, 70.0),
+            ),
+            (
+                VolumeCosts {
+                    further: 1.0,
+                    ..none
+                },
+                900.0 * expected::further(900.0, 70.0, 16),
+            ),
+        ] {
+            assert!((seconds(costs) / count - 1.0).abs() < 1e-12, "{costs:?}");
+        }
     }
 }

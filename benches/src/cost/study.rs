@@ -121,7 +121,7 @@ pub fn study(file: &SceneFile, plan: &Plan, mut done: impl FnMut()) -> Result<Re
             costs.extend(table::cost(
                 (&scene.name, scene.bodies.len()),
                 of,
-                &passes,
+                (&passes, &passes),
                 regime,
             ));
         }

@@ -1,15 +1,18 @@
-//! T of each variant in each regime: the formula's terms, predicted from prices of other scenes,
-//! beside what runs took.
+//! T of each variant in each regime: the formula's terms, at prices that are the mean of all rounds
+//! of calibration, beside what runs took. A term is the printed count times the printed price.
 
 use serde::{Deserialize, Serialize};
 
 use super::VolumeCosts;
-use super::pass::Pass;
+use super::level::CacheLevel;
+use super::pass::{Culled, Pass};
 use super::predict::{Prices, TermWidths, Terms};
 use crate::measure::counts::Volume;
+use crate::measure::culling::Stages;
 use crate::measure::estimate::Estimate;
 use crate::measure::turns::{Quartiles, Regime};
 use crate::measure::variant::Variant;
+use sdop::choice::choices;
 use sdop::settings::Strategy;
 
 /// A number as predicted and as measured.
@@ -25,17 +28,43 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// From predicted and measured values, pass by pass in the order of time.
+    /// From predicted and measured values, pass by pass in the order of time, and the prediction by
+    /// each round's own prices.
     #[must_use]
-    pub fn of(passes: &[[f64; 2]]) -> Self {
+    pub fn of(passes: &[[f64; 2]], rounds: &[f64]) -> Self {
         let over = |value: fn(&[f64; 2]) -> f64| {
             Estimate::in_order(&passes.iter().map(value).collect::<Vec<_>>())
         };
+        let by_round = Estimate::in_order(rounds);
+        let predicted = widened(over(|[predicted, _]| *predicted), by_round.half_width);
+        let residual = over(|[predicted, measured]| measured / predicted - 1.0);
         Self {
-            predicted: over(|[predicted, _]| *predicted),
+            predicted,
             measured: over(|[_, measured]| *measured),
-            residual: over(|[predicted, measured]| measured / predicted - 1.0),
+            residual: widened(residual, by_round.relative() * (1.0 + residual.mean)),
         }
+    }
+}
+
+/// An estimate with another, independent, uncertainty.
+fn widened(estimate: Estimate, by: f64) -> Estimate {
+    Estimate {
+        half_width: estimate.half_width.hypot(by),
+        ..estimate
+    }
+}
+
+choices! {
+    /// What a prediction assumes; of one that is off, what fails.
+    Assumption, "assumption", {
+        /// Neither prices nor frames scatter by more than the residual.
+        Steady = "the machine worked at one speed while prices and frames were measured",
+        /// Every body's update takes what the calibration's take.
+        Updates = "an update costs the same here as on the calibration's bodies",
+        /// Hits and misses lie among each other as they do in the calibration.
+        Finding = "hits are spread over bodies and frames as in the calibration",
+        /// Second tests follow one another as they do in the calibration.
+        Refining = "a second test costs the same here as on the calibration's pairs",
     }
 }
 
@@ -52,6 +81,9 @@ pub struct Cost {
     pub variant: String,
     /// What the culler found in the caches.
     pub regime: Regime,
+    /// Which cache holds the working set; none in earlier records.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<CacheLevel>,
     /// Frames of a pass.
     pub frames: u32,
     /// The terms of each volume, means over passes.
@@ -67,7 +99,13 @@ pub struct Cost {
     pub construct: Compared,
     /// T = Co + all frames, seconds.
     pub total: Compared,
+    /// Of a frame that is predicted more than [`NEAR`] off: what fails.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fails: Option<Assumption>,
 }
+
+/// Share of a frame up to which a prediction counts as right.
+pub const NEAR: f64 = 0.05;
 
 impl Cost {
     /// A term summed over the variant's volumes.
@@ -83,56 +121,124 @@ impl Cost {
 }
 
 /// The cost of variant number `at` from passes over one scene in the order of time; `None` where
-/// the formula has no term for it, or nothing was measured.
+/// the formula has no term for it, or nothing was measured. `priced` are all passes whose rounds
+/// calibrated scenes of this kind.
 #[must_use]
 pub fn cost(
     (scene, bodies): (&str, usize),
     (at, variant): (usize, &Variant),
-    passes: &[&Pass],
+    (passes, priced): (&[&Pass], &[&Pass]),
     regime: Regime,
 ) -> Option<Cost> {
-    let place = Regime::ALL.iter().position(|&other| other == regime)?;
-    let mut parts: Vec<Vec<Terms>> = Vec::new();
-    let (mut frame, mut construct, mut total) = (Vec::new(), Vec::new(), Vec::new());
-    let mut quartiles = Vec::new();
-    for pass in passes {
-        let (culled, prices) = (pass.culled.get(at)?, pass.prices[place].get(at)?);
-        let terms = Prices::predict(prices, &culled.counts, culled.frames, bodies);
-        if terms.is_empty() || culled.times.of(regime).is_empty() {
-            return None;
-        }
-        let of = |term: fn(&Terms) -> f64| terms.iter().map(term).sum::<f64>();
-        let seconds = culled.times.quartiles(regime);
-        let per_frame = [of(Terms::recurring), seconds.median];
-        let once = [of(|t| t.construct), culled.construct];
-        let frames = f64::from(culled.frames);
-        total.push([0, 1].map(|i| once[i] + frames * per_frame[i]));
-        frame.push(per_frame);
-        construct.push(once);
-        quartiles.push(seconds);
-        parts.push(terms);
+    let rounds = rounds(priced, at, regime);
+    let prices = Prices::mean(rounds.iter().copied())?;
+    let culled: Vec<&Culled> = passes
+        .iter()
+        .map(|pass| pass.culled.get(at))
+        .collect::<Option<_>>()?;
+    let terms_at =
+        |prices: &Prices, culled: &Culled| prices.predict(&culled.counts, culled.frames, bodies);
+    let parts: Vec<Vec<Terms>> = culled
+        .iter()
+        .map(|culled| terms_at(&prices, culled))
+        .collect();
+    let is_timed = |culled: &&&Culled| !culled.times.of(regime).is_empty();
+    let (first, last) = (
+        parts.first().filter(|terms| !terms.is_empty())?,
+        culled.last()?,
+    );
+    if culled.iter().filter(is_timed).count() < culled.len() {
+        return None;
     }
-    let first = parts.first()?;
-    let of_volume = |at: usize| parts.iter().map(|terms| terms[at]).collect::<Vec<_>>();
-    let volumes = || (0..first.len()).map(of_volume);
+    let by_round: Vec<Vec<Terms>> = rounds.iter().map(|prices| terms_at(prices, last)).collect();
+    let frames = f64::from(last.frames);
+    let seconds: Vec<Quartiles> = culled
+        .iter()
+        .map(|culled| culled.times.quartiles(regime))
+        .collect();
+    let compared = |predicted: &dyn Fn(&[Terms]) -> f64, measured: &dyn Fn(usize) -> f64| {
+        let pass = |(number, terms): (usize, &Vec<Terms>)| [predicted(terms), measured(number)];
+        let passes: Vec<_> = parts.iter().enumerate().map(pass).collect();
+        let rounds: Vec<_> = by_round.iter().map(|terms| predicted(terms)).collect();
+        Compared::of(&passes, &rounds)
+    };
+    let per_frame = |terms: &[Terms]| terms.iter().map(Terms::recurring).sum::<f64>();
+    let once = |terms: &[Terms]| terms.iter().map(|terms| terms.construct).sum::<f64>();
+    let frame = compared(&per_frame, &|pass| seconds[pass].median);
+    let of_volume =
+        |from: &[Vec<Terms>], at: usize| from.iter().map(|terms| terms[at]).collect::<Vec<_>>();
+    let widths = |at| {
+        let passes = TermWidths::of(&of_volume(&parts, at))?;
+        Some(passes.joined(&TermWidths::of(&of_volume(&by_round, at))?))
+    };
+    let terms: Vec<Terms> = (0..first.len())
+        .filter_map(|at| Terms::mean(&of_volume(&parts, at)))
+        .collect();
     Some(Cost {
         scene: scene.to_owned(),
         bodies,
         strategy: variant.settings.strategy,
         variant: variant.name.clone(),
         regime,
-        frames: passes.first()?.culled.get(at)?.frames,
-        terms: volumes()
-            .filter_map(|passes| Terms::mean(&passes))
-            .collect(),
-        widths: volumes()
-            .filter_map(|passes| TermWidths::of(&passes))
-            .collect(),
-        frame: Compared::of(&frame),
-        quartiles: Quartiles::mean(&quartiles),
-        construct: Compared::of(&construct),
-        total: Compared::of(&total),
+        level: Some(prices.level),
+        frames: last.frames,
+        widths: (0..first.len()).filter_map(widths).collect(),
+        fails: (frame.residual.mean.abs() > NEAR).then(|| failing(&frame, &terms, &culled, regime)),
+        terms,
+        frame,
+        quartiles: Quartiles::mean(&seconds),
+        construct: compared(&once, &|pass| culled[pass].construct),
+        total: compared(&|terms| once(terms) + frames * per_frame(terms), &|pass| {
+            culled[pass].construct + frames * seconds[pass].median
+        }),
     })
+}
+
+/// Which assumption fails: that of a steady machine where the residual lies within its own
+/// interval, else that of the stage that is farthest off.
+fn failing(frame: &Compared, terms: &[Terms], culled: &[&Culled], regime: Regime) -> Assumption {
+    if frame.residual.half_width.is_finite() && frame.residual.covers(0.0) {
+        return Assumption::Steady;
+    }
+    let stages: Vec<Stages> = culled
+        .iter()
+        .map(|culled| culled.times.medians(regime))
+        .collect();
+    let measured =
+        |stage: fn(&Stages) -> f64| stages.iter().map(stage).sum::<f64>() / stages.len() as f64;
+    let update: f64 = terms.iter().map(|terms| terms.update).sum();
+    let refining: f64 = terms.iter().skip(1).map(|terms| terms.test).sum();
+    let off = [
+        (Assumption::Updates, measured(|s| s.update) - update),
+        (
+            Assumption::Refining,
+            measured(|s| s.refining + s.hulls) - refining,
+        ),
+        (
+            Assumption::Finding,
+            frame.measured.mean - frame.predicted.mean,
+        ),
+    ];
+    if terms.len() == 1 {
+        let [updates, _, whole] = off;
+        return if updates.1.abs() > 0.5 * whole.1.abs() {
+            updates.0
+        } else {
+            whole.0
+        };
+    }
+    let [updates, refining, (finding, whole)] = off;
+    let off = [updates, refining, (finding, whole - updates.1 - refining.1)];
+    let farthest = off
+        .into_iter()
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    farthest.map_or(finding, |(assumption, _)| assumption)
+}
+
+/// The prices of variant number `at` by each round.
+fn rounds<'a>(priced: &[&'a Pass], at: usize, regime: Regime) -> Vec<&'a Prices> {
+    let of = |pass: &&'a Pass| pass.prices[regime as usize].get(at);
+    priced.iter().filter_map(of).collect()
 }
 
 /// A volume's prices: means over passes, with the half-widths of their intervals.
@@ -144,6 +250,9 @@ pub struct PriceRow {
     pub volume: Volume,
     /// The regime.
     pub regime: Regime,
+    /// Which cache holds the working set; none in earlier records.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<CacheLevel>,
     /// Co, seconds: all shapes' volumes and an empty culler.
     pub construct: Estimate,
     /// Co per body, seconds.
@@ -154,43 +263,58 @@ pub struct PriceRow {
     pub frame: Estimate,
     /// F per body and frame, seconds.
     pub body: Estimate,
+    /// F per body that has a hit, seconds; 0 in earlier records.
+    #[serde(default = "nothing")]
+    pub row: Estimate,
     /// F per pair handed on, seconds.
     pub handle: Estimate,
     /// Cv of a hit, seconds.
     pub hit: Estimate,
     /// Cv of a miss, seconds.
     pub miss: Estimate,
+    /// Cv of a further slab, seconds; 0 in earlier records.
+    #[serde(default = "nothing")]
+    pub further: Estimate,
 }
 
-/// The prices that some passes found, in the order of variants and tests.
+/// The price of what isn't priced.
+fn nothing() -> Estimate {
+    Estimate {
+        mean: 0.0,
+        half_width: 0.0,
+        seeds: 0,
+    }
+}
+
+/// The prices that the rounds of some passes found, in the order of variants and tests.
 #[must_use]
-pub fn prices(passes: &[&Pass], regime: Regime) -> Vec<PriceRow> {
-    let place = Regime::ALL
-        .iter()
-        .position(|&other| other == regime)
-        .unwrap_or(0);
-    let Some(first) = passes.first() else {
-        return Vec::new();
-    };
+pub fn prices(priced: &[&Pass], regime: Regime) -> Vec<PriceRow> {
+    let variants = priced
+        .first()
+        .map_or(0, |pass| pass.prices[regime as usize].len());
     let mut rows = Vec::new();
-    for (at, prices) in first.prices[place].iter().enumerate() {
-        for (number, price) in prices.volumes.iter().enumerate() {
+    for at in 0..variants {
+        let rounds = rounds(priced, at, regime);
+        for (number, price) in rounds[0].volumes.iter().enumerate() {
             let over = |value: fn(&VolumeCosts) -> f64| {
-                let of = |pass: &&Pass| value(&pass.prices[place][at].volumes[number].costs);
-                Estimate::in_order(&passes.iter().map(of).collect::<Vec<_>>())
+                let of = |round: &&Prices| value(&round.volumes[number].costs);
+                Estimate::in_order(&rounds.iter().map(of).collect::<Vec<_>>())
             };
             rows.push(PriceRow {
-                variant: prices.variant.clone(),
+                variant: rounds[0].variant.clone(),
                 volume: price.volume,
                 regime,
+                level: Some(rounds[0].level),
                 construct: over(|c| c.construct),
                 construct_body: over(|c| c.construct_body),
                 update: over(|c| c.update),
                 frame: over(|c| c.frame),
                 body: over(|c| c.body),
+                row: over(|c| c.row),
                 handle: over(|c| c.handle),
                 hit: over(|c| c.hit),
                 miss: over(|c| c.miss),
+                further: over(|c| c.further),
             });
         }
     }

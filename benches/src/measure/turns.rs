@@ -7,6 +7,11 @@
 //! between. The following ones are *warm*: frames of one culler in sequence, as in a simulation.
 //! Every number says which of the two it is.
 //!
+//! The position of the stack also affects a frame's time: loads and stores whose addresses agree
+//! modulo a page wait for each other, and an access that crosses a page is slow. That position is
+//! drawn once per process and differs by contestant. Each frame therefore begins [at another part
+//! of a page](displaced), so that a median is taken over many positions.
+//!
 //! Other load may interrupt a frame, with a probability that grows with its length. Time that a
 //! thread waited for a processor is subtracted if the system reports it ([`Waiting`]), and is
 //! recorded.
@@ -33,6 +38,12 @@ const PREPARED_BODIES: usize = 1 << 13;
 const LEAST_WATCHED_SECONDS: f64 = 100e-6;
 /// The most frames of a turn.
 const MOST_FRAMES: usize = 8;
+/// Bytes by which the stack is displaced at once, what a call takes included or not.
+const DISPLACEMENT: usize = 208;
+/// Displacements that go round a page, and by how many the next frame's is larger; they share no
+/// divisor.
+const DISPLACEMENTS: usize = 17;
+const DISPLACED_BY: usize = 5;
 
 choices! {
     /// The state of the caches when a culler is timed.
@@ -64,6 +75,18 @@ pub struct Timed<'a, C> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Turns {
     round: u64,
+    displacement: usize,
+}
+
+/// Works with so many pads on the stack beneath.
+#[inline(never)]
+fn displaced(pads: usize, work: &mut dyn FnMut()) {
+    let pad = std::hint::black_box([0_u8; DISPLACEMENT]);
+    match pads.checked_sub(1) {
+        Some(pads) => displaced(pads, work),
+        None => work(),
+    }
+    std::hint::black_box(&pad);
 }
 
 impl Turns {
@@ -72,6 +95,7 @@ impl Turns {
     pub fn from_stream(stream: u32) -> Self {
         Self {
             round: u64::from(stream) << 32,
+            displacement: 0,
         }
     }
 
@@ -89,9 +113,13 @@ impl Turns {
             let mut watched = true;
             for (frame, bodies) in frames.iter().enumerate() {
                 let before = if watched { waiting.seconds() } else { 0.0 };
-                let start = Instant::now();
-                contestant.frame(bodies);
-                let seconds = start.elapsed().as_secs_f64();
+                let mut seconds = 0.0;
+                self.displacement = (self.displacement + DISPLACED_BY) % DISPLACEMENTS;
+                displaced(self.displacement, &mut || {
+                    let start = Instant::now();
+                    contestant.frame(bodies);
+                    seconds = start.elapsed().as_secs_f64();
+                });
                 let after = if watched { waiting.seconds() } else { 0.0 };
                 let waited = (after - before).clamp(0.0, seconds);
                 let seconds = seconds - waited;
@@ -315,6 +343,21 @@ mod tests {
     }
 
     /// Every contestant takes every frame in order and another begins.
+    #[test]
+    fn frames_find_the_stack_in_other_places() {
+        let mut places = Vec::new();
+        for pads in 0..DISPLACEMENTS {
+            displaced(pads, &mut || {
+                let here = std::hint::black_box(0_u8);
+                places.push(std::ptr::from_ref(&here).addr() % 4096);
+            });
+        }
+        places.sort_unstable();
+        places.dedup();
+        let gaps = places.windows(2).map(|pair| pair[1] - pair[0]);
+        assert!(places.len() >= 12 && gaps.max() < Some(1024), "{places:?}");
+    }
+
     #[test]
     fn contestants_alternate_over_all_frames() {
         let frame = |bodies: usize| Bodies {

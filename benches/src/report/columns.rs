@@ -41,7 +41,7 @@ const DERIVED: [&str; 9] = [
 ];
 
 /// Text that is found, not given.
-const DERIVED_TEXT: [&str; 3] = ["verdict", "claim_verdict", "standing"];
+const DERIVED_TEXT: [&str; 4] = ["verdict", "claim_verdict", "standing", "fails"];
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -322,6 +322,16 @@ impl Results {
         passes.map(|(_, pass)| pass).collect()
     }
 
+    /// The passes whose rounds calibrated scenes of the same kind as this one, in the order of time:
+    /// such scenes share their prices.
+    #[must_use]
+    pub fn priced_as(&self, scene: PaperScene) -> Vec<&Pass> {
+        let level = |pass: &Pass| Some(pass.prices[0].first()?.level);
+        let own = self.passes_of(scene).first().map(|pass| level(pass));
+        let passes = self.passes.iter().map(|(_, pass)| pass);
+        passes.filter(|pass| Some(level(pass)) == own).collect()
+    }
+
     /// The cost of every strategy in every scene; the control costs nothing that the formula has a
     /// term for.
     #[must_use]
@@ -329,9 +339,9 @@ impl Results {
         let mut costs = Vec::new();
         for (scene, variants) in &self.variants {
             let bodies = self.example(scene.name()).map_or(0, |run| run.bodies);
-            let passes = self.passes_of(*scene);
+            let passes = (&self.passes_of(*scene)[..], &self.priced_as(*scene)[..]);
             for of in variants.iter().enumerate() {
-                costs.extend(table::cost((scene.name(), bodies), of, &passes, regime));
+                costs.extend(table::cost((scene.name(), bodies), of, passes, regime));
             }
         }
         costs

@@ -4,7 +4,7 @@
 //! The paper's frames included rendering at an unknown price, so rates are shown for stated F:
 //! none, and a whole frame of 60 Hz, which hides all but the slowest culling.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Estimate;
 use super::experiment::{Results, STRATEGIES};
@@ -16,7 +16,7 @@ pub const OTHER_FRAME_SECONDS: [f64; 2] = [0.0, 16.7e-3];
 pub const FRAME_60_HZ: f64 = 1.0 / 60.0;
 
 /// One strategy's frame rate.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rate {
     /// The scene.
     pub scene: String,

@@ -4,7 +4,7 @@
 //! strategy's own test is the last one that it makes; an entry written to the list of sphere hits
 //! may have been counted as a test as well.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::experiment::Results;
 use super::{Estimate, paper};
@@ -71,7 +71,7 @@ impl Reading {
 }
 
 /// One cell of Table 1.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Table1Cell {
     /// The scene.
     pub scene: String,

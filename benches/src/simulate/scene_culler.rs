@@ -12,7 +12,7 @@ use sdop::rounding::pose::{rotate_of, rotation};
 use sdop::settings::{CullSettings, Finder, Interest, ViewCone};
 use sdop::simd::Tier;
 use sdop::volume::Shape;
-use sdop::world::{Body, BodyId, World};
+use sdop::world::{Body, BodyId, Motion, World};
 
 /// Culls a scene's bodies, frame by frame.
 pub(super) enum SceneCuller {
@@ -51,7 +51,11 @@ impl SceneCuller {
         let translations = scene.fine.of(&scene.bodies);
         let bodies = (0..scene.bodies.len()).map(|body| Body {
             shape: scene.bodies.shape[body],
-            dynamic: scene.bodies.dynamic[body],
+            motion: if scene.bodies.dynamic[body] {
+                Motion::Dynamic
+            } else {
+                Motion::Fixed
+            },
             ..posed(&scene.bodies, translations.as_deref(), body)
         });
         let ids = bodies

@@ -168,7 +168,10 @@ impl Measured<'_> {
         let settings = &variant.settings;
         let volume = variant.decides();
         let ordop = volume == Some(Volume::OrDop);
-        let cost = |regime| table::cost(self.scene, (at, variant), &self.passes, regime);
+        let cost = |regime| {
+            let passes = (&self.passes[..], &self.passes[..]);
+            table::cost(self.scene, (at, variant), passes, regime)
+        };
         let time = |pass: &&Pass| pass.culled[at].times.quartiles(Regime::Warm).median;
         VariantResult {
             name: variant.name.clone(),

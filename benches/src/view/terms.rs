@@ -1,4 +1,5 @@
-//! T = Nu·Cu + F + Nv·Cv, frame by frame: a run's counters at prices calibrated for its shapes.
+//! T = Nu·Cu + F + Nv·Cv, frame by frame: a run's counters at prices calibrated for its shapes and
+//! the level of its working set.
 
 use super::{Culled, Show};
 use crate::cost::calibrate::{Calibration, Effort};
@@ -12,7 +13,7 @@ use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 use sdop_judge::record::VolumeLine;
 
-/// Enough for a picture: one pass, in a fraction of a second for hundreds of bodies.
+/// Enough for a picture: one round, in a second for hundreds of bodies.
 const EFFORT: Effort = Effort {
     turns: 1,
     builds: 1,
@@ -62,10 +63,7 @@ pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>
         construct_seconds: 0.0,
     };
     let mut calibration = Calibration::new(&scene, &[variant], tier, EFFORT)?;
-    for turn in 0..calibration.turns_of_a_pass() {
-        calibration.turn(turn)?;
-    }
-    let [warm, _cold] = calibration.prices();
+    let [warm, _cold] = calibration.round()?;
     Ok(warm.into_iter().next())
 }
 

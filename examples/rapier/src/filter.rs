@@ -11,7 +11,7 @@ use std::sync::{Arc, RwLock};
 use std::time::Instant;
 
 use rustc_hash::FxHashMap;
-use sdop::world::{Body, BodyId, Groups, PairLookup, World};
+use sdop::world::{Body, BodyId, Groups, Motion, PairLookup, World};
 
 use super::rapier::math::Pose;
 use super::rapier::prelude::*;
@@ -242,7 +242,11 @@ impl Mirror {
         let groups = collider.collision_groups();
         let now = number.map(|shape| Body {
             shape,
-            dynamic: awake,
+            motion: if awake {
+                Motion::Dynamic
+            } else {
+                Motion::Fixed
+            },
             rotation: collider.rotation().to_array().map(|x| x as f32),
             translation: collider.translation().to_array().map(|x| x as f64),
             groups: match groups.test_mode {

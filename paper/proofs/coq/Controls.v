@@ -2,7 +2,7 @@
    rejects balls that have a common point; with the constants of the code it doesn't. *)
 From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core BinarySingleNaN.
-From Sdop Require Import Format Geometry Sphere Ieee.
+From Sdop Require Import Format Double Geometry Sphere Ieee Run.
 Open Scope R_scope.
 
 (* Balls whose centres are no farther apart than the sum of their radii have a common point. *)
@@ -91,26 +91,16 @@ Qed.
 (* The grid's former count of cells, round(extent / size) + 1 with one division, where a centre's
    cell comes from a product with 1 / size. For this widened radius and these ends of the box the
    quotient is below 21.5, so the last cell was 21, and the farthest centre falls in cell 22. *)
-#[export] Instance precision_of_f64 : Prec_gt_0 53 := eq_refl.
-#[export] Instance exponents64 : Prec_lt_emax 53 1024 := eq_refl.
-Definition f64 : Type := binary_float 53 1024.
-Definition number64 (n e : Z) : f64 := binary_normalize 53 1024 _ _ mode_NE n e false.
-Definition plus64 : f64 -> f64 -> f64 := Bplus mode_NE.
-Definition minus64 : f64 -> f64 -> f64 := Bminus mode_NE.
-Definition mult64 : f64 -> f64 -> f64 := Bmult mode_NE.
-Definition divide64 : f64 -> f64 -> f64 := Bdiv mode_NE.
-
 Definition widened : f64 := number64 23408582 (-24).
 Definition low_end : f64 := number64 (-17187326) (-48).
 Definition high_end : f64 := number64 31455762 (-19).
 
-(* src/broad_phase/grid/cells.rs: Cells::fit, Rule::cell *)
+(* src/broad_phase/grid/cells.rs: Cells::fit *)
 Definition size64 : f64 := mult64 (mult64 (number64 2 0) widened) (number64 65537 (-16)).
 Definition extent : f64 := minus64 high_end low_end.
-Definition cell64 (x : f64) : f64 :=
-  plus64 (mult64 (minus64 x low_end) (divide64 (number64 1 0) size64)) (number64 (3 * 2 ^ 51) 0).
 
 Theorem former_count_refuted :
   Bcompare (divide64 extent size64) (number64 43 (-1)) = Some Lt /\
-  Bcompare (cell64 high_end) (number64 (3 * 2 ^ 51 + 22) 0) = Some Eq.
+  Bcompare (cell64 low_end (divide64 (number64 1 0) size64) high_end)
+    (number64 (3 * 2 ^ 51 + 22) 0) = Some Eq.
 Proof. split; vm_compute; reflexivity. Qed.

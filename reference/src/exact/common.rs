@@ -23,7 +23,7 @@ use crate::linear::{
 use crate::number::{Number, dyadic};
 use crate::pose::Pose;
 
-type Rational = Vector<RBig>;
+pub(super) type Rational = Vector<RBig>;
 
 /// A point with rational coordinates.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -159,12 +159,12 @@ fn vertex_inside(view: &View, pose: &Pose) -> Option<Point> {
     Some(Point(world(pose, &lifted(*vertex))))
 }
 
-fn lifted(v: Vector<f64>) -> Rational {
+pub(super) fn lifted(v: Vector<f64>) -> Rational {
     v.map(|x| RBig::lift(x, 0))
 }
 
 /// R(q)x/|q|² + t
-fn world(pose: &Pose, x: &Rational) -> Rational {
+pub(super) fn world(pose: &Pose, x: &Rational) -> Rational {
     let q = pose.quaternion().map(|c| RBig::lift(c, 0));
     let norm = norm_squared(&q);
     let turned = apply(&rotation(&q), x).map(|component| component / &norm);
@@ -196,17 +196,20 @@ fn piercing([p, q]: &[Rational; 2], t: &[Rational; 3]) -> Option<Rational> {
 
 /// The point of the line pq that is nearest to the line ab; `None` when they are parallel.
 fn crossing([p, q]: &[Rational; 2], [a, b]: &[Rational; 2]) -> Option<Rational> {
-    let (u, v) = (sub(q, p), sub(b, a));
-    let normal = cross(&u, &v);
+    let u = sub(q, p);
+    let at = crossing_parameter([p, &u], [a, &sub(b, a)])?;
+    Some(add(p, &scale(&at, &u)))
+}
+
+/// The s for which p + s·u is nearest to the line a + t·v; `None` when they are parallel.
+pub(super) fn crossing_parameter([p, u]: [&Rational; 2], [a, v]: [&Rational; 2]) -> Option<RBig> {
+    let normal = cross(u, v);
     let size = dot(&normal, &normal);
-    (!size.is_zero()).then(|| {
-        let at = dot(&cross(&sub(a, p), &v), &normal) / size;
-        add(p, &scale(&at, &u))
-    })
+    (!size.is_zero()).then(|| dot(&cross(&sub(a, p), v), &normal) / size)
 }
 
 /// Whether a point is in a triangle of any kind.
-fn contains(t: &[Rational; 3], x: &Rational) -> bool {
+pub(super) fn contains(t: &[Rational; 3], x: &Rational) -> bool {
     let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (&t[i], &t[j]));
     let normal = cross(&sub(&t[1], &t[0]), &sub(&t[2], &t[0]));
     let turn = |(a, b): (&Rational, &Rational)| cross(&sub(b, a), &sub(x, a));

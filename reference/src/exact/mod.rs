@@ -22,6 +22,7 @@ pub mod ordop;
 pub mod orientation;
 pub mod parity;
 pub mod polytope;
+pub mod query;
 pub mod relative;
 pub mod simplex;
 pub mod sphere;

@@ -115,9 +115,11 @@ pub fn of_price<'a>(scene: &'a str, price: &'a PriceRow) -> Vec<Line<'a>> {
         ("price Cu", "s per update", &price.update),
         ("price F per frame", "s per frame", &price.frame),
         ("price F per body", "s per body and frame", &price.body),
+        ("price F per body with hits", "s per body", &price.row),
         ("price F per listed pair", "s per pair", &price.handle),
         ("price Cv hit", "s per test", &price.hit),
         ("price Cv miss", "s per test", &price.miss),
+        ("price Cv further slab", "s per slab", &price.further),
     ]
     .map(line)
     .into()

@@ -1,7 +1,5 @@
 //! The figure of the record `kernels/far`: wrong pairs and time against distance from the origin.
 
-use std::collections::BTreeMap;
-use std::error::Error;
 use std::ops::Range;
 
 use miette::miette;
@@ -10,16 +8,10 @@ use plotters::prelude::*;
 use sdop_bench::report::Table;
 use serde_json::{Map, Value};
 
-use crate::commands::palette::{BLUE, GREEN, PALE, VERMILION};
+use crate::commands::curves::{self, Chart, Curves, DrawResult, Stroke};
 
-const FONT: &str = "sans-serif";
 /// Where the axis of distances, which is logarithmic, has the origin.
 const ORIGIN: f64 = 100.0;
-const COLOURS: [RGBColor; 3] = [VERMILION, BLUE, GREEN];
-
-/// Points of each series, by its name.
-type Curves = BTreeMap<String, Vec<(f64, f64)>>;
-type DrawResult = Result<(), Box<dyn Error>>;
 
 /// The figure, as SVG.
 ///
@@ -42,22 +34,14 @@ pub fn draw(table: &Table) -> miette::Result<String> {
         let all = curves.values().flatten();
         1.1 * all.map(|point| point.1).fold(f64::MIN_POSITIVE, f64::max)
     };
-    let mut text = String::new();
-    let area = SVGBackend::with_string(&mut text, (960, 720)).into_drawing_area();
-    let panels = |area: &DrawingArea<SVGBackend<'_>, Shift>| -> DrawResult {
-        area.fill(&WHITE)?;
+    curves::page((960, 720), |area| {
         let (upper, lower) = area.split_vertically(360);
         let y = "pairs lost or gained, % (log)";
         // A share of nothing at all is drawn at the lower end.
         let shares = 1e-3..most(&wrong).max(1.0);
         panel(&upper, &wrong, y, shares.log_scale())?;
-        panel(&lower, &time, "ns per body and frame", 0.0..most(&time))?;
-        Ok(area.present()?)
-    };
-    let drawn = panels(&area);
-    drop(area);
-    drawn.map_err(|error| miette!("cannot draw: {error}"))?;
-    Ok(text)
+        panel(&lower, &time, "ns per body and frame", 0.0..most(&time))
+    })
 }
 
 /// A row's series, its distance, and the share of wrong pairs and nanoseconds per body.
@@ -85,38 +69,17 @@ where
     let points = curves.values().flatten();
     let farthest = points.map(|point| point.0).fold(10.0 * ORIGIN, f64::max);
     let distances: Range<f64> = ORIGIN..farthest;
-    let mut chart = ChartBuilder::on(area)
-        .margin(14)
-        .x_label_area_size(46)
-        .y_label_area_size(70)
-        .build_cartesian_2d(distances.log_scale(), values)?;
     let distance = |x: &f64| match x {
         x if *x <= ORIGIN => "0".to_owned(),
         x => format!("{x:e}"),
     };
-    chart
-        .configure_mesh()
-        .x_desc("distance along each axis, radii (log)")
-        .y_desc(title)
-        .x_label_formatter(&distance)
-        .label_style((FONT, 14))
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(PALE)
-        .draw()?;
-    for ((name, points), colour) in curves.iter().zip(COLOURS.into_iter().cycle()) {
-        let style = colour.stroke_width(3);
-        let line = LineSeries::new(points.iter().copied(), style).point_size(3);
-        chart
-            .draw_series(line)?
-            .label(name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], style));
-    }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .border_style(RGBColor(200, 200, 200))
-        .background_style(WHITE)
-        .label_font((FONT, 12))
-        .draw()?;
-    Ok(())
+    let chart = Chart {
+        caption: "",
+        titles: ["distance along each axis, radii (log)", title],
+        x: distances.log_scale(),
+        y: values,
+        ticks: &distance,
+        legend: SeriesLabelPosition::UpperLeft,
+    };
+    curves::draw(area, curves, |place, _| Stroke::plain(place), chart)
 }

@@ -146,7 +146,9 @@ struct OutputPlace<'a> {
 impl OutputPlace<'_> {
     fn write(&self, tables: &Tables, format: Format, why: Option<&str>) -> miette::Result<()> {
         write_tables(self.numbers, tables)?;
-        figures::draw_all(&self.paper.join("figures"), tables)?;
+        for (name, svg) in figures::draw_all(&tables.drawings())? {
+            write(&self.paper.join("figures").join(name), &svg)?;
+        }
         match format {
             Format::Csv => emit(Format::Csv, &tables.table_1, |_| String::new()),
             format => emit_with_reason(format, tables, why, |tables| {
@@ -189,6 +191,14 @@ fn disagreement(results: &Results) -> Option<String> {
     };
     let agree = hashes(Strategy::SDopSequential).eq(hashes(Strategy::SDopBatch));
     (!agree).then(|| "sequential and listed S-DOP report different pairs".to_owned())
+}
+
+/// The figures of a record's `results.json`, each with its file's name.
+///
+/// # Errors
+/// Another text.
+pub fn figures_of(results: &str) -> miette::Result<Vec<(String, String)>> {
+    figures::draw_all(&rows::Drawings::read(results)?)
 }
 
 fn write_tables(directory: &Path, tables: &Tables) -> miette::Result<()> {

@@ -16,7 +16,7 @@ use sdop_bench::reproduce::rates::{self, Rate};
 use sdop_bench::reproduce::readings::{self, Table1Cell};
 use sdop_bench::reproduce::sensitivity::Interpretation;
 use sdop_bench::reproduce::{Estimate, PaperScene, Results, StrategyRun, claims, study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
@@ -52,6 +52,41 @@ pub struct Tables {
     pub times: Vec<TimeRow>,
 }
 
+/// What the figures are drawn from: a part of `results.json`.
+#[derive(Deserialize)]
+pub struct Drawings {
+    pub boxes: Vec<BoxRow>,
+    pub table_1: Vec<Table1Cell>,
+    pub rates: Vec<Rate>,
+    /// Warm frames.
+    pub costs: Vec<Cost>,
+}
+
+impl Drawings {
+    /// Those of `results.json`.
+    ///
+    /// # Errors
+    /// Another text.
+    pub fn read(results: &str) -> miette::Result<Self> {
+        let mut read: Self = serde_json::from_str(results).into_diagnostic()?;
+        for cell in &mut read.table_1 {
+            let own = read.boxes.iter().find(|row| row.scene == cell.scene);
+            cell.in_papers_box = own.is_some_and(|row| !row.crowded);
+        }
+        Ok(read)
+    }
+
+    /// The scenes with costs.
+    pub fn scenes(&self) -> Vec<&str> {
+        distinct(self.costs.iter().map(|cost| cost.scene.as_str()))
+    }
+
+    /// The strategies with costs.
+    pub fn strategies(&self) -> Vec<Strategy> {
+        distinct(self.costs.iter().map(|cost| cost.strategy))
+    }
+}
+
 /// A price with the scene that it was calibrated for.
 #[derive(Serialize)]
 pub struct ScenePrice {
@@ -61,7 +96,7 @@ pub struct ScenePrice {
 }
 
 /// A scene's bodies and box, and the share of sphere tests that hit there in the closed form.
-#[derive(Serialize)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct BoxRow {
     pub scene: String,
     /// Whether it is the small box.
@@ -202,14 +237,14 @@ impl Tables {
         self.costs.iter().chain(&self.cold_costs).collect()
     }
 
-    /// The scenes with costs.
-    pub fn scenes(&self) -> Vec<&str> {
-        distinct(self.costs.iter().map(|cost| cost.scene.as_str()))
-    }
-
-    /// The strategies with costs.
-    pub fn strategies(&self) -> Vec<Strategy> {
-        distinct(self.costs.iter().map(|cost| cost.strategy))
+    /// What the figures are drawn from.
+    pub fn drawings(&self) -> Drawings {
+        Drawings {
+            boxes: self.boxes.clone(),
+            table_1: self.table_1.clone(),
+            rates: self.rates.clone(),
+            costs: self.costs.clone(),
+        }
     }
 
     fn checks(&self) -> Vec<CheckRow<'_>> {
@@ -290,7 +325,7 @@ fn hidden(results: &Results) -> Vec<HiddenRow> {
 fn prices(results: &Results) -> Vec<ScenePrice> {
     let mut prices = Vec::new();
     for &scene in &results.plan.names {
-        let passes = results.passes_of(scene);
+        let passes = results.priced_as(scene);
         for &regime in Regime::ALL {
             let rows = table::prices(&passes, regime).into_iter();
             prices.extend(rows.map(|price| ScenePrice {

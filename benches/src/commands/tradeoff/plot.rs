@@ -1,24 +1,17 @@
 //! The figures, as SVG: precision against time, break-even against density, precision against
 //! budget.
 
-use std::collections::BTreeMap;
-use std::error::Error;
 use std::ops::Range;
 
-use miette::miette;
-use plotters::coord::Shift;
 use plotters::prelude::*;
+use sdop::settings::Overlap;
 use sdop_bench::tradeoff::pays::Standing;
 use sdop_bench::tradeoff::{Tradeoff, VariantResult};
 
-use crate::commands::palette::{BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILION};
+use crate::commands::curves::{self, Chart, Curves, FONT, Stroke, plain};
+use crate::commands::palette::{BY_K, GREY, LIGHT, PALE};
 
 const SIZE: (u32, u32) = (960, 600);
-const FONT: &str = "sans-serif";
-/// A colour a curve, in this order.
-const COLOURS: [RGBColor; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK];
-
-type Points = Vec<(f64, f64)>;
 
 /// Precision against time per frame: the Pareto front with error bars, and world-aligned boxes,
 /// labelled at their points; what is tied is grey.
@@ -38,8 +31,8 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
         _ => front.clone(),
     };
     let times = span(result.rows.iter().map(|row| at(row).0));
-    figure(|area| {
-        let mut chart = ChartBuilder::on(&area)
+    curves::page(SIZE, |area| {
+        let mut chart = ChartBuilder::on(area)
             .caption(format!("{}: what accuracy costs", result.scene), (FONT, 20))
             .margin(14)
             .x_label_area_size(46)
@@ -48,16 +41,14 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
         chart
             .configure_mesh()
             .x_desc("time per warm frame, µs (log)")
-            .x_label_formatter(&|microseconds| format!("{microseconds}"))
+            .x_label_formatter(&plain)
             .y_desc("precision: true pairs / reported pairs")
+            .y_label_formatter(&plain)
             .label_style((FONT, 14))
             .light_line_style(TRANSPARENT)
             .bold_line_style(PALE)
             .draw()?;
-        for (standing, colour) in [
-            (Standing::Beaten, RGBColor(190, 190, 190)),
-            (Standing::Tied, GREY),
-        ] {
+        for (standing, colour) in [(Standing::Beaten, LIGHT), (Standing::Tied, GREY)] {
             let rows = result.rows.iter().filter(|row| is_drawn_as(row, standing));
             let dots = rows.map(|row| Circle::new(at(row), 4, colour.filled()));
             chart
@@ -66,13 +57,17 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
                 .legend(move |(x, y)| Circle::new((x + 8, y), 4, colour.filled()));
         }
         let steps = front.iter().map(|row| at(row));
-        chart.draw_series(LineSeries::new(steps, BLUE.stroke_width(2)))?;
+        let line = BLACK.stroke_width(2);
+        chart
+            .draw_series(LineSeries::new(steps, line))?
+            .label("front")
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], line));
         let points: Vec<(i32, i32)> = labelled
             .iter()
             .map(|row| chart.backend_coord(&at(row)))
             .collect();
         for (place, (row, offset)) in labelled.iter().zip(label_offsets(&points)).enumerate() {
-            let colour = if place < front.len() { BLUE } else { GREY };
+            let colour = if place < front.len() { BLACK } else { GREY };
             let (time, precision) = at(row);
             let seconds = row.seconds();
             if seconds.half_width.is_finite() {
@@ -84,18 +79,24 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
             let mark = EmptyElement::at((time, precision))
                 + Circle::new((0, 0), 5, colour.filled())
                 + PathElement::new([(6, 0), (offset.0 - 3, offset.1 + 6)], GREY)
+                + Rectangle::new(plate(&row.name, offset), WHITE.mix(0.85).filled())
                 + Text::new(row.name.clone(), offset, (FONT, 13));
             chart.draw_series([mark])?;
         }
         chart
             .configure_series_labels()
             .position(SeriesLabelPosition::LowerRight)
-            .border_style(RGBColor(200, 200, 200))
+            .border_style(LIGHT)
             .background_style(WHITE)
             .label_font((FONT, 14))
             .draw()?;
         Ok(())
     })
+}
+
+/// What lies behind a name, so that it can be read over a line.
+fn plate(name: &str, (x, y): (i32, i32)) -> [(i32, i32); 2] {
+    [(x - 1, y), (x + 7 * name.chars().count() as i32, y + 13)]
 }
 
 /// A variant's place: µs per warm frame, precision.
@@ -144,7 +145,7 @@ fn label_offsets(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
 
 /// For each S-DOP, the Cp above which it is cheaper than spheres alone, against density.
 pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
-    let mut curves: BTreeMap<String, Points> = BTreeMap::new();
+    let mut curves = Curves::new();
     for density in &result.densities {
         for even in density.break_even.iter().filter(|b| b.cp > 0.0) {
             let point = (density.partners, 1e9 * even.cp);
@@ -158,105 +159,57 @@ pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
         "exact narrow phase".into(),
         vec![(densities.start, reference), (densities.end, reference)],
     );
+    let stroke = |place, name: &str| {
+        let row = result.rows.iter().find(|row| row.name == name);
+        row.and_then(of_variant).unwrap_or(Stroke::plain(place))
+    };
     let legend_room = 6.0;
-    lines(
-        &curves,
-        &format!("{}: when an or-DOP pays", result.scene),
-        [
-            "sphere overlaps a body (log)",
-            "Cp, ns a surviving pair (log)",
+    let chart = Chart {
+        caption: &format!("{}: when an or-DOP pays", result.scene),
+        titles: [
+            "sphere overlaps per body (log)",
+            "Cp, ns per surviving pair (log)",
         ],
-        (densities.start..densities.end * legend_room).log_scale(),
-        (prices.start / 1.5..prices.end * 1.5).log_scale(),
-    )
+        x: (densities.start..densities.end * legend_room).log_scale(),
+        y: (prices.start / 1.5..prices.end * 1.5).log_scale(),
+        ticks: &plain,
+        legend: SeriesLabelPosition::UpperRight,
+    };
+    curves::page(SIZE, |area| curves::draw(area, &curves, stroke, chart))
 }
 
-/// Precision against the budget of tests, a curve an order.
+/// An S-DOP's colour by its k; dashed with rings when its test is two-sided.
+fn of_variant(row: &VariantResult) -> Option<Stroke> {
+    let known = [6, 14, 18, 26].iter().position(|k| row.k == Some(*k))?;
+    let is_dashed = row.overlap? == Overlap::TwoSided;
+    Some(Stroke {
+        colour: BY_K[known],
+        is_dashed,
+        has_rings: is_dashed,
+    })
+}
+
+/// Precision against the budget of tests, a curve per order.
 pub fn budget(result: &Tradeoff) -> miette::Result<String> {
-    let mut curves: BTreeMap<String, Points> = BTreeMap::new();
+    let mut curves = Curves::new();
     for row in &result.budgets {
         let point = (row.tests as f64, row.precision);
         curves.entry(row.order.to_string()).or_default().push(point);
     }
-    let most = result
-        .budgets
-        .iter()
-        .map(|row| row.tests)
-        .max()
-        .unwrap_or(1);
-    lines(
-        &curves,
-        &format!("{}: time-critical culling", result.scene),
-        [
-            "or-DOP tests a frame",
+    let most = result.budgets.iter().map(|row| row.tests).max();
+    let chart = Chart {
+        caption: &format!("{}: time-critical culling", result.scene),
+        titles: [
+            "or-DOP tests per frame",
             "precision: true pairs / reported pairs",
         ],
-        0.0..1.4 * most.max(1) as f64,
-        0.0..1.0_f64,
-    )
-}
-
-/// Named curves with a legend on the right.
-fn lines<X, Y>(
-    curves: &BTreeMap<String, Points>,
-    caption: &str,
-    axes: [&str; 2],
-    x: X,
-    y: Y,
-) -> miette::Result<String>
-where
-    X: plotters::coord::ranged1d::AsRangedCoord<Value = f64>,
-    Y: plotters::coord::ranged1d::AsRangedCoord<Value = f64>,
-    X::CoordDescType: plotters::coord::ranged1d::ValueFormatter<f64>,
-    Y::CoordDescType: plotters::coord::ranged1d::ValueFormatter<f64>,
-{
-    figure(|area| {
-        let mut chart = ChartBuilder::on(&area)
-            .caption(caption, (FONT, 20))
-            .margin(14)
-            .x_label_area_size(46)
-            .y_label_area_size(64)
-            .build_cartesian_2d(x, y)?;
-        chart
-            .configure_mesh()
-            .x_desc(axes[0])
-            .y_desc(axes[1])
-            .label_style((FONT, 14))
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(PALE)
-            .draw()?;
-        for (place, (name, points)) in curves.iter().enumerate() {
-            let colour = COLOURS[place % COLOURS.len()];
-            // Beyond the palette, thinner lines.
-            let style = colour.stroke_width(if place < COLOURS.len() { 3 } else { 1 });
-            let line = LineSeries::new(points.iter().copied(), style).point_size(3);
-            chart
-                .draw_series(line)?
-                .label(name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], style));
-        }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .border_style(RGBColor(200, 200, 200))
-            .background_style(WHITE)
-            .label_font((FONT, 12))
-            .draw()?;
-        Ok(())
-    })
-}
-
-/// Draws on a white page and returns the SVG.
-fn figure(
-    draw: impl FnOnce(DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), Box<dyn Error>>,
-) -> miette::Result<String> {
-    let mut text = String::new();
-    let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-    area.fill(&WHITE)
-        .map_err(Into::into)
-        .and_then(|()| draw(area))
-        .map_err(|error: Box<dyn Error>| miette!("cannot draw: {error}"))?;
-    Ok(text)
+        x: 0.0..1.4 * most.unwrap_or(1).max(1) as f64,
+        y: 0.0..1.0_f64,
+        ticks: &plain,
+        legend: SeriesLabelPosition::UpperRight,
+    };
+    let stroke = |place, _: &str| Stroke::plain(place);
+    curves::page(SIZE, |area| curves::draw(area, &curves, stroke, chart))
 }
 
 /// From the least to the greatest positive value; one decade about 1 when there is none.
@@ -270,7 +223,65 @@ fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
 
 #[cfg(test)]
 mod tests {
+    use sdop_bench::measure::conditions::Conditions;
+
     use super::*;
+
+    /// A comparison of variants with these names, microseconds, precisions and standings.
+    fn compared(rows: &[(&str, f64, f64, Standing)]) -> Tradeoff {
+        let estimate = |mean: f64| serde_json::json!({"mean": mean, "half_width": 0.0, "seeds": 1});
+        let rows: Vec<_> = rows
+            .iter()
+            .map(|(name, microseconds, precision, standing)| {
+                serde_json::json!({
+                    "name": name, "strategy": "sphere", "hulls": false, "volume": null, "k": null,
+                    "axes": null, "overlap": null, "reported": estimate(1.0),
+                    "precision": estimate(*precision), "precisions": [precision],
+                    "per_true": estimate(1.0), "recall": 1.0, "volume_over_hull": null,
+                    "warm": null, "cold": null, "times": [1e-6 * microseconds],
+                    "standing": standing, "pairs_sha256": [],
+                })
+            })
+            .collect();
+        serde_json::from_value(serde_json::json!({
+            "scene": "s", "bodies": 2, "frames": 1, "samples": 1, "seeds": [1], "simd": "scalar",
+            "truth": estimate(1.0), "partners": 1.0, "narrow_phase": {"miss": 1e-6, "hit": 1e-6},
+            "rows": rows, "cheapest": [], "densities": [], "variations": [], "budgets": [],
+            "clock": [], "interest": [], "shapes": [], "safety": [], "prices": [],
+            "decisions": [], "conditions": Conditions::default(), "advice": "",
+        }))
+        .unwrap()
+    }
+
+    #[test]
+    fn only_the_front_is_named() {
+        let rows = [
+            ("fast", 10.0, 0.3, Standing::Front),
+            ("middle", 30.0, 0.6, Standing::Front),
+            // A slower one of the same precision, which its interval has kept on the front.
+            ("level", 40.0, 0.6, Standing::Front),
+            ("tight", 2000.0, 0.9, Standing::Front),
+            ("aabb", 400.0, 0.4, Standing::Beaten),
+            ("other", 500.0, 0.35, Standing::Beaten),
+        ];
+        let result = compared(&rows);
+        let names: Vec<&str> = front(&result).iter().map(|row| row.name.as_str()).collect();
+        assert_eq!(names, ["fast", "middle", "tight"]);
+        let drawn = precision(&result).unwrap();
+        let words: Vec<&str> = drawn.lines().map(str::trim).collect();
+        for name in [
+            "fast", "middle", "tight", "aabb", "10", "100", "1000", "0.5", "1",
+        ] {
+            assert!(words.contains(&name), "{name}: {drawn}");
+        }
+        for name in ["level", "other", "100.0", "1000.0", "1.0"] {
+            assert!(!words.contains(&name), "{name}: {drawn}");
+        }
+        let black = drawn
+            .lines()
+            .filter(|it| it.starts_with("<circle") && it.contains("#000000"));
+        assert_eq!(black.count(), 3, "a dot for each on the front");
+    }
 
     /// Names of near points lie above one another and far ones stay.
     #[test]

@@ -8,12 +8,12 @@ use sdop_bench::reproduce::paper_name;
 
 use super::style::{CostPart, PARTS, anchored, ends, label, legend, quiet, text, titled};
 use super::{Area, DrawResult};
-use crate::commands::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Drawings;
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// One panel a strategy, each with its own scale.
-pub fn draw(area: &Area<'_>, tables: &Tables) -> DrawResult {
+pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let body = titled(
         area,
         "T without construction, warm, µs per frame: terms predicted from other scenes' prices, and measured (•, 95 %)",
@@ -47,17 +47,18 @@ pub fn draw_strategies(area: &Area<'_>, scene: &str, costs: &[&Cost]) -> DrawRes
     panel(&right, "on another scale", &slow, name)
 }
 
-/// Costs in two parts at the widest gap between neighbours by time, if the slower take three times
-/// the faster ones' or more; the order within each part stays.
+/// Costs in two parts at the widest gap between neighbours by time, if the slowest takes so many
+/// times the fastest's that its terms would be too low to see; the order within each part stays.
 fn apart<'a>(costs: &[&'a Cost]) -> (Vec<&'a Cost>, Vec<&'a Cost>) {
+    const WIDE: f64 = 4.0;
     let time = |cost: &Cost| cost.frame.measured.mean;
     let mut times: Vec<f64> = costs.iter().map(|&cost| time(cost)).collect();
     times.sort_by(f64::total_cmp);
     let gap = times
         .windows(2)
         .max_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
-    let border = match gap {
-        Some(gap) if gap[1] >= 3.0 * gap[0] => gap[0],
+    let border = match (gap, times.first(), times.last()) {
+        (Some(gap), Some(first), Some(last)) if *last >= WIDE * first => gap[0],
         _ => f64::INFINITY,
     };
     costs
@@ -142,6 +143,7 @@ fn column(chart: &mut Chart<'_, '_>, x: f64, cost: &Cost, name: String) -> DrawR
 mod tests {
     use super::super::svg;
     use super::*;
+    use crate::commands::palette::{TESTS, UPDATES};
     use sdop::settings::Strategy;
     use sdop_bench::cost::predict::Terms;
     use sdop_bench::cost::table::Compared;
@@ -150,19 +152,22 @@ mod tests {
 
     fn cost(strategy: Strategy, volume: Volume, microseconds: f64) -> Cost {
         let seconds = 1e-6 * microseconds;
-        let compared = Compared::of(&[[seconds, seconds]]);
+        let compared = Compared::of(&[[seconds, seconds]], &[seconds]);
         Cost {
             scene: "s".into(),
             bodies: 1,
             strategy,
             variant: strategy.name().into(),
             regime: Regime::Warm,
+            level: None,
             frames: 1,
             terms: vec![Terms {
                 volume,
                 updates: 1.0,
                 tests: 1.0,
                 hits: 1.0,
+                rows: 0.0,
+                further: 0.0,
                 construct: 0.0,
                 update: 0.5 * seconds,
                 finding: 0.25 * seconds,
@@ -173,6 +178,60 @@ mod tests {
             quartiles: Quartiles::default(),
             construct: compared,
             total: compared,
+            fails: None,
+        }
+    }
+
+    #[test]
+    fn low_bars_have_a_panel() {
+        let spheres =
+            [19.0, 22.0, 56.0, 245.0].map(|us| cost(Strategy::Sphere, Volume::Sphere, us));
+        let all: Vec<&Cost> = spheres.iter().collect();
+        let times = |costs: &[&Cost]| -> Vec<f64> {
+            costs
+                .iter()
+                .map(|cost| (1e6 * cost.frame.measured.mean).round())
+                .collect()
+        };
+        let (fast, slow) = apart(&all);
+        assert_eq!(
+            (times(&fast), times(&slow)),
+            (vec![19.0, 22.0], vec![56.0, 245.0])
+        );
+        // Within four times, one scale serves all.
+        let (fast, slow) = apart(&all[..3]);
+        assert_eq!((fast.len(), slow.len()), (3, 0));
+    }
+
+    /// The columns of a figure have their strategies' names, and each its terms' colours.
+    #[test]
+    fn every_bar_has_its_name() {
+        let named = [
+            (Strategy::Aabb, Volume::Aabb),
+            (Strategy::KDop, Volume::KDop),
+            (Strategy::Obb, Volume::Obb),
+        ];
+        let costs = named.map(|(strategy, volume)| cost(strategy, volume, 50.0));
+        let drawn = svg((1060, 480), |area| {
+            draw_strategies(area, "s", &costs.iter().collect::<Vec<_>>())
+        });
+        let drawn = drawn.unwrap_or_default();
+        let lines: Vec<&str> = drawn.lines().map(str::trim).collect();
+        for (strategy, _) in named {
+            assert!(
+                lines.contains(&strategy.name()),
+                "{}: {drawn}",
+                strategy.name()
+            );
+        }
+        for colour in [UPDATES[2], TESTS[2]] {
+            let fill = format!("fill=\"#{:02X}{:02X}{:02X}\"", colour.0, colour.1, colour.2);
+            let rectangles = lines.iter().filter(|line| line.starts_with("<rect"));
+            assert_eq!(
+                rectangles.filter(|line| line.contains(&fill)).count(),
+                3,
+                "{fill}"
+            );
         }
     }
 

@@ -10,10 +10,10 @@ use sdop_bench::reproduce::rates::{ELSEWHERE, Rate};
 
 use super::style::{anchored, colour, ends, label, quiet, text, titled};
 use super::{Area, DrawResult};
-use crate::commands::reproduce::rows::{Tables, distinct};
+use crate::commands::reproduce::rows::{Drawings, distinct};
 
 /// One panel a scene and F.
-pub fn draw(area: &Area<'_>, tables: &Tables) -> DrawResult {
+pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let bodies = tables.rates.iter().map(|rate| rate.bodies);
     let most = bodies.max().unwrap_or(0);
     let of_most = || tables.rates.iter().filter(|rate| rate.bodies == most);

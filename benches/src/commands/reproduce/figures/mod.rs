@@ -8,13 +8,11 @@ mod sphere;
 mod style;
 mod useful_tests;
 
-use std::path::Path;
-
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use sdop_bench::cost::table::Cost;
 
-use super::rows::Tables;
+use super::rows::Drawings;
 
 /// Where a figure is drawn.
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -27,7 +25,7 @@ type DrawResult = Result<(), DrawError>;
 type Figure = (
     &'static str,
     (u32, u32),
-    fn(&Area<'_>, &Tables) -> DrawResult,
+    fn(&Area<'_>, &Drawings) -> DrawResult,
 );
 
 const FIGURES: [Figure; 5] = [
@@ -38,17 +36,17 @@ const FIGURES: [Figure; 5] = [
     ("sphere", (760, 430), sphere::draw),
 ];
 
-/// Draws every figure into the directory.
+/// Every figure, with its file's name.
 ///
 /// # Errors
-/// A file that can't be written.
-pub fn draw_all(directory: &Path, tables: &Tables) -> miette::Result<()> {
-    for (name, size, draw) in FIGURES {
-        let svg = svg(size, |area| draw(area, tables))
+/// What can't be drawn.
+pub fn draw_all(drawings: &Drawings) -> miette::Result<Vec<(String, String)>> {
+    let drawn = FIGURES.into_iter().map(|(name, size, draw)| {
+        let svg = svg(size, |area| draw(area, drawings))
             .map_err(|error| miette::miette!("cannot draw {name}: {error}"))?;
-        super::write(&directory.join(name).with_extension("svg"), &svg)?;
-    }
-    Ok(())
+        Ok((format!("{name}.svg"), svg))
+    });
+    drawn.collect()
 }
 
 /// Where the time of one scene's frames goes, strategy by strategy.

@@ -8,7 +8,7 @@ use sdop_bench::reproduce::readings::{Reading, Table1Cell};
 
 use super::style::{ends, quiet};
 use super::{Area, DrawError, DrawResult};
-use crate::commands::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Drawings;
 
 /// A chart of percentages over N.
 type Chart<'a, 'b, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, Y>>;
@@ -16,7 +16,7 @@ type Chart<'a, 'b, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoord
 /// Axes up to the most bodies of any scene.
 pub fn chart<'a, 'b, Y>(
     area: &Area<'b>,
-    tables: &Tables,
+    tables: &Drawings,
     range: Y,
     unit: &str,
 ) -> Result<Chart<'a, 'b, Y::CoordDescType>, DrawError>
@@ -39,13 +39,13 @@ where
 }
 
 /// Where the axis of N ends.
-pub fn right(tables: &Tables) -> f64 {
+pub fn right(tables: &Drawings) -> f64 {
     let most = tables.table_1.iter().map(|cell| cell.bodies).max();
     1.06 * most.unwrap_or(1) as f64
 }
 
 /// A strategy's percentages in the paper's box.
-pub fn cells(tables: &Tables, strategy: Strategy) -> Vec<&Table1Cell> {
+pub fn cells(tables: &Drawings, strategy: Strategy) -> Vec<&Table1Cell> {
     let reading = Reading::shown(strategy);
     let of = |cell: &&Table1Cell| {
         cell.strategy == strategy && cell.reading == reading && cell.in_papers_box

@@ -9,10 +9,10 @@ use sdop_bench::reproduce::paper_name;
 use super::style::{anchored, colour, ends, label, legend, quiet, titled};
 use super::{Area, DrawResult};
 use crate::commands::palette::GREY;
-use crate::commands::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Drawings;
 
 /// One group a scene, one mark a strategy.
-pub fn draw(area: &Area<'_>, tables: &Tables) -> DrawResult {
+pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let body = titled(
         area,
         "Residual of T = Nu·Cu + F + Nv·Cv: measured over predicted, less one, warm frames (whiskers: 95 %)",

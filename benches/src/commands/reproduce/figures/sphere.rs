@@ -8,25 +8,25 @@ use super::percent::{cells, chart, marks, right};
 use super::style::{colour, legend, titled};
 use super::{Area, DrawResult};
 use crate::commands::palette::GREY;
-use crate::commands::reproduce::rows::Tables;
+use crate::commands::reproduce::rows::Drawings;
 
 /// The percentages shown.
 const RANGE: [f64; 2] = [0.7, 1.3];
 
 /// Percent over N.
-pub fn draw(area: &Area<'_>, tables: &Tables) -> DrawResult {
+pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let body = titled(
         area,
         "Share of sphere tests that hit: a fixed box has one, whatever N",
     )?;
     let (keys, body) = body.split_vertically(30);
-    let blue = colour(Strategy::Sphere);
+    let own = colour(Strategy::Sphere);
     legend(
         &keys,
         (14, 12),
         &[
-            ("measured, 95 % over seeds", blue, false),
-            ("the paper's Table 1", blue, true),
+            ("measured, 95 % over seeds", own, false),
+            ("the paper's Table 1", own, true),
             ("closed form P(2r/L)", GREY, false),
         ],
     )?;
@@ -37,5 +37,5 @@ pub fn draw(area: &Area<'_>, tables: &Tables) -> DrawResult {
         let line = vec![(0.0, row.percent), (right(tables), row.percent)];
         chart.draw_series([PathElement::new(line, GREY.stroke_width(2))])?;
     }
-    marks(&mut chart, &cells, blue, RANGE)
+    marks(&mut chart, &cells, own, RANGE)
 }

@@ -12,18 +12,18 @@ use sdop_bench::reproduce::Estimate;
 
 use super::Area;
 use crate::commands::palette::{
-    BLUE, FINDING, GREEN, GREY, ORANGE, PALE, SKY, TESTS, UPDATES, VERMILION,
+    BATCH, FINDING, GREY, INTEREST, ORDOPS, PALE, SEQUENTIAL, SPHERE, TESTS, UPDATES,
 };
 
 /// A strategy's colour in every figure.
 pub fn colour(strategy: Strategy) -> RGBColor {
     match strategy {
         Strategy::None => RGBColor(90, 90, 90),
-        Strategy::Sphere => BLUE,
-        Strategy::SDopObjectOfInterest => SKY,
-        Strategy::SDopSequential => GREEN,
-        Strategy::SDopBatch => ORANGE,
-        _ => VERMILION,
+        Strategy::Sphere => SPHERE,
+        Strategy::SDopObjectOfInterest => INTEREST,
+        Strategy::SDopSequential => SEQUENTIAL,
+        Strategy::SDopBatch => BATCH,
+        _ => ORDOPS,
     }
 }
 

@@ -9,6 +9,7 @@ import {
   Group,
   InstancedBufferAttribute,
   InstancedMesh,
+  Box3,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
@@ -18,6 +19,7 @@ import {
   Vector3,
 } from "three";
 import type { ShapeHeader } from "./data.ts";
+import type { Triple } from "./figures.ts";
 import type { Run } from "./run.ts";
 import { Surface } from "./shading.ts";
 import type { Space } from "./space.ts";
@@ -41,6 +43,8 @@ export class Bodies extends Group {
   private readonly at: { mesh: InstancedMesh; index: number }[] = [];
   /** Seven numbers per body: rotation, normalised, and offset. */
   readonly placed: Float64Array;
+  /** The frame's boxes, where they are drawn instead of the meshes. */
+  private boxes: Float32Array | null = null;
   readonly surface = new Surface();
   private readonly frustum = new Frustum();
   /** Bodies from the nearest to the farthest: what is hidden then costs least. */
@@ -72,9 +76,10 @@ export class Bodies extends Group {
     });
   }
 
-  /** Moves the bodies to a frame's poses. */
-  place(frame: number): void {
+  /** Moves the bodies to a frame's poses; `asBoxes`: a case's boxes take the place of the meshes. */
+  place(frame: number, asBoxes = false): void {
     const { run, space, placed } = this;
+    this.boxes = asBoxes ? run.boxesAt(frame) : null;
     const poses = run.posesAt(frame);
     for (let body = 0; body < run.header.bodies; body++) {
       const p = 7 * body;
@@ -84,6 +89,24 @@ export class Bodies extends Group {
       placed[p + 5] = space.y(poses[p + 5]);
       placed[p + 6] = space.z(poses[p + 6]);
     }
+  }
+
+  /** The box that is drawn in the place of a body's mesh, if one is. */
+  box(body: number): { centre: Triple; half: Triple } | null {
+    const { boxes, space } = this;
+    if (!boxes) return null;
+    const corner = (at: number): Triple => [space.x(boxes[at]), space.y(boxes[at + 1]), space.z(boxes[at + 2])];
+    const [low, high] = [corner(6 * body), corner(6 * body + 3)];
+    const half = [0, 1, 2].map((axis) => (high[axis] - low[axis]) / 2) as Triple;
+    const centre = [0, 1, 2].map((axis) => (high[axis] + low[axis]) / 2) as Triple;
+    return { centre, half };
+  }
+
+  /** A ball about what is drawn of a body. */
+  ball(body: number): { centre: Triple; radius: number } {
+    const box = this.box(body);
+    if (box) return { centre: box.centre, radius: Math.hypot(...box.half) };
+    return { centre: this.placement(body).offset, radius: this.radius(body) };
   }
 
   /** A body's radius about its origin in the picture. */
@@ -121,7 +144,7 @@ export class Bodies extends Group {
       const at = this.at[body];
       SPHERE.center.set(placed[p + 4], placed[p + 5], placed[p + 6]);
       SPHERE.radius = radius;
-      if (hidden(body) || !this.frustum.intersectsSphere(SPHERE)) {
+      if (this.boxes || hidden(body) || !this.frustum.intersectsSphere(SPHERE)) {
         at.index = -1;
         continue;
       }
@@ -156,6 +179,7 @@ export class Bodies extends Group {
   /** The nearest body that the ray meets, by its mesh; hidden ones don't count. */
   pick(raycaster: Raycaster): number | null {
     const { ray } = raycaster;
+    if (this.boxes) return this.pickBox(raycaster);
     const near: [number, number][] = [];
     for (let body = 0; body < this.run.header.bodies; body++) {
       SPHERE.center.set(...this.placement(body).offset);
@@ -176,9 +200,21 @@ export class Bodies extends Group {
     }
     return best?.body ?? null;
   }
+
+  private pickBox({ ray }: Raycaster): number | null {
+    let best: { distance: number; body: number } | null = null;
+    for (let body = 0; body < this.run.header.bodies; body++) {
+      const { centre, half } = this.box(body)!;
+      BOX.setFromCenterAndSize(new Vector3(...centre), new Vector3(...half).multiplyScalar(2));
+      const distance = ray.intersectBox(BOX, POINT)?.distanceTo(ray.origin) ?? Infinity;
+      if (distance < (best?.distance ?? Infinity)) best = { distance, body };
+    }
+    return best?.body ?? null;
+  }
 }
 
 const MATRIX = new Matrix4();
+const BOX = new Box3();
 const SPHERE = new Sphere();
 const POINT = new Vector3();
 const PROBE = new Mesh(new BufferGeometry(), new MeshBasicMaterial());

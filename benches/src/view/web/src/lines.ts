@@ -55,6 +55,7 @@ export class Wires extends LineSegments<InstancedBufferGeometry, ShaderMaterial>
     });
     super(geometry, material);
     this.frustumCulled = false;
+    this.renderOrder = overAll ? 1 : 0;
     this.reserve(16);
   }
 

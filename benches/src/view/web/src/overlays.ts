@@ -4,6 +4,7 @@ import { Group } from "three";
 import type { Color, Vector3 } from "three";
 import type { Bodies } from "./bodies.ts";
 import { cubeLines, extent, plus, rotate, sphereLines, type Triple, turnFromX, UPRIGHT } from "./figures.ts";
+import { Faces } from "./faces.ts";
 import { Wires } from "./lines.ts";
 import { halfSpaces, polytope } from "./polytope.ts";
 import { type Run, State } from "./run.ts";
@@ -41,6 +42,7 @@ export class Overlays extends Group {
   private readonly spheres = new Wires(sphereLines(), 0.55);
   private readonly ordops: Wires[];
   private readonly boxes = new Wires(cubeLines(), 0.7);
+  private readonly faces: Faces;
   private readonly cells = new Wires(cubeLines(), 0.35);
   private readonly halos = new Wires(SEGMENT, 0.9, true);
   private readonly pairs = new Wires(SEGMENT, 0.9, true);
@@ -68,14 +70,15 @@ export class Overlays extends Group {
     this.hulls = shapes.map(({ hull: [start, count] }) =>
       Float64Array.from(run.blocks.get("hull")!.subarray(3 * start, 3 * (start + count))),
     );
+    this.faces = new Faces(run.boxesAt(0) ? run.header.bodies : 0);
     this.widest = Math.max(0, ...Array.from(new Set(run.shapeOf), (shape) => shapes[shape].ball[3]));
-    this.add(this.spheres, ...this.ordops, this.boxes, this.cells, this.halos, this.pairs, this.marks, this.markedPairs);
+    this.add(this.spheres, ...this.ordops, this.boxes, this.faces, this.cells, this.halos, this.pairs, this.marks, this.markedPairs);
   }
 
   /** Draws what is switched on for the moment; `marked` are bodies with a ring, each with its colour. */
   update(moment: Moment, marked: Map<number, Color>): void {
     const { switches } = moment;
-    const all = [this.spheres, ...this.ordops, this.boxes, this.cells, this.halos, this.pairs, this.marks, this.markedPairs];
+    const all = [this.spheres, ...this.ordops, this.boxes, this.faces, this.cells, this.halos, this.pairs, this.marks, this.markedPairs];
     for (const wires of all) wires.begin();
     if (switches.spheres) this.addSpheres(moment);
     if (switches.ordops) this.addOrDops(moment);
@@ -84,8 +87,9 @@ export class Overlays extends Group {
     this.addPairs(moment);
     this.addSharedPoint(moment);
     for (const [body, colour] of marked) {
-      const radius = 1.08 * this.bodies.radius(body);
-      this.marks.put(this.bodies.placement(body).offset, UPRIGHT, [radius, radius, radius], colour);
+      const ball = this.bodies.ball(body);
+      const radius = 1.08 * ball.radius;
+      this.marks.put(ball.centre, UPRIGHT, [radius, radius, radius], colour);
     }
     for (const wires of all) wires.end();
   }
@@ -115,27 +119,20 @@ export class Overlays extends Group {
     }
   }
 
-  /** World-aligned boxes: those that were given with the frame, or else fitted to the posed hull's vertices. */
+  /** World-aligned boxes: those that were given with the frame, with faces, or else fitted to the posed hull's vertices. */
   private addBoxes(moment: Moment): void {
-    const given = this.run.boxesAt(moment.frame);
-    if (given) return this.addGivenBoxes(moment, given);
     for (const [body, colour] of this.shown(moment)) {
+      const given = this.bodies.box(body);
+      if (given) {
+        this.boxes.put(given.centre, UPRIGHT, given.half, colour);
+        this.faces.put(given.centre, given.half, colour);
+        continue;
+      }
       const { turn, offset } = this.bodies.placement(body);
       const { low, high } = extent(this.hulls[this.run.shapeOf[body]], turn);
       const half = [0, 1, 2].map((axis) => ((high[axis] - low[axis]) / 2) * this.space.scale) as Triple;
       const centre = [0, 1, 2].map((axis) => ((high[axis] + low[axis]) / 2) * this.space.scale) as Triple;
       this.boxes.put(plus(offset, centre), UPRIGHT, half, colour);
-    }
-  }
-
-  private addGivenBoxes(moment: Moment, given: Float32Array): void {
-    const { space } = this;
-    for (const [body, colour] of this.shown(moment)) {
-      const corner = (at: number): Triple => [space.x(given[at]), space.y(given[at + 1]), space.z(given[at + 2])];
-      const [low, high] = [corner(6 * body), corner(6 * body + 3)];
-      const half = [0, 1, 2].map((axis) => (high[axis] - low[axis]) / 2) as Triple;
-      const centre = [0, 1, 2].map((axis) => (high[axis] + low[axis]) / 2) as Triple;
-      this.boxes.put(centre, UPRIGHT, half, colour);
     }
   }
 
@@ -177,7 +174,7 @@ export class Overlays extends Group {
   }
 
   private line(wires: Wires, i: number, j: number, colour: Color, { eye, theme }: Moment): void {
-    const [a, b] = [this.bodies.placement(i).offset, this.bodies.placement(j).offset];
+    const [a, b] = [this.bodies.ball(i).centre, this.bodies.ball(j).centre];
     const half = [0, 1, 2].map((axis) => (b[axis] - a[axis]) / 2) as Triple;
     const length = Math.hypot(...half);
     const middle = [0, 1, 2].map((axis) => (a[axis] + b[axis]) / 2) as Triple;

@@ -38,10 +38,6 @@ export interface Shown {
 /** The part of the picture's height under the strategies' names. */
 const TITLES = 0.12;
 
-/** How much of its colour a body loses that has nothing to do with the picked one. */
-const FADING = 0.75;
-const FADED = new Color();
-
 /** Half a period of the flashing of missed bodies, in milliseconds: slow enough for the photosensitive. */
 const FLASH = 350;
 
@@ -88,7 +84,7 @@ export class Stage {
     this.dress(colours);
     // Decimated meshes have slits, through which the inside is better than nothing; pictures in a hurry do without.
     this.bodies.surface.side = shown.moving ? FrontSide : DoubleSide;
-    this.bodies.place(shown.frame);
+    this.bodies.place(shown.frame, shown.switches.boxes);
     const { width, height } = this.canvas.getBoundingClientRect();
     const part = width / shown.sides.length;
     this.renderer.setScissorTest(shown.sides.length > 1);
@@ -119,11 +115,6 @@ export class Stage {
     this.phase = this.phaseAt(now);
     const bright = colours.dark ? new Color("#ffffff") : new Color("#ffd9c9");
     const colour = (body: number): Color => {
-      const own = stateColour(body);
-      // What has nothing to do with the picked body keeps its colour, faded.
-      return this.isAway(body, picked) ? FADED.copy(own).lerp(colours.ghost, FADING) : own;
-    };
-    const stateColour = (body: number): Color => {
       const state: State = this.states[body];
       const hue = this.hue(body, colours);
       if (hue) return hue;
@@ -163,32 +154,40 @@ export class Stage {
     this.labels.show(spread(labels, this.camera.lens), this.camera.lens, width, height);
   }
 
-  /** With a picked body: which others could stand before it or what it meets, and aren't drawn. */
+  /** With a picked body: which others hide a part of it, and aren't drawn. */
   private covering(picked: number | null): (body: number) => boolean {
     if (picked === null) return () => false;
-    const eye = this.camera.lens.position;
-    const place = new Vector3();
-    const far = (body: number) => place.fromArray(this.bodies.placement(body).offset).distanceTo(eye);
-    const behind = far(picked) + 3 * this.bodies.radius(picked);
-    return (body) => this.isAway(body, picked) && far(body) - this.bodies.radius(body) < behind;
+    const seen = (body: number) => {
+      const { centre, radius } = this.bodies.ball(body);
+      const way = new Vector3(...centre).sub(this.camera.lens.position);
+      return { way, radius, distance: way.length() };
+    };
+    const own = seen(picked);
+    const angle = (radius: number, distance: number) => Math.asin(Math.min(1, radius / Math.max(distance, 1e-9)));
+    return (body) => {
+      if (!this.isAway(body, picked)) return false;
+      const { way, radius, distance } = seen(body);
+      const isBefore = distance - radius < own.distance;
+      return isBefore && way.angleTo(own.way) < angle(radius, distance) + angle(own.radius, own.distance);
+    };
   }
 
-  /** With a picked body, whether this one has nothing to do with it. */
+  /** With a picked body, whether this one has nothing to do with it and misses no pair. */
   private isAway(body: number, picked: number | null): boolean {
-    return picked !== null && body !== picked && this.related[body] === 0;
+    return picked !== null && body !== picked && this.related[body] === State.Idle && this.states[body] !== State.Missed;
   }
 
-  /** Each body's state by its worst pair, and whether a pair of its is with the picked body. */
+  /** Each body's state by its worst pair, and by its worst pair with the picked body. */
   private judge(frame: number, side: number, picked: number | null): void {
     this.states.fill(State.Idle);
-    this.related.fill(0);
+    this.related.fill(State.Idle);
     for (const { i, j, flags } of this.run.pairsAt(frame)) {
       const state = this.run.state(flags, side);
-      const own = picked === null || i === picked || j === picked;
       if (state === State.Missed) this.flashing = true;
-      if (own || state === State.Missed) this.related[i] = this.related[j] = 1;
-      this.states[i] = Math.max(this.states[i], state);
-      this.states[j] = Math.max(this.states[j], state);
+      for (const body of [i, j]) {
+        this.states[body] = Math.max(this.states[body], state);
+        if (i === picked || j === picked) this.related[body] = Math.max(this.related[body], state);
+      }
     }
   }
 
@@ -198,7 +197,12 @@ export class Stage {
     this.states.forEach((state, body) => {
       if (state === State.Missed) marked.set(body, colours.states[state]);
     });
-    if (picked !== null) marked.set(picked, colours.picked);
+    if (picked !== null) {
+      this.related.forEach((state, body) => {
+        if (state >= State.Reported) marked.set(body, colours.states[state]);
+      });
+      marked.set(picked, colours.picked);
+    }
     return marked;
   }
 

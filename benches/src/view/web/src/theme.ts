@@ -7,8 +7,6 @@ export interface Theme {
   background: Color;
   moving: Color;
   fixed: Color;
-  /** Bodies that have nothing to do with the picked one. */
-  ghost: Color;
   walls: Color;
   picked: Color;
   /** By State. */
@@ -21,44 +19,38 @@ export interface Theme {
   pair: [Color, Color];
 }
 
-const hex = (text: string): Color => new Color(text);
-
-const LIGHT: Theme = {
-  dark: false,
-  background: hex("#f6f7f9"),
-  moving: hex("#b4bcc6"),
-  fixed: hex("#7c8590"),
-  ghost: hex("#e9ecf0"),
-  walls: hex("#8a929c"),
-  picked: hex("#000000"),
-  states: ["#b4bcc6", "#b4bcc6", "#e69f00", "#0072b2", "#d5400a"].map(hex),
-  spheres: hex("#8f98a3"),
-  volumes: hex("#30363d"),
-  cells: hex("#009e73"),
-  pair: [hex("#1fa8a0"), hex("#8e3a9d")],
-};
-
-const DARK: Theme = {
-  dark: true,
-  background: hex("#12151a"),
-  moving: hex("#6b7580"),
-  fixed: hex("#454d57"),
-  ghost: hex("#39414b"),
-  walls: hex("#78828e"),
-  picked: hex("#ffffff"),
-  states: ["#6b7580", "#6b7580", "#e69f00", "#45a5e6", "#ff5a1f"].map(hex),
-  spheres: hex("#6d7681"),
-  volumes: hex("#c8d0d9"),
-  cells: hex("#2fc79a"),
-  pair: [hex("#4fd6cc"), hex("#d58be0")],
-};
-
 const darkness = matchMedia("(prefers-color-scheme: dark)");
 const stillness = matchMedia("(prefers-reduced-motion: reduce)");
 
+/** The colours of the style sheet, which the legend has too, for the system's setting. */
+function read(dark: boolean): Theme {
+  const style = getComputedStyle(document.documentElement);
+  const colour = (name: string) => new Color(style.getPropertyValue(`--${name}`).trim());
+  return {
+    dark,
+    background: colour("ground"),
+    moving: colour("idle"),
+    fixed: colour("fixed"),
+    walls: colour("walls"),
+    picked: colour("ink"),
+    states: ["idle", "idle", "reported", "meets", "missed"].map(colour),
+    spheres: colour("spheres"),
+    volumes: colour("volumes"),
+    cells: colour("cells"),
+    pair: [colour("pair-0"), colour("pair-1")],
+  };
+}
+
+const themes = new Map<boolean, Theme>();
+
 /** The theme of the system's setting. */
 export function theme(): Theme {
-  return darkness.matches ? DARK : LIGHT;
+  const dark = darkness.matches;
+  const known = themes.get(dark);
+  if (known) return known;
+  const made = read(dark);
+  themes.set(dark, made);
+  return made;
 }
 
 /** Whether the person wants things not to move by themselves. */

@@ -101,8 +101,9 @@ export class Tab {
     return result.value;
   }
 
-  /** Waits until what was asked for is drawn. */
-  settle() {
+  /** Waits until what was asked for is drawn. A tab behind another draws nothing. */
+  async settle() {
+    await this.client.Page.bringToFront();
     return this.read("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))");
   }
 
@@ -133,6 +134,7 @@ export class Tab {
   }
 
   async close() {
+    await this.client.Page.close();
     await this.client.close();
   }
 }

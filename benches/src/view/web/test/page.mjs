@@ -8,7 +8,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { find, launch, sleep, Tab } from "./chromium.mjs";
-import { colours } from "./colours.mjs";
+import { colours, kept } from "./colours.mjs";
 
 const sdop = resolve(process.argv[2] ?? "target/debug/sdop");
 const directory = mkdtempSync(join(tmpdir(), "sdop-view-page-"));
@@ -37,6 +37,18 @@ async function until(ask, what) {
     await sleep(100);
   }
   assert.fail(`${what}: not within 20 s`);
+}
+
+/** The picture once it is drawn sharp: it stays the same. */
+async function finished(tab) {
+  let last = null;
+  return until(async () => {
+    await sleep(200); // longer than a picture rests before it is drawn sharp
+    const picture = await tab.screenshot();
+    const same = last?.equals(picture);
+    last = picture;
+    return same && picture;
+  }, "a picture that stays");
 }
 
 const sum = (frame, key) => frame.counters.reduce((total, volume) => total + volume[key], 0);
@@ -217,6 +229,44 @@ const tests = {
     }
   },
 
+  async "the boxes of a case take the place of its meshes"(browser) {
+    const tab = await open(browser, "tiny.html", "", { still: true });
+    const ground = async () => (await colours(browser, await finished(tab), 800, 700)).light;
+    const around = await ground();
+    assert.ok(around > 300_000, `${around} pixels of ground about two small boxes`);
+    const { x, y, width, height } = await tab.read("document.getElementById('picture').getBoundingClientRect().toJSON()");
+    await tab.click(x + width / 2, y + height / 2);
+    assert.match(await tab.read("document.getElementById('picked-text').textContent"), /^Body [01]:/);
+    await tab.key("Escape");
+    // Without the boxes, the meshes are there, which are far larger.
+    await tab.key("3");
+    const left = await ground();
+    assert.ok(left < around / 2, `${left} pixels of ground, and ${around} about the boxes`);
+  },
+
+  async "picking a body keeps colours and legend"(browser) {
+    const tab = await open(browser, "run.html", "#frame=10", { still: true });
+    const legend = () => tab.read("document.getElementById('legend').textContent");
+    const before = await legend();
+    assert.match(before, /[1-9]/);
+    const unpicked = await finished(tab);
+    const shares = [];
+    for (let body = 0; body < 5; body++) {
+      await tab.key("n");
+      assert.match(await tab.read("document.getElementById('picked-text').textContent"), new RegExp(`^Body ${body}:`));
+      assert.equal(await legend(), before, `legend with body ${body}`);
+      const { coloured, same } = await kept(browser, unpicked, await finished(tab), 800, 700);
+      assert.ok(coloured > 1000, `${coloured} coloured pixels: too few to tell`);
+      shares.push(same / coloured);
+    }
+    // A body that hides the picked one isn't drawn, and a ring is.
+    const mean = shares.reduce((a, b) => a + b) / shares.length;
+    assert.ok(mean > 0.85 && Math.min(...shares) > 0.5, `shares of pixels that keep their colour: ${shares}`);
+    await tab.key("Escape");
+    const { coloured, same } = await kept(browser, unpicked, await finished(tab), 800, 700);
+    assert.equal(same, coloured, "let go, all is as before");
+  },
+
   async "broken and old records are explained in the page"(browser) {
     const message = (tab) => tab.read("document.getElementById('message').hidden ? '' : document.getElementById('message').textContent");
     const newer = await open(browser, "newer.html");
@@ -293,6 +343,13 @@ function makePages() {
   const answers = [0, 1, 2, 3, 4, 5].map((frame) => JSON.stringify({ frame, pairs: frame ? [] : all }));
   writeFileSync(file("answers.ndjson"), answers.join("\n"));
   run("view", file("cases/churn/teleport/0004.ndjson"), "--answers", file("answers.ndjson"), "--no-prices", "--out", file("counter.html"));
+  const given = readFileSync(file("cases/churn/teleport/0004.ndjson"), "utf8").trim().split("\n").map((line) => JSON.parse(line));
+  // In the frame with the miss, both bodies of the pair have one small box.
+  const [lower, upper] = [given[2].boxes[0].slice(0, 3), given[2].boxes[0].slice(3)];
+  const small = [...lower, ...lower.map((low, axis) => Math.fround(low + (upper[axis] - low) / 16))];
+  given[2].boxes.splice(0, 2, small, small);
+  writeFileSync(file("tiny.ndjson"), given.map((line) => JSON.stringify(line)).join("\n"));
+  run("view", file("tiny.ndjson"), "--answers", file("answers.ndjson"), "--no-prices", "--out", file("tiny.html"));
   assert.equal(write("newer", lines.join("\n").replace('"version":1', '"version":2')), 2);
   assert.equal(write("cut", lines.join("\n").slice(0, -30)), 2);
   const old = lines.map((line) => {

@@ -119,7 +119,7 @@ pub(super) struct Levels {
 impl Levels {
     /// Levels that suit these boxes: none has cells much smaller than the mean distance of boxes,
     /// unless most boxes are smaller.
-    pub fn suited_to<'a>(boxes: impl Iterator<Item = &'a Aabb>, count: usize) -> Self {
+    pub fn suited_to(boxes: impl Iterator<Item = Aabb>, count: usize) -> Self {
         let step = count.div_ceil(SAMPLE_SIZE).max(1);
         let (mut lower, mut upper) = ([f64::MAX; 3], [f64::MIN; 3]);
         let mut sides: Vec<f64> = Vec::new();
@@ -129,7 +129,7 @@ impl Levels {
                 upper[axis] = upper[axis].max(f64::from(aabb.max[axis]));
             }
             if number % step == 0 {
-                sides.push(longest_side(aabb));
+                sides.push(longest_side(&aabb));
             }
         }
         sides.sort_by(f64::total_cmp);
@@ -235,7 +235,7 @@ mod tests {
         #[test]
         fn boxes_that_meet_are_in_cells_nearby(one in aabb(), other in aabb(), least in 1e-30_f32..9.0) {
             let sized = Aabb::new([0.0; 3], [least; 3]);
-            let mut levels = Levels::suited_to([sized].iter(), 1);
+            let mut levels = Levels::suited_to([sized].into_iter(), 1);
             let index = levels.level_of(&other);
             let level = levels.all[usize::from(index)];
             let home = other.min.map(|x| level.cell(f64::from(x)));
@@ -250,7 +250,7 @@ mod tests {
     fn a_box_of_the_same_size_looks_into_eight_cells() {
         let cube = |x: f32, side: f32| Aabb::new([x; 3], [x + side; 3]);
         let boxes = [cube(0.0, 1.0), cube(5.0, 1.0), cube(9.0, 1.0)];
-        let mut levels = Levels::suited_to(boxes.iter(), 3);
+        let mut levels = Levels::suited_to(boxes.into_iter(), 3);
         for side in [0.25_f32, 0.8, 1.0, 1.2, 1.5, 3.0, 40.0] {
             for x in 0..50 {
                 let aabb = cube(0.37 * x as f32, side);

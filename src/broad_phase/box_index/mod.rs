@@ -1,11 +1,12 @@
-//! Where each box is, to be changed box by box: cells of several sizes ([`levels`](super::levels))
-//! in a hash table.
+//! Where each box is, to be changed box by box: cells of several sizes ([`levels`]) in a hash table.
 //!
 //! A box that moves, comes or goes costs its old cell and its new one; a query costs the cells near
 //! the box, and what is in them. Nothing is sorted, and nothing rebuilt but the table of cells when
 //! it is full.
 
-use super::levels::{Levels, cell_count};
+mod levels;
+
+use self::levels::{Levels, cell_count};
 use crate::bodies::{Aabb, Groups};
 use crate::pairs::{Run, Runs};
 use crate::simd::prefetch;
@@ -17,9 +18,9 @@ const MAX_LOAD: [usize; 2] = [3, 4];
 const CELLS_PER_BOX: u64 = 2;
 
 /// What a box is, beside its ends.
-pub(super) const FIXED: u32 = 1;
+const FIXED: u32 = 1;
 /// It doesn't collide with all groups.
-pub(super) const GROUPED: u32 = 2;
+const GROUPED: u32 = 2;
 
 /// A box in its cell.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,21 +48,19 @@ struct Home {
     level: u16,
 }
 
-/// A box of which partners are sought.
+/// A body as the index has it, or one that is to be put in or taken out.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seeker<'a> {
+pub(crate) struct IndexedBox {
     pub slot: u32,
-    /// One that is gone meets no box.
+    /// One that is gone is in no index, and meets no box.
     pub is_present: bool,
-    pub aabb: &'a Aabb,
     pub tags: u32,
-    /// By slot.
-    pub groups: &'a [Groups],
+    pub aabb: Aabb,
 }
 
 /// All boxes of a world by location.
 #[derive(Clone, Debug)]
-pub(super) struct BoxIndex {
+pub(crate) struct BoxIndex {
     levels: Levels,
     /// Open addressing with linear probing. Cells stay when their last box leaves, until the table
     /// is made anew.
@@ -74,8 +73,15 @@ pub(super) struct BoxIndex {
 }
 
 impl BoxIndex {
+    /// An index of these boxes, so many.
+    pub fn of(boxes: impl Iterator<Item = IndexedBox> + Clone, count: usize) -> Self {
+        let mut index = Self::suited_to(boxes.clone().map(|indexed| indexed.aabb), count);
+        boxes.for_each(|indexed| _ = index.put(&indexed));
+        index
+    }
+
     /// For these boxes, none of which is in it yet.
-    pub fn suited_to<'a>(boxes: impl Iterator<Item = &'a Aabb>, count: usize) -> Self {
+    fn suited_to(boxes: impl Iterator<Item = Aabb>, count: usize) -> Self {
         Self {
             levels: Levels::suited_to(boxes, count),
             cells: vec![Cell::default(); (count / 2).next_power_of_two().max(16)],
@@ -91,8 +97,18 @@ impl BoxIndex {
         self.len
     }
 
-    /// Puts a box where it is now. Returns the work that it took: entries that were looked at.
-    pub fn put(&mut self, slot: u32, aabb: &Aabb, tags: u32) -> usize {
+    /// Puts a box where it is now, or takes it out if it is gone. Returns the work that it took:
+    /// entries that were looked at.
+    pub fn put(&mut self, indexed: &IndexedBox) -> usize {
+        let &IndexedBox {
+            slot,
+            is_present,
+            tags,
+            ref aabb,
+        } = indexed;
+        if !is_present {
+            return self.remove(slot);
+        }
         if self.homes.len() <= slot as usize {
             self.homes.resize(slot as usize + 1, Home::default());
         }
@@ -130,7 +146,7 @@ impl BoxIndex {
     }
 
     /// Takes a box out, if it is in. Returns the work that it took.
-    pub fn remove(&mut self, slot: u32) -> usize {
+    fn remove(&mut self, slot: u32) -> usize {
         let home = match self.homes.get_mut(slot as usize) {
             Some(home) if home.cell != 0 => std::mem::take(home),
             _ => return 0,
@@ -174,8 +190,7 @@ impl BoxIndex {
         }
     }
 
-    /// Brings near what [`Self::put`] and [`Self::remove`] will read of a box: some boxes before
-    /// them.
+    /// Brings near what [`Self::put`] will read of a box: some boxes before it.
     #[inline]
     pub fn prefetch(&self, slot: u32) {
         if let Some(home) = self.homes.get(slot as usize) {
@@ -183,12 +198,13 @@ impl BoxIndex {
         }
     }
 
-    /// Appends for each seeker the slots of the boxes that meet it, not both fixed, whose groups
-    /// collide: sorted, each once. Where each one's end goes to `ends`. Returns how many boxes and
-    /// cells were looked at.
+    /// Appends for each of some boxes the slots of those that meet it, not both fixed, whose groups
+    /// collide: sorted, each once. Where each one's end goes to `ends`. `groups` are by slot.
+    /// Returns how many boxes and cells were looked at.
     pub fn find_partners(
         &self,
-        seekers: &[Seeker<'_>],
+        seekers: &[IndexedBox],
+        groups: &[Groups],
         search: &mut Search,
         found: &mut Vec<u32>,
         ends: &mut Vec<usize>,
@@ -197,7 +213,7 @@ impl BoxIndex {
         search.clear();
         for seeker in seekers {
             if seeker.is_present {
-                self.list_cells(seeker.aabb, search);
+                self.list_cells(&seeker.aabb, search);
             } else {
                 search.ends.push((search.names.len(), false));
             }
@@ -214,11 +230,11 @@ impl BoxIndex {
             let start = found.len();
             if is_everywhere {
                 for cell in &self.cells {
-                    work += self.look_into(cell.boxes, *seeker, found);
+                    work += self.look_into(cell.boxes, seeker, groups, found);
                 }
             }
             for &run in &search.runs[std::mem::replace(&mut first, end)..end] {
-                work += self.look_into(run, *seeker, found);
+                work += self.look_into(run, seeker, groups, found);
             }
             sort_each_once(found, start);
             ends.push(found.len());
@@ -247,11 +263,17 @@ impl BoxIndex {
     }
 
     #[inline(always)]
-    fn look_into(&self, run: Run, seeker: Seeker<'_>, found: &mut Vec<u32>) -> usize {
-        let Aabb { min, max } = *seeker.aabb;
+    fn look_into(
+        &self,
+        run: Run,
+        seeker: &IndexedBox,
+        groups: &[Groups],
+        found: &mut Vec<u32>,
+    ) -> usize {
+        let Aabb { min, max } = seeker.aabb;
         for entry in self.boxes.get(run) {
             let on = |axis: usize| (min[axis] <= entry.max[axis]) & (entry.min[axis] <= max[axis]);
-            if on(0) & on(1) & on(2) && seeker.may_meet(entry) {
+            if on(0) & on(1) & on(2) && seeker.may_meet(entry, groups) {
                 found.push(entry.slot);
             }
         }
@@ -261,7 +283,7 @@ impl BoxIndex {
 
 /// What searches write down on their way, kept from frame to frame.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Search {
+pub(crate) struct Search {
     names: Vec<u64>,
     runs: Vec<Run>,
     /// Where the cells of each seeker end, and whether it looks into all there are.
@@ -289,12 +311,17 @@ fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
     numbers.truncate(end);
 }
 
-impl Seeker<'_> {
+impl IndexedBox {
     /// Whether a pair with this box is reported if the boxes meet.
-    fn may_meet(&self, other: &Entry) -> bool {
+    fn may_meet(&self, other: &Entry, groups: &[Groups]) -> bool {
         let are_fixed = self.tags & other.tags & FIXED != 0;
         let collide = (self.tags | other.tags) & GROUPED == 0
-            || self.groups[self.slot as usize].collide(self.groups[other.slot as usize]);
+            || groups[self.slot as usize].collide(groups[other.slot as usize]);
         other.slot != self.slot && !are_fixed && collide
     }
+}
+
+/// What the index has of a body, beside its ends.
+pub(crate) fn tags(is_dynamic: bool, groups: Groups) -> u32 {
+    (FIXED * u32::from(!is_dynamic)) | (GROUPED * u32::from(groups != Groups::ALL))
 }

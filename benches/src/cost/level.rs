@@ -1,0 +1,127 @@
+//! Which cache holds what a frame reads and writes: the part of a price's regime that follows from
+//! the number of bodies.
+
+use std::fs::read_to_string;
+use std::path::Path;
+
+use sdop::choice::choices;
+
+/// Bytes per body that a frame touches, about: the pose (28), the ball in its place and in its slot
+/// (32), two names (8) and the or-DOP's row (64). The same for every volume, so that all strategies
+/// of a scene have one level.
+const BYTES_PER_BODY: usize = 132;
+/// What the levels hold where the system doesn't say: 32 kB, 1 MB and 32 MB.
+const USUAL_BYTES: [usize; 3] = [32 << 10, 1 << 20, 32 << 20];
+/// Where Linux describes the caches of the first processor.
+const CACHES: &str = "/sys/devices/system/cpu/cpu0/cache";
+
+choices! {
+    /// The smallest cache that holds what a frame touches.
+    CacheLevel, "cache level", {
+        /// The first level.
+        L1 = "L1",
+        /// The second level.
+        L2 = "L2",
+        /// The third level.
+        L3 = "L3",
+        /// None of them.
+        Memory = "memory",
+    }
+}
+
+impl CacheLevel {
+    /// The level of so many bodies on this machine.
+    #[must_use]
+    pub fn of(bodies: usize) -> Self {
+        Self::among(bodies, cache_bytes())
+    }
+
+    fn among(bodies: usize, caches: [usize; 3]) -> Self {
+        let holds = |level: &&Self| bodies <= level.most_bodies(caches);
+        Self::ALL
+            .iter()
+            .find(holds)
+            .copied()
+            .unwrap_or(Self::Memory)
+    }
+
+    /// The fewest and the most bodies of this level on this machine.
+    #[must_use]
+    pub fn bodies(self) -> [usize; 2] {
+        let (caches, place) = (cache_bytes(), self as usize);
+        let below = Self::ALL[..place].last();
+        let fewest = below.map_or(0, |level| level.most_bodies(caches)) + 1;
+        [fewest, self.most_bodies(caches).max(fewest)]
+    }
+
+    fn most_bodies(self, caches: [usize; 3]) -> usize {
+        let bytes = caches.get(self as usize);
+        bytes.map_or(usize::MAX, |bytes| bytes / BYTES_PER_BODY)
+    }
+}
+
+/// What the three levels hold, from the first on.
+fn cache_bytes() -> [usize; 3] {
+    let mut found = USUAL_BYTES;
+    for index in 0..8 {
+        let directory = Path::new(CACHES).join(format!("index{index}"));
+        let text = |name: &str| read_to_string(directory.join(name)).unwrap_or_default();
+        let level: Option<usize> = text("level").trim().parse().ok();
+        let place = level.and_then(|level| found.get_mut(level.checked_sub(1)?));
+        if let (Some(place), Some(bytes)) = (place, bytes(text("size").trim()))
+            && text("type").trim() != "Instruction"
+        {
+            *place = bytes;
+        }
+    }
+    found
+}
+
+/// A size as Linux writes it: "1024K".
+fn bytes(text: &str) -> Option<usize> {
+    let (number, unit) = match text.strip_suffix('K') {
+        Some(number) => (number, 1 << 10),
+        None => (text.strip_suffix('M')?, 1 << 20),
+    };
+    Some(number.parse::<usize>().ok()? * unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_ends_where_its_cache_is_full() {
+        let caches = [132 * 10, 132 * 100, 132 * 1000];
+        for (bodies, level) in [
+            (0, CacheLevel::L1),
+            (10, CacheLevel::L1),
+            (11, CacheLevel::L2),
+            (100, CacheLevel::L2),
+            (101, CacheLevel::L3),
+            (1000, CacheLevel::L3),
+            (1001, CacheLevel::Memory),
+        ] {
+            assert_eq!(CacheLevel::among(bodies, caches), level, "{bodies}");
+        }
+    }
+
+    #[test]
+    fn the_levels_of_this_machine_follow_one_another() {
+        let mut next = 1;
+        for &level in CacheLevel::ALL {
+            let [fewest, most] = level.bodies();
+            assert_eq!(fewest, next);
+            assert_eq!([fewest, most].map(CacheLevel::of), [level; 2]);
+            next = most.saturating_add(1);
+        }
+    }
+
+    #[test]
+    fn sizes_are_read_as_linux_writes_them() {
+        assert_eq!(bytes("32K"), Some(32 << 10));
+        assert_eq!(bytes("8M"), Some(8 << 20));
+        assert_eq!(bytes("K"), None);
+        assert_eq!(bytes("12"), None);
+    }
+}

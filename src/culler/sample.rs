@@ -1,0 +1,320 @@
+//! Some bodies alone: their boxes, and which of listed pairs a frame would report.
+//!
+//! A world that knows the pairs of the last frame tests those of changed bodies only. Their volumes
+//! are made by the same kernels as a frame's, in places of their own, and tested by the same
+//! comparisons, so a pair has the same verdict either way.
+
+use std::time::Instant;
+
+use super::Culler;
+use crate::bodies::{Aabb, Bodies, Places};
+use crate::broad_phase::Balls;
+use crate::counters::VolumeCounters;
+use crate::overlap::ordop::OrDopColumns;
+use crate::pairs::PairList;
+use crate::rounding::{down, sphere::apart, up, widen};
+use crate::settings::Flow;
+use crate::simd::{Kernel, Lanes, Tier, dispatch};
+use crate::threads::FrameWork;
+use crate::update::{OrDopRows, RowsByNumber, UpdateInputs, update_spheres};
+
+/// The volumes of some bodies: of those that have changed, then of those that are near each.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sample {
+    places: Places,
+    balls: Balls,
+    /// World-aligned slabs, as [`Intervals`](crate::update::Intervals) has them.
+    ends: Vec<[f32; 2]>,
+    rows: OrDopRows,
+    /// Places of pairs, that of the lower body first.
+    pairs: PairList,
+    survivors: PairList,
+}
+
+/// Pairs to be tested: those of each of some bodies with others.
+pub(crate) struct FoundPairs<'a> {
+    /// Bodies, each of which may come with others.
+    pub bodies: &'a [u32],
+    /// These others, one after the other, and where those of each body end.
+    pub others: &'a mut Vec<u32>,
+    pub ends: &'a mut [usize],
+    /// Whether each body is of interest.
+    pub interest: &'a [bool],
+}
+
+impl Culler {
+    /// Whether a pair's verdict is a function of its two bodies: under every strategy that has no
+    /// budget and looks at pairs at all.
+    pub(crate) fn judges_pairs_alone(&self) -> bool {
+        match self.setup.scheme.flow {
+            Flow::FirstTest | Flow::Sequential | Flow::Batch | Flow::OfInterest => true,
+            Flow::Nothing | Flow::TimeCritical => false,
+        }
+    }
+
+    /// The box about each of these bodies: no pair is reported of two whose boxes don't meet.
+    pub(crate) fn boxes_of(&mut self, bodies: &Bodies, some: &[u32]) -> Vec<Aabb> {
+        let start = Instant::now();
+        self.sample.places.body.clear();
+        self.place_sample(bodies, some);
+        let sample = &self.sample;
+        let boxes = if self.volumes.intervals.is_some() {
+            let slabs = sample.ends.len() / some.len().max(1);
+            let boxes = sample.ends.chunks_exact(slabs.max(1));
+            boxes.map(box_of_slabs).collect()
+        } else {
+            sample.balls.iter().map(box_about).collect()
+        };
+        self.seconds.update += start.elapsed().as_secs_f64();
+        boxes
+    }
+
+    /// Keeps of pairs whose boxes meet those that are reported. The bodies are those of the last
+    /// call of [`Self::boxes_of`].
+    pub(crate) fn test_found(&mut self, bodies: &Bodies, found: FoundPairs<'_>) {
+        let FoundPairs {
+            bodies: some,
+            others,
+            ends,
+            interest,
+        } = found;
+        let start = Instant::now();
+        self.place_sample(bodies, others);
+        let updated = Instant::now();
+        if let Some(volume) = self.setup.scheme.first {
+            let counted = self.keep_near(some.len(), others, ends);
+            *self.counters.of_mut(volume) += counted;
+        }
+        let tested = Instant::now();
+        let mut refined = 0;
+        if let Some(volume) = self.setup.scheme.refining {
+            let counted = self.refine_found(bodies, some, others, ends, interest);
+            refined = counted.tests;
+            *self.counters.of_mut(volume) += counted;
+        }
+        self.seconds.update += (updated - start).as_secs_f64();
+        self.seconds.pair_finding += (tested - updated).as_secs_f64();
+        self.seconds.ordop += tested.elapsed().as_secs_f64();
+        self.threads.expect(FrameWork {
+            updates: self.sample.places.len() as u64,
+            candidates: others.len() as u64,
+            refined,
+        });
+    }
+
+    /// Counts a frame whose pairs were found by its changed bodies alone, in so many seconds.
+    pub(crate) fn count_sampled(&mut self, pairs: usize, seconds: f64) {
+        self.counters.reported += pairs as u64;
+        self.seconds.total += seconds;
+    }
+
+    /// Gives places to more bodies after those of the sample, and makes what the first test takes
+    /// of them.
+    fn place_sample(&mut self, bodies: &Bodies, more: &[u32]) {
+        let Sample {
+            places,
+            balls,
+            ends,
+            ..
+        } = &mut self.sample;
+        let first = places.len();
+        places.body.extend_from_slice(more);
+        places.reread_shapes(bodies);
+        places.moving = places.len();
+        let range = first..places.len();
+        balls.resize(range.end);
+        let executor = self.threads.get().executor(self.tier);
+        match &mut self.volumes.intervals {
+            Some(intervals) => {
+                let frames = &self.models.frames;
+                let posed = UpdateInputs {
+                    frames,
+                    bodies,
+                    places,
+                    balls: &[],
+                };
+                std::mem::swap(&mut intervals.ends, ends);
+                intervals.resize(range.end);
+                intervals.update(executor, balls, posed, range);
+                std::mem::swap(&mut intervals.ends, ends);
+            }
+            None => _ = update_spheres(executor, balls, &self.models.frames, bodies, places, range),
+        }
+        if let Some(volume) = self.setup.scheme.first {
+            self.counters.of_mut(volume).updates += more.len() as u64;
+        }
+    }
+
+    /// Keeps the pairs that pass the first test, of bodies in the first so many places with those
+    /// in the places after them.
+    fn keep_near(&self, count: usize, others: &mut Vec<u32>, ends: &mut [usize]) -> VolumeCounters {
+        let Sample {
+            balls,
+            ends: slabs,
+            places,
+            ..
+        } = &self.sample;
+        let tests = others.len() as u64;
+        if self.volumes.intervals.is_some() {
+            let each = slabs.len() / places.len().max(1);
+            let of = |place: usize| &slabs[place * each..(place + 1) * each];
+            keep(others, ends, |number, at, _| {
+                meet(of(number), of(count + at))
+            });
+        } else {
+            dispatch(
+                Tier::SCALAR,
+                KeepNear {
+                    balls,
+                    count,
+                    others,
+                    ends,
+                },
+            );
+        }
+        VolumeCounters {
+            updates: 0,
+            tests,
+            hits: others.len() as u64,
+        }
+    }
+
+    /// Keeps the pairs that pass the refining test, and those that aren't to be refined.
+    fn refine_found(
+        &mut self,
+        bodies: &Bodies,
+        some: &[u32],
+        others: &mut Vec<u32>,
+        ends: &mut [usize],
+        interest: &[bool],
+    ) -> VolumeCounters {
+        let is_refined = |a: u32, b: u32| {
+            self.setup.scheme.flow != Flow::OfInterest
+                || interest[a as usize]
+                || interest[b as usize]
+        };
+        let Sample {
+            places,
+            rows,
+            pairs,
+            survivors,
+            ..
+        } = &mut self.sample;
+        places.body.truncate(some.len());
+        places.body.extend_from_slice(others);
+        places.reread_shapes(bodies);
+        places.moving = places.len();
+        rows.resize(places.len());
+        let posed = UpdateInputs {
+            frames: &self.models.frames,
+            bodies,
+            places,
+            balls: &[],
+        };
+        let executor = self.threads.get().executor(self.tier);
+        rows.update(executor, posed, 0..places.len(), self.volumes.stamp);
+        pairs.clear();
+        survivors.clear();
+        for (number, range) in ranges(ends) {
+            for at in range {
+                if is_refined(some[number], others[at]) {
+                    let [i, j] = [number as u32, (some.len() + at) as u32];
+                    if some[number] < others[at] {
+                        pairs.push(i, j);
+                    } else {
+                        pairs.push(j, i);
+                    }
+                }
+            }
+        }
+        let columns = OrDopColumns {
+            rows: RowsByNumber::all(&rows.rows),
+            tables: &self.models.tables,
+            overlap: self.setup.scheme.overlap(self.setup.settings.overlap),
+        };
+        let tested = columns.test_pairs(self.tier, pairs.first(), pairs.second(), survivors);
+        let mut survivors = survivors.iter().map(|[i, j]| i.max(j) as usize).peekable();
+        keep(others, ends, |number, at, other| {
+            let passed = survivors.next_if_eq(&(some.len() + at)).is_some();
+            passed || !is_refined(some[number], other)
+        });
+        VolumeCounters {
+            updates: places.len() as u64,
+            tests: tested.tests,
+            hits: tested.hits,
+        }
+    }
+}
+
+/// Where the others of each body are.
+fn ranges(ends: &[usize]) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> {
+    let starts = [0].into_iter().chain(ends.iter().copied());
+    starts.zip(ends).map(|(start, &end)| start..end).enumerate()
+}
+
+/// Keeps those others of each body that are to be kept, in their order: `is_kept` gets the body's
+/// number, where the other one was in the list, and the other one.
+fn keep(
+    others: &mut Vec<u32>,
+    ends: &mut [usize],
+    mut is_kept: impl FnMut(usize, usize, u32) -> bool,
+) {
+    let (mut start, mut kept) = (0, 0);
+    for (number, end) in ends.iter_mut().enumerate() {
+        for at in std::mem::replace(&mut start, *end)..*end {
+            if is_kept(number, at, others[at]) {
+                others[kept] = others[at];
+                kept += 1;
+            }
+        }
+        *end = kept;
+    }
+    others.truncate(kept);
+}
+
+/// The sphere test of listed pairs.
+struct KeepNear<'a> {
+    balls: &'a [[f32; 4]],
+    /// Of bodies: those before the others' balls.
+    count: usize,
+    others: &'a mut Vec<u32>,
+    ends: &'a mut [usize],
+}
+
+impl Kernel for KeepNear<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) {
+        keep(self.others, self.ends, |number, at, _| {
+            let [a, b] =
+                [number, self.count + at].map(|place| self.balls[place].map(|x| l.splat(x)));
+            let between = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+            l.bits(apart(l, between, a[3] + b[3])) & 1 == 0
+        });
+    }
+}
+
+/// Whether no direction separates two bodies' slabs.
+fn meet(a: &[[f32; 2]], b: &[[f32; 2]]) -> bool {
+    let mut slabs = a.iter().zip(b);
+    slabs.all(|(&[lo, hi], &[other_lo, other_hi])| !(lo > other_hi || other_lo > hi))
+}
+
+/// The box of world-aligned slabs, whose first three are along the axes.
+fn box_of_slabs(slabs: &[[f32; 2]]) -> Aabb {
+    Aabb::new(
+        std::array::from_fn(|axis| slabs[axis][0]),
+        std::array::from_fn(|axis| slabs[axis][1]),
+    )
+}
+
+/// A box about a ball. Of balls that aren't apart, these boxes meet: they are as wide along every
+/// axis as a sweep's ends, which hold what the sphere test rounds.
+fn box_about(&[x, y, z, radius]: &[f32; 4]) -> Aabb {
+    let reach = f64::from(widen(radius));
+    let centre = [x, y, z].map(f64::from);
+    Aabb::new(
+        centre.map(|x| down(x - reach)),
+        centre.map(|x| up(x + reach)),
+    )
+}

@@ -1,0 +1,197 @@
+//! Volumes against an index, one by one and in batches.
+
+use super::index::{QueryIndex, Solid, TREES};
+use super::shape::PosedShape;
+use super::tree::Tree;
+use super::volume::{QueryError, QueryVolume};
+use crate::bodies::Aabb;
+use crate::rounding::query::is_beyond;
+use crate::rounding::{down, up};
+use crate::simd::{Kernel, Lanes, Tier, dispatch, in_default_mode};
+use crate::world::BodyId;
+
+/// Queries that one thread answers at a time.
+const QUERIES_PER_TASK: usize = 32;
+
+/// Answers to many queries, in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answers<T> {
+    all: Vec<T>,
+    /// Where those of each query end.
+    ends: Vec<usize>,
+}
+
+impl<T> Answers<T> {
+    /// The answer to the query of this number.
+    ///
+    /// # Panics
+    /// A number that no query had.
+    #[must_use]
+    pub fn of(&self, query: usize) -> &[T] {
+        let start = query.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.all[start..self.ends[query]]
+    }
+
+    /// All answers, in the order of the queries.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[T]> + '_ {
+        (0..self.ends.len()).map(|query| self.of(query))
+    }
+
+    /// Number of queries.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether nothing was asked.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+}
+
+/// A volume made ready.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Probe<'a> {
+    Box([[f64; 3]; 2]),
+    Ball([f64; 3], f64),
+    Shape(PosedShape<'a>),
+}
+
+impl<'a> Probe<'a> {
+    fn new(volume: &QueryVolume<'a>) -> Self {
+        match *volume {
+            QueryVolume::Box { min, max } => Self::Box([min, max]),
+            QueryVolume::Ball { centre, radius } => Self::Ball(centre, radius),
+            QueryVolume::Shape {
+                shape,
+                rotation,
+                translation,
+                margin,
+            } => Self::Shape(shape.at(rotation, translation, margin)),
+        }
+    }
+
+    /// A box about it, seen from `origin`.
+    fn bounds(&self, origin: [f64; 3]) -> Aabb {
+        let (lo, hi) = match self {
+            Self::Box([lo, hi]) => (*lo, *hi),
+            Self::Ball(centre, radius) => (
+                centre.map(|x| (x - radius).next_down()),
+                centre.map(|x| (x + radius).next_up()),
+            ),
+            Self::Shape(posed) => return posed.bounds(origin),
+        };
+        Aabb {
+            min: std::array::from_fn(|axis| down(lo[axis] - origin[axis])),
+            max: std::array::from_fn(|axis| up(hi[axis] - origin[axis])),
+        }
+    }
+
+    /// Whether a body may touch it.
+    #[inline(always)]
+    fn may_touch(&self, solid: Solid<'_>) -> bool {
+        let ends = |aabb: Aabb| [aabb.min, aabb.max].map(|corner| corner.map(f64::from));
+        match (self, solid) {
+            (Self::Box([lo, hi]), Solid::Box(aabb)) => {
+                let [min, max] = ends(aabb);
+                (0..3).all(|axis| lo[axis] <= max[axis] && min[axis] <= hi[axis])
+            }
+            (Self::Ball(centre, radius), Solid::Box(aabb)) => {
+                let [min, max] = ends(aabb);
+                !is_beyond(*centre, *radius, min, max)
+            }
+            (Self::Shape(posed), Solid::Box(aabb)) => {
+                let [min, max] = ends(aabb);
+                posed.may_touch_box(min, max)
+            }
+            (Self::Box([lo, hi]), Solid::Shape(body)) => body.may_touch_box(*lo, *hi),
+            (Self::Ball(centre, radius), Solid::Shape(body)) => {
+                body.may_touch_ball(*centre, *radius)
+            }
+            (Self::Shape(posed), Solid::Shape(body)) => posed.may_touch(&body),
+        }
+    }
+}
+
+impl QueryIndex {
+    /// The bodies that may touch a volume, sorted by slot.
+    ///
+    /// # Errors
+    /// A volume outside of the contract ([`QueryVolume`]).
+    pub fn touching(&self, volume: &QueryVolume<'_>) -> Result<Vec<BodyId>, QueryError> {
+        volume.check(0)?;
+        let mut found = Vec::new();
+        in_default_mode(|| self.touch(volume, &mut found));
+        Ok(found)
+    }
+
+    /// The same for many volumes, on all threads.
+    ///
+    /// # Errors
+    /// The first volume outside of the contract.
+    pub fn touching_all(&self, volumes: &[QueryVolume<'_>]) -> Result<Answers<BodyId>, QueryError> {
+        for (query, volume) in volumes.iter().enumerate() {
+            volume.check(query)?;
+        }
+        Ok(self.each_of(volumes, |volume, found| self.touch(volume, found)))
+    }
+
+    /// Answers many queries, on all threads. `answer` appends the answer to one.
+    pub(super) fn each_of<Q: Sync, T: Send>(
+        &self,
+        queries: &[Q],
+        answer: impl Fn(&Q, &mut Vec<T>) + Sync,
+    ) -> Answers<T> {
+        let pieces = queries.chunks(QUERIES_PER_TASK);
+        let mut tasks: Vec<_> = pieces
+            .map(|piece| (piece, Vec::new(), Vec::new()))
+            .collect();
+        in_default_mode(|| {
+            self.threads.each(&mut tasks, |_, (piece, all, ends)| {
+                for query in *piece {
+                    answer(query, all);
+                    ends.push(all.len());
+                }
+            });
+        });
+        let mut answers = Answers {
+            all: Vec::new(),
+            ends: Vec::with_capacity(queries.len()),
+        };
+        for (_, all, ends) in tasks {
+            let start = answers.all.len();
+            answers.all.extend(all);
+            answers.ends.extend(ends.into_iter().map(|end| start + end));
+        }
+        answers
+    }
+
+    fn touch(&self, volume: &QueryVolume<'_>, found: &mut Vec<BodyId>) {
+        let start = found.len();
+        let probe = Probe::new(volume);
+        let bounds = probe.bounds(self.origin);
+        for tree in 0..TREES {
+            each_meeting(self.tier, &self.trees[tree], &bounds, &mut |place| {
+                if probe.may_touch(self.solid(tree, place)) {
+                    found.push(self.id_at(tree, place));
+                }
+            });
+        }
+        found[start..].sort_unstable();
+    }
+}
+
+/// [`Tree::each_meeting`] in a tier.
+fn each_meeting(tier: Tier, tree: &Tree, aabb: &Aabb, take: &mut dyn FnMut(usize)) {
+    struct Walk<'a>(&'a Tree, &'a Aabb, &'a mut dyn FnMut(usize));
+    impl Kernel for Walk<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) {
+            let Self(tree, aabb, take) = self;
+            tree.each_meeting(l, aabb, take);
+        }
+    }
+    dispatch(tier, Walk(tree, aabb, take));
+}

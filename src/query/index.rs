@@ -1,0 +1,217 @@
+//! The bodies of a world by location, changed body by body.
+
+use super::shape::{Posed, PosedShape};
+use super::source::QuerySource;
+use super::tree::Tree;
+use crate::bodies::Aabb;
+use crate::rounding::{down, up};
+use crate::simd::{Tier, in_default_mode};
+use crate::threads::{Threads, ThreadsError};
+use crate::world::BodyId;
+
+/// The tree of bodies that are fixed, and that of those that move.
+pub(super) const TREES: usize = 2;
+
+/// No place in any tree.
+const NOWHERE: u32 = u32::MAX;
+
+/// The bodies of a world, to be asked about. See the [module](super).
+#[derive(Clone, Debug)]
+pub struct QueryIndex {
+    pub(super) threads: Threads,
+    pub(super) tier: Tier,
+    pub(super) trees: [Tree; TREES],
+    /// What boxes in the trees are seen from: 0 where bodies are given boxes.
+    pub(super) origin: [f64; 3],
+    /// By slot.
+    homes: Vec<Home>,
+    pub(super) ids: Vec<BodyId>,
+    pub(super) posed: Option<Posed>,
+}
+
+/// Where a slot's box is.
+#[derive(Clone, Copy, Debug)]
+struct Home {
+    tree: u8,
+    place: u32,
+}
+
+/// What a body is to the tests that follow the trees.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Solid<'a> {
+    /// A box, to the bit.
+    Box(Aabb),
+    /// A posed shape.
+    Shape(PosedShape<'a>),
+}
+
+impl Default for QueryIndex {
+    fn default() -> Self {
+        Self::on(Threads::default())
+    }
+}
+
+impl QueryIndex {
+    /// An index without bodies, whose queries run on the caller's thread.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The same, whose batches run on so many threads, the caller's included. Answers don't depend
+    /// on it.
+    ///
+    /// # Errors
+    /// Threads that the system refuses.
+    pub fn with_threads(threads: usize) -> Result<Self, ThreadsError> {
+        Ok(Self::on(Threads::new(threads)?))
+    }
+
+    fn on(threads: Threads) -> Self {
+        Self {
+            threads,
+            tier: Tier::detect(),
+            trees: Default::default(),
+            origin: [0.0; 3],
+            homes: Vec::new(),
+            ids: Vec::new(),
+            posed: None,
+        }
+    }
+
+    /// The same on another tier of the CPU. Answers don't depend on it.
+    #[must_use]
+    pub fn on_tier(self, tier: Tier) -> Self {
+        Self { tier, ..self }
+    }
+
+    /// Brings the index up to date with a world, [`World`](crate::World) or
+    /// [`BoxWorld`](crate::BoxWorld): from now on queries are answered about its bodies as they are
+    /// now. Costs a comparison per body, and the work of the trees for those that have changed.
+    /// Another world than before makes all bodies new.
+    pub fn update(&mut self, world: &impl QuerySource) {
+        in_default_mode(|| {
+            world.bring(self);
+            for tree in 0..TREES {
+                if self.trees[tree].is_worn() {
+                    self.build(tree);
+                }
+                self.trees[tree].settle();
+            }
+        });
+    }
+
+    /// Number of bodies.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.homes
+            .iter()
+            .filter(|home| home.place != NOWHERE)
+            .count()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Forgets all bodies; what is posed is seen from `origin` from now on.
+    pub(super) fn begin(&mut self, origin: [f64; 3], posed: Option<Posed>) {
+        self.trees = Default::default();
+        self.homes.clear();
+        self.ids.clear();
+        (self.origin, self.posed) = (origin, posed);
+    }
+
+    /// The box that the trees have of a body, if they have it.
+    pub(super) fn bounds_of(&self, id: BodyId) -> Option<(usize, Aabb)> {
+        let home = self.homes.get(id.slot()).copied()?;
+        let is_there = home.place != NOWHERE && self.ids[id.slot()] == id;
+        is_there.then(|| {
+            let tree = usize::from(home.tree);
+            (tree, self.trees[tree].bounds(home.place))
+        })
+    }
+
+    /// Puts a body in a tree, with the box that is about it now.
+    pub(super) fn put(&mut self, id: BodyId, tree: usize, bounds: &Aabb) {
+        let slot = id.slot();
+        if self.homes.len() <= slot {
+            let nowhere = Home {
+                tree: 0,
+                place: NOWHERE,
+            };
+            self.homes.resize(slot + 1, nowhere);
+            self.ids.resize(slot + 1, id);
+        }
+        self.ids[slot] = id;
+        let home = self.homes[slot];
+        if home.place != NOWHERE && usize::from(home.tree) == tree {
+            return self.trees[tree].set(home.place, bounds);
+        }
+        self.take_out(slot);
+        self.homes[slot] = Home {
+            tree: tree as u8,
+            place: self.trees[tree].push(slot as u32, bounds),
+        };
+    }
+
+    /// Takes out the bodies of these slots.
+    pub(super) fn take_out_all(&mut self, slots: std::ops::Range<usize>) {
+        for slot in slots.start..slots.end.min(self.homes.len()) {
+            self.take_out(slot);
+        }
+    }
+
+    fn take_out(&mut self, slot: usize) {
+        let home = &mut self.homes[slot];
+        let place = std::mem::replace(&mut home.place, NOWHERE);
+        if place != NOWHERE {
+            self.trees[usize::from(home.tree)].remove(place);
+        }
+    }
+
+    /// One above every slot that it has.
+    pub(super) fn slots(&self) -> usize {
+        self.homes.len()
+    }
+
+    fn build(&mut self, tree: usize) {
+        let slots = self.homes.iter().enumerate();
+        let own = slots.filter(|(_, home)| home.place != NOWHERE && usize::from(home.tree) == tree);
+        let boxes = own.map(|(slot, home)| (slot as u32, self.trees[tree].bounds(home.place)));
+        self.trees[tree] = Tree::build(boxes.collect());
+        for (place, &slot) in (0..).zip(self.trees[tree].numbers()) {
+            self.homes[slot as usize].place = place;
+        }
+    }
+
+    /// What the body in a place is.
+    #[inline(always)]
+    pub(super) fn solid(&self, tree: usize, place: usize) -> Solid<'_> {
+        let tree = &self.trees[tree];
+        let posed = self.posed.as_ref();
+        match posed.and_then(|posed| posed.at(tree.numbers()[place] as usize)) {
+            Some(body) => Solid::Shape(body),
+            None => Solid::Box(tree.bounds(place as u32)),
+        }
+    }
+
+    /// The id of the body in a place.
+    #[inline(always)]
+    pub(super) fn id_at(&self, tree: usize, place: usize) -> BodyId {
+        self.ids[self.trees[tree].numbers()[place] as usize]
+    }
+}
+
+/// A box moved by `by`, and no smaller. One that isn't moved stays to the bit.
+pub(super) fn moved(aabb: &Aabb, by: [f64; 3]) -> Aabb {
+    if by == [0.0; 3] {
+        return *aabb;
+    }
+    Aabb {
+        min: std::array::from_fn(|axis| down(f64::from(aabb.min[axis]) + by[axis])),
+        max: std::array::from_fn(|axis| up(f64::from(aabb.max[axis]) + by[axis])),
+    }
+}

@@ -1,0 +1,270 @@
+//! Segments and rays against an index: all bodies along them, and the first.
+
+use super::Track;
+use super::answers::Answers;
+use super::index::{QueryIndex, Solid, TREES};
+use super::tree::{Below, GROUP, Group, MOST_WAITING, Node, lanes_of};
+use super::volume::{Line, QueryError};
+use crate::bodies::Aabb;
+use crate::rounding::query::{Course, crossing};
+use crate::simd::{Kernel, Lanes, dispatch, in_default_mode};
+use crate::world::BodyId;
+
+/// A body that a line may meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineHit {
+    /// The body.
+    pub body: BodyId,
+    /// No greater than the parameter of any point that the line has in common with it.
+    pub at: f64,
+}
+
+impl LineHit {
+    /// Before another one along the line; of two at one parameter, the one of the lower slot.
+    fn is_before(&self, other: &Self) -> bool {
+        (self.at, self.body) < (other.at, other.body)
+    }
+}
+
+/// How a line moves along each axis.
+#[derive(Clone, Copy, Debug)]
+struct Courses {
+    axes: [Course; 3],
+    limit: f64,
+}
+
+impl Courses {
+    fn new(track: &Track, origin: [f64; 3]) -> Self {
+        let axes =
+            [0, 1, 2].map(|axis| Course::new(track.from[axis] - origin[axis], track.speed[axis]));
+        let limit = track.limit;
+        Self { axes, limit }
+    }
+
+    /// The lanes of a group that the line may meet up to `limit`, and where it enters their boxes.
+    #[inline(always)]
+    fn meeting(&self, group: &Group, limit: f64) -> (u32, [f64; GROUP]) {
+        let (mut first, mut last) = ([0.0_f64; GROUP], [limit; GROUP]);
+        for axis in 0..3 {
+            let (lo, hi) = (&group.lo[axis], &group.hi[axis]);
+            for lane in 0..GROUP {
+                let ends = [lo[lane], hi[lane]].map(f64::from);
+                let [enters, leaves] = crossing(self.axes[axis], ends);
+                first[lane] = if enters > first[lane] {
+                    enters
+                } else {
+                    first[lane]
+                };
+                last[lane] = if leaves < last[lane] {
+                    leaves
+                } else {
+                    last[lane]
+                };
+            }
+        }
+        let mut meeting = 0;
+        for lane in 0..GROUP {
+            meeting |= u32::from(first[lane] <= last[lane]) << lane;
+        }
+        (meeting & group.present, first)
+    }
+
+    /// Where the line enters a box, if it may meet it.
+    fn enters(&self, aabb: &Aabb) -> Option<f64> {
+        let [mut first, mut last] = [0.0, self.limit];
+        for axis in 0..3 {
+            let ends = [aabb.min[axis], aabb.max[axis]].map(f64::from);
+            let [enters, leaves] = crossing(self.axes[axis], ends);
+            (first, last) = (f64::max(first, enters), f64::min(last, leaves));
+        }
+        (first <= last).then_some(first)
+    }
+}
+
+impl QueryIndex {
+    /// The bodies that a line may meet, sorted by where it may meet them first, and by slot where
+    /// that is the same.
+    ///
+    /// # Errors
+    /// A line outside of the contract ([`Line`]).
+    pub fn along(&self, line: &Line) -> Result<Vec<LineHit>, QueryError> {
+        line.check(0)?;
+        let mut found = Vec::new();
+        in_default_mode(|| self.follow(line, &mut found));
+        Ok(found)
+    }
+
+    /// The same for many lines, on all threads.
+    ///
+    /// # Errors
+    /// The first line outside of the contract.
+    pub fn along_all(&self, lines: &[Line]) -> Result<Answers<LineHit>, QueryError> {
+        for (query, line) in lines.iter().enumerate() {
+            line.check(query)?;
+        }
+        Ok(self.each_of(lines, |line, found| self.follow(line, found)))
+    }
+
+    /// The body whose volume a line may meet first: no body is met at a parameter below its `at`.
+    /// Volumes are larger than meshes; where that matters, use [`Self::first_judged`].
+    ///
+    /// # Errors
+    /// As [`Self::along`].
+    pub fn first(&self, line: &Line) -> Result<Option<LineHit>, QueryError> {
+        self.first_judged(line, |hit| Some(hit.at))
+    }
+
+    /// The same for many lines, on all threads. An answer has one entry or none.
+    ///
+    /// # Errors
+    /// As [`Self::along_all`].
+    pub fn first_all(&self, lines: &[Line]) -> Result<Answers<LineHit>, QueryError> {
+        for (query, line) in lines.iter().enumerate() {
+            line.check(query)?;
+        }
+        Ok(self.each_of(lines, |line, found| {
+            found.extend(self.find_first(line, |hit| Some(hit.at)));
+        }))
+    }
+
+    /// The first body along a line by the caller's own judgement: `judge` returns the parameter at
+    /// which the line really meets a body, or none if it misses it. It is called for bodies that the
+    /// line may meet no later than the nearest that is known, nearer ones first as far as boxes tell;
+    /// none is left out that could be the first. Of several at one parameter, the lowest slot's.
+    ///
+    /// # Errors
+    /// As [`Self::along`].
+    pub fn first_judged(
+        &self,
+        line: &Line,
+        judge: impl FnMut(LineHit) -> Option<f64>,
+    ) -> Result<Option<LineHit>, QueryError> {
+        line.check(0)?;
+        Ok(in_default_mode(|| self.find_first(line, judge)))
+    }
+
+    fn follow(&self, line: &Line, found: &mut Vec<LineHit>) {
+        let start = found.len();
+        self.walk(line, |hit, limit| {
+            found.push(hit);
+            limit
+        });
+        found[start..]
+            .sort_unstable_by(|a, b| a.at.total_cmp(&b.at).then_with(|| a.body.cmp(&b.body)));
+    }
+
+    fn find_first(
+        &self,
+        line: &Line,
+        mut judge: impl FnMut(LineHit) -> Option<f64>,
+    ) -> Option<LineHit> {
+        let mut best: Option<LineHit> = None;
+        self.walk(line, |hit, limit| {
+            let judged = judge(hit).filter(|at| *at <= limit);
+            let judged = judged.map(|at| LineHit { at, ..hit });
+            if let Some(judged) = judged
+                && best.is_none_or(|best| judged.is_before(&best))
+            {
+                best = Some(judged);
+            }
+            best.map_or(limit, |best| best.at)
+        });
+        best
+    }
+
+    /// Calls `take` with each body that a line may meet up to the limit, which is the last that
+    /// `take` has returned; nearer boxes come first.
+    fn walk(&self, line: &Line, take: impl FnMut(LineHit, f64) -> f64) {
+        let track = line.track();
+        let walk = Walk {
+            index: self,
+            courses: Courses::new(&track, self.origin),
+            track,
+            take,
+        };
+        dispatch(self.tier, walk);
+    }
+}
+
+/// What waits to be looked into.
+#[derive(Clone, Copy)]
+struct Waiting {
+    enters: f64,
+    tree: usize,
+    node: Node,
+}
+
+struct Walk<'a, T> {
+    index: &'a QueryIndex,
+    courses: Courses,
+    track: Track,
+    take: T,
+}
+
+impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, _: L) {
+        let nothing = Waiting {
+            enters: 0.0,
+            tree: 0,
+            node: Node::default(),
+        };
+        let mut waiting = [nothing; TREES * MOST_WAITING];
+        let mut count = 0;
+        for tree in (0..TREES).rev() {
+            if let Some(node) = self.index.trees[tree].top() {
+                waiting[count] = Waiting {
+                    enters: 0.0,
+                    tree,
+                    node,
+                };
+                count += 1;
+            }
+        }
+        let mut limit = self.courses.limit;
+        while count > 0 {
+            count -= 1;
+            let Waiting { enters, tree, node } = waiting[count];
+            if enters > limit {
+                continue;
+            }
+            let (meeting, first) = self
+                .courses
+                .meeting(self.index.trees[tree].group(node), limit);
+            let start = count;
+            for lane in lanes_of(meeting) {
+                match node.below(lane) {
+                    Below::Place(place) => self.meet(tree, place, first[lane], &mut limit),
+                    Below::Node(node) => {
+                        waiting[count] = Waiting {
+                            enters: first[lane],
+                            tree,
+                            node,
+                        };
+                        count += 1;
+                    }
+                }
+            }
+            waiting[start..count].sort_unstable_by(|a, b| b.enters.total_cmp(&a.enters));
+        }
+    }
+}
+
+impl<T: FnMut(LineHit, f64) -> f64> Walk<'_, T> {
+    /// Tests the body in a place, whose box is entered at `enters`.
+    #[inline(always)]
+    fn meet(&mut self, tree: usize, place: usize, enters: f64, limit: &mut f64) {
+        if enters > *limit {
+            return;
+        }
+        let at = match self.index.solid(tree, place) {
+            Solid::Box(aabb) => self.courses.enters(&aabb),
+            Solid::Shape(body) => body.crossed_by(&self.track).map(|at| at.max(enters)),
+        };
+        if let Some(at) = at.filter(|at| at <= limit) {
+            let body = self.index.id_at(tree, place);
+            *limit = (self.take)(LineHit { body, at }, *limit);
+        }
+    }
+}

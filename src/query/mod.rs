@@ -1,0 +1,58 @@
+//! Queries: which bodies may touch a volume, which does a line meet first, which bodies of one set
+//! meet those of another?
+//!
+//! For what an engine asks in addition to the pairs of a frame: picking, sensors, explosions, lines
+//! of sight, placing a body. A [`QueryIndex`] holds the bodies of a [`World`](crate::World) or a
+//! [`BoxWorld`](crate::BoxWorld) as they were at its last update. An update compares each body with
+//! what the index has of it and changes it body by body: bodies that stay cost a comparison, and no
+//! query builds anything. No cull is needed.
+//!
+//! The promise is that of culling: no body is missed that has a point in common with the volume or
+//! the line in exact arithmetic, touching included. Boxes are reported for a box exactly if they
+//! meet. For balls and lines f64 rounding may report one in addition that is closer than 2⁻⁵⁰ of the
+//! distances involved. Bodies of a `World` are grown by their margins and tested by their boxes,
+//! balls and or-DOPs, as culling does, so that a narrow phase still has to judge what is reported.
+//! Groups, and whether a body moves, are not asked: filter what is returned.
+//!
+//! ```
+//! use sdop::{Aabb, BoxWorld, Line, QueryIndex, QueryVolume};
+//!
+//! let mut world = BoxWorld::new();
+//! let crates = [0.0, 2.0, 4.0].map(|x| Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]));
+//! let [near, middle, far] = crates.map(|aabb| world.insert(aabb).unwrap());
+//!
+//! let mut index = QueryIndex::new();
+//! index.update(&world);
+//! let ball = QueryVolume::Ball { centre: [1.5, 0.5, 0.5], radius: 0.5 };
+//! assert_eq!(index.touching(&ball)?, [near, middle]); // touching is meeting
+//! let line = Line::Segment { from: [9.0, 0.5, 0.5], to: [-1.0, 0.5, 0.5] };
+//! let first = index.first(&line)?.unwrap();
+//! assert_eq!(first.body, far);
+//! assert!(first.at <= 0.4 && first.at > 0.399_999);
+//! # Ok::<(), sdop::query::QueryError>(())
+//! ```
+
+mod answers;
+mod index;
+mod lines;
+mod sets;
+#[cfg_attr(not(feature = "shapes"), path = "no_shape.rs")]
+mod shape;
+mod source;
+mod tree;
+mod volume;
+
+pub use answers::Answers;
+pub use index::QueryIndex;
+pub use lines::LineHit;
+pub use shape::QueryShape;
+pub use source::QuerySource;
+pub use volume::{Line, QueryError, QueryVolume};
+
+/// A line as bodies take it: its points from + s·speed for s from 0 to `limit`.
+#[derive(Clone, Copy, Debug)]
+struct Track {
+    from: [f64; 3],
+    speed: [f64; 3],
+    limit: f64,
+}

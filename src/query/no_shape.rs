@@ -1,0 +1,62 @@
+//! Without shapes all bodies are boxes: the types of [`shape`](super::shape) without any value.
+
+use super::Track;
+use crate::bodies::Aabb;
+use crate::bodies::contract::ContractError;
+
+/// A shape, of which there are none without the feature `shapes`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum QueryShape {}
+
+impl QueryShape {
+    pub(super) fn reach(&self) -> f64 {
+        match *self {}
+    }
+
+    pub(super) fn check_pose(
+        &self,
+        _: usize,
+        _: [f32; 4],
+        _: [f64; 3],
+    ) -> Result<(), ContractError> {
+        match *self {}
+    }
+
+    pub(super) fn at(&self, _: [f32; 4], _: [f64; 3], _: f32) -> PosedShape<'_> {
+        match *self {}
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum Posed {}
+
+impl Posed {
+    pub fn at(&self, _: usize) -> Option<PosedShape<'_>> {
+        match *self {}
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PosedShape<'a>(&'a QueryShape);
+
+impl PosedShape<'_> {
+    pub fn bounds(&self, _: [f64; 3]) -> Aabb {
+        match *self.0 {}
+    }
+
+    pub fn may_touch_ball(&self, _: [f64; 3], _: f64) -> bool {
+        match *self.0 {}
+    }
+
+    pub fn may_touch_box(&self, _: [f64; 3], _: [f64; 3]) -> bool {
+        match *self.0 {}
+    }
+
+    pub fn may_touch(&self, _: &Self) -> bool {
+        match *self.0 {}
+    }
+
+    pub fn crossed_by(&self, _: &Track) -> Option<f64> {
+        match *self.0 {}
+    }
+}

@@ -1,0 +1,108 @@
+//! One set of bodies against another.
+
+use super::index::{QueryIndex, Solid, TREES, moved};
+use super::tree::{GROUP, Group, lanes_of};
+use crate::bodies::Aabb;
+use crate::simd::{Kernel, Lanes, dispatch, in_default_mode};
+use crate::world::BodyId;
+
+/// Groups of the first set that one thread takes at a time.
+const GROUPS_PER_TASK: usize = 16;
+
+impl QueryIndex {
+    /// The pairs of a body of this set and one of another that may touch, sorted by the slot of the
+    /// first and of the second. On all threads of this index. The two may be of one world, and of
+    /// either kind.
+    #[must_use]
+    pub fn pairs_with(&self, other: &Self) -> Vec<[BodyId; 2]> {
+        let mut tasks = Vec::new();
+        for tree in 0..TREES {
+            let groups = self.trees[tree].groups().len();
+            let starts = (0..groups).step_by(GROUPS_PER_TASK);
+            tasks.extend(starts.map(|start| {
+                let end = groups.min(start + GROUPS_PER_TASK);
+                (tree, start..end, Vec::new())
+            }));
+        }
+        in_default_mode(|| {
+            self.threads.each(&mut tasks, |_, (tree, groups, found)| {
+                for group in groups.clone() {
+                    let pairs = GroupPairs {
+                        sets: [self, other],
+                        tree: *tree,
+                        group,
+                        found,
+                    };
+                    dispatch(self.tier, pairs);
+                }
+            });
+        });
+        let mut pairs: Vec<_> = tasks.into_iter().flat_map(|(_, _, found)| found).collect();
+        pairs.sort_unstable();
+        pairs
+    }
+}
+
+/// The pairs of a group of the first set.
+struct GroupPairs<'a> {
+    sets: [&'a QueryIndex; 2],
+    tree: usize,
+    group: usize,
+    found: &'a mut Vec<[BodyId; 2]>,
+}
+
+impl Kernel for GroupPairs<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) {
+        let [one, other] = self.sets;
+        let group = &one.trees[self.tree].groups()[self.group];
+        let by = [0, 1, 2].map(|axis| one.origin[axis] - other.origin[axis]);
+        let Some(bounds) = group.bounds() else {
+            return;
+        };
+        let group = seen_from(group, by);
+        let bounds = moved(&bounds, by);
+        for tree in 0..TREES {
+            other.trees[tree].each_meeting(l, &bounds, |place| {
+                let aabb = other.trees[tree].bounds(place as u32);
+                let meeting = group.meeting(l, &aabb);
+                if meeting == 0 {
+                    return;
+                }
+                let solid = other.solid(tree, place);
+                for lane in lanes_of(meeting) {
+                    let first = self.group * GROUP + lane;
+                    if may_touch(one.solid(self.tree, first), solid) {
+                        let pair = [one.id_at(self.tree, first), other.id_at(tree, place)];
+                        self.found.push(pair);
+                    }
+                }
+            });
+        }
+    }
+}
+
+/// The boxes of a group, moved.
+fn seen_from(group: &Group, by: [f64; 3]) -> Group {
+    let mut seen = group.clone();
+    for lane in group.lanes() {
+        seen.set(lane, &moved(&group.get(lane), by));
+    }
+    seen
+}
+
+/// Whether two bodies whose boxes meet may touch.
+fn may_touch(one: Solid<'_>, other: Solid<'_>) -> bool {
+    let touches_box = |aabb: Aabb, solid: Solid<'_>| match solid {
+        Solid::Box(_) => true,
+        Solid::Shape(body) => {
+            let [lo, hi] = [aabb.min, aabb.max].map(|corner| corner.map(f64::from));
+            body.may_touch_box(lo, hi)
+        }
+    };
+    match (one, other) {
+        (Solid::Box(aabb), solid) | (solid, Solid::Box(aabb)) => touches_box(aabb, solid),
+        (Solid::Shape(one), Solid::Shape(other)) => one.may_touch(&other),
+    }
+}

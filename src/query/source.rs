@@ -1,0 +1,154 @@
+//! What an index takes of a world.
+
+use super::QueryIndex;
+#[cfg(feature = "shapes")]
+use super::shape::{Posed, QueryShape};
+use crate::bodies::Motion;
+use crate::boxes::BoxWorld;
+#[cfg(feature = "shapes")]
+use crate::world::{Body, BodyId, World};
+
+/// A set of bodies that can be asked about: a [`World`](crate::World) or a [`BoxWorld`].
+pub trait QuerySource: sealed::Sealed {
+    #[doc(hidden)]
+    fn bring(&self, index: &mut QueryIndex);
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for crate::BoxWorld {}
+    #[cfg(feature = "shapes")]
+    impl Sealed for crate::World {}
+}
+
+const FIXED: usize = 0;
+const MOVING: usize = 1;
+
+impl QuerySource for BoxWorld {
+    fn bring(&self, index: &mut QueryIndex) {
+        if index.posed.is_some() {
+            index.begin([0.0; 3], None);
+        }
+        let mut next = 0;
+        for (id, body) in self.bodies() {
+            index.take_out_all(next..id.slot());
+            next = id.slot() + 1;
+            let tree = match body.motion {
+                Motion::Fixed => FIXED,
+                _ => MOVING,
+            };
+            let is_there = index.bounds_of(id).is_some_and(|(former, bounds)| {
+                former == tree && bounds.bits() == body.bounds.bits()
+            });
+            if !is_there {
+                index.put(id, tree, &body.bounds);
+            }
+        }
+        index.take_out_all(next..index.slots());
+    }
+}
+
+#[cfg(feature = "shapes")]
+impl QuerySource for World {
+    fn bring(&self, index: &mut QueryIndex) {
+        let area = Area::of(self.bodies().map(|(_, body)| body.translation));
+        let mut posed = match index.posed.take() {
+            Some(posed) if area.suits(index.origin) => posed,
+            _ => {
+                index.begin(area.origin(), None);
+                Posed::default()
+            }
+        };
+        let renewed = renew(&mut posed.shapes, self);
+        let mut next = 0;
+        for (id, body) in self.bodies() {
+            index.take_out_all(next..id.slot());
+            next = id.slot() + 1;
+            if posed.bodies.len() < next {
+                posed.bodies.resize(next, Body::default());
+            }
+            let former = std::mem::replace(&mut posed.bodies[id.slot()], body);
+            if is_unchanged(index, id, former, body) && !renewed[body.shape as usize] {
+                continue;
+            }
+            if let Some(shape) = &posed.shapes[body.shape as usize] {
+                let body_there = shape.at(body.rotation, body.translation, body.margin);
+                let tree = if body.dynamic { MOVING } else { FIXED };
+                index.put(id, tree, &body_there.bounds(index.origin));
+            }
+        }
+        index.take_out_all(next..index.slots());
+        index.posed = Some(posed);
+    }
+}
+
+/// Whether the index has a body as it is.
+#[cfg(feature = "shapes")]
+fn is_unchanged(index: &QueryIndex, id: BodyId, former: Body, body: Body) -> bool {
+    former == body && index.bounds_of(id).is_some()
+}
+
+/// Makes the shapes those of a world; returns which of them have changed.
+#[cfg(feature = "shapes")]
+fn renew(shapes: &mut Vec<Option<QueryShape>>, world: &World) -> Vec<bool> {
+    let mut renewed = Vec::new();
+    for (number, volumes) in world.shape_volumes().enumerate() {
+        if shapes.len() == number {
+            shapes.push(None);
+        }
+        let shape = &mut shapes[number];
+        let is_same = match (&*shape, volumes) {
+            (Some(shape), Some(volumes)) => shape.is_of(volumes),
+            (None, None) => true,
+            _ => false,
+        };
+        if !is_same {
+            *shape = volumes.map(QueryShape::of);
+        }
+        renewed.push(!is_same);
+    }
+    shapes.truncate(renewed.len());
+    renewed
+}
+
+/// Where bodies are: their middle, and half of the widest side.
+#[cfg(feature = "shapes")]
+struct Area {
+    middle: [f64; 3],
+    half: f64,
+}
+
+#[cfg(feature = "shapes")]
+impl Area {
+    fn of(places: impl Iterator<Item = [f64; 3]>) -> Self {
+        let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for place in places {
+            for axis in 0..3 {
+                lo[axis] = lo[axis].min(place[axis]);
+                hi[axis] = hi[axis].max(place[axis]);
+            }
+        }
+        if lo[0] > hi[0] {
+            ([lo, hi]) = [[0.0; 3]; 2]; // no bodies
+        }
+        Self {
+            middle: [0, 1, 2].map(|axis| 0.5 * (lo[axis] + hi[axis])),
+            half: (0..3).fold(0.0, |half: f64, axis| half.max(0.5 * (hi[axis] - lo[axis]))),
+        }
+    }
+
+    /// What boxes in f32 are best seen from: the world's origin unless bodies are far from it.
+    fn origin(&self) -> [f64; 3] {
+        if self.middle.iter().all(|x| x.abs() <= self.half) {
+            return [0.0; 3];
+        }
+        self.middle
+    }
+
+    /// Whether another origin serves nearly as well.
+    fn suits(&self, origin: [f64; 3]) -> bool {
+        /// Bodies may have moved by so many times the half of their widest side.
+        const FARTHEST: f64 = 16.0;
+        (0..3).all(|axis| (self.middle[axis] - origin[axis]).abs() <= FARTHEST * self.half)
+    }
+}

@@ -1,0 +1,477 @@
+//! A tree of boxes that is built once and then changed box by box: sixteen to a group, groups
+//! sixteen to a group above, up to one.
+//!
+//! A build sorts boxes by size and along a Morton curve, so that groups are small. A box that
+//! moves changes the groups above it, in the same place; a new one is appended, one that is gone
+//! leaves its place empty. All of that makes groups wider, never wrong; [`Tree::is_worn`] says when
+//! building anew pays.
+
+use crate::bodies::Aabb;
+use crate::simd::{Lanes, MAX_WIDTH};
+
+/// Boxes in a group.
+pub(super) const GROUP: usize = MAX_WIDTH;
+
+/// More levels than trees of 2³² boxes have.
+const MOST_LEVELS: usize = 8;
+
+/// The most groups that wait to be looked into: all but one of a group in each level, and its
+/// last.
+pub(super) const MOST_WAITING: usize = MOST_LEVELS * GROUP;
+
+/// Bits of a coordinate on the Morton curve.
+const CURVE_BITS: u32 = 20;
+
+/// Boxes of one class differ in size by no more than this power of two.
+const CLASS_OCTAVES: i32 = 3;
+
+/// A tree is worn when more than one in so many boxes was appended or is gone …
+const BOXES_PER_LATE: usize = 8;
+const FEW_LATE: usize = 64;
+
+/// … or when its groups are so many times as wide as when it was built.
+const WORN: f64 = 2.0;
+
+/// Up to sixteen boxes, as columns.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    pub lo: [[f32; GROUP]; 3],
+    pub hi: [[f32; GROUP]; 3],
+    /// Lanes that hold a box.
+    pub present: u32,
+}
+
+impl Group {
+    const EMPTY: Self = Self {
+        lo: [[0.0; GROUP]; 3],
+        hi: [[0.0; GROUP]; 3],
+        present: 0,
+    };
+
+    pub fn set(&mut self, lane: usize, aabb: &Aabb) {
+        for axis in 0..3 {
+            self.lo[axis][lane] = aabb.min[axis];
+            self.hi[axis][lane] = aabb.max[axis];
+        }
+        self.present |= 1 << lane;
+    }
+
+    pub fn get(&self, lane: usize) -> Aabb {
+        Aabb {
+            min: self.lo.map(|ends| ends[lane]),
+            max: self.hi.map(|ends| ends[lane]),
+        }
+    }
+
+    /// The lanes that hold a box.
+    pub fn lanes(&self) -> impl Iterator<Item = usize> + use<> {
+        lanes_of(self.present)
+    }
+
+    /// The sum of the half sides of a box, or 0 if there is none.
+    fn width_of(&self, lane: usize) -> f64 {
+        let half_sides = self.get(lane).half_sides();
+        let is_present = self.present >> lane & 1 == 1;
+        f64::from(u8::from(is_present)) * half_sides.iter().copied().map(f64::from).sum::<f64>()
+    }
+
+    /// The box about all, if there are any.
+    pub fn bounds(&self) -> Option<Aabb> {
+        self.lanes().map(|lane| self.get(lane)).reduce(|a, b| Aabb {
+            min: std::array::from_fn(|axis| a.min[axis].min(b.min[axis])),
+            max: std::array::from_fn(|axis| a.max[axis].max(b.max[axis])),
+        })
+    }
+
+    /// The lanes whose boxes meet one.
+    #[inline(always)]
+    pub fn meeting<L: Lanes>(&self, l: L, other: &Aabb) -> u32 {
+        let mut apart = 0;
+        for lane in (0..GROUP).step_by(L::WIDTH) {
+            let beyond = |axis: usize| {
+                l.gt(l.load(&self.lo[axis][lane..]), l.splat(other.max[axis]))
+                    | l.gt(l.splat(other.min[axis]), l.load(&self.hi[axis][lane..]))
+            };
+            apart |= l.bits(beyond(0) | beyond(1) | beyond(2)) << lane;
+        }
+        self.present & !apart
+    }
+}
+
+/// The bits that are set.
+pub(super) fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros() as usize;
+        bits &= bits.wrapping_sub(1);
+        (lane < 32).then_some(lane)
+    })
+}
+
+/// Boxes by place, each with a number that its user gave.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tree {
+    /// The groups of boxes, then those of the groups of the level before, up to one group.
+    levels: Vec<Vec<Group>>,
+    /// The number in each place.
+    numbers: Vec<u32>,
+    /// Groups of boxes that have changed since the levels above were last right.
+    changed: Vec<u32>,
+    late: usize,
+    /// The half sides of all groups of boxes when the tree was built, and now.
+    built_width: f64,
+    width: f64,
+}
+
+impl Tree {
+    /// Of these boxes; they are in the places of this order from now on.
+    pub fn build(mut boxes: Vec<(u32, Aabb)>) -> Self {
+        let curve = Curve::through(boxes.iter().map(|(_, aabb)| aabb));
+        boxes.sort_by_cached_key(|(_, aabb)| curve.place_of(aabb));
+        let mut tree = Self::default();
+        for (number, aabb) in &boxes {
+            tree.push(*number, aabb);
+        }
+        tree.settle();
+        tree.late = 0;
+        tree.built_width = tree.width;
+        tree
+    }
+
+    /// The numbers, by place; those whose boxes are gone are among them.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers
+    }
+
+    /// The box in a place.
+    #[inline(always)]
+    pub fn bounds(&self, place: u32) -> Aabb {
+        let place = place as usize;
+        self.levels[0][place / GROUP].get(place % GROUP)
+    }
+
+    /// Appends a box, and returns its place.
+    pub fn push(&mut self, number: u32, aabb: &Aabb) -> u32 {
+        let place = self.numbers.len();
+        self.numbers.push(number);
+        let (mut groups, mut level) = (place / GROUP + 1, 0);
+        loop {
+            if self.levels.len() == level {
+                self.levels.push(Vec::new());
+            }
+            self.levels[level].resize(groups, Group::EMPTY);
+            if groups == 1 && self.levels.len() == level + 1 {
+                break;
+            }
+            (groups, level) = (groups.div_ceil(GROUP), level + 1);
+        }
+        self.late += 1;
+        self.set(place as u32, aabb);
+        place as u32
+    }
+
+    /// Moves the box in a place.
+    pub fn set(&mut self, place: u32, aabb: &Aabb) {
+        let place = place as usize;
+        self.levels[0][place / GROUP].set(place % GROUP, aabb);
+        self.changed.push((place / GROUP) as u32);
+    }
+
+    /// Takes the box out of a place.
+    pub fn remove(&mut self, place: u32) {
+        let place = place as usize;
+        self.levels[0][place / GROUP].present &= !(1 << (place % GROUP));
+        self.changed.push((place / GROUP) as u32);
+        self.late += 1;
+    }
+
+    /// Makes the levels above right again.
+    pub fn settle(&mut self) {
+        let mut changed = std::mem::take(&mut self.changed);
+        if changed.is_empty() {
+            return;
+        }
+        changed.sort_unstable();
+        for level in 0..self.levels.len() - 1 {
+            changed.dedup();
+            for group in &mut changed {
+                let (at, bounds) = (
+                    *group as usize,
+                    self.levels[level][*group as usize].bounds(),
+                );
+                let above = &mut self.levels[level + 1][at / GROUP];
+                let former = above.width_of(at % GROUP);
+                match bounds {
+                    Some(bounds) => above.set(at % GROUP, &bounds),
+                    None => above.present &= !(1 << (at % GROUP)),
+                }
+                if level == 0 {
+                    self.width += above.width_of(at % GROUP) - former;
+                }
+                *group /= GROUP as u32;
+            }
+        }
+        changed.clear();
+        self.changed = changed;
+    }
+
+    /// Whether building anew pays.
+    pub fn is_worn(&self) -> bool {
+        self.late > FEW_LATE + self.numbers.len() / BOXES_PER_LATE
+            || self.width > WORN * self.built_width
+    }
+
+    /// The groups of boxes; the first has places 0 to 15.
+    pub fn groups(&self) -> &[Group] {
+        self.levels.first().map_or(&[], Vec::as_slice)
+    }
+
+    /// Where a walk from the top begins, unless there are no boxes.
+    pub fn top(&self) -> Option<Node> {
+        let level = self.levels.len().checked_sub(1)?;
+        Some(Node { level, group: 0 })
+    }
+
+    /// A group of some level.
+    #[inline(always)]
+    pub fn group(&self, node: Node) -> &Group {
+        &self.levels[node.level][node.group as usize]
+    }
+
+    /// Calls `take` with the place of each box that meets one.
+    #[inline(always)]
+    pub fn each_meeting<L: Lanes>(&self, l: L, aabb: &Aabb, mut take: impl FnMut(usize)) {
+        let mut waiting = [Node::default(); MOST_WAITING];
+        let mut count = 0;
+        if let Some(top) = self.top() {
+            (waiting[0], count) = (top, 1);
+        }
+        while count > 0 {
+            count -= 1;
+            let node = waiting[count];
+            for lane in lanes_of(self.group(node).meeting(l, aabb)) {
+                match node.below(lane) {
+                    Below::Place(place) => take(place),
+                    Below::Node(node) => {
+                        waiting[count] = node;
+                        count += 1;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A group of a tree.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Node {
+    level: usize,
+    group: u32,
+}
+
+/// What a lane of a group stands for.
+pub(super) enum Below {
+    Place(usize),
+    Node(Node),
+}
+
+impl Node {
+    #[inline(always)]
+    pub fn below(self, lane: usize) -> Below {
+        let at = self.group as usize * GROUP + lane;
+        match self.level {
+            0 => Below::Place(at),
+            level => Below::Node(Self {
+                level: level - 1,
+                group: at as u32,
+            }),
+        }
+    }
+}
+
+/// The order in which boxes are put: those of about one size together, near each other in space.
+struct Curve {
+    lowest: [f64; 3],
+    per_unit: f64,
+    largest: i32,
+}
+
+impl Curve {
+    fn through<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> Self {
+        let (mut lowest, mut highest, mut largest) =
+            ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], i32::MIN);
+        for aabb in boxes {
+            let centre = centre_of(aabb);
+            for axis in 0..3 {
+                lowest[axis] = lowest[axis].min(centre[axis]);
+                highest[axis] = highest[axis].max(centre[axis]);
+            }
+            largest = largest.max(octave_of(aabb));
+        }
+        let widest = (0..3).fold(f64::MIN_POSITIVE, |widest: f64, axis| {
+            widest.max(highest[axis] - lowest[axis])
+        });
+        Self {
+            lowest,
+            per_unit: f64::from((1_u32 << CURVE_BITS) - 1) / widest,
+            largest,
+        }
+    }
+
+    fn place_of(&self, aabb: &Aabb) -> u64 {
+        let centre = centre_of(aabb);
+        let class = (self.largest - octave_of(aabb)) / CLASS_OCTAVES;
+        let along = |axis: usize| ((centre[axis] - self.lowest[axis]) * self.per_unit) as u64;
+        let place = (0..3).fold(0, |place, axis| place | spread(along(axis)) << axis);
+        (class.min(15) as u64) << (3 * CURVE_BITS) | place
+    }
+}
+
+fn centre_of(aabb: &Aabb) -> [f64; 3] {
+    std::array::from_fn(|axis| 0.5 * (f64::from(aabb.min[axis]) + f64::from(aabb.max[axis])))
+}
+
+/// The exponent of the longest side.
+fn octave_of(aabb: &Aabb) -> i32 {
+    let longest = aabb.half_sides().into_iter().fold(0.0, f32::max);
+    (longest.to_bits() >> (f32::MANTISSA_DIGITS - 1)) as i32
+}
+
+/// The bits of a number, each third place.
+fn spread(number: u64) -> u64 {
+    let mut bits = number & 0x1f_ffff;
+    for (shift, mask) in [
+        (32, 0x001f_0000_0000_ffff),
+        (16, 0x001f_0000_ff00_00ff),
+        (8, 0x100f_00f0_0f00_f00f),
+        (4, 0x10c3_0c30_c30c_30c3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
+        bits = (bits | bits << shift) & mask;
+    }
+    bits
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{Kernel, Tier, dispatch};
+
+    struct Meeting<'a>(&'a Tree, Aabb);
+
+    impl Kernel for Meeting<'_> {
+        type Output = Vec<u32>;
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> Vec<u32> {
+            let mut found = Vec::new();
+            let Self(tree, aabb) = self;
+            tree.each_meeting(l, &aabb, |place| found.push(tree.numbers()[place]));
+            found.sort_unstable();
+            found
+        }
+    }
+
+    /// Boxes on a lattice of halves, of two sizes, so that many only touch.
+    fn boxes(count: u32, step: u32) -> Vec<Aabb> {
+        let at = |i: u32, of: u32| ((i * step / of) % 9) as f32 * 0.5;
+        (0..count)
+            .map(|i| {
+                let min = [at(i, 1), at(i, 9), at(i, 81)];
+                let side = if i % 7 == 0 { 4.0 } else { 0.5 };
+                Aabb::new(min, min.map(|x| x + side))
+            })
+            .collect()
+    }
+
+    fn assert_finds(tree: &Tree, boxes: &[Option<Aabb>]) {
+        for query in [
+            Aabb::new([1.0; 3], [1.0; 3]),
+            Aabb::new([-9.0; 3], [0.0; 3]),
+            Aabb::new([0.25; 3], [2.0, 3.0, 0.3]),
+            Aabb::new([50.0; 3], [60.0; 3]),
+        ] {
+            let meets = |aabb: &Option<Aabb>| aabb.is_some_and(|aabb| aabb.meets(&query));
+            let wanted = (0..).zip(boxes).filter(|(_, aabb)| meets(aabb));
+            let wanted: Vec<u32> = wanted.map(|(number, _)| number).collect();
+            for tier in Tier::available() {
+                assert_eq!(dispatch(tier, Meeting(tree, query)), wanted, "{tier}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_tree_finds_what_meets_whatever_its_size() {
+        for count in [0, 1, 15, 16, 17, 256, 257, 4097] {
+            let boxes = boxes(count, 5);
+            let tree = Tree::build((0..).zip(boxes.iter().copied()).collect());
+            let boxes: Vec<_> = boxes.into_iter().map(Some).collect();
+            assert_finds(&tree, &boxes);
+            assert!(!tree.is_worn());
+        }
+    }
+
+    #[test]
+    fn changes_are_found_and_wear_the_tree() {
+        let first = boxes(300, 5);
+        let mut tree = Tree::build((0..).zip(first.iter().copied()).collect());
+        let mut place = vec![0; 300];
+        for (at, &number) in tree.numbers().iter().enumerate() {
+            place[number as usize] = at as u32;
+        }
+        let mut now: Vec<_> = first.into_iter().map(Some).collect();
+        for (number, aabb) in boxes(340, 7).into_iter().enumerate() {
+            match number {
+                0..100 => tree.set(place[number], &aabb),
+                100..120 => tree.remove(place[number]),
+                300.. => _ = tree.push(number as u32, &aabb),
+                _ => continue,
+            }
+            now.resize(now.len().max(number + 1), None);
+            now[number] = (!(100..120).contains(&number)).then_some(aabb);
+        }
+        tree.settle();
+        assert_finds(&tree, &now);
+        assert!(!tree.is_worn(), "60 of 340");
+        for number in 120..200 {
+            tree.remove(place[number]);
+            now[number] = None;
+        }
+        tree.settle();
+        assert_finds(&tree, &now);
+        assert!(tree.is_worn(), "140 of 340");
+    }
+
+    #[test]
+    fn boxes_that_have_spread_wear_the_tree() {
+        let near = boxes(256, 5);
+        let mut tree = Tree::build((0..).zip(near.iter().copied()).collect());
+        for (at, number) in tree.numbers().to_vec().into_iter().enumerate() {
+            let far = (number % 16) as f32 * 100.0;
+            let aabb = near[number as usize];
+            tree.set(
+                at as u32,
+                &Aabb::new(aabb.min.map(|x| x + far), aabb.max.map(|x| x + far)),
+            );
+        }
+        tree.settle();
+        assert!(tree.is_worn());
+    }
+
+    #[test]
+    fn bits_are_spread() {
+        assert_eq!(spread(0b1011), 0b1_000_001_001);
+        assert_eq!(
+            spread(0xf_ffff),
+            (0..20).map(|bit| 1 << (3 * bit)).sum::<u64>()
+        );
+    }
+
+    /// Small boxes and one that is far larger are in groups of their own.
+    #[test]
+    fn sizes_are_apart() {
+        let small = |i: u32| Aabb::new([i as f32; 3], [i as f32 + 0.5; 3]);
+        let mut all: Vec<_> = (0..31).map(|i| (i, small(i))).collect();
+        all.insert(7, (31, Aabb::new([0.0; 3], [500.0; 3])));
+        let tree = Tree::build(all);
+        assert_eq!(tree.numbers()[0], 31);
+    }
+}

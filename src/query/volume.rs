@@ -1,0 +1,201 @@
+//! What is asked: volumes and lines, and whether they are within the contract.
+
+use thiserror::Error;
+
+use super::Track;
+use super::shape::QueryShape;
+use crate::bodies::Aabb;
+use crate::rounding::{LIMIT, exp2, query::largest};
+
+/// The least size of a ray's direction.
+const LEAST_DIRECTION: f64 = exp2(-60);
+
+/// A volume in the world frame, of which the bodies that may touch it are asked. Coordinates and
+/// sizes are finite and at most 2⁶⁰.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum QueryVolume<'a> {
+    /// A box on the world's axes, between two corners.
+    Box {
+        /// The lower ends.
+        min: [f64; 3],
+        /// The upper ends, none below the lower one.
+        max: [f64; 3],
+    },
+    /// A ball; of radius 0, a point.
+    Ball {
+        /// Its centre.
+        centre: [f64; 3],
+        /// Its radius, 0 or more.
+        radius: f64,
+    },
+    /// A shape at a pose, grown by a margin: what is tested is its ball and its or-DOP.
+    Shape {
+        /// The shape.
+        shape: &'a QueryShape,
+        /// Orientation quaternion (x, y, z, w) of any non-zero norm.
+        rotation: [f32; 4],
+        /// Translation of its origin.
+        translation: [f64; 3],
+        /// A length of 0 or more.
+        margin: f32,
+    },
+}
+
+impl From<Aabb> for QueryVolume<'_> {
+    fn from(aabb: Aabb) -> Self {
+        let [min, max] = [aabb.min, aabb.max].map(|corner| corner.map(f64::from));
+        Self::Box { min, max }
+    }
+}
+
+/// A segment or a ray in the world frame: the points of parameter s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Line {
+    /// from + s·(to − from) for 0 ≤ s ≤ 1. Both ends may be one point. Coordinates are finite and
+    /// at most 2⁶⁰ in size.
+    Segment {
+        /// The point of s = 0.
+        from: [f64; 3],
+        /// The point of s = 1.
+        to: [f64; 3],
+    },
+    /// origin + s·direction for 0 ≤ s.
+    Ray {
+        /// The point of s = 0.
+        origin: [f64; 3],
+        /// What s counts in. The largest coordinate is 2⁻⁶⁰ to 2⁶⁰ in size.
+        direction: [f64; 3],
+    },
+}
+
+/// A query that is refused; nothing has been answered.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("query {query}: {quantity} {value}")]
+pub struct QueryError {
+    /// Its number among those that were asked together.
+    pub query: usize,
+    /// The quantity at fault.
+    pub quantity: &'static str,
+    /// Its impossible value.
+    pub value: String,
+    hint: &'static str,
+}
+
+impl QueryError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> &str {
+        self.hint
+    }
+}
+
+const VECTOR_HELP: &str = "coordinates are finite and at most 2^60 in size";
+
+/// Refuses a query unless all is well.
+struct Check(usize);
+
+impl Check {
+    fn that(
+        &self,
+        is_sound: bool,
+        quantity: &'static str,
+        value: &dyn std::fmt::Debug,
+        hint: &'static str,
+    ) -> Result<(), QueryError> {
+        if is_sound {
+            return Ok(());
+        }
+        Err(QueryError {
+            query: self.0,
+            quantity,
+            value: format!("{value:?}"),
+            hint,
+        })
+    }
+
+    fn vector(&self, quantity: &'static str, v: [f64; 3]) -> Result<(), QueryError> {
+        // NaN is not at most anything.
+        let is_sound = v.iter().all(|x| x.abs() <= f64::from(LIMIT));
+        self.that(is_sound, quantity, &v, VECTOR_HELP)
+    }
+
+    fn length(&self, quantity: &'static str, length: f64) -> Result<(), QueryError> {
+        let is_sound = (0.0..=f64::from(LIMIT)).contains(&length);
+        self.that(
+            is_sound,
+            quantity,
+            &length,
+            "a length of 0 or more, at most 2^60",
+        )
+    }
+}
+
+impl QueryVolume<'_> {
+    pub(super) fn check(&self, query: usize) -> Result<(), QueryError> {
+        let check = Check(query);
+        match *self {
+            Self::Box { min, max } => {
+                check.vector("min", min)?;
+                check.vector("max", max)?;
+                let is_sound = (0..3).all(|axis| min[axis] <= max[axis]);
+                let hint = "`min` is at most `max` on each axis";
+                check.that(is_sound, "box", &(min, max), hint)
+            }
+            Self::Ball { centre, radius } => {
+                check.vector("centre", centre)?;
+                check.length("radius", radius)
+            }
+            Self::Shape {
+                shape,
+                rotation,
+                translation,
+                margin,
+            } => {
+                check.length("shape's size", shape.reach())?;
+                check.length("margin", margin.into())?;
+                let pose = shape.check_pose(query, rotation, translation);
+                pose.map_err(|error| QueryError {
+                    query,
+                    quantity: error.quantity,
+                    value: error.value,
+                    hint: error.hint,
+                })
+            }
+        }
+    }
+}
+
+impl Line {
+    pub(super) fn check(&self, query: usize) -> Result<(), QueryError> {
+        let check = Check(query);
+        match *self {
+            Self::Segment { from, to } => {
+                check.vector("from", from)?;
+                check.vector("to", to)
+            }
+            Self::Ray { origin, direction } => {
+                check.vector("origin", origin)?;
+                check.vector("direction", direction)?;
+                let is_sound = largest(direction) >= LEAST_DIRECTION;
+                let hint = "the largest coordinate of a direction is 2^-60 to 2^60 in size";
+                check.that(is_sound, "direction", &direction, hint)
+            }
+        }
+    }
+
+    /// Where it begins, what s counts in, and the largest s.
+    pub(super) fn track(&self) -> Track {
+        match *self {
+            Self::Segment { from, to } => Track {
+                from,
+                speed: [0, 1, 2].map(|axis| to[axis] - from[axis]),
+                limit: 1.0,
+            },
+            Self::Ray { origin, direction } => Track {
+                from: origin,
+                speed: direction,
+                limit: f64::INFINITY,
+            },
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Queries: volumes and lines against bodies, in f64, rounded so that no body is lost that has a
+//! point in common with them in exact arithmetic.
+//!
+//! A query has f64 coordinates in the world frame. Against a box the comparisons round nothing but
+//! a difference, a square or a quotient, each of which is widened by more than its rounding
+//! ([`crossing`], [`is_beyond`]). Against a posed body everything is brought into the body's own
+//! frame ([`into_body`]), where its slabs are exact f32, and each slab is moved out by the
+//! [`slack`] of the sizes involved. Theorem Q of `paper/proofs/LEMMAS.md` counts the errors in units
+//! of 2⁻⁵³ of these sizes; the slack is 256 of them, of which 228 are needed.
+
+use super::exp2;
+use super::pose::Rotation;
+
+/// 2⁻⁴⁸ = 32·2⁻⁵³: error of one coordinate of [`into_body`], as a multiple of |p − t|∞. Proof:
+/// `query_point.g`.
+pub const BODY_ERROR: f64 = exp2(-48);
+
+/// 2⁻⁴⁵ = 256·2⁻⁵³: by how much a slab is moved out for what rounding takes, as a multiple of the
+/// distance of the query and the sizes of both, per length of the slab's normal.
+pub const QUERY_ERROR: f64 = exp2(-45);
+
+/// 2⁻¹⁰⁰⁰: the same where products underflow.
+pub const QUERY_FLOOR: f64 = exp2(-1000);
+
+/// 2⁻⁵⁰ = 8·2⁻⁵³: by how much parameters and squares are widened; a parameter is the outcome of
+/// five roundings, a sum of three squares of six. Proof: `query_line.g`.
+pub const WIDENING: f64 = exp2(-50);
+
+/// 2⁻⁸⁰⁰: a line that is slower than this along an axis stands still there.
+pub const STILL: f64 = exp2(-800);
+
+/// 2⁻⁶⁰⁰: more than such a line moves while it is among bodies. Their coordinates are below 2¹²⁹,
+/// and a ray is no slower than 2⁻⁶⁰ along some axis.
+pub const STILL_FLOOR: f64 = exp2(-600);
+
+/// By how much slabs are moved out for sizes that sum to `size`, per length of their normals.
+#[inline(always)]
+#[must_use]
+pub const fn slack(size: f64) -> f64 {
+    size * QUERY_ERROR + QUERY_FLOOR
+}
+
+/// Rᵀ(p − t): a point of the world frame seen from a body. Also returns |p − t|∞, of which
+/// [`BODY_ERROR`] is the error of a coordinate.
+#[inline(always)]
+#[must_use]
+pub fn into_body(r: &Rotation, p: [f64; 3], t: [f64; 3]) -> ([f64; 3], f64) {
+    let w = [p[0] - t[0], p[1] - t[1], p[2] - t[2]];
+    (turn_back(r, w), largest(w))
+}
+
+/// Rᵀw.
+#[inline(always)]
+#[must_use]
+pub fn turn_back(r: &Rotation, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    [
+        r[0][0] * x + r[1][0] * y + r[2][0] * z,
+        r[0][1] * x + r[1][1] * y + r[2][1] * z,
+        r[0][2] * x + r[1][2] * y + r[2][2] * z,
+    ]
+}
+
+/// The largest coordinate in size.
+#[inline(always)]
+#[must_use]
+pub fn largest(v: [f64; 3]) -> f64 {
+    v.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+}
+
+/// How a line moves along one direction: at + s·speed.
+#[derive(Clone, Copy, Debug)]
+pub struct Course {
+    /// Where it is at s = 0.
+    pub at: f64,
+    /// One over its speed, or 0 if it stands [`STILL`].
+    pub inverse: f64,
+}
+
+impl Course {
+    /// Of a line with this speed.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(at: f64, speed: f64) -> Self {
+        let inverse = if speed.abs() < STILL {
+            0.0
+        } else {
+            1.0 / speed
+        };
+        Self { at, inverse }
+    }
+}
+
+/// The parameters s, from the first to the last, for which a line is between two ends: no exact one
+/// is left out. Empty, with the first above the last, if there are none.
+#[inline(always)]
+#[must_use]
+pub fn crossing(course: Course, [lo, hi]: [f64; 2]) -> [f64; 2] {
+    let Course { at, inverse } = course;
+    if inverse == 0.0 {
+        let is_between = lo - STILL_FLOOR <= at && at <= hi + STILL_FLOOR;
+        let all = f64::INFINITY;
+        return if is_between { [-all, all] } else { [all, -all] };
+    }
+    let (near, far) = if inverse > 0.0 { (lo, hi) } else { (hi, lo) };
+    [earlier((near - at) * inverse), later((far - at) * inverse)]
+}
+
+/// A parameter that is surely no later.
+#[inline(always)]
+#[must_use]
+pub fn earlier(s: f64) -> f64 {
+    s - (s.abs() * WIDENING + QUERY_FLOOR)
+}
+
+/// A parameter that is surely no earlier.
+#[inline(always)]
+#[must_use]
+pub fn later(s: f64) -> f64 {
+    s + (s.abs() * WIDENING + QUERY_FLOOR)
+}
+
+/// Whether a point is farther than `radius` from a box: surely, if it says so.
+#[inline(always)]
+#[must_use]
+pub fn is_beyond(p: [f64; 3], radius: f64, lo: [f64; 3], hi: [f64; 3]) -> bool {
+    let outside = |axis: usize| {
+        let (below, above) = (lo[axis] - p[axis], p[axis] - hi[axis]);
+        let outside = if below > above { below } else { above };
+        if outside > 0.0 { outside } else { 0.0 }
+    };
+    let [x, y, z] = [outside(0), outside(1), outside(2)];
+    let within = radius * radius;
+    (x * x + y * y) + z * z > within + (within * WIDENING + QUERY_FLOOR)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rounding::pose::rotation;
+
+    /// Beyond by so little that f64 can't show it is not beyond; a little more is.
+    #[test]
+    fn a_point_at_the_radius_is_not_beyond() {
+        let (lo, hi) = ([0.0; 3], [1.0; 3]);
+        // (2, 3, 6) has the length 7.
+        assert!(!is_beyond([3.0, 4.0, 7.0], 7.0, lo, hi));
+        assert!(!is_beyond([-2.0, -3.0, -6.0], 7.0, lo, hi));
+        assert!(is_beyond([3.0, 4.0, 7.0], 7.0 - 1e-13, lo, hi));
+        assert!(!is_beyond([0.5; 3], 0.0, lo, hi));
+        assert!(!is_beyond([1.0; 3], 0.0, lo, hi));
+        assert!(is_beyond([1.0, 1.0, 1.0f64.next_up()], 0.0, lo, hi));
+    }
+
+    #[test]
+    fn a_still_line_is_where_it_is() {
+        let ends = [0.0, 2.0];
+        for speed in [0.0, -0.0, exp2(-801), -exp2(-1014)] {
+            let is_in = |at: f64| {
+                let [first, last] = crossing(Course::new(at, speed), ends);
+                first <= last
+            };
+            assert!(is_in(0.0) && is_in(2.0) && is_in(1.0));
+            assert!(!is_in(2.0f64.next_up()) && !is_in(-exp2(-500)));
+        }
+    }
+
+    #[test]
+    fn a_line_crosses_at_its_ends_and_a_little_beyond() {
+        for (speed, wanted) in [(0.1, [10.0, 30.0]), (-0.1, [-30.0, -10.0])] {
+            let [first, last] = crossing(Course::new(-1.0, speed), [0.0, 2.0]);
+            assert!(first < wanted[0] && first > wanted[0] - 1e-13, "{first}");
+            assert!(last > wanted[1] && last < wanted[1] + 1e-13, "{last}");
+        }
+    }
+
+    #[test]
+    fn a_turn_back_undoes_a_turn() {
+        let turn = rotation([0.0, 0.0, 1.0, 1.0]);
+        let (seen, size) = into_body(&turn, [8.0, 1.0, 3.0], [10.0, 0.0, 0.0]);
+        assert_eq!((seen, size), ([1.0, 2.0, 3.0], 3.0));
+    }
+}

@@ -1,0 +1,88 @@
+//! Frames in which few bodies change: a pair's verdict is a function of its two bodies, each in a
+//! model and at a place, of their groups and motion, and of whether one of them is of interest.
+//!
+//! A body is noted as changed when any of these is set, and where its local place or its model
+//! becomes another one because an origin has moved.
+
+use std::time::Instant;
+
+use super::World;
+use crate::bodies::Aabb;
+use crate::broad_phase::{BoxIndex, IndexedBox, tags};
+use crate::culler::FoundPairs;
+use crate::simd::in_default_mode;
+
+impl World {
+    /// Changes the pairs of the last cull to those of now, by the bodies that have changed. False
+    /// if that would take longer than finding them all, if a pair's verdict depends on others, or
+    /// if these bodies are near more than so many others: then all pairs are to be found anew.
+    pub(super) fn cull_changed(&mut self, most: usize) -> bool {
+        if !self.movers.are_few() || !self.culler.judges_pairs_alone() {
+            return false;
+        }
+        let start = Instant::now();
+        if !self.movers.changed().is_empty() {
+            if !in_default_mode(|| self.find_changed(most)) {
+                return false;
+            }
+            self.movers.change_pairs(&mut self.log, &self.ids);
+            self.sweep_margins(true);
+        }
+        self.ids.settle();
+        let pairs = self.log.pairs(&self.ids).len();
+        self.culler
+            .count_sampled(pairs, start.elapsed().as_secs_f64());
+        true
+    }
+
+    /// Puts changed bodies where they are now, and lists the partners of each.
+    fn find_changed(&mut self, most: usize) -> bool {
+        if self.place_changed().is_err() || !self.movers.are_few() {
+            return false;
+        }
+        let mut movers = std::mem::take(&mut self.movers);
+        if movers.need_index() {
+            movers.take_index(self.index_of_all());
+        }
+        let count = movers.put_gone_last(&self.ids);
+        let boxes = self
+            .culler
+            .boxes_of(&self.bodies, &movers.changed()[..count]);
+        let mut boxes = boxes.into_iter();
+        let box_of = |slot| self.indexed(slot, boxes.next());
+        let work = movers.find(box_of, &self.groups, most);
+        if work.is_some() {
+            let (changed, others, ends) = movers.found();
+            let found = FoundPairs {
+                bodies: &changed[..count],
+                others,
+                ends: &mut ends[..count],
+                interest: &self.is_of_interest,
+            };
+            self.culler.test_found(&self.bodies, found);
+            movers.end_gone(count);
+        }
+        self.movers = movers;
+        work.is_some()
+    }
+
+    /// An index of all bodies as they are now.
+    fn index_of_all(&mut self) -> BoxIndex {
+        let all: Vec<u32> = self.ids.iter().map(|id| id.slot).collect();
+        let boxes = self.culler.boxes_of(&self.bodies, &all);
+        let boxes = all.iter().zip(&boxes);
+        let indexed = boxes.map(|(&slot, &aabb)| self.indexed(slot, Some(aabb)));
+        BoxIndex::of(indexed, all.len())
+    }
+
+    /// The body in a slot as an index has it, with its box, or none if it is gone.
+    fn indexed(&self, slot: u32, aabb: Option<Aabb>) -> IndexedBox {
+        let at = slot as usize;
+        IndexedBox {
+            slot,
+            is_present: aabb.is_some(),
+            tags: tags(self.bodies.dynamic[at], self.groups[at]),
+            aabb: aabb.unwrap_or_default(),
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! Frames in which few bodies change: these alone are looked for, and the pairs of all others are
+//! kept.
+//!
+//! A pair's verdict is a function of its two bodies: where they are, what they are, and whether a
+//! pair of them counts. A body of which any of these has changed since the last cull is in the list
+//! of changed ones, so a pair of two others has the verdict that it had. The partners of each
+//! changed body are found anew by an index of all, compared with those that it had, and the
+//! differences are made at its partners too.
+
+use super::{Ids, LivePairs};
+use crate::bodies::Groups;
+use crate::broad_phase::{BoxIndex, IndexedBox, Search};
+
+/// Changed bodies are looked for one by one while they are at most one in so many: beyond, finding
+/// all pairs anew is faster.
+const BODIES_PER_CHANGE: usize = 8;
+
+/// The same by the boxes that looking for them takes, for each body of the world.
+const WORK_PER_BODY: usize = 8;
+
+/// Bodies that are looked for together.
+const SEEKERS_PER_BATCH: usize = 16;
+
+/// How many bodies ahead what is read of one is prefetched.
+const PREFETCH_DISTANCE: usize = 8;
+
+/// An index pays if it serves for so many frames. After one that didn't, or a frame in which
+/// looking one by one took too long, the next frames find all pairs: twice as many as the last
+/// time, up to so many.
+const LEAST_SERVICE: u32 = 8;
+const LONGEST_PAUSE: u32 = 64;
+
+/// Which bodies have changed since the last cull, and where all are.
+#[derive(Clone, Debug)]
+pub(crate) struct Movers {
+    changed: Vec<u32>,
+    /// By slot.
+    is_changed: Vec<bool>,
+    /// So many have changed that the next cull finds all pairs, or the pairs of the last one aren't
+    /// known.
+    are_many: bool,
+    /// As the bodies were at the last cull. None after one that found all pairs.
+    index: Option<BoxIndex>,
+    /// Bodies in the index when it was made, and frames that it has served for.
+    indexed: usize,
+    served: u32,
+    /// Frames that still find all pairs, and how many there were after the last attempt.
+    pause: u32,
+    last_pause: u32,
+    /// The changed bodies.
+    boxes: Vec<IndexedBox>,
+    /// Partners of the changed bodies, one after the other, and where those of each end.
+    found: Vec<u32>,
+    ends: Vec<usize>,
+    /// Those that a body has gained or lost.
+    differences: Vec<(u32, bool)>,
+    search: Search,
+}
+
+impl Default for Movers {
+    fn default() -> Self {
+        Self {
+            changed: Vec::new(),
+            is_changed: Vec::new(),
+            are_many: true,
+            index: None,
+            indexed: 0,
+            served: 0,
+            pause: 0,
+            last_pause: 0,
+            boxes: Vec::new(),
+            found: Vec::new(),
+            ends: Vec::new(),
+            differences: Vec::new(),
+            search: Search::default(),
+        }
+    }
+}
+
+impl Movers {
+    /// Notes that a body has changed, come or gone.
+    #[inline]
+    pub fn note(&mut self, slot: usize, ids: &Ids) {
+        if self.are_many {
+            return;
+        }
+        if self.is_changed.len() <= slot {
+            self.is_changed.resize(slot + 1, false);
+        }
+        if !std::mem::replace(&mut self.is_changed[slot], true) {
+            self.changed.push(slot as u32);
+            self.are_many = self.changed.len() * BODIES_PER_CHANGE > ids.slots();
+        }
+    }
+
+    /// The next cull finds all pairs anew, and knows none before.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Bodies are as a cull that found all pairs has seen them.
+    pub fn all_found(&mut self) {
+        self.changed.clear();
+        self.is_changed.fill(false);
+        self.are_many = false;
+        self.pause = self.pause.saturating_sub(1);
+    }
+
+    /// The pairs of the last cull aren't known any more, until [`Self::all_found`].
+    pub fn lose_pairs(&mut self) {
+        self.are_many = true;
+        match self.index.take() {
+            Some(_) if self.served < LEAST_SERVICE => self.back_off(),
+            Some(_) => self.last_pause = 0,
+            None => {}
+        }
+    }
+
+    fn back_off(&mut self) {
+        self.last_pause = (2 * self.last_pause).clamp(1, LONGEST_PAUSE);
+        self.pause = self.last_pause;
+    }
+
+    /// Whether the pairs of the last cull can be changed to those of now by what has changed.
+    pub fn are_few(&self) -> bool {
+        !self.are_many && (self.pause == 0 || self.changed.is_empty())
+    }
+
+    /// The slots of the bodies that have changed.
+    pub fn changed(&self) -> &[u32] {
+        &self.changed
+    }
+
+    /// Brings the changed bodies that are gone behind the others; returns how many these are.
+    #[cfg(feature = "shapes")]
+    pub fn put_gone_last(&mut self, ids: &Ids) -> usize {
+        let mut present = 0;
+        for at in 0..self.changed.len() {
+            if ids.present()[self.changed[at] as usize] {
+                self.changed.swap(present, at);
+                present += 1;
+            }
+        }
+        present
+    }
+
+    /// Whether an index of all bodies is to be made before [`Self::find`].
+    pub fn need_index(&self) -> bool {
+        let index = self.index.as_ref();
+        index.is_none_or(|index| index.len() > 2 * self.indexed)
+    }
+
+    /// Takes an index of all bodies as they are now.
+    pub fn take_index(&mut self, index: BoxIndex) {
+        (self.indexed, self.served) = (index.len(), 0);
+        self.index = Some(index);
+    }
+
+    /// Puts changed bodies where they are now, and lists those whose boxes meet each one's:
+    /// `box_of` is called for each of [`Self::changed`], `groups` has one entry a slot. Returns the
+    /// work that it took: boxes and cells that were looked at. None if that is too much, or if
+    /// there are pairs beyond `most`.
+    pub fn find(
+        &mut self,
+        box_of: impl FnMut(u32) -> IndexedBox,
+        groups: &[Groups],
+        most: usize,
+    ) -> Option<usize> {
+        let (mut work, most_work) = (0, WORK_PER_BODY * groups.len());
+        let mut index = self.index.take()?;
+        let boxes = &mut self.boxes;
+        boxes.clear();
+        boxes.extend(self.changed.iter().copied().map(box_of));
+        for (number, indexed) in boxes.iter().enumerate() {
+            if let Some(next) = boxes.get(number + PREFETCH_DISTANCE) {
+                index.prefetch(next.slot);
+            }
+            work += index.put(indexed);
+        }
+        self.found.clear();
+        self.ends.clear();
+        for seekers in boxes.chunks(SEEKERS_PER_BATCH) {
+            let (search, found, ends) = (&mut self.search, &mut self.found, &mut self.ends);
+            work += index.find_partners(seekers, groups, search, found, ends);
+            // A pair of two changed bodies is found twice.
+            if work > most_work || found.len() / 2 > most {
+                self.back_off();
+                return None;
+            }
+        }
+        self.index = Some(index);
+        Some(work)
+    }
+
+    /// The changed bodies, the partners that were found of them, one after the other, and where
+    /// those of each end.
+    pub fn found(&mut self) -> (&[u32], &mut Vec<u32>, &mut [usize]) {
+        (&self.changed, &mut self.found, &mut self.ends)
+    }
+
+    /// After some partners were dropped: the bodies from the `count`th on are gone, and have none.
+    #[cfg(feature = "shapes")]
+    pub fn end_gone(&mut self, count: usize) {
+        self.ends[count..].fill(self.found.len());
+    }
+
+    /// Gives the changed bodies the partners that were found, and takes note at these: `log` has
+    /// the pairs of now then.
+    pub fn change_pairs(&mut self, log: &mut LivePairs, ids: &Ids) {
+        log.keep_by_body(ids);
+        log.extend(ids);
+        let mut start = 0;
+        for (number, (&slot, &end)) in self.changed.iter().zip(&self.ends).enumerate() {
+            let ahead = [2 * PREFETCH_DISTANCE, PREFETCH_DISTANCE]
+                .map(|steps| self.changed.get(number + steps));
+            log.prefetch(ahead);
+            let found = &self.found[std::mem::replace(&mut start, end)..end];
+            let differences = &mut self.differences;
+            compare(log.partners(slot), found, differences);
+            if differences.is_empty() {
+                continue;
+            }
+            let Some(mut changes) = log.change(ids) else {
+                return;
+            };
+            changes.replace(slot, found);
+            for &(other, has_begun) in &*differences {
+                // A partner that has changed finds this body by itself.
+                let finds_itself = self.is_changed.get(other as usize) == Some(&true);
+                if !finds_itself {
+                    changes.set_partner(other, slot, has_begun);
+                }
+                if !finds_itself || slot < other {
+                    changes.note(slot, other, has_begun);
+                }
+            }
+            changes.done();
+        }
+        for slot in self.changed.drain(..) {
+            self.is_changed[slot as usize] = false;
+        }
+        self.served = self.served.saturating_add(1);
+    }
+}
+
+/// Lists what one sorted list lacks of another (false), and has in addition (true).
+fn compare(before: &[u32], now: &[u32], differences: &mut Vec<(u32, bool)>) {
+    differences.clear();
+    if before == now {
+        return;
+    }
+    let (mut before, mut now) = (before.iter().peekable(), now.iter().peekable());
+    while let Some(&&next) = [before.peek(), now.peek()].into_iter().flatten().min() {
+        let [had, has] = [before.next_if_eq(&&next), now.next_if_eq(&&next)];
+        if had.is_some() != has.is_some() {
+            differences.push((next, has.is_some()));
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! What the code computes, number by number, for comparison with the functions that Coq's theorems
+//! speak of (`paper/proofs/coq/Run.v`, `RunOrDop.v`).
+//!
+//! A case is a function's name, the bits of its inputs and the bits of what the code makes of them.
+//! `.ci/proofs` writes cases with `write_cases` and runs Coq's functions on them. The hash of some
+//! cases that Coq has confirmed is kept, so that a change shows on a machine without Coq too.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod functions;
+mod inputs;
+mod ordops;
+mod small;
+
+use std::fmt::Write;
+use std::fs;
+
+use sdop::simd::Tier;
+use sha2::{Digest, Sha256};
+
+use functions::FUNCTIONS;
+use inputs::Inputs;
+
+/// So many cases of each function.
+const CASES: usize = 600;
+
+/// The hash of these cases, as `.ci/proofs` has last confirmed them.
+const CONFIRMED: &str = "";
+
+/// Cases of each function in turn, one a line.
+fn cases(tier: Tier, of_each: usize) -> String {
+    let mut inputs = Inputs::new(1);
+    let mut lines = String::new();
+    let mut pairs = ordops::Pairs::new(2);
+    for _ in 0..of_each {
+        for function in FUNCTIONS {
+            function(tier, &mut inputs).write(&mut lines);
+        }
+        pairs.next(tier).write(&mut lines);
+    }
+    lines
+}
+
+fn hash(text: &str) -> String {
+    let hash = Sha256::digest(text);
+    hash[..8].iter().fold(String::new(), |mut text, byte| {
+        write!(text, "{byte:02x}").unwrap();
+        text
+    })
+}
+
+#[test]
+fn every_tier_computes_what_coq_confirmed() {
+    for tier in Tier::available() {
+        assert_eq!(
+            hash(&cases(tier, CASES)),
+            CONFIRMED,
+            "{tier} computes other numbers than Coq has confirmed. If that is meant: run .ci/proofs, \
+             which compares them with Coq's, and then keep the new hash."
+        );
+    }
+}
+
+/// Decisions go both ways often enough for a wrong one to show.
+#[test]
+fn cases_lie_on_both_sides_of_each_decision() {
+    let lines = cases(Tier::SCALAR, CASES);
+    for name in ["spheres", "stays", "cubes", "ordops"] {
+        let outcomes = lines.lines().filter(|line| line.starts_with(name));
+        let (mut yes, mut no) = (0, 0);
+        for line in outcomes {
+            *(if line.ends_with('1') {
+                &mut yes
+            } else {
+                &mut no
+            }) += 1;
+        }
+        assert!(
+            yes > CASES / 10 && no > CASES / 10,
+            "{name}: {yes} and {no}"
+        );
+    }
+}
+
+/// Writes cases of the scalar tier to the file that `SDOP_CASES` names, as many of each function as
+/// `SDOP_CASES_OF_EACH` says.
+#[test]
+#[ignore = "writes a file, for .ci/proofs"]
+fn write_cases() {
+    let value = |name| std::env::var(name).unwrap();
+    let of_each = value("SDOP_CASES_OF_EACH").parse().unwrap();
+    fs::write(value("SDOP_CASES"), cases(Tier::SCALAR, of_each)).unwrap();
+}

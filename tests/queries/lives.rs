@@ -1,0 +1,182 @@
+//! An index that has followed a world answers as one made for the moment.
+
+use sdop::boxes::BoxBody;
+use sdop::query::QuerySource;
+use sdop::volume::DirectionSet;
+use sdop::{Aabb, Body, BodyId, BoxWorld, Line, Motion, QueryIndex, QueryVolume, World};
+
+use crate::scenes::Random;
+use crate::{UNTURNED, cube, shapes};
+
+fn assert_same(index: &QueryIndex, world: &impl QuerySource, random: &mut Random) {
+    let mut fresh = QueryIndex::new();
+    fresh.update(world);
+    assert_eq!(index.len(), fresh.len());
+    for _ in 0..6 {
+        let centre = [(); 3].map(|()| f64::from(random.within(8.0)));
+        let ball = QueryVolume::Ball {
+            centre,
+            radius: 2.0,
+        };
+        assert_eq!(
+            index.touching(&ball).unwrap(),
+            fresh.touching(&ball).unwrap()
+        );
+        let direction = [(); 3].map(|()| f64::from(random.within(1.0)));
+        let line = Line::Ray {
+            origin: centre,
+            direction,
+        };
+        let [found, wanted] = [index, &fresh].map(|index| index.along(&line).unwrap());
+        assert_eq!(found, wanted);
+    }
+    assert_eq!(index.pairs_with(&fresh), fresh.pairs_with(&fresh));
+}
+
+#[test]
+fn an_index_follows_boxes() {
+    let random = &mut Random(1);
+    let mut world = BoxWorld::new();
+    let mut index = QueryIndex::new();
+    let mut ids: Vec<BodyId> = Vec::new();
+    let draw = |random: &mut Random| {
+        let min = [(); 3].map(|()| random.within(8.0));
+        BoxBody {
+            motion: [Motion::Fixed, Motion::Resting, Motion::Dynamic][random.below(3)],
+            ..Aabb::new(min, min.map(|x| x + random.unit())).into()
+        }
+    };
+    for frame in 0..60 {
+        for _ in 0..random.below(60) {
+            match random.below(4) {
+                0 if !ids.is_empty() => {
+                    let gone = ids.swap_remove(random.below(ids.len()));
+                    world.remove(gone).unwrap();
+                }
+                1 if !ids.is_empty() => {
+                    let id = ids[random.below(ids.len())];
+                    world.set(id, draw(random)).unwrap();
+                }
+                2 => ids.push(world.insert(draw(random)).unwrap()),
+                _ if frame < 30 => ids.push(world.insert(draw(random)).unwrap()),
+                _ => {}
+            }
+        }
+        if frame % 3 > 0 {
+            index.update(&world);
+            assert_same(&index, &world, random);
+        }
+    }
+    assert!(ids.len() > 200, "{}", ids.len());
+    for id in ids {
+        world.remove(id).unwrap();
+    }
+    index.update(&world);
+    assert!(index.is_empty());
+    assert_same(&index, &world, random);
+}
+
+#[test]
+fn an_index_follows_bodies() {
+    let random = &mut Random(2);
+    let mut world = World::new(shapes(DirectionSet::K18)).unwrap();
+    let mut index = QueryIndex::new();
+    let mut ids: Vec<BodyId> = Vec::new();
+    let draw = |random: &mut Random| Body {
+        shape: random.below(4) as u32,
+        dynamic: random.below(2) == 0,
+        rotation: [(); 4].map(|()| random.within(1.0)),
+        translation: [(); 3].map(|()| f64::from(random.within(8.0))),
+        margin: [0.0, 0.25][random.below(2)],
+        ..Body::default()
+    };
+    for _ in 0..40 {
+        for _ in 0..random.below(20) {
+            match random.below(3) {
+                0 if ids.len() > 40 => {
+                    let gone = ids.swap_remove(random.below(ids.len()));
+                    world.remove(gone).unwrap();
+                }
+                1 if !ids.is_empty() => {
+                    let id = ids[random.below(ids.len())];
+                    world.set(id, draw(random)).unwrap();
+                }
+                _ => ids.push(world.insert(draw(random)).unwrap()),
+            }
+        }
+        index.update(&world);
+        assert_same(&index, &world, random);
+    }
+}
+
+/// What a number of a shape stands for may change while all bodies stay.
+#[test]
+fn a_shape_that_is_replaced_is_seen() {
+    let mut world = World::new(vec![cube()]).unwrap();
+    let body = world.insert(Body::default()).unwrap();
+    let mut index = QueryIndex::new();
+    index.update(&world);
+    let point = QueryVolume::Ball {
+        centre: [0.0, 1.25, 0.0],
+        radius: 0.0,
+    };
+    assert_eq!(index.touching(&point).unwrap(), []);
+    let [x, y, z] = [2.0, 3.0, 2.0];
+    let longer = sdop::ProceduralShape::Box { x, y, z }.build().unwrap();
+    let longer = sdop::Shape::build(&longer, &sdop::ShapeSpec::default()).unwrap();
+    world.replace_shape(0, &longer).unwrap();
+    index.update(&world);
+    assert_eq!(index.touching(&point).unwrap(), [body]);
+}
+
+/// Worlds of both kinds, one after the other, with the same slots.
+#[test]
+fn another_world_is_another_set() {
+    let random = &mut Random(3);
+    let mut index = QueryIndex::new();
+    let mut bodies = World::new(vec![cube()]).unwrap();
+    bodies
+        .insert(Body::at(0, UNTURNED, [3.0, 0.0, 0.0]))
+        .unwrap();
+    let mut boxes = BoxWorld::new();
+    boxes.insert(Aabb::new([-1.0; 3], [0.5; 3])).unwrap();
+    boxes.insert(Aabb::new([2.0; 3], [2.5; 3])).unwrap();
+    for _ in 0..2 {
+        index.update(&bodies);
+        assert_same(&index, &bodies, random);
+        index.update(&boxes);
+        assert_same(&index, &boxes, random);
+        index.update(&World::new(Vec::new()).unwrap());
+        assert!(index.is_empty());
+    }
+}
+
+/// Bodies that go far away together take the origin of their boxes with them.
+#[test]
+fn far_bodies_are_told_apart() {
+    let mut world = World::new(vec![cube()]).unwrap();
+    let ids: Vec<BodyId> = (0..200)
+        .map(|n| {
+            world
+                .insert(Body::at(0, UNTURNED, [3.0 * f64::from(n), 0.0, 0.0]))
+                .unwrap()
+        })
+        .collect();
+    let mut index = QueryIndex::new();
+    for far in [0.0, 1.0e9 + 0.1, 4.0e15, -0.5] {
+        for (n, &id) in ids.iter().enumerate() {
+            world
+                .set_pose(id, UNTURNED, [far + 3.0 * n as f64, 0.0, 0.0])
+                .unwrap();
+        }
+        index.update(&world);
+        let centre = [far + 30.0, 0.0, 0.0];
+        let found = index
+            .touching(&QueryVolume::Ball {
+                centre,
+                radius: 0.75,
+            })
+            .unwrap();
+        assert_eq!(found, [ids[10]], "{far}");
+    }
+}

@@ -1,0 +1,137 @@
+//! One set of bodies against another.
+
+use sdop::boxes::BoxBody;
+use sdop::volume::DirectionSet;
+use sdop::{Aabb, Body, BodyId, BoxWorld, Motion, QueryIndex, World};
+use sdop_reference::Pose;
+use sdop_reference::exact::meeting::meet;
+
+use crate::scenes::{Kind, Random, boxes};
+use crate::{reference, shapes, tiers};
+
+fn box_world(boxes: &[Aabb]) -> BoxWorld {
+    let mut world = BoxWorld::new();
+    for (n, &aabb) in boxes.iter().enumerate() {
+        let motion = if n % 3 == 0 {
+            Motion::Fixed
+        } else {
+            Motion::Dynamic
+        };
+        world
+            .insert(BoxBody {
+                motion,
+                ..aabb.into()
+            })
+            .unwrap();
+    }
+    world
+}
+
+#[test]
+fn boxes_of_two_sets_meet_exactly() {
+    let random = &mut Random(1);
+    for kind in Kind::ALL {
+        let all = boxes(kind, 400, random);
+        let (one, other) = all.split_at(150);
+        let worlds = [one, other].map(box_world);
+        let mut index = QueryIndex::with_threads(3).unwrap();
+        let mut with = QueryIndex::new();
+        index.update(&worlds[0]);
+        with.update(&worlds[1]);
+        let mut wanted = Vec::new();
+        for (a, first) in worlds[0].bodies() {
+            for (b, second) in worlds[1].bodies() {
+                if first.bounds.meets(&second.bounds) {
+                    wanted.push([a, b]);
+                }
+            }
+        }
+        for index in tiers(&index) {
+            assert_eq!(index.pairs_with(&with), wanted, "{kind:?}");
+        }
+        let mut turned: Vec<_> = wanted.iter().map(|&[a, b]| [b, a]).collect();
+        turned.sort();
+        assert_eq!(with.pairs_with(&index), turned, "{kind:?}");
+    }
+}
+
+/// Meshes in two worlds, near the origin and far from it, where the boxes of the two are seen from
+/// origins of their own.
+#[test]
+fn meshes_of_two_sets_that_meet_are_found() {
+    let random = &mut Random(2);
+    let shapes = shapes(DirectionSet::K18);
+    let meshes: Vec<_> = shapes.iter().map(reference).collect();
+    for far in [[0.0; 3], [1.0e9 + 0.1, 0.7, -3.0e10]] {
+        let mut draw = |shift: f64| {
+            let mut world = World::new(shapes.clone()).unwrap();
+            for _ in 0..60 {
+                let body = Body {
+                    shape: random.below(shapes.len()) as u32,
+                    rotation: [(); 4].map(|()| random.within(1.0)),
+                    translation: far.map(|x| x + shift + f64::from(random.within(4.0))),
+                    ..Body::default()
+                };
+                world.insert(body).unwrap();
+            }
+            world
+        };
+        let worlds = [draw(0.0), draw(1.0)];
+        let indices = [0, 1].map(|n: usize| {
+            let mut index = QueryIndex::new();
+            index.update(&worlds[n]);
+            index
+        });
+        let found = indices[0].pairs_with(&indices[1]);
+        let mut required = 0;
+        let posed = |body: &Body| Pose::from_f64(body.rotation, body.translation).unwrap();
+        for (a, first) in worlds[0].bodies() {
+            for (b, second) in worlds[1].bodies() {
+                let of = |body: &Body| meshes[body.shape as usize].mesh();
+                if meet((of(&first), &posed(&first)), (of(&second), &posed(&second))).meets {
+                    assert!(found.binary_search(&[a, b]).is_ok(), "{first:?} {second:?}");
+                    required += 1;
+                }
+            }
+        }
+        assert!(required > 50, "{required}");
+        assert!(
+            2 * found.len() <= 3 * required,
+            "{required} of {}",
+            found.len()
+        );
+    }
+}
+
+/// Boxes against meshes are what each box finds as a query.
+#[test]
+fn boxes_against_meshes_are_queries() {
+    let random = &mut Random(3);
+    let shapes = shapes(DirectionSet::K18);
+    let mut world = World::new(shapes).unwrap();
+    for _ in 0..100 {
+        let body = Body {
+            shape: random.below(4) as u32,
+            rotation: [(); 4].map(|()| random.within(1.0)),
+            translation: [(); 3].map(|()| f64::from(random.within(6.0))),
+            ..Body::default()
+        };
+        world.insert(body).unwrap();
+    }
+    let draw = |random: &mut Random| {
+        let min = [(); 3].map(|()| random.within(6.0));
+        Aabb::new(min, min.map(|x| x + 2.0 * random.unit()))
+    };
+    let boxes: Vec<Aabb> = (0..100).map(|_| draw(random)).collect();
+    let asked = box_world(&boxes);
+    let [mut index, mut with] = [QueryIndex::new(), QueryIndex::new()];
+    index.update(&asked);
+    with.update(&world);
+    let mut wanted: Vec<[BodyId; 2]> = Vec::new();
+    for (id, body) in asked.bodies() {
+        let found = with.touching(&body.bounds.into()).unwrap();
+        wanted.extend(found.into_iter().map(|other| [id, other]));
+    }
+    assert!(wanted.len() > 100, "{}", wanted.len());
+    assert_eq!(index.pairs_with(&with), wanted);
+}

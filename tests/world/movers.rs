@@ -1,0 +1,566 @@
+//! Worlds in which few bodies change per frame: whatever the history, pairs and events are those of
+//! a world made for the moment.
+
+use std::collections::BTreeMap;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use sdop::culler::Culler;
+use sdop::mesh::ProceduralShape;
+use sdop::settings::{Budget, CullSettings, Finder, Strategy};
+use sdop::volume::{Shape, ShapeSpec};
+use sdop::world::{Body, BodyId, Groups, Motion, World, WorldSnapshot};
+use sdop_judge::ours::ways::{variants, ways as judged_ways};
+
+use super::{Pairs, Random, afresh, shapes, ways};
+
+/// Where bodies are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Places {
+    /// At multiples of a half, so that many touch to the bit.
+    Halves,
+    /// Anywhere near the origin, in f64.
+    Near,
+    /// Far from the origin, which follows them.
+    Far,
+    /// In two regions, and now and then in a third.
+    Apart,
+}
+
+const PLACES: [Places; 4] = [Places::Halves, Places::Near, Places::Far, Places::Apart];
+
+impl Places {
+    fn draw(self, random: &mut Random) -> [f64; 3] {
+        let base = match self {
+            Self::Halves => {
+                return [(); 3].map(|()| f64::from(random.below(12)) * 0.5 - 3.0);
+            }
+            Self::Near => 0.0,
+            Self::Far => 1.0e9,
+            Self::Apart => {
+                [0.0, 1.0e9, 1.0e9, 0.0, 0.0, 0.0, 0.0, -1.0e12][random.below(8) as usize]
+            }
+        };
+        // Now and then one that moves the middle of all.
+        let wide = if random.below(12) == 0 { 30.0 } else { 4.0 };
+        [(); 3].map(|()| base + wide * f64::from(random.unit()) + 0.1)
+    }
+}
+
+/// A world, what it should hold, and what events should be read against.
+struct History {
+    shapes: Vec<Shape>,
+    way: CullSettings,
+    places: Places,
+    world: World,
+    bodies: BTreeMap<BodyId, Body>,
+    interest: Vec<BodyId>,
+    watched: Pairs,
+    random: Random,
+}
+
+fn world_of(shapes: &[Shape], way: &CullSettings) -> World {
+    World::with(shapes.to_vec(), &Culler::builder().settings(way)).unwrap()
+}
+
+impl History {
+    fn new(way: &CullSettings, places: Places, seed: u64, count: usize) -> Self {
+        let shapes = shapes();
+        let mut history = Self {
+            world: world_of(&shapes, way),
+            shapes,
+            way: way.clone(),
+            places,
+            bodies: BTreeMap::new(),
+            interest: Vec::new(),
+            watched: Pairs::new(),
+            random: Random(ChaCha8Rng::seed_from_u64(seed)),
+        };
+        for _ in 0..count {
+            let body = history.drawn();
+            history.insert(body);
+        }
+        history
+    }
+
+    fn drawn(&mut self) -> Body {
+        let random = &mut self.random;
+        let motion = [Motion::Dynamic, Motion::Resting, Motion::Fixed][random.below(3) as usize];
+        let turned = self.places != Places::Halves || random.below(4) == 0;
+        let body = random.body(3);
+        Body {
+            motion,
+            translation: self.places.draw(random),
+            rotation: if turned {
+                body.rotation
+            } else {
+                Body::default().rotation
+            },
+            margin: [0.0, 0.0, 0.1, 0.25][random.below(4) as usize],
+            groups: if random.below(3) == 0 {
+                body.groups
+            } else {
+                Groups::ALL
+            },
+            ..body
+        }
+    }
+
+    fn insert(&mut self, body: Body) {
+        let id = self.world.insert(body).unwrap();
+        assert!(self.bodies.insert(id, body).is_none());
+    }
+
+    /// Changes one body in one way, lets one come or go, or changes what is of interest or a shape.
+    fn change(&mut self) {
+        let drawn = self.drawn();
+        let ids: Vec<BodyId> = self.bodies.keys().copied().collect();
+        let id = ids[self.random.below(ids.len() as u32) as usize];
+        let other = ids[self.random.below(ids.len() as u32) as usize];
+        let mut body = self.bodies[&id];
+        match self.random.below(16) {
+            0 => return self.insert(drawn),
+            1 if ids.len() > 30 => {
+                self.world.remove(id).unwrap();
+                self.bodies.remove(&id);
+                self.interest.retain(|&of_interest| of_interest != id);
+                return;
+            }
+            2 => body.groups = drawn.groups,
+            3 | 4 => body.motion = drawn.motion,
+            5 => body.margin = drawn.margin,
+            6 => body.shape = drawn.shape,
+            7 => body.translation = self.bodies[&other].translation,
+            8 => body = drawn,
+            9 => {} // the same body again
+            10 if self.random.below(3) == 0 => return self.replace_shape(drawn.shape),
+            11 => {
+                self.interest = vec![id, other];
+                return self.world.set_interest(&[id, other]).unwrap();
+            }
+            12 => body.rotation = drawn.rotation,
+            13 | 14 => body.translation[0] += f64::from(self.random.unit()),
+            _ => body.translation = drawn.translation,
+        }
+        let former = self.bodies.insert(id, body).unwrap();
+        let with_motion = Body {
+            motion: body.motion,
+            ..former
+        };
+        let (rotation, translation) = (body.rotation, body.translation);
+        if (Body {
+            rotation,
+            translation,
+            ..former
+        }) == body
+        {
+            self.world.set_pose(id, rotation, translation).unwrap();
+        } else if with_motion == body {
+            self.world.set_motion(id, body.motion).unwrap();
+        } else {
+            self.world.set(id, body).unwrap();
+        }
+        assert_eq!(self.world.body(id).unwrap(), body);
+    }
+
+    fn replace_shape(&mut self, number: u32) {
+        let mut shape = shapes().swap_remove(self.random.below(3) as usize);
+        shape.name = "another".to_owned();
+        self.world.replace_shape(number, &shape).unwrap();
+        self.shapes[number as usize] = shape;
+    }
+
+    /// The pairs of a new world with the same bodies, and of a new culler where it can have them.
+    fn wanted(&self) -> Pairs {
+        let mut fresh = world_of(&self.shapes, &self.way);
+        let old: Vec<BodyId> = self.bodies.keys().copied().collect();
+        let new: Vec<BodyId> = (self.bodies.values())
+            .map(|&body| fresh.insert(body).unwrap())
+            .collect();
+        let number = |id: &BodyId| old.binary_search(id).unwrap();
+        let interest: Vec<BodyId> = self.interest.iter().map(|id| new[number(id)]).collect();
+        fresh.set_interest(&interest).unwrap();
+        let pairs = fresh.cull().unwrap();
+        let wanted: Pairs = (pairs.iter())
+            .map(|pair| pair.map(|id| old[new.binary_search(&id).unwrap()]))
+            .collect();
+        let is_plain = self.places == Places::Halves
+            && self.interest.is_empty()
+            && self.way.strategy != Strategy::SDopTimeCritical
+            && self.bodies.values().all(|body| body.margin == 0.0);
+        if is_plain {
+            let bodies = self.bodies.clone().into_iter().collect();
+            assert_eq!(wanted, afresh(&self.shapes, &self.way, &bodies));
+        }
+        wanted
+    }
+
+    fn assert_exact(&mut self, reads_events: bool, frame: usize) {
+        let what = format!("{:?}, {:?}, frame {frame}", self.way, self.places);
+        self.world.cull().unwrap();
+        let wanted = self.wanted();
+        let listed: Vec<[BodyId; 2]> = self.world.pairs().collect();
+        assert!(
+            listed.iter().eq(&wanted),
+            "{what}: {:?}",
+            wanted.symmetric_difference(&listed.iter().copied().collect())
+        );
+        assert_eq!(self.world.pairs().len(), wanted.len(), "{what}");
+        if reads_events {
+            let (events, before) = (self.world.events(), &self.watched);
+            let [begun, ended] = [wanted.difference(before), before.difference(&wanted)];
+            assert!(events.begun().eq(begun.copied()), "{what}");
+            assert!(events.ended().eq(ended.copied()), "{what}");
+            let lasting = wanted.intersection(before).copied();
+            assert!(events.persisting().eq(lasting), "{what}");
+            assert_eq!(events.iter().count(), wanted.union(before).count());
+            self.watched = wanted;
+        }
+    }
+
+    /// Frames of few changes each; now and then of none, and of many. `before_frame` may put
+    /// another world in the place of this one, if it makes no difference.
+    fn live(&mut self, frames: usize, mut before_frame: impl FnMut(&mut Self, usize)) -> usize {
+        let mut pairs = 0;
+        for frame in 0..frames {
+            before_frame(self, frame);
+            let changes = match self.random.below(24) {
+                0 => 30,
+                calls => calls % 5,
+            };
+            (0..changes).for_each(|_| self.change());
+            let reads_events = self.random.below(3) > 0;
+            self.assert_exact(reads_events, frame);
+            pairs += self.world.pairs().len();
+        }
+        pairs
+    }
+}
+
+#[test]
+fn few_movers_leave_exact_pairs() {
+    for (number, way) in ways().iter().enumerate() {
+        let places = PLACES[number % 4];
+        let pairs = History::new(way, places, number as u64, 60).live(40, |_, _| ());
+        assert!(
+            pairs > 400 || way.strategy == Strategy::None,
+            "{way:?}: {pairs}"
+        );
+    }
+    for (seed, places) in (100..).zip(PLACES) {
+        for strategy in [Strategy::SDopSequential, Strategy::SDopObjectOfInterest] {
+            let way = CullSettings {
+                strategy,
+                ..CullSettings::default()
+            };
+            History::new(&way, places, seed, 120).live(150, |_, _| ());
+        }
+    }
+}
+
+fn through_text(world: &World) -> WorldSnapshot {
+    let text = serde_json::to_string(&world.snapshot()).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+/// Clones, worlds restored by another finder, worlds that have given their memory back, and those
+/// that were culled otherwise.
+#[test]
+fn few_movers_survive_whatever_is_done_to_their_world() {
+    for (seed, places) in (200..).zip(PLACES) {
+        for strategy in [
+            Strategy::SDopBatch,
+            Strategy::KDop,
+            Strategy::SDopObjectOfInterest,
+        ] {
+            let way = CullSettings {
+                strategy,
+                ..CullSettings::default()
+            };
+            History::new(&way, places, seed, 80).live(120, |history, frame| {
+                let world = &mut history.world;
+                match frame % 9 {
+                    1 => *world = world.clone(),
+                    3 => {
+                        let saved = through_text(world);
+                        let pairs = Finder::ALL[frame % Finder::ALL.len()];
+                        let other = CullSettings {
+                            pairs,
+                            ..history.way.clone()
+                        };
+                        let mut other = world_of(&history.shapes, &other);
+                        other.restore(&saved).unwrap();
+                        assert_eq!(other.snapshot(), saved);
+                        *world = other;
+                    }
+                    5 => world.shrink_to_fit(),
+                    6 => drop(world.cull_in_portions(|_| ())),
+                    8 => drop(world.cull_up_to(frame).map(|pairs| pairs.len())),
+                    _ => {}
+                }
+            });
+        }
+    }
+}
+
+/// A row of boxes, each of which meets the next, culled.
+fn row(count: u16, motion: Motion, way: &CullSettings) -> (World, Vec<BodyId>) {
+    let mut world = world_of(&shapes(), way);
+    let at = |i: u16| Body {
+        motion,
+        ..Body::at(0, Body::default().rotation, [f64::from(i), 0.0, 0.0])
+    };
+    let ids = (0..count).map(|i| world.insert(at(i)).unwrap()).collect();
+    world.cull().unwrap();
+    assert_eq!(world.events().begun().count(), usize::from(count) - 1);
+    (world, ids)
+}
+
+fn moved(world: &mut World, id: BodyId, x: f64) {
+    world
+        .set_pose(id, Body::default().rotation, [x, 0.0, 0.0])
+        .unwrap();
+}
+
+#[test]
+fn pairs_at_rest_stay_until_a_body_leaves() {
+    let (mut world, ids) = row(100, Motion::Dynamic, &CullSettings::default());
+    for &id in &ids {
+        world.set_motion(id, Motion::Resting).unwrap();
+    }
+    moved(&mut world, ids[60], 60.25); // so that an index is made
+    world.cull().unwrap();
+    moved(&mut world, ids[60], 60.0);
+    world.cull().unwrap();
+    assert_eq!(
+        (world.pairs().len(), world.events().ended().count()),
+        (99, 0)
+    );
+    // Set where it is and woken: nothing has changed.
+    let before = world.counters().sphere;
+    moved(&mut world, ids[7], 7.0);
+    world.set_motion(ids[7], Motion::Dynamic).unwrap();
+    world.cull().unwrap();
+    assert_eq!(world.counters().sphere, before);
+    assert_eq!(
+        (world.pairs().len(), world.events().iter().count()),
+        (99, 99)
+    );
+    // Moved, one at rest leaves one of its neighbours, and stays at rest.
+    moved(&mut world, ids[20], 20.5);
+    world.cull().unwrap();
+    assert!(world.events().ended().eq([[ids[19], ids[20]]]));
+    assert_eq!(world.body(ids[20]).unwrap().motion, Motion::Resting);
+    let volumes = world.counters().sphere.since(&before).updates;
+    assert!(
+        (2..8).contains(&volumes),
+        "{volumes}: its own and those near it"
+    );
+    // Two fixed bodies are in no pair, one and another at rest are.
+    for (at, motion, pairs) in [
+        (50, Motion::Fixed, 98),
+        (51, Motion::Fixed, 97),
+        (50, Motion::Resting, 98),
+    ] {
+        world.set_motion(ids[at], motion).unwrap();
+        world.cull().unwrap();
+        assert_eq!(world.pairs().len(), pairs, "{at} {motion:?}");
+    }
+    assert_eq!(
+        world.events().begun().count(),
+        0,
+        "it ended and began since the last call"
+    );
+}
+
+/// Whatever a verdict depends on is changed alone, of bodies that stay where they are. A needle is
+/// as wide as half a unit along the row.
+#[test]
+fn a_verdict_changes_with_each_of_its_reasons() {
+    let (mut world, ids) = row(100, Motion::Resting, &CullSettings::default());
+    let mut set = |change: fn(&mut Body), pairs: usize| {
+        let mut body = world.body(ids[30]).unwrap();
+        change(&mut body);
+        world.set(ids[30], body).unwrap();
+        world.cull().unwrap();
+        assert_eq!(world.pairs().len(), pairs);
+    };
+    set(|body| body.groups = Groups { member: 1, mask: 0 }, 97);
+    set(|body| body.groups = Groups::ALL, 99);
+    set(|body| body.margin = 1.25, 101);
+    set(|body| body.margin = 0.0, 99);
+    set(|body| body.shape = 2, 97);
+    set(|body| body.rotation = [0.0, 0.5, 0.0, 0.5], 101); // its tips reach along the row
+    set(|body| body.rotation = [0.0, 0.0, 0.0, 1.0], 97);
+    set(|body| body.shape = 0, 99);
+    for (shape, pairs) in [(2, 0), (0, 99)] {
+        world.replace_shape(0, &shapes()[shape]).unwrap();
+        world.cull().unwrap();
+        assert_eq!(world.pairs().len(), pairs);
+    }
+}
+
+/// So many needles side by side: the spheres of neighbours meet, their or-DOPs don't.
+fn needles(way: &CullSettings, count: u32) -> (World, Vec<BodyId>) {
+    let mut world = world_of(&shapes(), way);
+    let ids = (0..count).map(|i| world.insert(needle(3.0 * f64::from(i))).unwrap());
+    let ids = ids.collect();
+    (world, ids)
+}
+
+fn needle(y: f64) -> Body {
+    Body::at(2, Body::default().rotation, [0.0, y, 0.0])
+}
+
+#[test]
+fn interest_alone_changes_pairs() {
+    let strategy = Strategy::SDopObjectOfInterest;
+    let (mut world, ids) = needles(
+        &CullSettings {
+            strategy,
+            ..CullSettings::default()
+        },
+        40,
+    );
+    world.cull().unwrap();
+    assert_eq!(world.pairs().len(), 39);
+    for (of_interest, pairs) in [
+        (vec![ids[0]], 38),
+        (vec![ids[5], ids[20]], 35),
+        (vec![], 39),
+    ] {
+        world.set_interest(&of_interest).unwrap();
+        world.cull().unwrap();
+        assert_eq!(world.pairs().len(), pairs, "{of_interest:?}");
+    }
+    world.set_interest(&[ids[7]]).unwrap();
+    world.cull().unwrap();
+    world.remove(ids[7]).unwrap();
+    world.cull().unwrap();
+    let again = world.insert(needle(21.0)).unwrap();
+    world.cull().unwrap();
+    assert_eq!((again.slot(), world.pairs().len()), (ids[7].slot(), 39));
+}
+
+/// A budget of one test refines the first pair. When its first body leaves, the next pair is
+/// refined, although none of its bodies has changed; when it comes back, it isn't any more.
+#[test]
+fn a_pair_that_a_budget_left_out_is_not_kept_as_refined() {
+    let way = CullSettings {
+        strategy: Strategy::SDopTimeCritical,
+        budget: Some(Budget::Tests(1)),
+        ..CullSettings::default()
+    };
+    let (mut world, ids) = needles(&way, 40);
+    for (y, refined) in [(0.0, 0), (-1000.0, 1), (0.0, 0)] {
+        let at = needle(y);
+        world.set_pose(ids[0], at.rotation, at.translation).unwrap();
+        for _ in 0..3 {
+            let pairs: Vec<_> = world.cull().unwrap().iter().collect();
+            let neighbours = ids.windows(2).map(|two| [two[0], two[1]]);
+            assert!(neighbours.skip(refined + 1).eq(pairs), "{y}");
+        }
+    }
+}
+
+/// Bodies that touch to the bit stop, rest, are woken, and leave by an ulp.
+#[test]
+fn touching_bodies_freeze_and_thaw() {
+    let ulp = f64::from(f32::EPSILON) * 16.0;
+    for (k, axes) in variants() {
+        let [x, y, z] = [2.0; 3];
+        let spec = ShapeSpec {
+            directions: k,
+            axes,
+            ..ShapeSpec::default()
+        };
+        let mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
+        let shape = Shape::build(&mesh, &spec).unwrap();
+        for way in judged_ways(k, axes) {
+            if way.strategy == Strategy::None {
+                continue;
+            }
+            let way = CullSettings {
+                budget: Some(Budget::Tests(1000)),
+                ..way
+            };
+            let mut world = world_of(std::slice::from_ref(&shape), &way);
+            let at = |x: f64| Body::at(0, Body::default().rotation, [x, 0.0, 0.0]);
+            let ids: Vec<BodyId> = (0..20)
+                .map(|i| world.insert(at(2.0 * f64::from(i))).unwrap())
+                .collect();
+            assert!(world.cull().unwrap().len() >= 19);
+            for (motion, x) in [
+                (Motion::Resting, 20.0),
+                (Motion::Resting, 20.0 + ulp),
+                (Motion::Dynamic, 20.0),
+                (Motion::Fixed, 20.0),
+                (Motion::Resting, 25.0),
+                (Motion::Dynamic, 20.0 - ulp),
+                (Motion::Resting, 20.0),
+            ] {
+                world.set(ids[10], Body { motion, ..at(x) }).unwrap();
+                let now = world.cull().unwrap().sorted();
+                let before = now.contains(&[ids[9], ids[10]]) || x > 20.0;
+                let after = now.contains(&[ids[10], ids[11]]) || !(20.0..21.0).contains(&x);
+                assert!(before && after, "{way:?} {motion:?} {x}");
+                let mut fresh = world_of(std::slice::from_ref(&shape), &way);
+                for (id, body) in world.bodies() {
+                    assert_eq!(fresh.insert(body).unwrap(), id);
+                }
+                assert_eq!(
+                    now,
+                    fresh.cull().unwrap().sorted(),
+                    "{way:?} {motion:?} {x}"
+                );
+            }
+        }
+    }
+}
+
+/// Counted, not timed: what is looked at doesn't depend on how many bodies there are.
+#[test]
+fn a_frame_costs_what_changes() {
+    let volumes_of = |count: u32, far: f64| {
+        let mut random = Random(ChaCha8Rng::seed_from_u64(5));
+        let mut world = World::new(shapes()).unwrap();
+        let side = f64::from(count).cbrt();
+        let mut place =
+            |random: &mut Random| [(); 3].map(|()| far + 2.0 * side * f64::from(random.unit()));
+        let ids: Vec<BodyId> = (0..count)
+            .map(|i| {
+                world
+                    .insert(Body::at(i % 3, [0.0, 0.0, 0.6, 0.8], place(&mut random)))
+                    .unwrap()
+            })
+            .collect();
+        // Such that no other body is the outermost.
+        for x in [-3.0, 3.0] {
+            world
+                .insert(Body::at(0, [1.0; 4], [far + x * side; 3]))
+                .unwrap();
+        }
+        world.cull().unwrap();
+        world
+            .set_pose(ids[0], [1.0; 4], place(&mut random))
+            .unwrap();
+        world.cull().unwrap(); // makes an index
+        let before = *world.counters();
+        for frame in 0..50 {
+            let id = ids[random.below(count) as usize];
+            let at = place(&mut random);
+            match frame % 3 {
+                0 => world.set_pose(id, [1.0; 4], at).unwrap(),
+                1 => drop(world.insert(Body::at(1, [1.0; 4], at)).unwrap()),
+                _ => world.set(id, Body::at(2, [1.0; 4], at).fixed()).unwrap(),
+            }
+            world.cull().unwrap();
+        }
+        let counted = world.counters().since(&before);
+        counted.sphere.updates + counted.ordop.updates + counted.sphere.tests + counted.ordop.tests
+    };
+    for far in [0.0, 1.0e9 + 0.1] {
+        let [few, many] = [500, 8000].map(|count| volumes_of(count, far));
+        assert!(many < 2 * few && many < 50 * 100, "{few}, {many}, {far}");
+    }
+}
