@@ -1,20 +1,20 @@
-//! Cubes about boxes, a vector of them at a time.
+//! Computes cubes around boxes, a vector of them at a time.
 
 use crate::bodies::Aabb;
 use crate::rounding::cube::Cube;
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, numbers_of, prefetch_ends};
 
-/// How many names ahead boxes are prefetched: neighbours in space lie anywhere in the user's list,
-/// and a core can wait for dozens of cache misses at once.
+/// Boxes are prefetched this many names ahead: neighbours in space can be anywhere in the user's
+/// list, and a core can overlap dozens of cache misses.
 pub(super) const AHEAD: usize = 128;
 
-/// Makes the cubes of the boxes of these names. Returns the greatest H − h, and whether all boxes
-/// are sound.
+/// Computes the cubes of the boxes with these names. Returns the greatest H − h, and whether all
+/// boxes are valid.
 pub(super) struct Make<'a> {
     pub boxes: &'a [Aabb],
     pub names: &'a [u32],
-    /// The names from the one at [`AHEAD`] on, whose boxes are prefetched, or none where boxes are
-    /// in the caches.
+    /// The names from the one at [`AHEAD`] on, whose boxes are prefetched, or none if boxes are in
+    /// the caches.
     pub ahead: &'a [u32],
     pub cubes: &'a mut [[f32; 4]],
 }
@@ -52,16 +52,16 @@ impl Kernel for Make<'_> {
     }
 }
 
-/// What the cubes that were made have in common.
+/// Facts about all computed cubes.
 struct Seen<L: Lanes> {
     /// The greatest H − h in each lane.
     gap: L::F,
-    /// Bits of the lanes that had sound boxes alone.
+    /// A bit for each lane that had only valid boxes.
     sound: u32,
 }
 
 impl<L: Lanes> Seen<L> {
-    /// Makes the cubes of sixteen boxes, each of which is six numbers.
+    /// Computes the cubes of sixteen boxes, each given as six numbers.
     #[inline(always)]
     fn make(
         &mut self,
@@ -85,8 +85,8 @@ mod tests {
     use super::*;
     use crate::simd::{Tier, dispatch};
 
-    /// What a tier makes of boxes in an order of its own: their cubes, the greatest H − h, and
-    /// whether all are sound.
+    /// The results of a tier for boxes in the order of `names`: their cubes, the greatest H − h,
+    /// and whether all are valid.
     fn made(tier: Tier, boxes: &[Aabb], names: &[u32]) -> (Vec<[f32; 4]>, f32, bool) {
         let mut cubes = vec![[f32::NAN; 4]; names.len()];
         let make = Make {
@@ -99,7 +99,7 @@ mod tests {
         (cubes, gap, are_sound)
     }
 
-    /// Of so many boxes, the last of which is the longest.
+    /// `count` boxes, of which the last is the longest.
     fn boxes(count: usize) -> Vec<Aabb> {
         let long = |i: usize| if i + 1 == count { 800.0 } else { 8.0 };
         let from = |i: usize| [16.0 * i as f32, -24.0, 8.0 * (i % 7) as f32];

@@ -1,4 +1,4 @@
-//! A frame of given boxes: cubes about them, a finder's candidates, the test, the list.
+//! A frame of given boxes: cubes around them, a finder's candidates, the test, the list.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
@@ -15,23 +15,23 @@ use crate::simd::{Tier, dispatch, in_default_mode};
 use crate::strategy::{BoxInputs, BoxTest, Output, Tasks, list_boxes};
 use crate::threads::{FrameThreads, FrameWork};
 
-/// Boxes whose cubes one thread makes at once.
+/// Boxes whose cubes one thread computes at a time.
 const CUBES: usize = 4096;
 
-/// Boxes that are read ahead, up to so many bytes: what the first caches hold. Beyond, prefetching
-/// each by its name is faster: by 3 % at 96 KB and 20 % at 240 KB, where it is 3 % slower at 48 KB
-/// (frames of an AMD, Zen 5, with cold caches).
+/// Columns of boxes up to this size fit into the first caches and are read ahead in order. For
+/// larger ones, prefetching each box by its name is faster: by 3 % at 96 KB and 20 % at 240 KB, but
+/// 3 % slower at 48 KB (an AMD Zen 5 with cold caches).
 const LONGEST: usize = 64 << 10;
 
-/// Boxes of a frame that are asked which test suits it.
+/// Boxes of a frame that are sampled to choose its test.
 const ASKED: usize = 64;
 
-/// By how much H must exceed the frame's greatest H − h where cubes decide; of those asked, one in
-/// [`FEW`] may fall short.
+/// Cubes decide if H is at least this multiple of the frame's greatest H − h; one in [`FEW`] of the
+/// sampled boxes may be smaller.
 const CUBIC: f32 = 32.0;
 const FEW: usize = 16;
 
-/// The boxes of a set, as a finder has them.
+/// The boxes of a set, in the form that a finder needs.
 #[derive(Clone, Debug)]
 pub(super) struct Frames {
     tier: Tier,
@@ -48,15 +48,15 @@ pub(super) struct Frames {
     news: News,
     ends: EndSlots,
     tasks: Tasks,
-    /// Of the frame before.
+    /// Candidates of the frame before.
     candidates: u64,
 }
 
-/// What of the set is new since the frame before.
+/// The change of the set since the frame before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum News {
     None,
-    /// Some boxes; the finder knows of the others.
+    /// Some boxes are new; the finder knows the others.
     Some,
     All,
 }
@@ -85,8 +85,8 @@ impl Frames {
         self.places.len()
     }
 
-    /// From now on those boxes are there that are `present`, and those may move that are `dynamic`.
-    /// What is known of the neighbours of boxes that were there is kept.
+    /// Replaces the set: boxes that are `present` exist from now on, and those that are `dynamic`
+    /// may move. Lists of neighbours of boxes that stay are kept.
     pub fn replace(&mut self, dynamic: &[bool], present: &[bool]) {
         let stays = self.places.replace(dynamic, present);
         let (population, moving) = (population(self.len()), self.places.moving);
@@ -99,7 +99,7 @@ impl Frames {
         }
     }
 
-    /// Forgets all boxes, and gives back their memory. The next [`Self::replace`] begins anew.
+    /// Removes all boxes and frees their memory. The next [`Self::replace`] starts without lists.
     pub fn forget(&mut self) {
         (self.places, self.order) = Default::default();
         (self.ends, self.tasks) = Default::default();
@@ -175,8 +175,8 @@ impl Frames {
         Ok(counted)
     }
 
-    /// Puts boxes in better places and makes the cubes of those that may have moved; the greatest H
-    /// − h of all, or `None` if some box is none.
+    /// Moves boxes to better places and computes the cubes of those that may have moved. Returns
+    /// the greatest H − h of all, or `None` if a box is invalid.
     fn update(&mut self, boxes: &[Aabb]) -> Option<f32> {
         let (moving, all) = (self.places.moving, self.places.len());
         let news = std::mem::replace(&mut self.news, News::None);
@@ -199,12 +199,13 @@ impl Frames {
         Some(gap.max(self.fixed_gap))
     }
 
-    /// Makes the cubes of a range of places; the greatest H − h, or `None` if some box is none.
+    /// Computes the cubes of a range of places. Returns the greatest H − h, or `None` if a box is
+    /// invalid.
     fn make_cubes(&mut self, boxes: &[Aabb], range: Range<usize>) -> Option<f32> {
         let pool = self.threads.get();
         let are_near = read_ahead(pool, boxes, range.len(), LONGEST, |aabb| aabb.min[0]);
         let names = &self.places.body[range.clone()];
-        // Bits of numbers that aren't negative are in their order.
+        // The bits of non-negative numbers sort as the values do.
         let (greatest, are_sound) = (AtomicU32::new(0), AtomicBool::new(true));
         pool.pieces(&mut self.cubes[range], CUBES, |start, cubes| {
             let ahead = names.get(start + AHEAD..).filter(|_| !are_near);
@@ -222,8 +223,8 @@ impl Frames {
         are_sound.into_inner().then_some(gap)
     }
 
-    /// Whether cubes tell most pairs apart: whether most boxes are much larger than the greatest H
-    /// − h. Some are asked, the same ones on every machine.
+    /// Whether cubes decide most pairs, because most boxes are much larger than the greatest H − h.
+    /// Some boxes are sampled, the same ones on every machine.
     fn cubes_decide(&self, gap: f32) -> bool {
         let step = self.cubes.len().div_ceil(ASKED).max(1);
         let asked = self.cubes.iter().step_by(step);
@@ -234,23 +235,23 @@ impl Frames {
         FEW * small <= all
     }
 
-    /// Candidates that the last frame tested to make a list of neighbours.
+    /// Candidates that the last frame tested to build a list of neighbours.
     pub fn list_tests(&self) -> u64 {
         self.finder.list_tests()
     }
 
-    /// Gives back the memory of lists of pairs.
+    /// Frees the memory of lists of pairs.
     pub fn shrink_to_fit(&mut self) {
         self.tasks.shrink_to_fit();
     }
 
-    /// Bytes that lists of pairs hold.
+    /// Bytes of the lists of pairs.
     pub fn pair_bytes(&self) -> usize {
         self.tasks.pair_bytes()
     }
 }
 
-/// The finder of that name, or the one that suits so many boxes.
+/// The finder with that name, or for `auto` the one for this number of boxes.
 fn finder(choice: Finder, boxes: usize) -> PairFinder {
     PairFinder::new(choice, &population(boxes))
 }
@@ -278,7 +279,7 @@ mod tests {
         let mut frames = Frames::new(Finder::Auto, Tier::SCALAR, threads);
         assert!(frames.cubes_decide(1.0), "without boxes");
         for (small, decide) in [(0, true), (4, true), (5, false), (64, false)] {
-            // One in ten is asked.
+            // One in ten is sampled.
             frames.cubes = Balls::new(10 * ASKED);
             for (asked, cube) in frames.cubes.iter_mut().step_by(10).enumerate() {
                 cube[3] = CUBIC * if asked < small { 2.9 } else { 3.0 };
@@ -294,7 +295,7 @@ mod tests {
             .collect()
     }
 
-    /// Frames of these boxes, all of which may move, before the first cull.
+    /// The frames of `boxes` boxes, all of which may move, before the first cull.
     fn frames(choice: Finder, boxes: usize) -> Frames {
         let mut frames = Frames::new(
             choice,
@@ -329,8 +330,8 @@ mod tests {
         );
     }
 
-    /// Planned by boxes without an extent, giants and small ones would share cells: two million
-    /// candidates.
+    /// If cells were planned from boxes without extent, giants and small boxes would share them:
+    /// two million candidates.
     #[test]
     fn the_first_frame_is_planned_by_its_own_boxes() {
         let mut boxes = all_in_a_row(2000);
@@ -341,7 +342,7 @@ mod tests {
         assert!((2000..20_000).contains(&tests), "{tests}");
     }
 
-    /// All but the first task's list, which is the caller's, stay for the next frame.
+    /// All lists except the first task's, which is the caller's, stay for the next frame.
     #[test]
     fn bytes_of_lists_are_counted_until_they_are_given_back() {
         let threads = FrameThreads::new(Threads::new(3).unwrap(), 0);
@@ -351,7 +352,7 @@ mod tests {
         let mut pairs = PairList::default();
         frames.cull(&boxes, None, Output::List(&mut pairs)).unwrap();
         assert_eq!(pairs.len(), 200 * 199 / 2);
-        // Two numbers a pair, of half of the pairs at least.
+        // Two numbers per pair, of at least half of the pairs.
         assert!(frames.pair_bytes() > 4 * pairs.len());
         frames.shrink_to_fit();
         assert!(frames.pair_bytes() < pairs.len());

@@ -15,18 +15,19 @@ use crate::world::BodyId;
 pub struct LineHit {
     /// The body.
     pub body: BodyId,
-    /// No greater than the parameter of any point that the line has in common with it.
+    /// A parameter at or before the first point that the line shares with the body.
     pub at: f64,
 }
 
 impl LineHit {
-    /// Before another one along the line; of two at one parameter, the one of the lower slot.
+    /// Whether this one comes before another along the line. At equal parameters the lower slot
+    /// comes first.
     fn is_before(&self, other: &Self) -> bool {
         (self.at, self.body) < (other.at, other.body)
     }
 }
 
-/// How a line moves along each axis.
+/// The direction of a line along each axis.
 #[derive(Clone, Copy, Debug)]
 struct Courses {
     axes: [Course; 3],
@@ -41,7 +42,8 @@ impl Courses {
         Self { axes, limit }
     }
 
-    /// The lanes of a group that the line may meet up to `limit`, and where it enters their boxes.
+    /// The lanes of a group that the line may meet up to `limit`, and the parameters at which it
+    /// enters their boxes.
     #[inline(always)]
     fn meeting(&self, group: &Group, limit: f64) -> (u32, [f64; GROUP]) {
         let (mut first, mut last) = ([0.0_f64; GROUP], [limit; GROUP]);
@@ -69,7 +71,7 @@ impl Courses {
         (meeting & group.present, first)
     }
 
-    /// Where the line enters a box, if it may meet it.
+    /// The parameter at which the line enters a box, if it may meet it.
     fn enters(&self, aabb: &Aabb) -> Option<f64> {
         let [mut first, mut last] = [0.0, self.limit];
         for axis in 0..3 {
@@ -82,8 +84,7 @@ impl Courses {
 }
 
 impl QueryIndex {
-    /// The bodies that a line may meet, sorted by where it may meet them first, and by slot where
-    /// that is the same.
+    /// The bodies that a line may meet, sorted by parameter, and by slot at equal parameters.
     ///
     /// # Errors
     /// A line outside of the contract ([`Line`]).
@@ -94,7 +95,7 @@ impl QueryIndex {
         Ok(found)
     }
 
-    /// The same for many lines, on all threads.
+    /// [`Self::along`] for many lines, on all threads.
     ///
     /// # Errors
     /// The first line outside of the contract.
@@ -106,7 +107,7 @@ impl QueryIndex {
     }
 
     /// The body whose volume a line may meet first: no body is met at a parameter below its `at`.
-    /// Volumes are larger than meshes; where that matters, use [`Self::first_judged`].
+    /// Volumes are larger than meshes; if that matters, use [`Self::first_judged`].
     ///
     /// # Errors
     /// As [`Self::along`].
@@ -114,7 +115,7 @@ impl QueryIndex {
         self.first_judged(line, |hit| Some(hit.at))
     }
 
-    /// The same for many lines, on all threads. An answer has one entry or none.
+    /// [`Self::first`] for many lines, on all threads. An answer has one entry, or is empty.
     ///
     /// # Errors
     /// As [`Self::along_all`].
@@ -127,10 +128,10 @@ impl QueryIndex {
         }))
     }
 
-    /// The first body along a line by the caller's own judgement: `judge` returns the parameter at
-    /// which the line really meets a body, or none if it misses it. It is called for bodies that the
-    /// line may meet no later than the nearest that is known, nearer ones first as far as boxes tell;
-    /// none is left out that could be the first. Of several at one parameter, the lowest slot's.
+    /// The first body along a line, judged exactly by the caller: `judge` returns the parameter at
+    /// which the line meets a body's mesh, or `None` if it misses. It is called for bodies that the
+    /// line may meet before the nearest hit known so far, in about the order of their boxes, and
+    /// for every body that could be first. At equal parameters the lowest slot wins.
     ///
     /// # Errors
     /// As [`Self::along`].
@@ -172,8 +173,8 @@ impl QueryIndex {
         best
     }
 
-    /// Calls `take` with each body that a line may meet up to the limit, which is the last that
-    /// `take` has returned; nearer boxes come first.
+    /// Calls `take` with each body that a line may meet up to the limit, nearer boxes first. `take`
+    /// returns the new limit.
     fn walk(&self, line: &Line, take: impl FnMut(LineHit, f64) -> f64) {
         let track = line.track();
         let walk = Walk {
@@ -186,7 +187,7 @@ impl QueryIndex {
     }
 }
 
-/// What waits to be looked into.
+/// A group that is still to be searched.
 #[derive(Clone, Copy)]
 struct Waiting {
     enters: f64,
@@ -252,7 +253,7 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
 }
 
 impl<T: FnMut(LineHit, f64) -> f64> Walk<'_, T> {
-    /// Tests the body in a place, whose box is entered at `enters`.
+    /// Tests the body in a place, whose box the line enters at `enters`.
     #[inline(always)]
     fn meet(&mut self, tree: usize, place: usize, enters: f64, limit: &mut f64) {
         if enters > *limit {

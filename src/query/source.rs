@@ -1,4 +1,4 @@
-//! What an index takes of a world.
+//! The interface by which an index reads a world.
 
 use super::QueryIndex;
 #[cfg(feature = "shapes")]
@@ -8,7 +8,7 @@ use crate::boxes::BoxWorld;
 #[cfg(feature = "shapes")]
 use crate::world::{Body, BodyId, World};
 
-/// A set of bodies that can be asked about: a [`World`](crate::World) or a [`BoxWorld`].
+/// A set of bodies for queries: a [`World`](crate::World) or a [`BoxWorld`].
 pub trait QuerySource: sealed::Sealed {
     #[doc(hidden)]
     fn bring(&self, index: &mut QueryIndex);
@@ -82,13 +82,13 @@ impl QuerySource for World {
     }
 }
 
-/// Whether the index has a body as it is.
+/// Whether the index's copy of a body is up to date.
 #[cfg(feature = "shapes")]
 fn is_unchanged(index: &QueryIndex, id: BodyId, former: Body, body: Body) -> bool {
     former == body && index.bounds_of(id).is_some()
 }
 
-/// Makes the shapes those of a world; returns which of them have changed.
+/// Copies the shapes of a world, and returns which have changed.
 #[cfg(feature = "shapes")]
 fn renew(shapes: &mut Vec<Option<QueryShape>>, world: &World) -> Vec<bool> {
     let mut renewed = Vec::new();
@@ -111,7 +111,7 @@ fn renew(shapes: &mut Vec<Option<QueryShape>>, world: &World) -> Vec<bool> {
     renewed
 }
 
-/// Where bodies are: their middle, and half of the widest side.
+/// The extent of the bodies: its middle, and half of its widest side.
 #[cfg(feature = "shapes")]
 struct Area {
     middle: [f64; 3],
@@ -137,7 +137,7 @@ impl Area {
         }
     }
 
-    /// What boxes in f32 are best seen from: the world's origin unless bodies are far from it.
+    /// The best origin of boxes in f32: the world's origin unless bodies are far from it.
     fn origin(&self) -> [f64; 3] {
         if self.middle.iter().all(|x| x.abs() <= self.half) {
             return [0.0; 3];
@@ -145,9 +145,9 @@ impl Area {
         self.middle
     }
 
-    /// Whether another origin serves nearly as well.
+    /// Whether another origin is nearly as good.
     fn suits(&self, origin: [f64; 3]) -> bool {
-        /// Bodies may have moved by so many times the half of their widest side.
+        /// Bodies may have moved by this multiple of half their widest side.
         const FARTHEST: f64 = 16.0;
         (0..3).all(|axis| (self.middle[axis] - origin[axis]).abs() <= FARTHEST * self.half)
     }

@@ -1,10 +1,10 @@
-//! A tree of boxes that is built once and then changed box by box: sixteen to a group, groups
-//! sixteen to a group above, up to one.
+//! A tree of boxes that is built once and then changed box by box: sixteen boxes form a group, and
+//! sixteen groups form a group of the level above, up to a single one.
 //!
-//! A build sorts boxes by size and along a Morton curve, so that groups are small. A box that
-//! moves changes the groups above it, in the same place; a new one is appended, one that is gone
-//! leaves its place empty. All of that makes groups wider, never wrong; [`Tree::is_worn`] says when
-//! building anew pays.
+//! A build sorts boxes by size and along a Morton curve, so that groups are small. A box that moves
+//! changes the groups above it, in the same place; a new one is appended, and a removed one leaves
+//! its place empty. All of this makes groups wider, never wrong; [`Tree::is_worn`] returns whether
+//! rebuilding pays.
 
 use crate::bodies::Aabb;
 use crate::simd::{Lanes, MAX_WIDTH};
@@ -12,10 +12,10 @@ use crate::simd::{Lanes, MAX_WIDTH};
 /// Boxes in a group.
 pub(super) const GROUP: usize = MAX_WIDTH;
 
-/// More levels than trees of 2³² boxes have.
+/// At least the number of levels of a tree of 2³² boxes.
 const MOST_LEVELS: usize = 8;
 
-/// The most groups that wait to be looked into: all but one of a group in each level, and its
+/// The most groups that are still to be searched: all but one of a group in each level, and its
 /// last.
 pub(super) const MOST_WAITING: usize = MOST_LEVELS * GROUP;
 
@@ -25,11 +25,11 @@ const CURVE_BITS: u32 = 20;
 /// Boxes of one class differ in size by no more than this power of two.
 const CLASS_OCTAVES: i32 = 3;
 
-/// A tree is worn when more than one in so many boxes was appended or is gone …
+/// A tree is worn when more than one in this many boxes was appended or removed …
 const BOXES_PER_LATE: usize = 8;
 const FEW_LATE: usize = 64;
 
-/// … or when its groups are so many times as wide as when it was built.
+/// … or when its groups are this many times as wide as when it was built.
 const WORN: f64 = 2.0;
 
 /// Up to sixteen boxes, as columns.
@@ -75,7 +75,7 @@ impl Group {
         f64::from(u8::from(is_present)) * half_sides.iter().copied().map(f64::from).sum::<f64>()
     }
 
-    /// The box about all, if there are any.
+    /// The box around all of them, if there are any.
     pub fn bounds(&self) -> Option<Aabb> {
         self.lanes().map(|lane| self.get(lane)).reduce(|a, b| Aabb {
             min: std::array::from_fn(|axis| a.min[axis].min(b.min[axis])),
@@ -83,7 +83,7 @@ impl Group {
         })
     }
 
-    /// The lanes whose boxes meet one.
+    /// The lanes whose boxes meet `aabb`.
     #[inline(always)]
     pub fn meeting<L: Lanes>(&self, l: L, other: &Aabb) -> u32 {
         let mut apart = 0;
@@ -98,7 +98,7 @@ impl Group {
     }
 }
 
-/// The bits that are set.
+/// The numbers of the set bits.
 pub(super) fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let lane = bits.trailing_zeros() as usize;
@@ -114,7 +114,7 @@ pub(super) struct Tree {
     levels: Vec<Vec<Group>>,
     /// The number in each place.
     numbers: Vec<u32>,
-    /// Groups of boxes that have changed since the levels above were last right.
+    /// Groups of boxes that have changed since the levels above were last updated.
     changed: Vec<u32>,
     late: usize,
     /// The half sides of all groups of boxes when the tree was built, and now.
@@ -123,7 +123,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Of these boxes; they are in the places of this order from now on.
+    /// Builds a tree and puts the boxes into the order of their places.
     pub fn build(mut boxes: Vec<(u32, Aabb)>) -> Self {
         let curve = Curve::through(boxes.iter().map(|(_, aabb)| aabb));
         boxes.sort_by_cached_key(|(_, aabb)| curve.place_of(aabb));
@@ -137,7 +137,7 @@ impl Tree {
         tree
     }
 
-    /// The numbers, by place; those whose boxes are gone are among them.
+    /// The numbers by place, including those of removed boxes.
     pub fn numbers(&self) -> &[u32] {
         &self.numbers
     }
@@ -176,7 +176,7 @@ impl Tree {
         self.changed.push((place / GROUP) as u32);
     }
 
-    /// Takes the box out of a place.
+    /// Removes the box in a place.
     pub fn remove(&mut self, place: u32) {
         let place = place as usize;
         self.levels[0][place / GROUP].present &= !(1 << (place % GROUP));
@@ -184,7 +184,7 @@ impl Tree {
         self.late += 1;
     }
 
-    /// Makes the levels above right again.
+    /// Updates the levels above.
     pub fn settle(&mut self) {
         let mut changed = std::mem::take(&mut self.changed);
         if changed.is_empty() {
@@ -214,7 +214,7 @@ impl Tree {
         self.changed = changed;
     }
 
-    /// Whether building anew pays.
+    /// Whether rebuilding pays.
     pub fn is_worn(&self) -> bool {
         self.late > FEW_LATE + self.numbers.len() / BOXES_PER_LATE
             || self.width > WORN * self.built_width
@@ -225,19 +225,19 @@ impl Tree {
         self.levels.first().map_or(&[], Vec::as_slice)
     }
 
-    /// Where a walk from the top begins, unless there are no boxes.
+    /// The top group, where a search begins, unless there are no boxes.
     pub fn top(&self) -> Option<Node> {
         let level = self.levels.len().checked_sub(1)?;
         Some(Node { level, group: 0 })
     }
 
-    /// A group of some level.
+    /// A group of a level.
     #[inline(always)]
     pub fn group(&self, node: Node) -> &Group {
         &self.levels[node.level][node.group as usize]
     }
 
-    /// Calls `take` with the place of each box that meets one.
+    /// Calls `take` with the place of each box that meets `aabb`.
     #[inline(always)]
     pub fn each_meeting<L: Lanes>(&self, l: L, aabb: &Aabb, mut take: impl FnMut(usize)) {
         let mut waiting = [Node::default(); MOST_WAITING];
@@ -268,7 +268,7 @@ pub(super) struct Node {
     group: u32,
 }
 
-/// What a lane of a group stands for.
+/// The object in a lane of a group.
 pub(super) enum Below {
     Place(usize),
     Node(Node),
@@ -288,7 +288,7 @@ impl Node {
     }
 }
 
-/// The order in which boxes are put: those of about one size together, near each other in space.
+/// The order of boxes: those of similar size together, and near each other in space.
 struct Curve {
     lowest: [f64; 3],
     per_unit: f64,
@@ -336,7 +336,7 @@ fn octave_of(aabb: &Aabb) -> i32 {
     (longest.to_bits() >> (f32::MANTISSA_DIGITS - 1)) as i32
 }
 
-/// The bits of a number, each third place.
+/// The bits of a number, moved to every third place.
 fn spread(number: u64) -> u64 {
     let mut bits = number & 0x1f_ffff;
     for (shift, mask) in [
@@ -465,7 +465,7 @@ mod tests {
         );
     }
 
-    /// Small boxes and one that is far larger are in groups of their own.
+    /// Small boxes and a far larger one are in separate groups.
     #[test]
     fn sizes_are_apart() {
         let small = |i: u32| Aabb::new([i as f32; 3], [i as f32 + 0.5; 3]);

@@ -32,7 +32,7 @@ impl World {
     }
 
     /// Culls as [`Self::cull`] does, if there are at most `limit` pairs. Memory for more is never
-    /// taken.
+    /// allocated.
     ///
     /// # Errors
     /// More pairs than that, with their number: there are no [`Self::pairs`] then, and the frame
