@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::bounds::Bounds;
 
-/// Slots whose bodies a leaf has.
+/// Slots per leaf.
 const SLOTS_PER_LEAF: usize = 16;
 
 /// A binary tree over slots: each node has the bounds of the bodies below it.
@@ -15,8 +15,8 @@ pub(super) struct BoundsTree {
 }
 
 impl BoundsTree {
-    /// Of so many slots; `of_slots` gives the bounds of the bodies in a range of them, which may go
-    /// beyond.
+    /// A tree of `slots` slots. `of_slots` returns the bounds of the bodies in a range of slots,
+    /// whose end may be larger.
     pub fn new(slots: usize, of_slots: impl Fn(Range<usize>) -> Bounds) -> Self {
         let leaves = slots.div_ceil(SLOTS_PER_LEAF).next_power_of_two();
         let mut nodes = vec![Bounds::EMPTY; 2 * leaves];
@@ -29,12 +29,12 @@ impl BoundsTree {
         Self { nodes }
     }
 
-    /// Whether it has so many slots.
+    /// Whether it has at least this number of slots.
     pub fn has_room_for(&self, slots: usize) -> bool {
         slots <= self.nodes.len() / 2 * SLOTS_PER_LEAF
     }
 
-    /// Takes note of a change in one slot.
+    /// Updates the bounds after a change in one slot.
     pub fn update(&mut self, slot: usize, of_slots: impl Fn(Range<usize>) -> Bounds) {
         let leaf = slot / SLOTS_PER_LEAF;
         let (mut node, mut bounds) = (self.nodes.len() / 2 + leaf, of_slots(slots_of(leaf)));
@@ -48,7 +48,7 @@ impl BoundsTree {
         }
     }
 
-    /// Of all bodies.
+    /// The bounds of all bodies.
     pub fn whole(&self) -> Bounds {
         self.nodes[1]
     }

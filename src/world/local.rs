@@ -1,9 +1,8 @@
-//! Large worlds: f64 translations, culled as f32 about local origins.
+//! Large worlds: f64 translations, culled in f32 about local origins.
 //!
-//! Where the origins lie is a function of the bodies as they are now, never of earlier frames.
-//! Translations that are all f32 stay as they are. Otherwise bodies that lie near each other are
-//! placed about one origin; bodies in many far-apart places have an [origin per
-//! region](super::regions).
+//! The origins are a function of the present bodies, never of earlier frames. If all translations
+//! are f32, they stay as they are. Otherwise bodies near each other are placed about one origin,
+//! and bodies in far-apart places have an [origin per region](super::regions).
 
 use std::ops::Range;
 
@@ -14,7 +13,7 @@ use super::regions::{Regions, regions};
 use super::{World, WorldError, offset};
 use crate::bodies::contract::is_within_limit;
 
-/// About which origin each slot's body is placed.
+/// The origins about which bodies are placed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Local {
     /// All translations stay as they are.
@@ -24,8 +23,8 @@ pub(super) enum Local {
 }
 
 impl Local {
-    /// The origins for these bodies, whose translations are at most 2⁶⁰ in size, or little more
-    /// where meshes are far from their own origins.
+    /// The origins for these bodies, whose translations are at most 2⁶⁰ in size, or slightly more
+    /// if meshes are far from their own origins.
     fn of(bodies: impl Iterator<Item = Placed> + Clone) -> Self {
         if bodies.clone().all(|(_, t, _)| is_placed(t)) {
             return Self::World;
@@ -33,7 +32,8 @@ impl Local {
         Self::within(Bounds::of(bodies.clone()), bodies)
     }
 
-    /// The same of bodies with these bounds: a look at each takes place only where they are wide.
+    /// The origins for bodies with these bounds. Single bodies are read only if the bounds are
+    /// wide.
     fn within(bounds: Bounds, bodies: impl Iterator<Item = Placed>) -> Self {
         if bounds.are_placed {
             return Self::World;
@@ -45,7 +45,7 @@ impl Local {
         }
     }
 
-    /// The local translation of a slot's body, and how far from the exact one it may be.
+    /// The local translation of a slot's body, and the bound of its error.
     fn place(&self, slot: usize, t: [f64; 3]) -> ([f32; 3], f64) {
         match self {
             Self::World => (t.map(|x| x as f32), 0.0),
@@ -55,11 +55,11 @@ impl Local {
     }
 }
 
-/// The origins of the last cull, and the bounds of all bodies, of which they follow.
+/// The origins of the last cull, and the bounds of all bodies, from which they follow.
 #[derive(Clone, Debug)]
 pub(super) struct Origins {
     local: Local,
-    /// None while each cull looks at all bodies.
+    /// `None` while each cull reads all bodies.
     bounds: Option<BoundsTree>,
 }
 
@@ -73,16 +73,15 @@ impl Default for Origins {
 }
 
 impl World {
-    /// Brings all bodies near local origins, in the models that their margins and rounding call
-    /// for.
+    /// Places all bodies about local origins, in the models that their margins and rounding need.
     pub(super) fn place(&mut self) -> Result<(), WorldError> {
         let local = Local::of(self.placed_in(0..self.ids.slots()));
         self.origins.bounds = None;
         self.place_all(local)
     }
 
-    /// The same where some bodies have changed since the last cull: places these, and all others if
-    /// an origin has changed. Takes note of those whose place or model is another one now.
+    /// Places the bodies that have changed since the last cull, and all others if an origin has
+    /// changed. Notes those whose place or model has changed.
     pub(super) fn place_changed(&mut self) -> Result<(), WorldError> {
         let slots = self.ids.slots();
         let bounds = self.origins.bounds.take();
@@ -110,8 +109,7 @@ impl World {
         Ok(())
     }
 
-    /// Places all bodies about these origins, and takes note of those whose place or model is
-    /// another one then.
+    /// Places all bodies about these origins, and notes those whose place or model changes.
     fn place_all(&mut self, local: Local) -> Result<(), WorldError> {
         for slot in 0..self.ids.slots() {
             if self.ids.present()[slot] && self.place_body(slot, &local)? {
@@ -122,7 +120,7 @@ impl World {
         Ok(())
     }
 
-    /// Places the body in a slot; whether its place or its model is another one then.
+    /// Places the body in a slot. Returns whether its place or its model has changed.
     #[inline]
     fn place_body(&mut self, slot: usize, local: &Local) -> Result<bool, WorldError> {
         let (translation, composed) = self.composed(slot);
@@ -147,7 +145,7 @@ impl World {
         Ok(is_new || is_moved)
     }
 
-    /// The bodies in some slots, as far as their places are concerned.
+    /// Number, translation and reach of the bodies in some slots.
     fn placed_in(&self, slots: Range<usize>) -> impl Iterator<Item = Placed> + Clone + '_ {
         let slots = slots.start..slots.end.min(self.ids.slots());
         let present = slots.filter(move |&slot| self.ids.present()[slot]);
@@ -159,8 +157,7 @@ impl World {
         })
     }
 
-    /// The translation of the vertices of the body in a slot, and how far from the exact one it may
-    /// be.
+    /// The translation of the vertices of the body in a slot, and the bound of its error.
     fn composed(&self, slot: usize) -> ([f64; 3], f64) {
         let offset = self.shapes[self.shape[slot] as usize].pose_offset;
         offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)

@@ -1,9 +1,9 @@
-//! Few margins for many bodies: each is rounded up to a class, and a shape with a class is one
-//! model of the culler.
+//! Margin classes: each margin is rounded up to a class, and a shape with a class is one model of
+//! the culler, so that many bodies need few models.
 //!
-//! Classes are eight steps an octave, so a body grows by at most an eighth of its margin too much.
-//! Rounding errors of local translations alone have a class in common as long as they are below
-//! 2⁻¹² of the shape.
+//! There are eight classes per octave, so a margin is rounded up by at most an eighth. Without a
+//! margin, rounding errors of local translations share one class as long as they are below 2⁻¹² of
+//! the shape.
 
 use std::collections::HashMap;
 
@@ -13,20 +13,20 @@ use crate::rounding::{LIMIT, exp2};
 /// Errors of placement up to this share of a shape's size are rounded up to it.
 const FINE: f64 = exp2(-12);
 
-/// Classes that are kept without a look at which of them are in use.
+/// Up to this number of classes, unused ones are kept.
 const FEW_CLASSES: usize = 64;
 
-/// The model of each shape in each class in use.
+/// The models of each shape in each used class.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Margins {
     models: HashMap<(u32, u32), u32>,
-    /// How many were in use at the last [`Self::sweep`].
+    /// Number of models in use at the last [`Self::sweep`].
     in_use: usize,
 }
 
 impl Margins {
     /// The model for a shape of size `reach` and with the number `shape` among the models, with a
-    /// margin, placed with an error of at most `moved`; `grow` makes it where it is new.
+    /// margin, placed with an error of at most `moved`. `grow` makes a new one.
     pub fn model(
         &mut self,
         shape: u32,
@@ -50,12 +50,12 @@ impl Margins {
             .or_insert_with(|| grow(shape, f32::from_bits(class)))
     }
 
-    /// Removes the models grown of that of a shape, by `remove`.
+    /// Removes the models grown from a shape's, by `remove`.
     pub fn remove(&mut self, shape: u32, remove: impl FnMut(u32)) {
         self.keep(|of, _| of != shape, remove);
     }
 
-    /// Whether more models than at the last sweep may be out of use than in use.
+    /// Whether more models may be unused than were in use at the last sweep.
     pub fn are_many(&self) -> bool {
         self.models.len() > FEW_CLASSES + 2 * self.in_use
     }
@@ -66,7 +66,7 @@ impl Margins {
         self.in_use = self.models.len();
     }
 
-    /// Gives back the memory of what was removed.
+    /// Frees the memory of removed models.
     pub fn shrink_to_fit(&mut self) {
         self.models.shrink_to_fit();
     }
@@ -92,8 +92,8 @@ pub(super) fn check_margin(body: usize, reach: f32, margin: f32) -> Result<(), C
     refuse(body, "margin", format!("{margin}"), hint)
 }
 
-/// The bits of the smallest class above `margin` > 0: an f32 of three significant bits behind the
-/// first, so that exponent and bits are one integer that steps through the classes.
+/// The bits of the smallest class above `margin` > 0: an f32 with three significant bits after the
+/// first, so that exponent and bits form one integer that counts the classes.
 fn class_of(margin: f64) -> u32 {
     const STEP: u32 = 1 << 20;
     let above = crate::rounding::up(margin).to_bits();
@@ -134,7 +134,7 @@ mod tests {
         assert_eq!(model(0.0, 1.0e-7), 102, "below 2⁻¹² of the size");
         assert_eq!(model(0.0, 1.0e-2), 103);
         assert_eq!(made[0], (3, 0.5625));
-        // A larger shape's errors have a class in common as long as they are larger.
+        // A larger shape has one class for its errors up to a larger error.
         let mut model =
             |moved: f64| margins.model(4, 64.0, 0.0, moved, |_, _| moved.to_bits() as u32);
         assert_eq!(model(1.0e-2), model(1.0e-3));

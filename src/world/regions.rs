@@ -1,11 +1,11 @@
-//! Regions: bodies that lie so far from all others that they can meet only each other.
+//! Regions: sets of bodies so far from all others that they can meet only each other.
 //!
-//! Space is cut into cells, far wider than two bodies that meet are apart. A region is a connected
-//! set of occupied cells, next to each other along faces, edges or corners; where its bodies are
-//! smaller than those of others, it is cut again into cells of its own. Each region lies in a cube
-//! with room about its bodies. The cubes are packed next to each other along a Morton curve, the
-//! small ones first: f32 coordinates are about as small as those of all cubes that are no larger,
-//! wherever in the world the regions are.
+//! Space is cut into cells, which are far wider than the distance of two bodies that meet. A region
+//! is a connected set of occupied cells, next to each other along faces, edges or corners; if its
+//! bodies are smaller than those of others, it is cut again into smaller cells. Each region is in a
+//! cube with space around its bodies. The cubes are packed next to each other along a Morton curve,
+//! the small ones first. So the f32 coordinates of a region depend on the sizes of the cubes before
+//! it, not on its position in the world.
 //!
 //! Cells are numbered by whole f64, which hold the cell of any f64 translation exactly. They are
 //! compared by differences, since a number's own neighbours are no f64 from 2⁵³ on.
@@ -19,11 +19,11 @@ use crate::rounding::LIMIT;
 /// A cell's number along each axis, a whole number.
 type Cell = [f64; 3];
 
-/// The rows of cells next to a cell's own that come after it, as steps along x and y; along z a
-/// cell on either side.
+/// The neighbouring rows of cells that come after a cell's row, as steps along x and y. Each row
+/// has three cells along z.
 const ROWS: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1.0], [1.0, -1.0], [1.0, 0.0], [1.0, 1.0]];
 
-/// All regions, and which of them each slot belongs to.
+/// All regions, and the region of each slot.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Regions {
     regions: Vec<Region>,
@@ -36,8 +36,7 @@ impl Regions {
     }
 }
 
-/// The regions of these bodies, if f32 coordinates about them are finer than about one origin for
-/// all.
+/// The regions of these bodies, if their f32 coordinates are finer than with one origin for all.
 pub(super) fn regions(mut bodies: Vec<Placed>, whole: Bounds) -> Option<Regions> {
     let mut found = Vec::new();
     split(&mut bodies, whole, &mut found);
@@ -57,7 +56,7 @@ pub(super) fn regions(mut bodies: Vec<Placed>, whole: Bounds) -> Option<Regions>
     Some(Regions { regions, of_slot })
 }
 
-/// Sorts bodies by region, and adds for each region how many they are, and their box.
+/// Sorts bodies by region, and adds the number of bodies and the box of each region.
 fn split(bodies: &mut [Placed], bounds: Bounds, found: &mut Vec<(usize, Bounds)>) {
     let cell = bounds.cell();
     if !bounds.is_wide() {
@@ -76,7 +75,7 @@ fn split(bodies: &mut [Placed], bounds: Bounds, found: &mut Vec<(usize, Bounds)>
     }
 }
 
-/// Sorts bodies by the connected set of cells that they lie in; returns how many each set has.
+/// Sorts bodies by their connected set of cells, and returns the number of bodies of each set.
 fn sort_by_set(bodies: &mut [Placed], cell: f64) -> Vec<usize> {
     let cell_of = |t: [f64; 3]| t.map(|x| (x / cell).floor() + 0.0); // + 0.0: one zero, not two
     let mut by_cell: Vec<(Cell, Placed)> = bodies.iter().map(|&b| (cell_of(b.1), b)).collect();
@@ -97,9 +96,9 @@ fn sort_by_set(bodies: &mut [Placed], cell: f64) -> Vec<usize> {
     by_set.chunk_by(|a, b| a.0 == b.0).map(<[_]>::len).collect()
 }
 
-/// Whether coordinates about these regions are within the contract, and the coarsest of them,
-/// measured by the bodies there, at least twice as fine as about one origin for a box of this half
-/// width.
+/// Whether coordinates about these regions are within the contract, and even the coarsest of them,
+/// relative to the region's bodies, are at least twice as fine as about one origin for a box of
+/// this half width.
 fn are_finer(regions: &[Region], cubes: &[Cube], found: &[(usize, Bounds)], half: f64) -> bool {
     let (mut before, mut after) = (0.0_f64, 0.0_f64);
     for ((region, cube), (_, bounds)) in regions.iter().zip(cubes).zip(found) {
@@ -124,11 +123,10 @@ fn compare(a: &Cell, b: &Cell) -> Ordering {
 fn connect(cells: &[Cell]) -> Vec<u32> {
     let mut first: Vec<u32> = (0..cells.len() as u32).collect();
     for [x, y] in ROWS {
-        // Where the neighbours of a cell in that row begin: never before those of the cell before
-        // it.
+        // The first neighbour of a cell in that row: never before that of the previous cell.
         let mut from = 0;
         for (at, cell) in cells.iter().enumerate() {
-            // From this cell to another: exact where it is at most one, whatever the numbers.
+            // The step from this cell to another: exact if it is at most one, for all numbers.
             let step_to = |c: &Cell| -> Cell { std::array::from_fn(|i| c[i] - cell[i]) };
             let order = |c: &Cell, z: f64| compare(&step_to(c), &[x, y, z]);
             while from < cells.len() && order(&cells[from], -1.0) == Ordering::Less {
@@ -142,7 +140,7 @@ fn connect(cells: &[Cell]) -> Vec<u32> {
     }
     let mut regions = 0;
     for at in 0..first.len() {
-        // A cell's first comes before it, and so has its region's number by now.
+        // The first cell of a set comes before the others, so its region already has a number.
         let leads = first[at] as usize == at;
         first[at] = if leads {
             regions
@@ -154,7 +152,7 @@ fn connect(cells: &[Cell]) -> Vec<u32> {
     first
 }
 
-/// Puts the sets of two cells together; each set is named by its first cell.
+/// Joins the sets of two cells; each set is named by its first cell.
 fn join(first: &mut [u32], a: u32, b: u32) {
     let (a, b) = (first_of(first, a), first_of(first, b));
     first[a.max(b) as usize] = a.min(b);
@@ -169,8 +167,8 @@ fn first_of(first: &mut [u32], mut at: u32) -> u32 {
     at
 }
 
-/// A place for each cube, from the world's origin on: cubes of one side follow one another along a
-/// Morton curve, and the larger ones the smaller ones, in a multiple of their own side.
+/// A place for each cube, starting at the world's origin: cubes of equal side follow one another
+/// along a Morton curve, larger ones come after smaller ones, at multiples of their side.
 fn pack(cubes: &[Cube]) -> Vec<Region> {
     let mut order: Vec<usize> = (0..cubes.len()).collect();
     order.sort_by(|&a, &b| cubes[a].side.total_cmp(&cubes[b].side));
@@ -242,7 +240,8 @@ mod tests {
         let mut seen = [0; 2];
         for round in 0..400_u32 {
             let side = 3 + round % 9;
-            // Some lie where whole f64 are even, so that a cell's neighbours are no f64.
+            // Some are so far away that all f64 are even, so that the numbers of neighbouring cells
+            // aren't f64.
             let base = [0.0, -4.0, 2.0_f64.powi(53), -2.0_f64.powi(55)][round as usize % 4];
             let mut cells: Vec<Cell> = (0..40)
                 .map(|_| [(); 3].map(|()| base + f64::from(words.next_u32() % side) + 0.0))
@@ -288,7 +287,8 @@ mod tests {
         }
     }
 
-    /// Small bodies between two giants that are no farther from each other than giants have to be.
+    /// Small bodies between two giants that are as near each other as separate regions of giants
+    /// can be.
     #[test]
     fn small_bodies_have_cells_of_their_own() {
         let mut bodies: Vec<Placed> = (0..40)
