@@ -1,22 +1,22 @@
-//! Which cache holds what a frame reads and writes: the part of a price's regime that follows from
-//! the number of bodies.
+//! The cache that holds the data of a frame: the part of a price's regime that follows from the
+//! number of bodies.
 
 use std::fs::read_to_string;
 use std::path::Path;
 
 use sdop::choice::choices;
 
-/// Bytes per body that a frame touches, about: the pose (28), the ball in its place and in its slot
-/// (32), two names (8) and the or-DOP's row (64). The same for every volume, so that all strategies
-/// of a scene have one level.
+/// Approximate bytes per body that a frame reads or writes: the pose (28), the ball in its place
+/// and in its slot (32), two names (8) and the or-DOP's row (64). It is the same for every volume,
+/// so that all strategies of a scene have one level.
 const BYTES_PER_BODY: usize = 132;
-/// What the levels hold where the system doesn't say: 32 kB, 1 MB and 32 MB.
+/// The sizes of the levels if the system doesn't report them: 32 kB, 1 MB and 32 MB.
 const USUAL_BYTES: [usize; 3] = [32 << 10, 1 << 20, 32 << 20];
-/// Where Linux describes the caches of the first processor.
+/// The directory in which Linux describes the caches of the first processor.
 const CACHES: &str = "/sys/devices/system/cpu/cpu0/cache";
 
 choices! {
-    /// The smallest cache that holds what a frame touches.
+    /// The smallest cache that holds the data of a frame.
     CacheLevel, "cache level", {
         /// The first level.
         L1 = "L1",
@@ -24,13 +24,13 @@ choices! {
         L2 = "L2",
         /// The third level.
         L3 = "L3",
-        /// None of them.
+        /// No cache.
         Memory = "memory",
     }
 }
 
 impl CacheLevel {
-    /// The level of so many bodies on this machine.
+    /// The level of this number of bodies on this machine.
     #[must_use]
     pub fn of(bodies: usize) -> Self {
         Self::among(bodies, cache_bytes())
@@ -60,7 +60,7 @@ impl CacheLevel {
     }
 }
 
-/// What the three levels hold, from the first on.
+/// The sizes of the three levels, from the first on.
 fn cache_bytes() -> [usize; 3] {
     let mut found = USUAL_BYTES;
     for index in 0..8 {

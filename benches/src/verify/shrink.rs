@@ -1,4 +1,4 @@
-//! The smallest scene that shows a missed pair, as a file that `sdop run` takes.
+//! Shrinks a scene to the smallest one that shows a missed pair, as a file for `sdop run`.
 
 use std::fmt::Write as _;
 use std::io;
@@ -32,9 +32,9 @@ pub struct Smallest {
 }
 
 impl Smallest {
-    /// Leaves bodies out, half of the rest at a time, for as long as some pair is missed or found
-    /// by one finder alone. `None` when the last frame alone shows nothing: it depends on the
-    /// frames before.
+    /// Removes bodies, half of the rest at a time, as long as a pair is missed or found by one
+    /// finder alone. `None` if the last frame alone shows no error, because it depends on earlier
+    /// frames.
     #[must_use]
     pub fn of(failure: &Failure) -> Option<Self> {
         let mut smallest = Self {
@@ -65,7 +65,7 @@ impl Smallest {
         Some(smallest)
     }
 
-    /// The scene with the kept bodies alone, if it still misses a pair.
+    /// The scene with only the kept bodies, if it still misses a pair.
     fn keep(&self, kept: impl Fn(usize) -> bool) -> Option<Self> {
         let all = &self.bodies;
         let which: Vec<usize> = (0..all.len()).filter(|&body| kept(body)).collect();
@@ -98,7 +98,7 @@ impl Smallest {
     /// file, read back, still misses a pair.
     ///
     /// # Errors
-    /// A file that can't be written.
+    /// A file can't be written.
     pub fn write(&self, directory: &Path) -> io::Result<(PathBuf, bool)> {
         let path = directory.join("missed-pair.toml");
         for origin in ["ball", "file"] {
@@ -145,7 +145,7 @@ impl Smallest {
     }
 }
 
-/// Whether a culler misses a pair of the frame, or finds others than all-pairs does on the same
+/// Whether a culler misses a pair of the frame, or finds other pairs than all-pairs on the same
 /// tier.
 fn wrong(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings, mode: Mode) -> Option<bool> {
     let judged = Shapes::new(shapes.to_vec()).ok()?;
