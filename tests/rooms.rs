@@ -55,6 +55,7 @@ const BENCH: &[&str] = &[
     "tradeoff",
     "view",
     "report",
+    "board",
     // The program.
     "commands",
     "main",

@@ -1,23 +1,23 @@
-"""What all adapters share: a culler's bodies, and the judge's wire.
+"""What the adapters in Python share: a culler's bodies, and the judge's wire.
 
-An adapter is a class like those that `sdop.judge` takes: it is made of a scene, and its ``frame`` returns the pairs of a frame.
-``serve`` makes a program of it that ``sdop judge`` runs; ``board.py`` hands it to `sdop.judge`.
+An adapter is a class: it is made of a case's first frame, and its ``frame`` returns the pairs of a frame. ``serve`` makes a program
+of it that ``sdop judge --keep`` and ``sdop board`` run.
 """
 
 from __future__ import annotations
 
+import importlib.metadata
 import json
+import os
 import sys
+import time
 from types import SimpleNamespace
 
 import numpy as np
 
-try:
-    from sdop import CaseSkipped
-except ImportError:
 
-    class CaseSkipped(Exception):
-        """The library does not claim to do this case."""
+class CaseSkipped(Exception):
+    """The library does not claim to do this case."""
 
 
 Array = np.ndarray
@@ -39,37 +39,56 @@ class Culler:
         rows = np.unique(rows[rows[:, 0] < rows[:, 1]], axis=0)
         return rows[self.dynamic[rows].any(axis=1)]
 
+    def reach(self) -> float:
+        """The distance of two bodies' origins within which balls may meet, for libraries that take points and one distance: twice
+        the radius where all balls are equal and about the origin. More pairs are no failure."""
+        balls = [self.shapes[number]["ball"] for number in set(self.body_shapes.tolist())]
+        far = [float(np.nextafter(np.linalg.norm(np.asarray(c, np.float64)), np.inf)) if np.any(c) else 0.0 for c, _ in balls]
+        sums = [offset + float(np.float32(radius)) for offset, (_, radius) in zip(far, balls, strict=True)]
+        return 2.0 * max(float(np.nextafter(it, np.inf)) if offset else it for it, offset in zip(sums, far, strict=True))
 
-def centres_and_sides(boxes: Array) -> tuple[Array, Array]:
-    """Boxes by their centres and sides in float64; skips a case whose boxes that can't hold."""
-    lower, upper = boxes.astype(np.float64)[:, :3], boxes.astype(np.float64)[:, 3:]
-    centres, sides = (lower + upper) / 2, upper - lower
-    if not (np.array_equal(centres - sides / 2, lower) and np.array_equal(centres + sides / 2, upper)):
-        raise CaseSkipped("float64 can't hold the boxes as centres and sides")
-    return centres, sides
+
+def centres_and_halves(boxes: Array, dtype: type = np.float64) -> tuple[Array, Array]:
+    """Boxes by their centres and half sides. Where these can't hold a box, they are of one around it: more pairs are no failure."""
+    lower, upper = boxes.astype(dtype)[:, :3], boxes.astype(dtype)[:, 3:]
+    centres = lower / 2 + upper / 2
+    halves = np.maximum(upper - centres, centres - lower)
+    while (small := (centres - halves > lower) | (centres + halves < upper)).any():
+        halves = np.where(small, np.nextafter(halves, dtype(np.inf)), halves)
+    return centres, halves
 
 
-def serve(make: type[Culler]) -> None:
-    """Answers a case on standard input, in the encoding ndjson."""
-    head = json.loads(sys.stdin.readline())
-    culler = None
-    shapes = [{**it, "ball": (it["ball"][:3], it["ball"][3])} for it in head["shapes"]]
-    bodies = head["bodies"]
+def serve(make: type[Culler], package: str) -> None:
+    """Answers cases on standard input, in the encoding ndjson, until it ends; or says the version of a package."""
+    if "--version" in sys.argv:
+        print(importlib.metadata.version(package))
+        return
+    # Libraries print to standard output too; what the judge reads goes through a copy of it.
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
+    culler, head = None, None
     for line in sys.stdin:
         frame = json.loads(line)
+        if "format" in frame:
+            culler, head = None, frame
+            shapes = [{**it, "ball": (it["ball"][:3], it["ball"][3])} for it in head["shapes"]]
+            bodies = head["bodies"]
+            continue
+        if head is None:
+            continue  # the rest of a case that it has skipped
         was = [body.get("was", -1) for body in frame.get("bodies", [])]
         bodies = frame.get("bodies", bodies)
         numbers, dynamic = [body["shape"] for body in bodies], [not body["static"] for body in bodies]
+        poses = np.array(frame["poses"], dtype=np.float32).reshape(-1, 7)
+        given = (np.array(frame["boxes"], np.float32).reshape(-1, 6),) if "boxes" in frame else (poses[:, :4], poses[:, 4:])
+        start = time.perf_counter_ns()
         try:
             if culler is None:
                 culler = make(SimpleNamespace(shapes=shapes, body_shapes=numbers, dynamic=dynamic))
             elif "bodies" in frame:
                 culler.change(numbers, dynamic, np.array(was))
-            poses = np.array(frame["poses"], dtype=np.float32).reshape(-1, 7)
-            given = (np.array(frame["boxes"], np.float32).reshape(-1, 6),) if "boxes" in frame else (poses[:, :4], poses[:, 4:])
-            answer = {"pairs": culler.frame(*given).tolist()}
+            found = culler.frame(*given)
+            answer = {"pairs": found.tolist(), "ns": time.perf_counter_ns() - start}
         except CaseSkipped as reason:
-            answer = {"skipped": str(reason)}
-        print(json.dumps({"frame": frame["frame"], **answer}), flush=True)
-        if "skipped" in answer:
-            return
+            answer, head = {"skipped": str(reason)}, None
+        print(json.dumps({"frame": frame["frame"], **answer}), file=answers, flush=True)

@@ -3,6 +3,7 @@
 
 extern crate self as sdop_bench; // commands name the rooms as from outside
 
+pub mod board;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod commands;

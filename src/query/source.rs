@@ -73,7 +73,11 @@ impl QuerySource for World {
             }
             if let Some(shape) = &posed.shapes[body.shape as usize] {
                 let body_there = shape.at(body.rotation, body.translation, body.margin);
-                let tree = if body.dynamic { MOVING } else { FIXED };
+                let tree = if body.motion.is_dynamic() {
+                    MOVING
+                } else {
+                    FIXED
+                };
                 index.put(id, tree, &body_there.bounds(index.origin));
             }
         }

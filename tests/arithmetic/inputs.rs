@@ -1,4 +1,4 @@
-//! Inputs of the contract, and many at its edges: zeros of both signs, subnormals, powers of two and
+//! Inputs of the contract, many at its edges: zeros of both signs, subnormals, powers of two and
 //! their neighbours, the limit 2⁶⁰.
 
 use rand_chacha::ChaCha8Rng;

@@ -25,7 +25,7 @@ use inputs::Inputs;
 const CASES: usize = 600;
 
 /// The hash of these cases, as `.ci/proofs` has last confirmed them.
-const CONFIRMED: &str = "";
+const CONFIRMED: &str = "6ef16122a2062591";
 
 /// Cases of each function in turn, one a line.
 fn cases(tier: Tier, of_each: usize) -> String {

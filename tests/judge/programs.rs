@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use sdop_judge::answer::Trouble;
-use sdop_judge::process::Program;
+use sdop_judge::process::{Program, Service};
 use sdop_judge::wire::Wire;
 use sdop_judge::{Claim, Conclusion, Options, Outcome, Verdict, examine};
 
@@ -280,6 +280,93 @@ fn a_failing_case_does_not_end_the_run() {
     assert_eq!(
         (verdict.cases.len(), crashed, verdict.not_run),
         (7, 1, 0),
+        "{verdict}"
+    );
+}
+
+/// A program that reads one case after the other: a header starts the count anew.
+const SERVING: &str = r#"n=0; while read -r line; do case $line in *'"format"'*) n=0;; *) echo "{\"frame\":$n,\"pairs\":[]}"; n=$((n + 1));; esac; done"#;
+
+fn serve(command: String, case: &str) -> Verdict {
+    let service = Service::new(Program {
+        command,
+        wire: Wire::Ndjson,
+        timeout: Duration::from_secs(20),
+    });
+    let options = Options {
+        claim: Claim::Aabb,
+        pattern: case.to_owned(),
+        shrink_time: Duration::ZERO,
+        ..Options::default()
+    };
+    examine(&service, &options, |_, _| {}).unwrap()
+}
+
+#[test]
+fn a_service_judges_many_cases_by_few_processes() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("started");
+    let verdict = serve(
+        format!("echo one >> '{}'; {SERVING}", log.display()),
+        "churn/*",
+    );
+    let alone = run(&answering(RIGHT), Wire::Ndjson, 20.0, "churn/*");
+    let counts = |verdict: &Verdict| -> Vec<_> {
+        verdict
+            .cases
+            .iter()
+            .map(|case| (case.name.clone(), case.pairs))
+            .collect()
+    };
+    assert_eq!(counts(&verdict), counts(&alone));
+    let started = std::fs::read_to_string(log).unwrap().lines().count();
+    assert!(
+        started < 16 && verdict.cases.len() > 25,
+        "{started} processes"
+    );
+}
+
+#[test]
+fn a_service_is_started_again_after_a_case_that_ends_it() {
+    let ending = SERVING.replacen(
+        "n=0;;",
+        r#"n=0; case $line in *0001\"*) exit 9;; esac;;"#,
+        1,
+    );
+    let verdict = serve(ending, "churn/teleport/*");
+    let crashed = |outcome: &Outcome| {
+        matches!(
+            outcome,
+            Outcome::Error {
+                trouble: Trouble::Crashed { answered: 0, .. }
+            }
+        )
+    };
+    let ended = verdict.cases.iter().filter(|case| crashed(&case.outcome));
+    assert_eq!(ended.count(), 1, "{verdict}");
+    assert_eq!(verdict.cases.len(), 7);
+}
+
+/// An answer too many would be the next case's first.
+#[test]
+fn a_service_that_answers_more_than_it_was_asked_fails() {
+    let twice = SERVING.replacen("echo", "echo; echo {}; echo", 1);
+    let verdict = serve(twice, "churn/teleport/0001");
+    assert!(
+        matches!(verdict.cases[0].outcome, Outcome::Error { .. }),
+        "{verdict}"
+    );
+    let chatty = SERVING.replacen(
+        "n=$((n + 1))",
+        r#"echo "{\"frame\":$n,\"pairs\":[]}"; n=$((n + 1))"#,
+        1,
+    );
+    let verdict = serve(chatty, "churn/teleport/*");
+    assert!(
+        verdict
+            .cases
+            .iter()
+            .all(|case| matches!(case.outcome, Outcome::Error { .. })),
         "{verdict}"
     );
 }

@@ -6,16 +6,16 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import coal
-from wire import Culler, centres_and_sides, serve
+from wire import Culler, centres_and_halves, serve
 
 
 class Adapter(Culler):
     def frame(self, boxes):
-        centres, sides = centres_and_sides(boxes)
+        centres, halves = centres_and_halves(boxes)
         objects = []
         manager = coal.DynamicAABBTreeCollisionManager()
-        for side, centre in zip(sides, centres, strict=True):
-            it = coal.CollisionObject(coal.Box(*side))
+        for half, centre in zip(halves, centres, strict=True):
+            it = coal.CollisionObject(coal.Box(*2.0 * half))
             it.setTranslation(centre)
             it.computeAABB()
             objects.append(it)
@@ -32,4 +32,4 @@ class Adapter(Culler):
 
 
 if __name__ == "__main__":
-    serve(Adapter)
+    serve(Adapter, "coal")

@@ -7,20 +7,20 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import fcl
 import numpy as np
-from wire import CaseSkipped, Culler, centres_and_sides, serve
+from wire import CaseSkipped, Culler, centres_and_halves, serve
 
 
 class Adapter(Culler):
     def frame(self, boxes):
-        centres, sides = centres_and_sides(boxes)
+        centres, halves = centres_and_halves(boxes)
         # What it calls back with is known by its place alone.
         numbers = {tuple(centre): number for number, centre in enumerate((centres + 0.0).tolist())}
         if len(numbers) < len(boxes):
             raise CaseSkipped("two boxes have one centre, and python-fcl's callback does not tell them apart")
         manager = fcl.DynamicAABBTreeCollisionManager()
         objects = [
-            fcl.CollisionObject(fcl.Box(*side), fcl.Transform(np.eye(3), centre))
-            for side, centre in zip(sides, centres + 0.0, strict=True)
+            fcl.CollisionObject(fcl.Box(*2.0 * half), fcl.Transform(np.eye(3), centre))
+            for half, centre in zip(halves, centres + 0.0, strict=True)
         ]
         manager.registerObjects(objects)
         manager.setup()
@@ -35,4 +35,4 @@ class Adapter(Culler):
 
 
 if __name__ == "__main__":
-    serve(Adapter)
+    serve(Adapter, "python-fcl")

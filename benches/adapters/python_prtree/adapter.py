@@ -19,4 +19,4 @@ class Adapter(Culler):
 
 
 if __name__ == "__main__":
-    serve(Adapter)
+    serve(Adapter, "python-prtree")

@@ -20,4 +20,4 @@ class Adapter(Culler):
 
 
 if __name__ == "__main__":
-    serve(Adapter)
+    serve(Adapter, "Rtree")

@@ -54,4 +54,4 @@ def transform(turn, place):
 
 
 if __name__ == "__main__":
-    serve(Adapter)
+    serve(Adapter, "trimesh")

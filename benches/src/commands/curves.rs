@@ -25,8 +25,8 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// Strokes of curves that have no colour of their own: black, then grey, told apart by dashes and
-    /// marks.
+    /// Strokes of curves without a meaning that has a colour: black, then grey, with different
+    /// dashes and marks.
     pub fn plain(place: usize) -> Self {
         Self {
             colour: if place < 4 { BLACK } else { GREY },
@@ -57,7 +57,7 @@ pub struct Chart<'a, X, Y> {
     pub legend: SeriesLabelPosition,
 }
 
-/// A number without a fraction that says nothing.
+/// A number without trailing zeros.
 pub fn plain(number: &f64) -> String {
     let rounded = (1e9 * number).round() / 1e9;
     format!("{rounded}")

@@ -6,6 +6,7 @@
 
 mod advise;
 mod bench;
+mod board;
 mod cases;
 mod check;
 mod cmp;
@@ -66,6 +67,7 @@ enum Command {
     Cases(cases::Args),
     Check(check::Args),
     Bench(bench::Args),
+    Board(board::Args),
     View(view::Args),
     Record(record::Args),
     Cmp(cmp::Args),
@@ -91,6 +93,7 @@ impl Command {
             | Self::Cases(_)
             | Self::Check(_)
             | Self::Bench(_)
+            | Self::Board(_)
             | Self::View(_)
             | Self::Cmp(_)
             | Self::Report(_)
@@ -153,6 +156,7 @@ impl Cli {
             Command::Cases(args) => cases::run(&args),
             Command::Check(args) => check::run(&args),
             Command::Bench(args) => bench::run(&args),
+            Command::Board(args) => board::run(&args),
             Command::View(args) => view::run(&args),
             Command::Record(args) => record::run(&args),
             Command::Cmp(args) => cmp::run(&args),

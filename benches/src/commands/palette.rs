@@ -1,6 +1,6 @@
 //! Colours of the figures. One colour means one thing in all of them and on the page of
-//! `sdop view`, whose style sheet is `view/web/src/style.css`: orange, blue and red are left to the
-//! page's pairs, green to its cells, and a curve that is none of these is black.
+//! `sdop view`, whose style sheet is `view/web/src/style.css`: orange, blue and red are the page's
+//! pairs, bluish green its cells. Curves of anything else are black.
 
 use plotters::style::RGBColor;
 

@@ -14,7 +14,7 @@ use super::level::CacheLevel;
 use super::predict::Prices;
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::culling::Culling;
-use crate::measure::turns::{Regime, Times, Turns, median, next_turn};
+use crate::measure::turns::{FrameTimes, Regime, Turns, median, next_turn};
 use crate::measure::variant::Variant;
 use crate::measure::waiting::Waiting;
 use crate::scene::Scene;
@@ -183,7 +183,7 @@ impl Calibration {
             .iter_mut()
             .for_each(|culler| culler.frame(&scene.bodies));
         let before: Vec<Counts> = cullers.iter().map(Culling::counts).collect();
-        let mut times = vec![Times::default(); cullers.len()];
+        let mut times = vec![FrameTimes::default(); cullers.len()];
         self.turns.round(&mut cullers, &poses, |timed| {
             times[timed.number].push(&timed)
         });

@@ -16,7 +16,7 @@ use super::level::CacheLevel;
 use super::predict::{FirstTest, Price, Prices, Terms};
 use crate::hull_test::HullTest;
 use crate::measure::counts::{Counts, Volume};
-use crate::measure::culling::Stages;
+use crate::measure::culling::StageSeconds;
 use crate::measure::turns::time;
 use crate::measure::variant::Variant;
 use crate::random::Stream;
@@ -42,7 +42,7 @@ pub(super) struct Observed {
     /// Over all frames of the turn.
     pub counts: Counts,
     /// Medians over the frames of one regime.
-    pub stages: Stages,
+    pub stages: StageSeconds,
     /// Seconds to build the culler.
     pub construct: f64,
 }
@@ -372,7 +372,7 @@ mod tests {
             let rows = expected::rows(moving, n, tests, hits);
             let further = tests * expected::further(tests, hits, LANES);
             let scatter = 0.99 + 0.002 * f64::from(number as u32 * 7 % 11);
-            let mut stages = Stages {
+            let mut stages = StageSeconds {
                 update: moving * costs.update,
                 finding: costs.frame
                     + n * costs.body
@@ -384,7 +384,7 @@ mod tests {
                     + hits * costs.hit
                     + (tests - hits) * costs.miss
                     + further * costs.further,
-                ..Stages::default()
+                ..StageSeconds::default()
             };
             if refines {
                 let (second, kept) = (known(Volume::OrDop), (0.3 * hits).round());

@@ -7,7 +7,7 @@ use super::predict::Prices;
 use crate::measure::counts::Counts;
 use crate::measure::culling::Culling;
 use crate::measure::estimate::Estimate;
-use crate::measure::turns::{Regime, Times, Turns, median, next_turn, turn_frames};
+use crate::measure::turns::{FrameTimes, Regime, Turns, median, next_turn, turn_frames};
 use crate::measure::variant::Variant;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
@@ -19,7 +19,7 @@ use sdop::volume::Shape;
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Culled {
     /// Its frames' times.
-    pub times: Times,
+    pub times: FrameTimes,
     /// Its counters.
     pub counts: Counts,
     /// Frames culled.

@@ -16,7 +16,7 @@ use sdop_judge::contestant::Contestant;
 
 /// Seconds of one frame, stage by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Stages {
+pub struct StageSeconds {
     /// World-space updates.
     pub update: f64,
     /// Finding candidates and the first volume test, and everything that no other stage includes.
@@ -27,7 +27,7 @@ pub struct Stages {
     pub hulls: f64,
 }
 
-impl Stages {
+impl StageSeconds {
     /// All stages.
     #[must_use]
     pub fn total(&self) -> f64 {
@@ -57,7 +57,7 @@ impl Stages {
 pub struct Culling {
     culler: Culler,
     hulls: Option<HullTest>,
-    last: Stages,
+    last: StageSeconds,
     construct: f64,
     refused: Option<CullError>,
 }
@@ -81,7 +81,7 @@ impl Culling {
         Ok(Self {
             culler,
             hulls: None,
-            last: Stages::default(),
+            last: StageSeconds::default(),
             construct: (seconds - (waiting.seconds() - waited)).max(0.0),
             refused: None,
         })
@@ -106,7 +106,7 @@ impl Culling {
 
     /// Seconds of the last frame.
     #[must_use]
-    pub fn last(&self) -> Stages {
+    pub fn last(&self) -> StageSeconds {
         self.last
     }
 
@@ -150,7 +150,7 @@ impl Contestant for Culling {
             hulls.cull(frame, self.culler.pairs());
         }
         let stages = self.culler.seconds().since(&before);
-        self.last = Stages {
+        self.last = StageSeconds {
             update: stages.update,
             finding: culled - stages.update - stages.ordop,
             refining: stages.ordop,

@@ -20,7 +20,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::culling::{Culling, Stages};
+use super::culling::{Culling, StageSeconds};
 use super::waiting::Waiting;
 use crate::random::Stream;
 use crate::simulate::{SimulationError, Trajectory};
@@ -56,7 +56,7 @@ choices! {
 }
 
 /// One timed frame.
-pub struct Timed<'a, C> {
+pub struct TimedFrame<'a, C> {
     /// The number of the contestant, in the given order.
     pub number: usize,
     /// The contestant after the frame.
@@ -105,7 +105,7 @@ impl Turns {
         &mut self,
         contestants: &mut [C],
         frames: &[Frame],
-        mut each: impl FnMut(Timed<'_, C>),
+        mut each: impl FnMut(TimedFrame<'_, C>),
     ) {
         let mut waiting = Waiting::of_this_thread();
         for number in self.order(contestants.len()) {
@@ -130,7 +130,7 @@ impl Turns {
                 } else {
                     Regime::Warm
                 };
-                each(Timed {
+                each(TimedFrame {
                     number,
                     contestant,
                     frame,
@@ -163,28 +163,28 @@ pub fn turn_frames(bodies: usize) -> usize {
 
 /// The times of one contestant's frames, in the order of their measurement.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Times {
-    warm: Vec<Stages>,
-    cold: Vec<Stages>,
+pub struct FrameTimes {
+    warm: Vec<StageSeconds>,
+    cold: Vec<StageSeconds>,
 }
 
-impl Times {
+impl FrameTimes {
     /// Adds the last frame of a contestant, without waiting.
-    pub fn push(&mut self, timed: &Timed<'_, Culling>) {
+    pub fn push(&mut self, timed: &TimedFrame<'_, Culling>) {
         let stages = timed.contestant.last().without(timed.waited);
         self.of_mut(timed.regime).push(stages);
     }
 
     /// The frames of one regime.
     #[must_use]
-    pub fn of(&self, regime: Regime) -> &[Stages] {
+    pub fn of(&self, regime: Regime) -> &[StageSeconds] {
         match regime {
             Regime::Warm => &self.warm,
             Regime::Cold => &self.cold,
         }
     }
 
-    fn of_mut(&mut self, regime: Regime) -> &mut Vec<Stages> {
+    fn of_mut(&mut self, regime: Regime) -> &mut Vec<StageSeconds> {
         match regime {
             Regime::Warm => &mut self.warm,
             Regime::Cold => &mut self.cold,
@@ -194,11 +194,12 @@ impl Times {
     /// Medians over frames per stage, which add up to the median of whole frames: the difference,
     /// including interruptions, counts as finding.
     #[must_use]
-    pub fn medians(&self, regime: Regime) -> Stages {
-        let of = |stage: fn(&Stages) -> f64| median(self.of(regime).iter().map(stage).collect());
+    pub fn medians(&self, regime: Regime) -> StageSeconds {
+        let of =
+            |stage: fn(&StageSeconds) -> f64| median(self.of(regime).iter().map(stage).collect());
         let (update, refining, hulls) = (of(|s| s.update), of(|s| s.refining), of(|s| s.hulls));
-        let total = of(Stages::total);
-        Stages {
+        let total = of(StageSeconds::total);
+        StageSeconds {
             update,
             finding: total - update - refining - hulls,
             refining,
@@ -209,7 +210,7 @@ impl Times {
     /// Whole frames: the median with its quartiles.
     #[must_use]
     pub fn quartiles(&self, regime: Regime) -> Quartiles {
-        Quartiles::of(self.of(regime).iter().map(Stages::total).collect())
+        Quartiles::of(self.of(regime).iter().map(StageSeconds::total).collect())
     }
 
     /// Mean seconds per frame over both regimes.
@@ -225,7 +226,7 @@ impl Times {
     }
 }
 
-fn mean<'a>(frames: impl Iterator<Item = &'a Stages>) -> f64 {
+fn mean<'a>(frames: impl Iterator<Item = &'a StageSeconds>) -> f64 {
     let (sum, count) = frames.fold((0.0, 0_u32), |(sum, count), frame| {
         (sum + frame.total(), count + 1)
     });

@@ -91,7 +91,11 @@ pub fn strategy(claim: Claim) -> Option<Strategy> {
 }
 
 /// Our culler over the frames, each with its time.
-fn ours(strategy: Strategy, shapes: &[Shape], case: &Case) -> Result<Vec<Answer>, CullError> {
+pub(crate) fn ours(
+    strategy: Strategy,
+    shapes: &[Shape],
+    case: &Case,
+) -> Result<Vec<Answer>, CullError> {
     let Some(first) = case.frames.first() else {
         return Ok(Vec::new());
     };

@@ -98,7 +98,7 @@ pub(super) fn significant(x: f64, digits: usize) -> String {
 }
 
 /// A whole number with a comma between thousands.
-pub(super) fn thousands(x: f64) -> String {
+pub fn thousands(x: f64) -> String {
     let digits = format!("{:.0}", x.abs());
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {

@@ -281,10 +281,10 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
     Experiment {
         name: "adapters",
         about: "other libraries judged: which of their claims hold",
-        steps: &[ExperimentStep::Script(
-            "board.json",
-            &["benches/adapters/run"],
-        )],
+        steps: &[
+            ExperimentStep::Script("installed.txt", &["benches/adapters/install"]),
+            ExperimentStep::Sdop(&["board", "--timed", "data/scenes/crowded-500.toml"]),
+        ],
         deterministic: &[],
         scenes: &[],
     },

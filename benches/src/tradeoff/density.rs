@@ -13,7 +13,7 @@ use super::timing::{PASSES, measure};
 use super::truth::{Sample, samples};
 use super::variant::{Variant, s_dops};
 use crate::cost::pass::{Pass, Simulated, pass};
-use crate::measure::turns::{Regime, Times, median};
+use crate::measure::turns::{FrameTimes, Regime, median};
 use crate::number::Positive;
 use crate::scene::{Scene, SceneError, SceneFile};
 use sdop::settings::{CullSettings, Overlap, Strategy};
@@ -94,7 +94,7 @@ pub fn lines(
     count: u32,
 ) -> Result<Vec<Line>, TradeoffError> {
     let passes = measure(scene, variants, tier, count)?;
-    let median = |times: &Times| times.quartiles(Regime::Warm).median;
+    let median = |times: &FrameTimes| times.quartiles(Regime::Warm).median;
     lines_of(
         (scene, variants, tier),
         &samples(scene, count)?,
@@ -125,7 +125,7 @@ pub fn lines_of_a_run(
         frames,
         ..scene.clone()
     };
-    let mean = |times: &Times| times.mean_of(Regime::Warm);
+    let mean = |times: &FrameTimes| times.mean_of(Regime::Warm);
     lines_of(
         (scene, variants, tier),
         &samples(&first, RUN_SAMPLES)?,
@@ -139,7 +139,7 @@ fn lines_of(
     (scene, variants, tier): (&Scene, &[Variant], Tier),
     samples: &[Sample],
     passes: &[Pass],
-    statistic: impl Fn(&Times) -> f64,
+    statistic: impl Fn(&FrameTimes) -> f64,
 ) -> Result<Vec<Line>, TradeoffError> {
     let mut lines = Vec::new();
     for (at, variant) in variants.iter().enumerate() {

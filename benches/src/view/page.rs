@@ -112,10 +112,26 @@ impl Page {
     /// # Errors
     /// What the writer says.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
-        let (before, after) = PAGE
-            .split_once(MARK)
-            .ok_or_else(|| io::Error::other("the page has no mark"))?;
+        let [before, after] = Self::around()?;
         out.write_all(before.as_bytes())?;
+        self.write_data(out)?;
+        out.write_all(after.as_bytes())
+    }
+
+    /// What every page has before its data and after them.
+    ///
+    /// # Errors
+    /// A page without a mark: none that is compiled in.
+    pub fn around() -> io::Result<[&'static str; 2]> {
+        let parts = PAGE.split_once(MARK).map(<[_; 2]>::from);
+        parts.ok_or_else(|| io::Error::other("the page has no mark"))
+    }
+
+    /// Writes the data alone: elements of HTML.
+    ///
+    /// # Errors
+    /// What the writer says.
+    pub fn write_data(&self, out: &mut impl Write) -> io::Result<()> {
         // Nothing in the header may end its element: "<" is written as the escape that JSON has for
         // it.
         let header = serde_json::to_string(&self.header)?.replace('<', "\\u003c");
@@ -135,7 +151,7 @@ impl Page {
             drop(encoder);
             writeln!(out, "</script>")?;
         }
-        out.write_all(after.as_bytes())
+        Ok(())
     }
 
     /// Poses: of all bodies in the first frame, and in every frame of those that ever move.

@@ -132,15 +132,14 @@ Proof.
   pose proof v_value as V. unfold finder_factor, u, v in *. lra.
 Qed.
 
-(* Theorem F. Balls with inflated radii, each at least half of the floor, that aren't rejected. *)
-Theorem reported_within_reach (a b : ball) (axis : nat) :
-  radius_floor / 2 <= radius a <= IZR (2 ^ 200) -> radius_floor / 2 <= radius b <= IZR (2 ^ 200) ->
+(* With inflated radii, each at least half of the floor. *)
+Lemma reported_with_room (a b : ball) (axis : nat) :
+  radius_floor / 2 <= radius a -> radius_floor / 2 <= radius b ->
   rejects gradual a b = false ->
   Rabs (coordinate_of axis (centre b) - coordinate_of axis (centre a))
-    <= Grid.widen gradual gradual64 (radius a) + Grid.widen gradual gradual64 (radius b).
+    <= (radius a + radius b) * (1 + 6 * u) + finder_floor * 31 / 16.
 Proof.
-  intros Ha Hb H. pose proof (widen_above_factor _ Ha) as Wa.
-  pose proof (widen_above_factor _ Hb) as Wb. pose proof tiny_value as T.
+  intros Ha Hb H. pose proof tiny_value as T.
   pose proof half_step_value as [S0 S1].
   unfold rejects in H. set (dx := sub gradual (px (centre b)) (px (centre a))) in *.
   set (dy := sub gradual (py (centre b)) (py (centre a))) in *.
@@ -159,5 +158,17 @@ Proof.
   pose proof (difference_below (coordinate_of axis (centre a)) (coordinate_of axis (centre b))) as E.
   fold D in E.
   set (X := Rabs (coordinate_of axis (centre b) - coordinate_of axis (centre a))) in *.
-  rewrite finder_floor_value in *. unfold P, u in *. lra.
+  rewrite finder_floor_value in *. unfold u in *. lra.
+Qed.
+
+(* Theorem F. *)
+Theorem reported_within_reach (a b : ball) (axis : nat) :
+  radius_floor / 2 <= radius a <= IZR (2 ^ 200) -> radius_floor / 2 <= radius b <= IZR (2 ^ 200) ->
+  rejects gradual a b = false ->
+  Rabs (coordinate_of axis (centre b) - coordinate_of axis (centre a))
+    <= Grid.widen gradual gradual64 (radius a) + Grid.widen gradual gradual64 (radius b).
+Proof.
+  intros Ha Hb H. pose proof (widen_above_factor _ Ha). pose proof (widen_above_factor _ Hb).
+  pose proof (reported_with_room a b axis (proj1 Ha) (proj1 Hb) H). pose proof tiny_value.
+  rewrite finder_floor_value in *. rewrite floor_value in *. unfold u in *. lra.
 Qed.

@@ -1,9 +1,11 @@
-//! A program under judgement: one process a case, fed on standard input, read from standard output,
-//! never waited for longer than it may take and never read further than any right answer goes.
+//! A program under judgement: fed on standard input, read from standard output, never waited for
+//! longer than it may take and never read further than any right answer goes. It has one process
+//! per case, or, as a [`Service`], processes that answer one case after the other.
 
 use std::io::{Read, Write};
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel, sync_channel};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -31,22 +33,75 @@ const SAID: usize = 400;
 /// Output that any program may make beyond its pairs.
 const CHATTER: usize = 1 << 16;
 
+impl Program {
+    /// The case as the program reads it.
+    fn input(&self, case: &Case, claim: Claim) -> Result<Vec<u8>, Trouble> {
+        let start = |e: serde_json::Error| Trouble::Start { why: e.to_string() };
+        self.wire.encode(case, claim).map_err(start)
+    }
+
+    fn start(&self) -> Result<Running, Trouble> {
+        let start = |e: std::io::Error| Trouble::Start { why: e.to_string() };
+        Running::start(&self.command).map_err(start)
+    }
+
+    /// What it has for a case of so many bytes.
+    fn time(&self, bytes: usize) -> Duration {
+        self.timeout + Duration::from_micros(bytes as u64)
+    }
+}
+
 impl Subject for Program {
     fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
-        let start = |why: String| Trouble::Start { why };
-        let input = self
-            .wire
-            .encode(case, claim)
-            .map_err(|e| start(e.to_string()))?;
-        let time = self.timeout + Duration::from_micros(input.len() as u64);
-        let mut running = Running::start(&self.command, input).map_err(|e| start(e.to_string()))?;
+        let input = self.input(case, claim)?;
+        let (mut running, time) = (self.start()?, self.time(input.len()));
+        running.feed(input);
+        running.end_input();
         running.answers(self.wire, case, time)
+    }
+}
+
+/// A program whose processes outlive a case: the next header follows on the last frame. As many run
+/// as cases are judged at once. One that fails, or has not answered what it was asked, is ended and
+/// replaced, so that a case's end is never taken for the next one's beginning.
+pub struct Service {
+    program: Program,
+    idle: Mutex<Vec<Running>>,
+}
+
+impl Service {
+    /// A service of a program that reads further headers.
+    #[must_use]
+    pub fn new(program: Program) -> Self {
+        let idle = Mutex::new(Vec::new());
+        Self { program, idle }
+    }
+
+    fn idle(&self) -> std::sync::MutexGuard<'_, Vec<Running>> {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Subject for Service {
+    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
+        let input = self.program.input(case, claim)?;
+        let time = self.program.time(input.len());
+        let idle = self.idle().pop();
+        let mut running = idle.map_or_else(|| self.program.start(), Ok)?;
+        running.feed(input);
+        let answered = running.answers(self.program.wire, case, time);
+        let is_in_step = matches!(answered, Ok(_) | Err(Stop::Skipped { .. }));
+        if is_in_step && running.buffer.is_empty() {
+            self.idle().push(running);
+        }
+        answered
     }
 }
 
 /// A process with threads that feed and read it. Dropping it ends it and all that it has started.
 struct Running {
     child: Child,
+    input: Option<Sender<Vec<u8>>>,
     output: Receiver<Vec<u8>>,
     said: Receiver<String>,
     buffer: Vec<u8>,
@@ -54,17 +109,17 @@ struct Running {
 }
 
 impl Running {
-    fn start(command: &str, input: Vec<u8>) -> std::io::Result<Self> {
+    fn start(command: &str) -> std::io::Result<Self> {
         let mut child = shell(command)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()?;
         let (send, output) = sync_channel(4);
-        let (say, said) = channel();
+        let ((say, said), (feed, fed)) = (channel(), channel::<Vec<u8>>());
         if let Some(mut stdin) = child.stdin.take() {
             // A program that doesn't read to the end has its reasons; what it answers is judged.
-            thread::spawn(move || stdin.write_all(&input));
+            thread::spawn(move || fed.iter().try_for_each(|case| stdin.write_all(&case)));
         }
         if let Some(mut stdout) = child.stdout.take() {
             thread::spawn(move || {
@@ -81,6 +136,7 @@ impl Running {
         }
         Ok(Self {
             child,
+            input: Some(feed),
             output,
             said,
             buffer: Vec::new(),
@@ -88,12 +144,30 @@ impl Running {
         })
     }
 
+    /// Has a case written to its input.
+    fn feed(&mut self, case: Vec<u8>) {
+        if let Some(input) = &self.input {
+            let _ = input.send(case); // one that has ended is found when it is read
+        }
+    }
+
+    fn end_input(&mut self) {
+        self.input = None;
+    }
+
+    /// The answers to the case that was fed; unless other cases may follow, the process has to end
+    /// after them.
     fn answers(&mut self, wire: Wire, case: &Case, time: Duration) -> Result<Vec<Answer>, Stop> {
+        let goes_on = self.input.is_some();
+        self.bytes = 0;
         let deadline = Instant::now() + time;
         let seconds = Seconds(time.as_secs_f64());
         let (frames, most) = (case.frames.len(), most_bytes(case));
         let mut answers = Vec::new();
         loop {
+            if goes_on && answers.len() == frames && self.buffer.is_empty() {
+                return Ok(answers);
+            }
             let line = match self.line(deadline, most) {
                 Ok(Some(line)) => line,
                 Ok(None) => break,

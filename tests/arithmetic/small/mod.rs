@@ -173,8 +173,8 @@ fn slabs_agree() -> usize {
 }
 
 /// None of the touching balls of a format is rejected; with the factor 1 + 2u, as in f32, some are,
-/// and in six bits also with a floor that is as much too low as 2⁻⁷⁸ is in f32. Of three bits the
-/// factor has to be gone, and up to five it makes up for the floor.
+/// and in six bits and with gradual underflow also with a floor that is as much too low as 2⁻⁷⁸ is
+/// in f32. Of three bits the factor has to be gone, and up to five it makes up for the floor.
 fn spheres_hold(format: &Format) {
     let inflation = Inflation::of(format);
     let wrong = |inflation, top| spheres::wrong_spheres(format, &inflation, top);
@@ -191,7 +191,7 @@ fn spheres_hold(format: &Format) {
         ) > 0,
         "{format:?}: a lower factor"
     );
-    if format.precision == 6 {
+    if format.precision == 6 && format.underflow == UNDERFLOWS[0] {
         let floor = inflation.floor * exp2(-8);
         assert!(
             wrong(Inflation { floor, ..inflation }, -4) > 0,

@@ -12,11 +12,11 @@ use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::files::MAX_BYTES;
 use sdop_judge::as_test::{Language, unit_test};
 use sdop_judge::broadmark;
-use sdop_judge::process::Program;
+use sdop_judge::process::{Program, Service};
 use sdop_judge::report::{STEM, counter_example};
 use sdop_judge::run::examine_given;
 use sdop_judge::wire::{Wire, ndjson};
-use sdop_judge::{Claim, Options, Verdict, examine};
+use sdop_judge::{Claim, Options, Subject, Verdict, examine};
 
 use super::output::{print as say, progress};
 use super::{Outcome, files, one_of};
@@ -45,6 +45,9 @@ pub struct Args {
     /// Encoding of the program's input and output
     #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES))]
     wire: Wire,
+    /// Keep the processes: the program reads the next case after the last frame of one
+    #[arg(long)]
+    keep: bool,
     /// Time limit per case, in seconds, plus one second per megabyte of the case
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = seconds)]
     timeout: f64,
@@ -106,6 +109,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         wire: args.wire,
         timeout: Duration::from_secs_f64(args.timeout),
     };
+    let subject: Box<dyn Subject> = match args.keep {
+        true => Box::new(Service::new(program)),
+        false => Box::new(program),
+    };
     let options = Options {
         claim: args.claims,
         pattern: args.case.clone(),
@@ -122,7 +129,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let verdict = match &args.replay {
         Some(path) => {
             let case = read_case(path, args.files.max_bytes())?.case;
-            examine_given(&program, &options, vec![case]).into_diagnostic()?
+            examine_given(&*subject, &options, vec![case]).into_diagnostic()?
         }
         None => {
             let bar = progress(0, "cases");
@@ -130,7 +137,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
                 bar.set_length(of as u64);
                 bar.set_position(done as u64);
             };
-            let verdict = examine(&program, &options, told).into_diagnostic()?;
+            let verdict = examine(&*subject, &options, told).into_diagnostic()?;
             bar.finish_and_clear();
             verdict
         }
@@ -202,10 +209,11 @@ fn known(path: &Path) -> miette::Result<BTreeSet<String>> {
 fn save(args: &Args, command: &str, verdict: &Verdict) -> miette::Result<()> {
     let out = &args.out;
     let base = format!(
-        "sdop judge '{}' --claims {} --wire {}",
+        "sdop judge '{}' --claims {} --wire {}{}",
         command.replace('\'', "'\\''"),
         args.claims,
-        args.wire
+        args.wire,
+        if args.keep { " --keep" } else { "" }
     );
     let mut lines = Vec::new();
     if let Some(smallest) = &verdict.smallest {

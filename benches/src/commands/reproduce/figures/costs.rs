@@ -119,6 +119,9 @@ fn column(chart: &mut Chart<'_, '_>, x: f64, cost: &Cost, name: String) -> DrawR
     let mut base = 0.0;
     for part in &PARTS {
         let height = 1e6 * (part.of)(&cost.terms);
+        if height <= 0.0 {
+            continue;
+        }
         let corners = [(x + 0.15, base), (x + 0.85, base + height)];
         chart.draw_series([Rectangle::new(corners, part.colour.filled())])?;
         base += height;

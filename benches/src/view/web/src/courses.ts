@@ -26,8 +26,8 @@ export function buildCharts(run: Run, element: HTMLElement, seek: (frame: number
     ["true", "--meets", (c) => c.true],
   ]);
   chart("Missed", "", counts.flat().some((c) => c.missed > 0) ? [["missed", "--missed", (c) => c.missed]] : []);
-  chart("Nu", "", [["updates", "--accent", (c) => c.nu]]);
-  chart("Nv", "", [["tests", "--accent", (c) => c.nv]]);
+  chart("Nu", "", [["updates", "--update", (c) => c.nu]]);
+  chart("Nv", "", [["tests", "--test", (c) => c.nv]]);
   counts.forEach((list, side) => {
     if (list.some((c) => c.terms === null)) return;
     const title = counts.length > 1 ? `T, ${run.header.runs[side].name}` : "T";

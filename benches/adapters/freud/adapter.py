@@ -1,0 +1,33 @@
+"""freud: AABBQuery and LinkCell by a radius, in a box large enough that nothing wraps around."""
+
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+
+import freud
+import numpy as np
+from wire import CaseSkipped, Culler, serve
+
+FINDERS = {"aabb": lambda box, points, _: freud.AABBQuery(box, points), "cells": freud.LinkCell}
+MOST_CELLS = 200
+
+
+class Adapter(Culler):
+    def frame(self, rotations, translations):
+        if len(translations) == 0:
+            return self.pairs([])
+        reach = self.reach()
+        if reach == 0.0:
+            raise CaseSkipped("its r_max must be above zero")
+        points = np.asarray(translations, dtype=np.float32)
+        side = 4.0 * float(np.abs(points).max()) + 4.0 * reach
+        if sys.argv[1] == "cells" and side > MOST_CELLS * reach:
+            raise CaseSkipped(f"the box that keeps points from wrapping around has more than {MOST_CELLS} cells along a side")
+        query = FINDERS[sys.argv[1]](freud.box.Box.cube(side), points, reach)
+        near = query.query(points, {"mode": "ball", "r_max": reach, "exclude_ii": True}).toNeighborList()
+        return self.pairs(near[:].astype(np.int64))
+
+
+if __name__ == "__main__":
+    serve(Adapter, "freud-analysis")

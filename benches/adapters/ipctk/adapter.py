@@ -1,0 +1,40 @@
+"""ipctk: its broad phases. A box is an edge between two corners: the box about that edge is the one given."""
+
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+
+import ipctk
+import numpy as np
+from wire import CaseSkipped, Culler, serve
+
+PHASES = {"lbvh": ipctk.LBVH, "grid": ipctk.HashGrid, "sweep": ipctk.SweepAndPrune}
+MOST_CELLS = 100_000
+
+
+class Adapter(Culler):
+    def frame(self, boxes):
+        n = len(boxes)
+        if n == 0:
+            return self.pairs([])
+        if sys.argv[1] == "grid":
+            check_cells(boxes.astype(np.float64))
+        vertices = np.asfortranarray(boxes.astype(np.float64).reshape(-1, 3))
+        edges = np.asfortranarray(np.arange(2 * n, dtype=np.int32).reshape(-1, 2))
+        phase = PHASES[sys.argv[1]]()
+        phase.build(vertices, edges, np.asfortranarray(np.empty((0, 3), np.int32)), 0.0)
+        return self.pairs([(it.edge0_id, it.edge1_id) for it in phase.detect_edge_edge_candidates()])
+
+
+def check_cells(boxes):
+    """HashGrid's cells suit the mean edge, and an edge is listed in every cell of its box."""
+    sides = boxes[:, 3:] - boxes[:, :3]
+    mean = np.linalg.norm(sides, axis=1).mean()
+    cells = np.prod(sides / (2.0 * mean) + 2.0, axis=1).sum() if mean > 0.0 else np.inf
+    if cells > MOST_CELLS:
+        raise CaseSkipped(f"the boxes are in more than {MOST_CELLS:,} cells of its grid, which are as large as a mean edge")
+
+
+if __name__ == "__main__":
+    serve(Adapter, "ipctk")

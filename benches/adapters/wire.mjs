@@ -1,0 +1,79 @@
+// What the adapters in JavaScript share: the judge's wire.
+
+import { createRequire } from "node:module";
+import { readFileSync } from "node:fs";
+import readline from "node:readline";
+
+/** The library does not claim to do this case. */
+export class CaseSkipped extends Error {}
+
+/** The next number above one that is not below zero, of those that `round` gives. */
+function above(x, round) {
+  for (let step = Number.MIN_VALUE; ; step *= 2) {
+    if (round(x + step) > x) return round(x + step);
+  }
+}
+
+/** Boxes by their centres and half sides, rounded to float32 unless said otherwise. Where these can't hold a box, they are of one
+ * around it: more pairs are no failure. */
+export function centresAndHalves(boxes, round = Math.fround) {
+  return boxes.map(([x0, y0, z0, x1, y1, z1]) => {
+    const [centre, half] = [[], []];
+    for (const [lower, upper] of [[x0, x1], [y0, y1], [z0, z1]]) {
+      const middle = round(lower / 2 + upper / 2);
+      let length = Math.max(round(upper - middle), round(middle - lower));
+      while (round(middle - length) > lower || round(middle + length) < upper) length = above(length, round);
+      centre.push(middle);
+      half.push(length);
+    }
+    return { centre, half };
+  });
+}
+
+/** Pairs that a library has found, in any order and maybe twice, as the judge takes them. */
+function asked(found, bodies) {
+  const seen = new Map();
+  for (const [a, b] of found) {
+    const [i, j] = a < b ? [a, b] : [b, a];
+    if (i < j && !(bodies[i].static && bodies[j].static)) seen.set(i * bodies.length + j, [i, j]);
+  }
+  return [...seen.values()];
+}
+
+/** Answers cases on standard input until it ends: `find` returns the pairs of a frame, which has `boxes` or `poses`, and `bodies` and
+ * `shapes`. Or says the version of a package. */
+export async function serve(name, find) {
+  if (process.argv.includes("--version")) {
+    const found = createRequire(import.meta.url).resolve.paths(name).map((folder) => `${folder}/${name}/package.json`);
+    for (const path of found) {
+      try {
+        console.log(JSON.parse(readFileSync(path)).version);
+        break;
+      } catch {}
+    }
+    process.exit();
+  }
+  // Libraries print too; standard output is for answers alone.
+  console.log = console.warn = console.error;
+  let head = null;
+  for await (const line of readline.createInterface({ input: process.stdin })) {
+    const frame = JSON.parse(line);
+    if (frame.format) {
+      head = frame;
+      continue;
+    }
+    if (head === null) continue; // the rest of a case that it has skipped
+    if (frame.bodies) head.bodies = frame.bodies;
+    let answer;
+    const start = process.hrtime.bigint();
+    try {
+      const found = await find({ shapes: head.shapes, bodies: head.bodies, boxes: frame.boxes, poses: frame.poses });
+      answer = { pairs: asked(found, head.bodies), ns: Number(process.hrtime.bigint() - start) };
+    } catch (error) {
+      if (!(error instanceof CaseSkipped)) throw error;
+      answer = { skipped: error.message };
+      head = null;
+    }
+    process.stdout.write(`${JSON.stringify({ frame: frame.frame, ...answer })}\n`);
+  }
+}

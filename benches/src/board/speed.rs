@@ -1,0 +1,117 @@
+//! Recall against time: a library and our culler on the same frames, each with its own clock.
+
+use std::time::Instant;
+
+use sdop::BoxCuller;
+use sdop_judge::answer::Answer;
+use sdop_judge::score::judge_answers;
+use sdop_judge::{Case, Claim, Count, Subject};
+use serde::Serialize;
+
+use crate::outsiders::timing::{TimingError, ours, strategy};
+
+/// The clock of programs.
+pub(super) const SELF_REPORTED: &str = "self-reported";
+
+/// What a contestant takes for a frame, and how much of what it has to report it does.
+#[derive(Clone, Debug, Serialize)]
+pub struct Speed {
+    /// Who.
+    pub name: String,
+    /// The claim.
+    pub claim: Claim,
+    /// Who held the clock.
+    pub clock: &'static str,
+    /// Median over frames, without the first one, in nanoseconds.
+    pub median_ns: u64,
+    /// Reported of required pairs, over all frames.
+    pub recall: f64,
+    /// Reported pairs, over all frames.
+    pub reported: usize,
+}
+
+impl Speed {
+    /// A program by the times that it reports; none where it skips the scene, fails to answer it or
+    /// reports no time.
+    ///
+    /// # Errors
+    /// A frame that the reference refuses.
+    pub fn of(
+        name: &str,
+        subject: &dyn Subject,
+        case: &Case,
+        claim: Claim,
+    ) -> Result<Option<Self>, TimingError> {
+        match subject.answer(case, claim) {
+            Ok(answers) => Self::judged(name, SELF_REPORTED, case, claim, &answers),
+            Err(_) => Ok(None),
+        }
+    }
+
+    /// Our culler on one thread, by the wall clock around its call.
+    ///
+    /// # Errors
+    /// A frame that the reference or our culler refuses.
+    pub fn ours(case: &Case, claim: Claim) -> Result<Option<Self>, TimingError> {
+        let (name, answers) = match strategy(claim) {
+            Some(strategy) => (
+                format!("sdop {strategy}"),
+                ours(strategy, &case.shapes, case)?,
+            ),
+            None => ("sdop BoxCuller".to_owned(), boxes(case)?),
+        };
+        Self::judged(&name, "wall, around the call", case, claim, &answers)
+    }
+
+    fn judged(
+        name: &str,
+        clock: &'static str,
+        case: &Case,
+        claim: Claim,
+        answers: &[Answer],
+    ) -> Result<Option<Self>, TimingError> {
+        let Count {
+            required, missed, ..
+        } = judge_answers(case, claim, answers)?.count;
+        let mut times: Vec<u64> = answers
+            .iter()
+            .skip(1)
+            .filter_map(|answer| answer.ns)
+            .collect();
+        times.sort_unstable();
+        Ok(times.get(times.len() / 2).map(|&median_ns| Self {
+            name: name.to_owned(),
+            claim,
+            clock,
+            median_ns,
+            recall: (required - missed) as f64 / required.max(1) as f64,
+            reported: answers.iter().map(|answer| answer.pairs.len()).sum(),
+        }))
+    }
+}
+
+/// Our culler of given boxes over the frames, each with its time.
+fn boxes(case: &Case) -> Result<Vec<Answer>, TimingError> {
+    let mut culler = BoxCuller::builder().threads(1).build()?;
+    let mut answers = Vec::new();
+    for frame in &case.frames {
+        let corners = |&[a, b, c, d, e, f]: &[f32; 6]| sdop::Aabb::new([a, b, c], [d, e, f]);
+        let given: Vec<sdop::Aabb> = frame.boxes.iter().map(corners).collect();
+        let start = Instant::now();
+        culler.cull(&given)?;
+        let ns = start.elapsed().as_nanos() as u64;
+        let is_pair =
+            |pair: &[u32; 2]| pair.iter().any(|&body| frame.bodies.dynamic[body as usize]);
+        let pairs = culler
+            .pairs()
+            .sorted()
+            .into_iter()
+            .filter(is_pair)
+            .collect();
+        answers.push(Answer {
+            pairs,
+            ns: Some(ns),
+        });
+    }
+    Ok(answers)
+}

@@ -1,0 +1,194 @@
+//! `sdop board`: other libraries judged, as a record and as one page.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop_bench::board::{Adapter, Board, CellVerdict, Claims, Row, Speed, judge, page};
+use sdop_bench::outsiders::timing::frames;
+use sdop_bench::scene::SceneFile;
+use sdop_judge::Case;
+use sdop_judge::process::Program;
+use sdop_judge::wire::Wire;
+
+use super::Outcome;
+use super::files;
+use super::output::{print, progress, rows};
+
+/// Judge other libraries by the adapters of benches/adapters, and write a page of who misses what
+///
+/// Every adapter is judged on the published cases of its claim. `benches/adapters/install` installs
+/// the libraries that the adapters need. board.json has every number, board.html is one page that
+/// opens from disk: each cell opens its groups, and the smallest case of a miss.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples: sdop board --out target/board\n          sdop board rtree coal --check\n          sdop board --quick --check"
+)]
+pub struct Args {
+    /// The adapters of these names; without one, all
+    #[arg(value_name = "NAME")]
+    names: Vec<String>,
+    /// Only those that install and run in little time
+    #[arg(long)]
+    quick: bool,
+    /// Cases of these names only: * stands for any text, ? for one character
+    #[arg(long, value_name = "GLOB", default_value = "*")]
+    case: String,
+    /// Where board.json and board.html are written
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Exit with 1 when a verdict or a version is another than the table of claims has
+    #[arg(long)]
+    check: bool,
+    /// The table of claims
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "benches/adapters/claims.toml"
+    )]
+    claims: PathBuf,
+    /// A scene on which all are timed
+    #[arg(long, value_name = "SCENE")]
+    timed: Option<PathBuf>,
+}
+
+/// Frames of the timed scene.
+const FRAMES: u32 = 20;
+
+/// Runs the command.
+///
+/// # Errors
+/// A table that can't be read, no adapter of a name, files that can't be written.
+pub fn run(args: &Args) -> miette::Result<Outcome> {
+    let claims = Claims::parse(&files::read(&args.claims)?)
+        .map_err(|problem| miette!("{}: {problem}", args.claims.display()))?;
+    let scene = args.timed.as_deref().map(timed).transpose()?;
+    let mut board = Board {
+        code: env!("CARGO_PKG_VERSION").to_owned(),
+        adapters: Vec::new(),
+        not_run: claims.not_run.clone(),
+    };
+    for adapter in chosen(args, &claims)? {
+        let command = claims.command(adapter);
+        let bar = progress(0, &adapter.name);
+        let told = |done: usize, of: usize| {
+            bar.set_length(of as u64);
+            bar.set_position(done as u64);
+        };
+        let mut row = judge(adapter, &command, &args.case, told).into_diagnostic()?;
+        bar.finish_and_clear();
+        if let (Some(case), None) = (&scene, &row.how) {
+            row.speed = times(adapter, command, case)?;
+        }
+        eprintln!("{}", line(&row).join("  "));
+        board.adapters.push(row);
+    }
+    print(&rows(&HEADER, &board.adapters, line).to_string())?;
+    if let Some(out) = &args.out {
+        let text = serde_json::to_string_pretty(&board).into_diagnostic()?;
+        files::write(&out.join("board.json"), text + "\n")?;
+        files::write(&out.join("board.html"), page(&board).into_diagnostic()?)?;
+    }
+    let changed: Vec<String> = board.adapters.iter().filter_map(changed).collect();
+    Ok(match changed.as_slice() {
+        [_, ..] if args.check => Outcome::Failed(changed.join("; ")),
+        _ => Outcome::Passed,
+    })
+}
+
+fn chosen<'a>(args: &Args, claims: &'a Claims) -> miette::Result<Vec<&'a Adapter>> {
+    let known = |name: &&String| claims.adapter.iter().any(|adapter| adapter.name == **name);
+    if let Some(name) = args.names.iter().find(|name| !known(name)) {
+        let names: Vec<&str> = claims
+            .adapter
+            .iter()
+            .map(|adapter| adapter.name.as_str())
+            .collect();
+        return Err(miette!(
+            help = format!("one of: {}", names.join(", ")),
+            "no adapter `{name}`"
+        ));
+    }
+    let wanted = |adapter: &&Adapter| {
+        (args.names.is_empty() || args.names.contains(&adapter.name))
+            && (!args.quick || adapter.quick)
+    };
+    Ok(claims.adapter.iter().filter(wanted).collect())
+}
+
+/// The scene's frames as a case.
+fn timed(scene: &Path) -> miette::Result<Case> {
+    let scene = SceneFile::read(scene)?.build()?;
+    frames(&scene, FRAMES)
+        .into_diagnostic()
+        .wrap_err("the timed scene")
+}
+
+/// An adapter and our culler on the same frames. A process of its own, which has no case before.
+fn times(adapter: &Adapter, command: String, case: &Case) -> miette::Result<Vec<Speed>> {
+    let program = Program {
+        command,
+        wire: Wire::Ndjson,
+        timeout: Duration::from_secs(120),
+    };
+    let theirs = Speed::of(&adapter.name, &program, case, adapter.claim).into_diagnostic()?;
+    let ours = Speed::ours(case, adapter.claim).into_diagnostic()?;
+    Ok(theirs.into_iter().chain(ours).collect())
+}
+
+const HEADER: [&str; 8] = [
+    "adapter", "version", "claim", "cases", "of", "required", "missed", "verdict",
+];
+
+fn line(row: &Row) -> Vec<String> {
+    let (adapter, total) = (&row.adapter, &row.total);
+    let judged = total.passed + total.failed;
+    let verdict = row.how.as_ref().map_or_else(
+        || row.outcome.name().to_owned(),
+        |how| format!("not run: {how}"),
+    );
+    vec![
+        adapter.name.clone(),
+        row.found.clone(),
+        adapter.claim.to_string(),
+        judged.to_string(),
+        (judged + total.skipped + total.errors).to_string(),
+        total.pairs.required.to_string(),
+        total.pairs.missed.to_string(),
+        verdict,
+    ]
+}
+
+/// What is other than the table of claims has it.
+fn changed(row: &Row) -> Option<String> {
+    let (adapter, name) = (&row.adapter, &row.adapter.name);
+    if let Some(how) = &row.how {
+        return Some(format!("{name} could not be run: {how}"));
+    }
+    let [found, known] = [&row.found, &adapter.version];
+    if found != known {
+        return Some(format!(
+            "{name} is version {found}, and the table has {known}"
+        ));
+    }
+    let (found, known) = (row.outcome, &adapter.verdict);
+    let reasons = || {
+        row.cells
+            .iter()
+            .filter(|cell| cell.outcome == CellVerdict::Error)
+    };
+    let why: Vec<&str> = reasons()
+        .flat_map(|cell| cell.reasons.keys())
+        .take(2)
+        .map(String::as_str)
+        .collect();
+    (found.name() != known).then(|| {
+        format!(
+            "{name}: {}, and the table has {known} {}",
+            found.name(),
+            why.join(", ")
+        )
+        .trim_end()
+        .to_owned()
+    })
+}

@@ -1,0 +1,103 @@
+//! `sdop board`: rows, cells and the page, from adapters of a few lines of shell.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::sdop;
+
+/// An adapter that reports nothing, or skips, and a table of claims for it.
+fn board(folder: &Path, answer: &str, more: &str) -> (Value, String) {
+    let adapter = format!(
+        r#"[ "$1" = --version ] && echo 1.0 && exit
+n=0
+while read -r line; do
+  case $line in *'"format"'*) n=0;; *) echo "{{\"frame\":$n,{answer}}}"; n=$((n + 1));; esac
+done
+"#
+    );
+    fs::write(folder.join("adapter.sh"), adapter).unwrap();
+    let claims = format!(
+        r#"
+[run]
+shell = "sh '{}/{{folder}}.sh'"
+
+[[adapter]]
+name = "none"
+folder = "adapter"
+language = "shell"
+package = "nothing"
+version = "1.0"
+claim = "aabb"
+says = "nothing"
+settings = "none"
+verdict = "fail"
+{more}
+
+[[not_run]]
+name = "other"
+why = "no reason"
+"#,
+        folder.display()
+    );
+    fs::write(folder.join("claims.toml"), claims).unwrap();
+    let (claims, out) = (folder.join("claims.toml"), folder.join("out"));
+    let arguments = ["board", "--case", "box/grid/0000", "--check", "--claims"];
+    let run = sdop(
+        &[
+            &arguments[..],
+            &[claims.to_str().unwrap(), "--out", out.to_str().unwrap()],
+        ]
+        .concat(),
+    );
+    let json = serde_json::from_str(&fs::read_to_string(out.join("board.json")).unwrap()).unwrap();
+    let page = fs::read_to_string(out.join("board.html")).unwrap();
+    assert!(page.contains("Who misses pairs"), "{run:?}");
+    (json, page)
+}
+
+#[test]
+fn a_miss_has_its_smallest_case_on_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let (json, page) = board(folder.path(), r#"\"pairs\":[]"#, "");
+    let cell = &json["adapters"][0]["cells"][0];
+    assert_eq!(
+        (&cell["family"], &cell["outcome"]),
+        (&"box".into(), &"fail".into())
+    );
+    assert_eq!(
+        cell["total"]["pairs"]["missed"],
+        cell["total"]["pairs"]["required"]
+    );
+    let case = cell["smallest"]["case"].as_str().unwrap();
+    assert!(
+        case.lines().count() == 2 && case.contains("\"claims\":[\"aabb\""),
+        "{case}"
+    );
+    assert!(
+        page.contains("id=\"picture-none-box\"") && page.contains("sdop-header"),
+        "no picture"
+    );
+}
+
+#[test]
+fn skipped_cases_are_no_pass() {
+    let folder = tempfile::tempdir().unwrap();
+    let (json, _) = board(folder.path(), r#"\"skipped\":\"too small\""#, "");
+    let row = &json["adapters"][0];
+    assert_eq!(row["outcome"], "does-not-claim");
+    assert_eq!(row["cells"][0]["reasons"]["too small"], 1);
+}
+
+#[test]
+fn misses_outside_of_a_claim_are_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let unclaimed = "unclaimed = [{ cases = \"box/*\", why = \"its page says so\" }]";
+    let (json, _) = board(folder.path(), r#"\"pairs\":[]"#, unclaimed);
+    assert_eq!(json["adapters"][0]["outcome"], "does-not-claim");
+    assert_eq!(
+        json["adapters"][0]["cells"][0]["reasons"]["its page says so"],
+        1
+    );
+}
