@@ -1,6 +1,7 @@
-//! A comparison cut into units: what depends on the scene alone, and can be counted anywhere; and
-//! what is timed, which has a machine to itself. Joined in their order they are the results of one
-//! process: counts to the bit, times as whoever measured them found them.
+//! A comparison divided into units: counts, which depend only on the scene and can be made on any
+//! machine, and times, which need a machine without other load. Joined in their order they are the
+//! results of one process: the same counts to the bit, and the times of the machine that measured
+//! them.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -27,21 +28,21 @@ use crate::scene::{Scene, SceneFile};
 use crate::sweep::{Header, Sweep, digest};
 use sdop::volume::Shape;
 
-/// What its files are called.
+/// The name in its files.
 pub const NAME: &str = "tradeoff";
 
 /// Pairs on which the narrow phase is timed.
 const CHECKED: usize = 2000;
-/// Sample frames of a scene with something changed.
+/// Sample frames of a changed scene.
 const CHANGED_SAMPLES: u32 = 6;
-/// What calibrates a pass.
+/// The calibration of a pass.
 const EFFORT: Effort = Effort {
     turns: 1,
     builds: 5,
 };
 
-/// What is compared and how thoroughly, and on what kind of machine: times of different ones don't
-/// go together.
+/// What is compared, how thoroughly, and on what kind of machine: times of different machines can't
+/// be joined.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -65,24 +66,24 @@ pub struct Settings {
 pub struct Comparison {
     file: SceneFile,
     plan: Plan,
-    /// That of the first seed.
+    /// The scene of the first seed.
     scene: Scene,
-    /// Mean sphere hits a frame.
+    /// Mean sphere hits per frame.
     hits: f64,
     variants: Vec<Variant>,
-    /// The scene's and some of known form.
+    /// The scene's shapes, and some with known answers.
     shapes: Vec<Shape>,
     units: Vec<Unit>,
-    /// From the first pass in this process on.
+    /// `None` before the first pass in this process.
     calibration: Mutex<Option<Calibration>>,
 }
 
 /// One unit.
 #[derive(Clone, Copy, Debug)]
 enum Unit {
-    /// What the variants are.
+    /// The variants.
     Compared,
-    /// The truth of a seed's run, and every variant's counts.
+    /// The truth of the run of a seed, and every variant's counts.
     Seed(u64),
     /// Time-critical culling by tests.
     Budgets,
@@ -90,7 +91,7 @@ enum Unit {
     Shape(usize),
     /// Every variant timed once, on the run of a seed.
     Pass(u64),
-    /// What the exact narrow phase takes.
+    /// The price of the exact narrow phase.
     NarrowPhase,
     /// Time-critical culling by the clock.
     Clock,
@@ -98,13 +99,13 @@ enum Unit {
     Interest,
     /// The scene at a multiple of its density.
     Density(f32),
-    /// The scene with something changed.
+    /// The scene with one change.
     Variation(Change),
     /// Margins, arithmetic and tiers.
     Safety,
 }
 
-/// What a unit found.
+/// The result of a unit.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) enum Found {
@@ -122,14 +123,14 @@ pub(super) enum Found {
     Safety(Vec<SafetyRow>),
 }
 
-/// What is compared.
+/// The compared variants.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Compared {
-    /// Mean sphere hits a frame.
+    /// Mean sphere hits per frame.
     pub(super) hits: f64,
     pub(super) variants: Vec<Variant>,
-    /// Of each variant, over the hulls'.
+    /// Volume / hull volume of each variant.
     pub(super) volumes: Vec<Option<f64>>,
 }
 
@@ -137,17 +138,17 @@ pub(super) struct Compared {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Counts {
-    /// A variant each.
+    /// The counts of each variant.
     pub(super) tallies: Vec<Tally>,
-    /// Of interest sets, with the first seed alone.
+    /// Counts of interest sets, only with the first seed.
     pub(super) interest: Vec<interest::Counted>,
 }
 
 impl Comparison {
-    /// Builds the scene and says what there is to compare.
+    /// Builds the scene and the comparison.
     ///
     /// # Errors
-    /// A scene that can't be built, run or culled.
+    /// The scene can't be built, run or culled.
     pub fn new(file: &SceneFile, plan: &Plan) -> Result<Self, TradeoffError> {
         let scene = Scene {
             construct_seconds: 0.0,
@@ -296,9 +297,9 @@ impl Comparison {
     }
 }
 
-/// All units: first what is counted, then what is timed.
+/// All units: first counts, then times.
 fn units(seeds: &[u64], shapes: usize) -> Vec<Unit> {
-    // One pass a seed, and not too few.
+    // One pass per seed, and not too few.
     let passes = seeds.iter().cycle().take(seeds.len().max(PASSES));
     let once = [Unit::NarrowPhase, Unit::Clock, Unit::Interest];
     let mut units = vec![Unit::Compared];
@@ -313,7 +314,7 @@ fn units(seeds: &[u64], shapes: usize) -> Vec<Unit> {
     units
 }
 
-/// The runs' seeds, from the scene's own on.
+/// The runs' seeds, from the scene's on.
 fn seeds(file: &SceneFile, plan: &Plan) -> Vec<u64> {
     let seed = |number| file.spec.seed.wrapping_add(number);
     (0..plan.seeds.max(1)).map(seed).collect()
@@ -334,7 +335,7 @@ fn first_frames(scene: &Scene, count: u32) -> Result<Vec<Sample>, TradeoffError>
     Ok(samples(&scene, count)?)
 }
 
-/// One shape a mesh name: sizes of one mesh let the same shares through.
+/// One shape per mesh name: the shares don't depend on the size of a mesh.
 fn distinct(scene: &Scene) -> impl Iterator<Item = &Shape> {
     let shapes = &scene.shapes;
     let first = |name: &str| shapes.iter().position(|shape| shape.name == name);
@@ -387,10 +388,10 @@ impl Sweep for Comparison {
 }
 
 impl Findings {
-    /// Takes a unit's result up; units come in their order.
+    /// Reads a unit's result; units come in their order.
     ///
     /// # Errors
-    /// Text that no unit of a comparison gives.
+    /// The text is not the result of a unit.
     pub fn take(&mut self, result: &str) -> miette::Result<()> {
         self.add(serde_json::from_str(result).into_diagnostic()?);
         Ok(())

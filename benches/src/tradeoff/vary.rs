@@ -1,10 +1,9 @@
-//! The same scene with one thing changed: how many bodies, of how many triangles, how far they
-//! move, which shapes they have.
+//! The same scene with one change: the number of bodies, their triangles, motion or shapes.
 //!
-//! [Density](super::density) has a sweep of its own, since the decision table stands on it. Bodies
-//! and motion are judged through the finder `auto`, whose choice they move, on frames that follow
-//! one another over a run; and by the mean of its warm frames, since a finder that keeps lists
-//! makes them anew in some frames and not in most.
+//! [Density](super::density) has a separate study, since the decision table depends on it. Bodies
+//! and motion are measured with the finder `auto`, whose choice depends on them, on consecutive
+//! frames of a run, and by the mean of warm frames, since a finder that keeps lists rebuilds them
+//! only in some frames.
 
 use std::fmt;
 use std::num::NonZeroU32;
@@ -27,13 +26,13 @@ use sdop::simd::Tier;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 
 choices! {
-    /// What of a scene is changed.
+    /// The changed property of a scene.
     Aspect, "aspect", {
-        /// How many bodies, at the scene's density.
+        /// Number of bodies, at the scene's density.
         Bodies = "bodies",
         /// Triangles of a mesh.
         Triangles = "triangles",
-        /// How far bodies move and turn from frame to frame, at ten times the scene's bodies.
+        /// Motion and rotation per frame, with ten times the scene's bodies.
         Motion = "motion",
         /// The shapes, in balls as large as the scene's.
         Shapes = "shapes",
@@ -41,7 +40,7 @@ choices! {
 }
 
 choices! {
-    /// Which shapes the bodies have.
+    /// The shapes of the bodies.
     Mix, "mix of shapes", {
         /// Balls.
         Round = "balls",
@@ -49,9 +48,9 @@ choices! {
         Compact = "cubes",
         /// Needles.
         Thin = "needles",
-        /// The three in turns.
+        /// All three alternately.
         Mixed = "balls, cubes, needles",
-        /// The scene's own meshes, each with a radius from half to twice its own.
+        /// The scene's meshes, each with a radius from half to twice its own.
         Sizes = "own, radii 1 : 4",
     }
 }
@@ -59,11 +58,11 @@ choices! {
 /// One change of a scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Change {
-    /// So many times the bodies, in so many times the room.
+    /// This multiple of the bodies, in this multiple of the volume.
     Bodies(f32),
-    /// At most so many triangles a mesh.
+    /// At most this number of triangles per mesh.
     Triangles(usize),
-    /// So many times as far per frame.
+    /// This multiple of the motion per frame.
     Motion(f32),
     /// Other shapes.
     Shapes(Mix),
@@ -103,25 +102,24 @@ impl Aspect {
     }
 }
 
-/// A scene with one thing changed.
+/// A scene with one change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variation {
-    /// What was changed.
+    /// The changed property.
     pub aspect: Aspect,
-    /// The mix of shapes, where shapes were changed.
+    /// The mix of shapes, if shapes were changed.
     pub mix: Option<Mix>,
-    /// How many bodies it has.
+    /// Number of bodies.
     pub bodies: usize,
     /// Mean triangles of a body's mesh.
     pub triangles: f64,
-    /// How far a moving body's centre comes in a frame, in radii of its ball; the mean of the first
-    /// frame.
+    /// Mean motion of a moving body's centre in the first frame, in radii of its ball.
     pub motion: f64,
-    /// Mean sphere overlaps a body.
+    /// Mean sphere overlaps per body.
     pub partners: f64,
     /// The exact reference as narrow phase.
     pub narrow_phase: NarrowPhase,
-    /// T and Np of every variant that takes part.
+    /// T and Np of every compared variant.
     pub lines: Vec<Line>,
     /// The cheapest variant for each price of a narrow-phase check.
     pub best: Vec<Best>,
@@ -130,14 +128,14 @@ pub struct Variation {
 /// Pairs on which a variation's narrow phase is timed.
 const CHECKED: usize = 500;
 
-/// What to use for one price of a check.
+/// The recommendation for one price of a check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Best {
     /// Seconds of a narrow-phase check of a pair that doesn't meet.
     pub check: f64,
     /// The cheapest variant.
     pub name: String,
-    /// The variants that can't be told from it.
+    /// The variants tied with it.
     pub tied: Vec<String>,
 }
 
@@ -149,10 +147,10 @@ pub(super) fn changes() -> Vec<Change> {
         .collect()
 }
 
-/// Runs the scene with a change; `None` where it can't have it.
+/// Runs the scene with a change. `None` if it can't have it.
 ///
 /// # Errors
-/// What running a scene may meet.
+/// Running the scene fails.
 pub(super) fn varied(
     file: &SceneFile,
     change: Change,
@@ -206,7 +204,7 @@ fn variation(
     })
 }
 
-/// How far moving bodies come in the first frame, in radii.
+/// Mean motion of moving bodies in the first frame, in radii.
 fn motion(scene: &Scene) -> Result<f64, TradeoffError> {
     let mut trajectory = Trajectory::new(scene)
         .map_err(SimulationError::from)?
@@ -229,8 +227,8 @@ fn motion(scene: &Scene) -> Result<f64, TradeoffError> {
     Ok(ways.iter().sum::<f64>() / ways.len().max(1) as f64)
 }
 
-/// The scene with a change; `None` where it can't have it: bodies at given places, spheres larger
-/// than the box.
+/// The scene with a change. `None` if it can't have it: bodies at given places, spheres larger than
+/// the box.
 fn changed(file: &SceneFile, change: Change) -> Result<Option<Scene>, TradeoffError> {
     let mut file = file.clone();
     let mut possible = true;
@@ -257,7 +255,8 @@ fn changed(file: &SceneFile, change: Change) -> Result<Option<Scene>, TradeoffEr
     Ok(Some(scene))
 }
 
-/// So many times the bodies at the same density, found by `auto`; whether the scene can have them.
+/// Multiplies the bodies at the same density, with the finder `auto`. Returns whether the scene can
+/// have them.
 fn multiply(file: &mut SceneFile, factor: f32) -> bool {
     file.spec.cull.pairs = Finder::Auto;
     let counts = file
@@ -279,7 +278,7 @@ fn multiply(file: &mut SceneFile, factor: f32) -> bool {
     true
 }
 
-/// Radii from half to twice what they are.
+/// Sets radii from half to twice the present ones.
 fn spread_radii(file: &mut SceneFile) {
     for group in &mut file.spec.bodies {
         if let Some(radius) = &mut group.get_mut().radius {
@@ -322,7 +321,7 @@ fn other_shapes(scene: &mut Scene, mix: Mix) -> Result<(), TradeoffError> {
     Ok(())
 }
 
-/// A shape as large as another, built as the scene's settings say.
+/// The specification of a shape as large as another, with the scene's settings.
 fn spec(cull: &sdop::settings::CullSettings, like: &Shape) -> ShapeSpec {
     ShapeSpec {
         origin: Origin::Ball,
