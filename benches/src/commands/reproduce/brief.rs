@@ -7,7 +7,7 @@ use sdop_bench::report::digits::{interval, number};
 use sdop_bench::reproduce::paper_name;
 use sdop_bench::reproduce::readings::{Reading, TABLE_1_STRATEGIES, Table1Cell};
 
-use super::rows::Tables;
+use super::rows::{Tables, distinct};
 use crate::commands::output::table;
 
 /// Table 1, times and verdicts; `place` is where the rest was written.
@@ -46,7 +46,7 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
         "{rows}\n\nCulling, µs per warm frame, and how far the formula's prediction is off"
     )?;
     let mut rows = table(&heads);
-    for strategy in tables.strategies() {
+    for strategy in distinct(tables.costs.iter().map(|cost| cost.strategy)) {
         let of = |cost: &&Cost| cost.strategy == strategy;
         let cell = |cost: &Cost| {
             format!(
