@@ -9,7 +9,7 @@ use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 use sdop_bench::scene::SceneFile;
-use sdop_bench::verify::shrink::Smallest;
+use sdop_bench::verify::shrink::SmallestScene;
 use sdop_judge::ours::draw::crowd;
 use sdop_judge::ours::forms::{self, Form};
 use sdop_judge::ours::rounds::{Failure, Ledger, judge_and_check};
@@ -45,7 +45,7 @@ fn wrong_ball_shrinks_to_two_bodies() {
         );
         assert_eq!(count.missed > 0, uses_spheres, "{row:?}");
     }
-    let smallest = Smallest::of(&ledger.failures[0]).unwrap();
+    let smallest = SmallestScene::of(&ledger.failures[0]).unwrap();
     assert_eq!(smallest.bodies.len(), 2);
     assert_eq!(smallest.shapes.len(), shapes.built.len());
 
@@ -70,5 +70,5 @@ fn complete_scene_is_not_shrunk() {
         frames: vec![Default::default()],
         pair: ledger.failures[0].pair,
     };
-    assert!(Smallest::of(&honest).is_none());
+    assert!(SmallestScene::of(&honest).is_none());
 }

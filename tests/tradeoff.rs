@@ -17,7 +17,7 @@ use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::tradeoff::counts::Tally;
 use sdop_bench::tradeoff::safety::without_margins;
 use sdop_bench::tradeoff::shapes::{Crowd, builtin};
-use sdop_bench::tradeoff::truth::{Judge, samples};
+use sdop_bench::tradeoff::truth::{ExactJudge, samples};
 use sdop_bench::tradeoff::variant::{self, Variant};
 use sdop_reference::Pose;
 use sdop_reference::exact::{meeting, mesh::Mesh};
@@ -112,7 +112,7 @@ fn truth_is_complete_and_cached() {
         samples.iter().map(|s| s.frame).collect::<Vec<_>>(),
         [0, 13, 26]
     );
-    let judge = Judge::new(&scene.shapes).unwrap();
+    let judge = ExactJudge::new(&scene.shapes).unwrap();
     let cache = tempfile::tempdir().unwrap();
     let truth = judge.truth(&samples, Some(cache.path())).unwrap();
 
@@ -146,7 +146,7 @@ fn truth_is_complete_and_cached() {
 fn finer_variants_report_fewer() {
     let scene = scene();
     let samples = samples(&scene, 5).unwrap();
-    let truth = Judge::new(&scene.shapes)
+    let truth = ExactJudge::new(&scene.shapes)
         .unwrap()
         .truth(&samples, None)
         .unwrap();

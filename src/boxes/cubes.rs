@@ -6,24 +6,24 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, numbers_of, prefetch_ends};
 
 /// Boxes are prefetched this many names ahead: neighbours in space can be anywhere in the user's
 /// list, and a core can overlap dozens of cache misses.
-pub(super) const AHEAD: usize = 128;
+pub(super) const PREFETCH_DISTANCE: usize = 128;
 
 /// Computes the cubes of the boxes with these names. Returns the greatest H − h, and whether all
 /// boxes are valid.
-pub(super) struct Make<'a> {
+pub(super) struct MakeCubes<'a> {
     pub boxes: &'a [Aabb],
     pub names: &'a [u32],
-    /// The names from the one at [`AHEAD`] on, whose boxes are prefetched, or none if boxes are in
-    /// the caches.
+    /// The names from number [`PREFETCH_DISTANCE`] on, whose boxes are prefetched, or none if boxes
+    /// are in the caches.
     pub ahead: &'a [u32],
     pub cubes: &'a mut [[f32; 4]],
 }
 
-impl Kernel for Make<'_> {
+impl Kernel for MakeCubes<'_> {
     type Output = (f32, bool);
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> (f32, bool) {
-        let mut seen = Seen {
+        let mut seen = CubeFacts {
             gap: l.splat(0.0),
             sound: u32::MAX,
         };
@@ -53,14 +53,14 @@ impl Kernel for Make<'_> {
 }
 
 /// Facts about all computed cubes.
-struct Seen<L: Lanes> {
+struct CubeFacts<L: Lanes> {
     /// The greatest H − h in each lane.
     gap: L::F,
     /// A bit for each lane that had only valid boxes.
     sound: u32,
 }
 
-impl<L: Lanes> Seen<L> {
+impl<L: Lanes> CubeFacts<L> {
     /// Computes the cubes of sixteen boxes, each given as six numbers.
     #[inline(always)]
     fn make(
@@ -89,10 +89,10 @@ mod tests {
     /// and whether all are valid.
     fn made(tier: Tier, boxes: &[Aabb], names: &[u32]) -> (Vec<[f32; 4]>, f32, bool) {
         let mut cubes = vec![[f32::NAN; 4]; names.len()];
-        let make = Make {
+        let make = MakeCubes {
             boxes,
             names,
-            ahead: names.get(AHEAD..).unwrap_or_default(),
+            ahead: names.get(PREFETCH_DISTANCE..).unwrap_or_default(),
             cubes: &mut cubes,
         };
         let (gap, are_sound) = dispatch(tier, make);
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn every_box_has_its_cube_in_every_tier() {
-        for count in [1, 15, 16, 17, 33, AHEAD + 22] {
+        for count in [1, 15, 16, 17, 33, PREFETCH_DISTANCE + 22] {
             let boxes = boxes(count);
             let names: Vec<u32> = (0..count as u32).rev().collect();
             for tier in Tier::available() {

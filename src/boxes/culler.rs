@@ -1,6 +1,6 @@
 //! A culler that gets all boxes anew in each frame.
 
-use super::frame::Frames;
+use super::frame::BoxFrames;
 use crate::bodies::contract::{check_column, check_number};
 use crate::bodies::{Aabb, Groups};
 use crate::counters::VolumeCounters;
@@ -26,7 +26,7 @@ use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 /// A clone continues as the original would, on its own threads.
 #[derive(Clone, Debug)]
 pub struct BoxCuller {
-    frames: Frames,
+    frames: BoxFrames,
     groups: Option<Vec<Groups>>,
     pairs: PairList,
     counters: VolumeCounters,
@@ -92,14 +92,14 @@ impl BoxCullerBuilder {
         Ok(BoxCuller::with(self.frames()?))
     }
 
-    pub(super) fn frames(&self) -> Result<Frames, CullError> {
+    pub(super) fn frames(&self) -> Result<BoxFrames, CullError> {
         Ok(self.frames_on(Threads::new(self.threads)?))
     }
 
-    pub(super) fn frames_on(&self, threads: Threads) -> Frames {
+    pub(super) fn frames_on(&self, threads: Threads) -> BoxFrames {
         let tier = self.tier.unwrap_or_else(Tier::detect);
         let threads = FrameThreads::new(threads, self.worth_waking);
-        Frames::new(self.finder, tier, threads)
+        BoxFrames::new(self.finder, tier, threads)
     }
 }
 
@@ -122,7 +122,7 @@ impl BoxCuller {
         BoxCullerBuilder::default()
     }
 
-    fn with(frames: Frames) -> Self {
+    fn with(frames: BoxFrames) -> Self {
         Self {
             frames,
             groups: None,

@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
-use super::cubes::{AHEAD, Make};
+use super::cubes::{MakeCubes, PREFETCH_DISTANCE};
 use crate::bodies::contract::ContractError;
 use crate::bodies::{Aabb, Groups, Places, read_ahead};
-use crate::broad_phase::{Balls, Boxes, EndSlots, PairFinder, Population, Reorder, Volume};
+use crate::broad_phase::{Balls, EndSlots, GivenBoxes, PairFinder, Population, Reorder, Volume};
 use crate::counters::VolumeCounters;
-use crate::overlap::boxes::Cubes;
+use crate::overlap::boxes::CubeTest;
 use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
 use crate::simd::{Tier, dispatch, in_default_mode};
@@ -16,24 +16,24 @@ use crate::strategy::{BoxInputs, BoxTest, Output, Tasks, list_boxes};
 use crate::threads::{FrameThreads, FrameWork};
 
 /// Boxes whose cubes one thread computes at a time.
-const CUBES: usize = 4096;
+const BOXES_PER_TASK: usize = 4096;
 
 /// Columns of boxes up to this size fit into the first caches and are read ahead in order. For
 /// larger ones, prefetching each box by its name is faster: by 3 % at 96 KB and 20 % at 240 KB, but
 /// 3 % slower at 48 KB (an AMD Zen 5 with cold caches).
-const LONGEST: usize = 64 << 10;
+const MOST_READ_AHEAD_BYTES: usize = 64 << 10;
 
 /// Boxes of a frame that are sampled to choose its test.
-const ASKED: usize = 64;
+const SAMPLE_SIZE: usize = 64;
 
-/// Cubes decide if H is at least this multiple of the frame's greatest H − h; one in [`FEW`] of the
-/// sampled boxes may be smaller.
-const CUBIC: f32 = 32.0;
-const FEW: usize = 16;
+/// Cubes decide if H is at least this multiple of the frame's greatest H − h; at most one in
+/// [`SAMPLES_PER_EXCEPTION`] sampled boxes may be smaller.
+const LEAST_CUBIC_RATIO: f32 = 32.0;
+const SAMPLES_PER_EXCEPTION: usize = 16;
 
 /// The boxes of a set, in the form that a finder needs.
 #[derive(Clone, Debug)]
-pub(super) struct Frames {
+pub(super) struct BoxFrames {
     tier: Tier,
     threads: FrameThreads,
     choice: Finder,
@@ -45,7 +45,7 @@ pub(super) struct Frames {
     cubes: Balls,
     /// The greatest H − h of the boxes that don't move.
     fixed_gap: f32,
-    news: News,
+    news: SetChange,
     ends: EndSlots,
     tasks: Tasks,
     /// Candidates of the frame before.
@@ -54,14 +54,14 @@ pub(super) struct Frames {
 
 /// The change of the set since the frame before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum News {
+enum SetChange {
     None,
     /// Some boxes are new; the finder knows the others.
     Some,
     All,
 }
 
-impl Frames {
+impl BoxFrames {
     /// No boxes yet.
     pub fn new(choice: Finder, tier: Tier, threads: FrameThreads) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl Frames {
             order: Vec::new(),
             cubes: Balls::new(0),
             fixed_gap: 0.0,
-            news: News::All,
+            news: SetChange::All,
             ends: EndSlots::default(),
             tasks: Tasks::default(),
             candidates: 0,
@@ -91,8 +91,8 @@ impl Frames {
         let stays = self.places.replace(dynamic, present);
         let (population, moving) = (population(self.len()), self.places.moving);
         let finder = &mut self.finder;
-        if finder.replace(self.choice, &population, &stays, moving) && self.news != News::All {
-            self.news = News::Some;
+        if finder.replace(self.choice, &population, &stays, moving) && self.news != SetChange::All {
+            self.news = SetChange::Some;
             self.cubes.resize(self.len());
         } else {
             self.start_anew();
@@ -111,7 +111,7 @@ impl Frames {
         self.finder = finder(self.choice, self.len());
         self.cubes.resize(self.len());
         self.cubes.fill([0.0; 4]);
-        (self.news, self.candidates) = (News::All, 0);
+        (self.news, self.candidates) = (SetChange::All, 0);
     }
 
     /// Hands the boxes that meet, not both at rest, whose groups collide, to `output`. `boxes` and
@@ -146,7 +146,7 @@ impl Frames {
         let executor = pool.executor(self.tier);
         let names = &self.places.body;
         let are_long = !self.cubes_decide(gap);
-        let given = Some(Boxes {
+        let given = Some(GivenBoxes {
             all: boxes,
             are_long,
         });
@@ -160,7 +160,7 @@ impl Frames {
             BoxTest::Ends(&self.ends)
         } else {
             let less = less_than_sure(gap);
-            BoxTest::Cubes(Cubes { slots, boxes, less })
+            BoxTest::Cubes(CubeTest { slots, boxes, less })
         };
         let inputs = BoxInputs {
             executor,
@@ -179,11 +179,11 @@ impl Frames {
     /// the greatest H − h of all, or `None` if a box is invalid.
     fn update(&mut self, boxes: &[Aabb]) -> Option<f32> {
         let (moving, all) = (self.places.moving, self.places.len());
-        let news = std::mem::replace(&mut self.news, News::None);
-        if news != News::None {
+        let news = std::mem::replace(&mut self.news, SetChange::None);
+        if news != SetChange::None {
             self.fixed_gap = self.make_cubes(boxes, moving..all)?;
         }
-        if news == News::All {
+        if news == SetChange::All {
             self.make_cubes(boxes, 0..moving)?; // a new finder orders places by them
         }
         let names = &self.places.body;
@@ -203,13 +203,15 @@ impl Frames {
     /// invalid.
     fn make_cubes(&mut self, boxes: &[Aabb], range: Range<usize>) -> Option<f32> {
         let pool = self.threads.get();
-        let are_near = read_ahead(pool, boxes, range.len(), LONGEST, |aabb| aabb.min[0]);
+        let are_near = read_ahead(pool, boxes, range.len(), MOST_READ_AHEAD_BYTES, |aabb| {
+            aabb.min[0]
+        });
         let names = &self.places.body[range.clone()];
         // The bits of non-negative numbers sort as the values do.
         let (greatest, are_sound) = (AtomicU32::new(0), AtomicBool::new(true));
-        pool.pieces(&mut self.cubes[range], CUBES, |start, cubes| {
-            let ahead = names.get(start + AHEAD..).filter(|_| !are_near);
-            let make = Make {
+        pool.pieces(&mut self.cubes[range], BOXES_PER_TASK, |start, cubes| {
+            let ahead = names.get(start + PREFETCH_DISTANCE..).filter(|_| !are_near);
+            let make = MakeCubes {
                 boxes,
                 names: &names[start..start + cubes.len()],
                 ahead: ahead.unwrap_or_default(),
@@ -226,13 +228,15 @@ impl Frames {
     /// Whether cubes decide most pairs, because most boxes are much larger than the greatest H − h.
     /// Some boxes are sampled, the same ones on every machine.
     fn cubes_decide(&self, gap: f32) -> bool {
-        let step = self.cubes.len().div_ceil(ASKED).max(1);
+        let step = self.cubes.len().div_ceil(SAMPLE_SIZE).max(1);
         let asked = self.cubes.iter().step_by(step);
         let (all, small) = (
             asked.len(),
-            asked.filter(|cube| cube[3] < CUBIC * gap).count(),
+            asked
+                .filter(|cube| cube[3] < LEAST_CUBIC_RATIO * gap)
+                .count(),
         );
-        FEW * small <= all
+        SAMPLES_PER_EXCEPTION * small <= all
     }
 
     /// Candidates that the last frame tested to build a list of neighbours.
@@ -276,13 +280,13 @@ mod tests {
     #[test]
     fn cubes_decide_while_one_in_sixteen_is_small_beside_the_gap() {
         let threads = FrameThreads::new(Threads::default(), 0);
-        let mut frames = Frames::new(Finder::Auto, Tier::SCALAR, threads);
+        let mut frames = BoxFrames::new(Finder::Auto, Tier::SCALAR, threads);
         assert!(frames.cubes_decide(1.0), "without boxes");
         for (small, decide) in [(0, true), (4, true), (5, false), (64, false)] {
             // One in ten is sampled.
-            frames.cubes = Balls::new(10 * ASKED);
+            frames.cubes = Balls::new(10 * SAMPLE_SIZE);
             for (asked, cube) in frames.cubes.iter_mut().step_by(10).enumerate() {
-                cube[3] = CUBIC * if asked < small { 2.9 } else { 3.0 };
+                cube[3] = LEAST_CUBIC_RATIO * if asked < small { 2.9 } else { 3.0 };
             }
             assert_eq!(frames.cubes_decide(3.0), decide, "{small}");
         }
@@ -296,8 +300,8 @@ mod tests {
     }
 
     /// The frames of `boxes` boxes, all of which may move, before the first cull.
-    fn frames(choice: Finder, boxes: usize) -> Frames {
-        let mut frames = Frames::new(
+    fn frames(choice: Finder, boxes: usize) -> BoxFrames {
+        let mut frames = BoxFrames::new(
             choice,
             Tier::SCALAR,
             FrameThreads::new(Threads::default(), 0),
@@ -309,23 +313,30 @@ mod tests {
     #[test]
     fn some_boxes_are_news_where_the_finder_knows_of_the_others() {
         let mut frames = frames(Finder::Grid, 1000);
-        let set = |frames: &mut Frames, boxes: usize| {
+        let set = |frames: &mut BoxFrames, boxes: usize| {
             frames.replace(&vec![true; boxes], &vec![true; boxes]);
             frames.news
         };
-        assert_eq!(set(&mut frames, 1001), News::All, "nothing was culled yet");
+        assert_eq!(
+            set(&mut frames, 1001),
+            SetChange::All,
+            "nothing was culled yet"
+        );
         let mut pairs = PairList::default();
         let boxes = all_in_a_row(2000);
         frames.cull(&boxes, None, Output::List(&mut pairs)).unwrap();
-        assert_eq!((frames.news, frames.candidates > 0), (News::None, true));
-        assert_eq!(set(&mut frames, 1010), News::Some);
-        assert_eq!(set(&mut frames, 2000), News::All);
+        assert_eq!(
+            (frames.news, frames.candidates > 0),
+            (SetChange::None, true)
+        );
+        assert_eq!(set(&mut frames, 1010), SetChange::Some);
+        assert_eq!(set(&mut frames, 2000), SetChange::All);
         assert_eq!(frames.candidates, 0);
         frames.choice = Finder::Sweep;
-        frames.news = News::None;
+        frames.news = SetChange::None;
         assert_eq!(
             set(&mut frames, 2001),
-            News::All,
+            SetChange::All,
             "another finder knows nothing"
         );
     }
@@ -346,7 +357,7 @@ mod tests {
     #[test]
     fn bytes_of_lists_are_counted_until_they_are_given_back() {
         let threads = FrameThreads::new(Threads::new(3).unwrap(), 0);
-        let mut frames = Frames::new(Finder::AllPairs, Tier::SCALAR, threads);
+        let mut frames = BoxFrames::new(Finder::AllPairs, Tier::SCALAR, threads);
         let boxes = vec![Aabb::new([0.0; 3], [1.0; 3]); 200];
         frames.replace(&[true; 200], &[true; 200]);
         let mut pairs = PairList::default();

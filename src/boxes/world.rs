@@ -1,7 +1,7 @@
 //! Boxes that come and go.
 
 use super::BoxCullerBuilder;
-use super::frame::Frames;
+use super::frame::BoxFrames;
 use crate::bodies::contract::check_number;
 use crate::bodies::{Aabb, Groups, Motion};
 use crate::counters::VolumeCounters;
@@ -71,7 +71,7 @@ pub struct BoxWorld {
     pub(super) resting: Vec<bool>,
     pub(super) groups: Vec<Groups>,
     pub(super) ids: Ids,
-    pub(super) frames: Frames,
+    pub(super) frames: BoxFrames,
     pub(super) counters: VolumeCounters,
     pub(super) log: LivePairs,
     pub(super) movers: Movers,
@@ -102,7 +102,7 @@ impl BoxWorld {
         Ok(Self::of(culler.frames()?))
     }
 
-    fn of(frames: Frames) -> Self {
+    fn of(frames: BoxFrames) -> Self {
         Self {
             bounds: Vec::new(),
             dynamic: Vec::new(),

@@ -21,7 +21,7 @@ const BOXES_PER_TASK: usize = 4096;
 /// The boxes from which a finder's balls were made. A ball represents the cube around its box, at
 /// an eighth of the cube's size.
 #[derive(Clone, Copy, Debug)]
-pub struct Boxes<'a> {
+pub struct GivenBoxes<'a> {
     /// The boxes, indexed by name.
     pub all: &'a [Aabb],
     /// Whether the boxes are so long that lists of neighbours are built from the boxes instead of

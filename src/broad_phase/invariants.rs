@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use super::{Block, Boxes, FirstTest, PairFinder, Volume};
+use super::{Block, FirstTest, GivenBoxes, PairFinder, Volume};
 use crate::bodies::Places;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
@@ -25,7 +25,7 @@ impl PairFinder {
         tier: Tier,
         places: &Places,
         balls: &[[f32; 4]],
-        boxes: Option<Boxes<'_>>,
+        boxes: Option<GivenBoxes<'_>>,
     ) {
         let n = places.len();
         if n > MOST_BODIES {
@@ -47,7 +47,7 @@ impl PairFinder {
         let of_boxes = boxes.filter(|_| self.is_by_boxes());
         let meet = |i, j| match of_boxes {
             None => self.meet(ball(i), ball(j)),
-            Some(Boxes { all, .. }) => {
+            Some(GivenBoxes { all, .. }) => {
                 let [a, b] = [i, j].map(|slot| &all[slots.names[slot] as usize]);
                 a.meets(b)
             }

@@ -35,7 +35,7 @@ use block::{BLOCK_BODIES, BlockPage, RunWriter};
 pub use block::{Block, MOST_CANDIDATES};
 pub use bounds::BallBounds;
 pub(crate) use box_index::{BoxIndex, IndexedBox, Search, tags};
-pub use ends::{Boxes, EndSlots};
+pub use ends::{EndSlots, GivenBoxes};
 pub use grid::{Cells, Grid, TableLayout};
 use neighbours::NeighbourList;
 pub use neighbours::{Neighbours, Volume};
@@ -196,7 +196,7 @@ impl PairFinder {
         places: &Places,
         balls: &[[f32; 4]],
         names: &[u32],
-        boxes: Option<Boxes<'_>>,
+        boxes: Option<GivenBoxes<'_>>,
     ) {
         match self {
             Self::AllPairs(finder) => finder.arrange(places, balls, names),

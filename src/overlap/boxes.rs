@@ -13,7 +13,7 @@ use crate::simd::Lanes;
 
 /// The test of boxes by their cubes, which the finder has in its slots.
 #[derive(Clone, Copy, Debug)]
-pub struct Cubes<'a> {
+pub struct CubeTest<'a> {
     /// The cubes; slots are named by box.
     pub slots: SlotBodies<'a>,
     /// All boxes, indexed by name.
@@ -22,7 +22,7 @@ pub struct Cubes<'a> {
     pub less: f32,
 }
 
-impl Cubes<'_> {
+impl CubeTest<'_> {
     /// Whether two boxes meet, exactly, by their ends. Few pairs need it, so it is kept out of the
     /// vector loop.
     #[cold]
@@ -32,7 +32,7 @@ impl Cubes<'_> {
     }
 }
 
-impl BallTest for Cubes<'_> {
+impl BallTest for CubeTest<'_> {
     #[inline(always)]
     fn slots(&self) -> SlotBodies<'_> {
         self.slots
@@ -81,7 +81,7 @@ mod tests {
         };
         let boxes = [Aabb::new([1.0; 3], [2.0; 3]); SLOTS];
         let cubes = |slots: &Slots| {
-            check(&Cubes {
+            check(&CubeTest {
                 slots: slots.arranged(),
                 boxes: &boxes,
                 less: 0.0,

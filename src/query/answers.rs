@@ -184,8 +184,8 @@ impl QueryIndex {
 
 /// [`Tree::each_meeting`] in a tier.
 fn each_meeting(tier: Tier, tree: &Tree, aabb: &Aabb, take: &mut dyn FnMut(usize)) {
-    struct Walk<'a>(&'a Tree, &'a Aabb, &'a mut dyn FnMut(usize));
-    impl Kernel for Walk<'_> {
+    struct SearchMeeting<'a>(&'a Tree, &'a Aabb, &'a mut dyn FnMut(usize));
+    impl Kernel for SearchMeeting<'_> {
         type Output = ();
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) {
@@ -193,5 +193,5 @@ fn each_meeting(tier: Tier, tree: &Tree, aabb: &Aabb, take: &mut dyn FnMut(usize
             tree.each_meeting(l, aabb, take);
         }
     }
-    dispatch(tier, Walk(tree, aabb, take));
+    dispatch(tier, SearchMeeting(tree, aabb, take));
 }

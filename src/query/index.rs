@@ -1,6 +1,6 @@
 //! The bodies of a world by location, changed body by body.
 
-use super::shape::{Posed, PosedShape};
+use super::shape::{PosedBodies, PosedShape};
 use super::source::QuerySource;
 use super::tree::Tree;
 use crate::bodies::Aabb;
@@ -24,14 +24,14 @@ pub struct QueryIndex {
     /// The origin of the boxes in the trees: 0 if bodies are boxes.
     pub(super) origin: [f64; 3],
     /// By slot.
-    homes: Vec<Home>,
+    homes: Vec<TreePlace>,
     pub(super) ids: Vec<BodyId>,
-    pub(super) posed: Option<Posed>,
+    pub(super) posed: Option<PosedBodies>,
 }
 
 /// The place of a slot's box.
 #[derive(Clone, Copy, Debug)]
-struct Home {
+struct TreePlace {
     tree: u8,
     place: u32,
 }
@@ -117,7 +117,7 @@ impl QueryIndex {
     }
 
     /// Removes all bodies, and sets the origin of the boxes.
-    pub(super) fn begin(&mut self, origin: [f64; 3], posed: Option<Posed>) {
+    pub(super) fn begin(&mut self, origin: [f64; 3], posed: Option<PosedBodies>) {
         self.trees = Default::default();
         self.homes.clear();
         self.ids.clear();
@@ -138,7 +138,7 @@ impl QueryIndex {
     pub(super) fn put(&mut self, id: BodyId, tree: usize, bounds: &Aabb) {
         let slot = id.slot();
         if self.homes.len() <= slot {
-            let nowhere = Home {
+            let nowhere = TreePlace {
                 tree: 0,
                 place: NOWHERE,
             };
@@ -151,7 +151,7 @@ impl QueryIndex {
             return self.trees[tree].set(home.place, bounds);
         }
         self.take_out(slot);
-        self.homes[slot] = Home {
+        self.homes[slot] = TreePlace {
             tree: tree as u8,
             place: self.trees[tree].push(slot as u32, bounds),
         };

@@ -3,7 +3,7 @@
 use super::Track;
 use super::answers::Answers;
 use super::index::{QueryIndex, Solid, TREES};
-use super::tree::{Below, GROUP, Group, MOST_WAITING, Node, lanes_of};
+use super::tree::{BOXES_PER_GROUP, Group, LaneContent, MOST_WAITING, Node, lanes_of};
 use super::volume::{Line, QueryError};
 use crate::bodies::Aabb;
 use crate::rounding::query::{Course, crossing};
@@ -29,12 +29,12 @@ impl LineHit {
 
 /// The direction of a line along each axis.
 #[derive(Clone, Copy, Debug)]
-struct Courses {
+struct LineCourses {
     axes: [Course; 3],
     limit: f64,
 }
 
-impl Courses {
+impl LineCourses {
     fn new(track: &Track, origin: [f64; 3]) -> Self {
         let axes =
             [0, 1, 2].map(|axis| Course::new(track.from[axis] - origin[axis], track.speed[axis]));
@@ -45,11 +45,11 @@ impl Courses {
     /// The lanes of a group that the line may meet up to `limit`, and the parameters at which it
     /// enters their boxes.
     #[inline(always)]
-    fn meeting(&self, group: &Group, limit: f64) -> (u32, [f64; GROUP]) {
-        let (mut first, mut last) = ([0.0_f64; GROUP], [limit; GROUP]);
+    fn meeting(&self, group: &Group, limit: f64) -> (u32, [f64; BOXES_PER_GROUP]) {
+        let (mut first, mut last) = ([0.0_f64; BOXES_PER_GROUP], [limit; BOXES_PER_GROUP]);
         for axis in 0..3 {
             let (lo, hi) = (&group.lo[axis], &group.hi[axis]);
-            for lane in 0..GROUP {
+            for lane in 0..BOXES_PER_GROUP {
                 let ends = [lo[lane], hi[lane]].map(f64::from);
                 let [enters, leaves] = crossing(self.axes[axis], ends);
                 first[lane] = if enters > first[lane] {
@@ -65,7 +65,7 @@ impl Courses {
             }
         }
         let mut meeting = 0;
-        for lane in 0..GROUP {
+        for lane in 0..BOXES_PER_GROUP {
             meeting |= u32::from(first[lane] <= last[lane]) << lane;
         }
         (meeting & group.present, first)
@@ -177,9 +177,9 @@ impl QueryIndex {
     /// returns the new limit.
     fn walk(&self, line: &Line, take: impl FnMut(LineHit, f64) -> f64) {
         let track = line.track();
-        let walk = Walk {
+        let walk = LineSearch {
             index: self,
-            courses: Courses::new(&track, self.origin),
+            courses: LineCourses::new(&track, self.origin),
             track,
             take,
         };
@@ -189,24 +189,24 @@ impl QueryIndex {
 
 /// A group that is still to be searched.
 #[derive(Clone, Copy)]
-struct Waiting {
+struct WaitingGroup {
     enters: f64,
     tree: usize,
     node: Node,
 }
 
-struct Walk<'a, T> {
+struct LineSearch<'a, T> {
     index: &'a QueryIndex,
-    courses: Courses,
+    courses: LineCourses,
     track: Track,
     take: T,
 }
 
-impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
+impl<T: FnMut(LineHit, f64) -> f64> Kernel for LineSearch<'_, T> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(mut self, _: L) {
-        let nothing = Waiting {
+        let nothing = WaitingGroup {
             enters: 0.0,
             tree: 0,
             node: Node::default(),
@@ -215,7 +215,7 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
         let mut count = 0;
         for tree in (0..TREES).rev() {
             if let Some(node) = self.index.trees[tree].top() {
-                waiting[count] = Waiting {
+                waiting[count] = WaitingGroup {
                     enters: 0.0,
                     tree,
                     node,
@@ -226,7 +226,7 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
         let mut limit = self.courses.limit;
         while count > 0 {
             count -= 1;
-            let Waiting { enters, tree, node } = waiting[count];
+            let WaitingGroup { enters, tree, node } = waiting[count];
             if enters > limit {
                 continue;
             }
@@ -236,9 +236,9 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
             let start = count;
             for lane in lanes_of(meeting) {
                 match node.below(lane) {
-                    Below::Place(place) => self.meet(tree, place, first[lane], &mut limit),
-                    Below::Node(node) => {
-                        waiting[count] = Waiting {
+                    LaneContent::Place(place) => self.meet(tree, place, first[lane], &mut limit),
+                    LaneContent::Node(node) => {
+                        waiting[count] = WaitingGroup {
                             enters: first[lane],
                             tree,
                             node,
@@ -252,7 +252,7 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
     }
 }
 
-impl<T: FnMut(LineHit, f64) -> f64> Walk<'_, T> {
+impl<T: FnMut(LineHit, f64) -> f64> LineSearch<'_, T> {
     /// Tests the body in a place, whose box the line enters at `enters`.
     #[inline(always)]
     fn meet(&mut self, tree: usize, place: usize, enters: f64, limit: &mut f64) {

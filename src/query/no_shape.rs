@@ -29,9 +29,9 @@ impl QueryShape {
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum Posed {}
+pub(super) enum PosedBodies {}
 
-impl Posed {
+impl PosedBodies {
     pub fn at(&self, _: usize) -> Option<PosedShape<'_>> {
         match *self {}
     }

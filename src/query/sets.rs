@@ -1,7 +1,7 @@
 //! Finds the pairs of bodies between two sets.
 
 use super::index::{QueryIndex, Solid, TREES, moved};
-use super::tree::{GROUP, Group, lanes_of};
+use super::tree::{BOXES_PER_GROUP, Group, lanes_of};
 use crate::bodies::Aabb;
 use crate::simd::{Kernel, Lanes, dispatch, in_default_mode};
 use crate::world::BodyId;
@@ -72,7 +72,7 @@ impl Kernel for GroupPairs<'_> {
                 }
                 let solid = other.solid(tree, place);
                 for lane in lanes_of(meeting) {
-                    let first = self.group * GROUP + lane;
+                    let first = self.group * BOXES_PER_GROUP + lane;
                     if may_touch(one.solid(self.tree, first), solid) {
                         let pair = [one.id_at(self.tree, first), other.id_at(tree, place)];
                         self.found.push(pair);

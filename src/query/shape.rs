@@ -166,14 +166,14 @@ fn index_of(facing: [i8; 3]) -> usize {
 
 /// Shapes and poses of bodies that are not boxes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Posed {
+pub(super) struct PosedBodies {
     /// By shape number, as bodies use it.
     pub shapes: Vec<Option<QueryShape>>,
     /// By slot.
     pub bodies: Vec<Body>,
 }
 
-impl Posed {
+impl PosedBodies {
     /// The body in a slot.
     #[inline(always)]
     pub fn at(&self, slot: usize) -> Option<PosedShape<'_>> {

@@ -2,7 +2,7 @@
 
 use super::QueryIndex;
 #[cfg(feature = "shapes")]
-use super::shape::{Posed, QueryShape};
+use super::shape::{PosedBodies, QueryShape};
 use crate::bodies::Motion;
 use crate::boxes::BoxWorld;
 #[cfg(feature = "shapes")]
@@ -21,8 +21,8 @@ mod sealed {
     impl Sealed for crate::World {}
 }
 
-const FIXED: usize = 0;
-const MOVING: usize = 1;
+const FIXED_TREE: usize = 0;
+const MOVING_TREE: usize = 1;
 
 impl QuerySource for BoxWorld {
     fn bring(&self, index: &mut QueryIndex) {
@@ -34,8 +34,8 @@ impl QuerySource for BoxWorld {
             index.take_out_all(next..id.slot());
             next = id.slot() + 1;
             let tree = match body.motion {
-                Motion::Fixed => FIXED,
-                _ => MOVING,
+                Motion::Fixed => FIXED_TREE,
+                _ => MOVING_TREE,
             };
             let is_there = index.bounds_of(id).is_some_and(|(former, bounds)| {
                 former == tree && bounds.bits() == body.bounds.bits()
@@ -51,12 +51,12 @@ impl QuerySource for BoxWorld {
 #[cfg(feature = "shapes")]
 impl QuerySource for World {
     fn bring(&self, index: &mut QueryIndex) {
-        let area = Area::of(self.bodies().map(|(_, body)| body.translation));
+        let area = BodyExtent::of(self.bodies().map(|(_, body)| body.translation));
         let mut posed = match index.posed.take() {
             Some(posed) if area.suits(index.origin) => posed,
             _ => {
                 index.begin(area.origin(), None);
-                Posed::default()
+                PosedBodies::default()
             }
         };
         let renewed = renew(&mut posed.shapes, self);
@@ -74,9 +74,9 @@ impl QuerySource for World {
             if let Some(shape) = &posed.shapes[body.shape as usize] {
                 let body_there = shape.at(body.rotation, body.translation, body.margin);
                 let tree = if body.motion.is_dynamic() {
-                    MOVING
+                    MOVING_TREE
                 } else {
-                    FIXED
+                    FIXED_TREE
                 };
                 index.put(id, tree, &body_there.bounds(index.origin));
             }
@@ -117,13 +117,13 @@ fn renew(shapes: &mut Vec<Option<QueryShape>>, world: &World) -> Vec<bool> {
 
 /// The extent of the bodies: its middle, and half of its widest side.
 #[cfg(feature = "shapes")]
-struct Area {
+struct BodyExtent {
     middle: [f64; 3],
     half: f64,
 }
 
 #[cfg(feature = "shapes")]
-impl Area {
+impl BodyExtent {
     fn of(places: impl Iterator<Item = [f64; 3]>) -> Self {
         let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for place in places {
@@ -152,7 +152,7 @@ impl Area {
     /// Whether another origin is nearly as good.
     fn suits(&self, origin: [f64; 3]) -> bool {
         /// Bodies may have moved by this multiple of half their widest side.
-        const FARTHEST: f64 = 16.0;
-        (0..3).all(|axis| (self.middle[axis] - origin[axis]).abs() <= FARTHEST * self.half)
+        const MOST_OFFSET_RATIO: f64 = 16.0;
+        (0..3).all(|axis| (self.middle[axis] - origin[axis]).abs() <= MOST_OFFSET_RATIO * self.half)
     }
 }

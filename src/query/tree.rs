@@ -10,14 +10,14 @@ use crate::bodies::Aabb;
 use crate::simd::{Lanes, MAX_WIDTH};
 
 /// Boxes in a group.
-pub(super) const GROUP: usize = MAX_WIDTH;
+pub(super) const BOXES_PER_GROUP: usize = MAX_WIDTH;
 
 /// At least the number of levels of a tree of 2³² boxes.
 const MOST_LEVELS: usize = 8;
 
 /// The most groups that are still to be searched: all but one of a group in each level, and its
 /// last.
-pub(super) const MOST_WAITING: usize = MOST_LEVELS * GROUP;
+pub(super) const MOST_WAITING: usize = MOST_LEVELS * BOXES_PER_GROUP;
 
 /// Bits of a coordinate on the Morton curve.
 const CURVE_BITS: u32 = 20;
@@ -27,24 +27,24 @@ const CLASS_OCTAVES: i32 = 3;
 
 /// A tree is worn when more than one in this many boxes was appended or removed …
 const BOXES_PER_LATE: usize = 8;
-const FEW_LATE: usize = 64;
+const LEAST_LATE_LIMIT: usize = 64;
 
 /// … or when its groups are this many times as wide as when it was built.
-const WORN: f64 = 2.0;
+const WORN_WIDTH_RATIO: f64 = 2.0;
 
 /// Up to sixteen boxes, as columns.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
-    pub lo: [[f32; GROUP]; 3],
-    pub hi: [[f32; GROUP]; 3],
+    pub lo: [[f32; BOXES_PER_GROUP]; 3],
+    pub hi: [[f32; BOXES_PER_GROUP]; 3],
     /// Lanes that hold a box.
     pub present: u32,
 }
 
 impl Group {
     const EMPTY: Self = Self {
-        lo: [[0.0; GROUP]; 3],
-        hi: [[0.0; GROUP]; 3],
+        lo: [[0.0; BOXES_PER_GROUP]; 3],
+        hi: [[0.0; BOXES_PER_GROUP]; 3],
         present: 0,
     };
 
@@ -87,7 +87,7 @@ impl Group {
     #[inline(always)]
     pub fn meeting<L: Lanes>(&self, l: L, other: &Aabb) -> u32 {
         let mut apart = 0;
-        for lane in (0..GROUP).step_by(L::WIDTH) {
+        for lane in (0..BOXES_PER_GROUP).step_by(L::WIDTH) {
             let beyond = |axis: usize| {
                 l.gt(l.load(&self.lo[axis][lane..]), l.splat(other.max[axis]))
                     | l.gt(l.splat(other.min[axis]), l.load(&self.hi[axis][lane..]))
@@ -125,7 +125,7 @@ pub(super) struct Tree {
 impl Tree {
     /// Builds a tree and puts the boxes into the order of their places.
     pub fn build(mut boxes: Vec<(u32, Aabb)>) -> Self {
-        let curve = Curve::through(boxes.iter().map(|(_, aabb)| aabb));
+        let curve = CurveOrder::through(boxes.iter().map(|(_, aabb)| aabb));
         boxes.sort_by_cached_key(|(_, aabb)| curve.place_of(aabb));
         let mut tree = Self::default();
         for (number, aabb) in &boxes {
@@ -146,14 +146,14 @@ impl Tree {
     #[inline(always)]
     pub fn bounds(&self, place: u32) -> Aabb {
         let place = place as usize;
-        self.levels[0][place / GROUP].get(place % GROUP)
+        self.levels[0][place / BOXES_PER_GROUP].get(place % BOXES_PER_GROUP)
     }
 
     /// Appends a box, and returns its place.
     pub fn push(&mut self, number: u32, aabb: &Aabb) -> u32 {
         let place = self.numbers.len();
         self.numbers.push(number);
-        let (mut groups, mut level) = (place / GROUP + 1, 0);
+        let (mut groups, mut level) = (place / BOXES_PER_GROUP + 1, 0);
         loop {
             if self.levels.len() == level {
                 self.levels.push(Vec::new());
@@ -162,7 +162,7 @@ impl Tree {
             if groups == 1 && self.levels.len() == level + 1 {
                 break;
             }
-            (groups, level) = (groups.div_ceil(GROUP), level + 1);
+            (groups, level) = (groups.div_ceil(BOXES_PER_GROUP), level + 1);
         }
         self.late += 1;
         self.set(place as u32, aabb);
@@ -172,15 +172,15 @@ impl Tree {
     /// Moves the box in a place.
     pub fn set(&mut self, place: u32, aabb: &Aabb) {
         let place = place as usize;
-        self.levels[0][place / GROUP].set(place % GROUP, aabb);
-        self.changed.push((place / GROUP) as u32);
+        self.levels[0][place / BOXES_PER_GROUP].set(place % BOXES_PER_GROUP, aabb);
+        self.changed.push((place / BOXES_PER_GROUP) as u32);
     }
 
     /// Removes the box in a place.
     pub fn remove(&mut self, place: u32) {
         let place = place as usize;
-        self.levels[0][place / GROUP].present &= !(1 << (place % GROUP));
-        self.changed.push((place / GROUP) as u32);
+        self.levels[0][place / BOXES_PER_GROUP].present &= !(1 << (place % BOXES_PER_GROUP));
+        self.changed.push((place / BOXES_PER_GROUP) as u32);
         self.late += 1;
     }
 
@@ -198,16 +198,16 @@ impl Tree {
                     *group as usize,
                     self.levels[level][*group as usize].bounds(),
                 );
-                let above = &mut self.levels[level + 1][at / GROUP];
-                let former = above.width_of(at % GROUP);
+                let above = &mut self.levels[level + 1][at / BOXES_PER_GROUP];
+                let former = above.width_of(at % BOXES_PER_GROUP);
                 match bounds {
-                    Some(bounds) => above.set(at % GROUP, &bounds),
-                    None => above.present &= !(1 << (at % GROUP)),
+                    Some(bounds) => above.set(at % BOXES_PER_GROUP, &bounds),
+                    None => above.present &= !(1 << (at % BOXES_PER_GROUP)),
                 }
                 if level == 0 {
-                    self.width += above.width_of(at % GROUP) - former;
+                    self.width += above.width_of(at % BOXES_PER_GROUP) - former;
                 }
-                *group /= GROUP as u32;
+                *group /= BOXES_PER_GROUP as u32;
             }
         }
         changed.clear();
@@ -216,8 +216,8 @@ impl Tree {
 
     /// Whether rebuilding pays.
     pub fn is_worn(&self) -> bool {
-        self.late > FEW_LATE + self.numbers.len() / BOXES_PER_LATE
-            || self.width > WORN * self.built_width
+        self.late > LEAST_LATE_LIMIT + self.numbers.len() / BOXES_PER_LATE
+            || self.width > WORN_WIDTH_RATIO * self.built_width
     }
 
     /// The groups of boxes; the first has places 0 to 15.
@@ -250,8 +250,8 @@ impl Tree {
             let node = waiting[count];
             for lane in lanes_of(self.group(node).meeting(l, aabb)) {
                 match node.below(lane) {
-                    Below::Place(place) => take(place),
-                    Below::Node(node) => {
+                    LaneContent::Place(place) => take(place),
+                    LaneContent::Node(node) => {
                         waiting[count] = node;
                         count += 1;
                     }
@@ -269,18 +269,18 @@ pub(super) struct Node {
 }
 
 /// The object in a lane of a group.
-pub(super) enum Below {
+pub(super) enum LaneContent {
     Place(usize),
     Node(Node),
 }
 
 impl Node {
     #[inline(always)]
-    pub fn below(self, lane: usize) -> Below {
-        let at = self.group as usize * GROUP + lane;
+    pub fn below(self, lane: usize) -> LaneContent {
+        let at = self.group as usize * BOXES_PER_GROUP + lane;
         match self.level {
-            0 => Below::Place(at),
-            level => Below::Node(Self {
+            0 => LaneContent::Place(at),
+            level => LaneContent::Node(Self {
                 level: level - 1,
                 group: at as u32,
             }),
@@ -289,13 +289,13 @@ impl Node {
 }
 
 /// The order of boxes: those of similar size together, and near each other in space.
-struct Curve {
+struct CurveOrder {
     lowest: [f64; 3],
     per_unit: f64,
     largest: i32,
 }
 
-impl Curve {
+impl CurveOrder {
     fn through<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> Self {
         let (mut lowest, mut highest, mut largest) =
             ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], i32::MIN);

@@ -91,9 +91,9 @@ impl QueryError {
 const VECTOR_HELP: &str = "coordinates are finite and at most 2^60 in size";
 
 /// Checks a query and reports the first problem.
-struct Check(usize);
+struct QueryCheck(usize);
 
-impl Check {
+impl QueryCheck {
     fn that(
         &self,
         is_sound: bool,
@@ -131,7 +131,7 @@ impl Check {
 
 impl QueryVolume<'_> {
     pub(super) fn check(&self, query: usize) -> Result<(), QueryError> {
-        let check = Check(query);
+        let check = QueryCheck(query);
         match *self {
             Self::Box { min, max } => {
                 check.vector("min", min)?;
@@ -166,7 +166,7 @@ impl QueryVolume<'_> {
 
 impl Line {
     pub(super) fn check(&self, query: usize) -> Result<(), QueryError> {
-        let check = Check(query);
+        let check = QueryCheck(query);
         match *self {
             Self::Segment { from, to } => {
                 check.vector("from", from)?;

@@ -10,7 +10,7 @@ use super::{Inputs, Scratch, SlotNames};
 use crate::bodies::Groups;
 use crate::broad_phase::{Block, EndSlots, FirstTest, MOST_CANDIDATES, PairFinder, SlotTest};
 use crate::counters::VolumeCounters;
-use crate::overlap::boxes::Cubes;
+use crate::overlap::boxes::CubeTest;
 #[cfg(feature = "shapes")]
 use crate::overlap::{intervals::IntervalSlots, sphere::Spheres};
 use crate::pairs::PairList;
@@ -52,7 +52,7 @@ enum FirstVolume<'a> {
 #[derive(Clone, Copy)]
 pub(crate) enum BoxTest<'a> {
     /// By the cubes around and inside them.
-    Cubes(Cubes<'a>),
+    Cubes(CubeTest<'a>),
     /// By their ends.
     Ends(&'a EndSlots),
 }

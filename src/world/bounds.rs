@@ -1,6 +1,6 @@
 //! A box around bodies, which determines the origin of their f32 coordinates.
 
-use super::region::{Placed, Region};
+use super::region::{PlacedBody, Region};
 use crate::rounding::{LIMIT, exp2};
 
 /// The largest width, in cells, of a box whose bodies are placed about one origin without a search
@@ -12,7 +12,7 @@ const LEAST_CELL: f64 = exp2(-149);
 
 /// The range of translations of some bodies, `lo` to `hi`, and the largest reach of a body, `size`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounds {
+pub(super) struct BodyBounds {
     lo: [f64; 3],
     hi: [f64; 3],
     size: f64,
@@ -28,7 +28,7 @@ pub(super) struct Cube {
     pub side: f64,
 }
 
-impl Bounds {
+impl BodyBounds {
     /// The bounds of no body.
     pub const EMPTY: Self = Self {
         lo: [f64::INFINITY; 3],
@@ -37,8 +37,8 @@ impl Bounds {
         are_placed: true,
     };
 
-    pub fn of(bodies: impl Iterator<Item = Placed>) -> Self {
-        let alone = |(_, t, size): Placed| Self {
+    pub fn of(bodies: impl Iterator<Item = PlacedBody>) -> Self {
+        let alone = |(_, t, size): PlacedBody| Self {
             lo: t,
             hi: t,
             size,
@@ -125,8 +125,8 @@ fn power_from(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn bounds(places: &[[f64; 3]], size: f64) -> Bounds {
-        Bounds::of(places.iter().map(|&t| (0, t, size)))
+    fn bounds(places: &[[f64; 3]], size: f64) -> BodyBounds {
+        BodyBounds::of(places.iter().map(|&t| (0, t, size)))
     }
 
     #[test]

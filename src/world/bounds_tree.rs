@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::bounds::Bounds;
+use super::bounds::BodyBounds;
 
 /// Slots per leaf.
 const SLOTS_PER_LEAF: usize = 16;
@@ -11,15 +11,15 @@ const SLOTS_PER_LEAF: usize = 16;
 #[derive(Clone, Debug)]
 pub(super) struct BoundsTree {
     /// The root is 1, the children of i are 2i and 2i + 1, and the leaves are the second half.
-    nodes: Vec<Bounds>,
+    nodes: Vec<BodyBounds>,
 }
 
 impl BoundsTree {
     /// A tree of `slots` slots. `of_slots` returns the bounds of the bodies in a range of slots,
     /// whose end may be larger.
-    pub fn new(slots: usize, of_slots: impl Fn(Range<usize>) -> Bounds) -> Self {
+    pub fn new(slots: usize, of_slots: impl Fn(Range<usize>) -> BodyBounds) -> Self {
         let leaves = slots.div_ceil(SLOTS_PER_LEAF).next_power_of_two();
-        let mut nodes = vec![Bounds::EMPTY; 2 * leaves];
+        let mut nodes = vec![BodyBounds::EMPTY; 2 * leaves];
         for leaf in 0..leaves {
             nodes[leaves + leaf] = of_slots(slots_of(leaf));
         }
@@ -35,7 +35,7 @@ impl BoundsTree {
     }
 
     /// Updates the bounds after a change in one slot.
-    pub fn update(&mut self, slot: usize, of_slots: impl Fn(Range<usize>) -> Bounds) {
+    pub fn update(&mut self, slot: usize, of_slots: impl Fn(Range<usize>) -> BodyBounds) {
         let leaf = slot / SLOTS_PER_LEAF;
         let (mut node, mut bounds) = (self.nodes.len() / 2 + leaf, of_slots(slots_of(leaf)));
         while self.nodes[node] != bounds {
@@ -49,7 +49,7 @@ impl BoundsTree {
     }
 
     /// The bounds of all bodies.
-    pub fn whole(&self) -> Bounds {
+    pub fn whole(&self) -> BodyBounds {
         self.nodes[1]
     }
 }
@@ -72,7 +72,7 @@ mod tests {
             let mut bodies: Vec<Option<[f64; 3]>> = vec![None; slots];
             let of = |bodies: &[Option<[f64; 3]>], range: Range<usize>| {
                 let some = bodies.iter().take(range.end).skip(range.start).flatten();
-                Bounds::of(some.map(|&t| (0, t, t[1].abs())))
+                BodyBounds::of(some.map(|&t| (0, t, t[1].abs())))
             };
             let mut tree = BoundsTree::new(slots, |range| of(&bodies, range));
             assert!(tree.has_room_for(slots) && !tree.has_room_for(20 * slots + 40));

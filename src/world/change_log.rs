@@ -6,7 +6,7 @@ use super::pair_log::Reported;
 use super::{BodyId, Event, Events};
 
 /// The least number of changes for which a log is searched for those that cancel each other.
-const WORTH_CANCELLING: usize = 1024;
+const LEAST_SEARCHED_CHANGES: usize = 1024;
 
 /// A pair that began or ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ impl ChangeLog {
     /// Removes changes that cancel each other, if the log has doubled since the last search. So its
     /// size stays proportional to the pairs of both moments, however long events aren't read.
     pub fn cancel_some(&mut self) {
-        if self.changes.len() > 2 * self.lasting + WORTH_CANCELLING {
+        if self.changes.len() > 2 * self.lasting + LEAST_SEARCHED_CHANGES {
             self.cancel();
             self.lasting = self.changes.len();
         }

@@ -90,11 +90,11 @@ impl Events {
     pub fn iter(&self) -> impl Iterator<Item = Event> + '_ {
         let now = self.now.pairs().iter().peekable();
         match &self.change {
-            PairDifference::Since(before) => Either::One(Merge {
+            PairDifference::Since(before) => EitherIterator::One(MergedEvents {
                 before: before.pairs().iter().peekable(),
                 now,
             }),
-            PairDifference::Listed { begun, ended } => Either::Other(Replay {
+            PairDifference::Listed { begun, ended } => EitherIterator::Other(FormerPairs {
                 now,
                 begun: begun.iter().peekable(),
                 ended: ended.iter().peekable(),
@@ -105,9 +105,9 @@ impl Events {
     /// Pairs reported now and not before.
     pub fn begun(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
         match &self.change {
-            PairDifference::Listed { begun, .. } => Either::One(begun.iter().copied()),
+            PairDifference::Listed { begun, .. } => EitherIterator::One(begun.iter().copied()),
             PairDifference::Since(_) => {
-                Either::Other(self.iter().filter_map(|event| match event {
+                EitherIterator::Other(self.iter().filter_map(|event| match event {
                     Event::Begun(pair) => Some(pair),
                     _ => None,
                 }))
@@ -126,9 +126,9 @@ impl Events {
     /// Pairs reported before and not now; those of a body removed since then are among them.
     pub fn ended(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
         match &self.change {
-            PairDifference::Listed { ended, .. } => Either::One(ended.iter().copied()),
+            PairDifference::Listed { ended, .. } => EitherIterator::One(ended.iter().copied()),
             PairDifference::Since(_) => {
-                Either::Other(self.iter().filter_map(|event| match event {
+                EitherIterator::Other(self.iter().filter_map(|event| match event {
                     Event::Ended(pair) => Some(pair),
                     _ => None,
                 }))
@@ -178,12 +178,12 @@ fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> 
 }
 
 /// One of two iterators.
-enum Either<A, B> {
+enum EitherIterator<A, B> {
     One(A),
     Other(B),
 }
 
-impl<T, A: Iterator<Item = T>, B: Iterator<Item = T>> Iterator for Either<A, B> {
+impl<T, A: Iterator<Item = T>, B: Iterator<Item = T>> Iterator for EitherIterator<A, B> {
     type Item = T;
     fn next(&mut self) -> Option<T> {
         match self {
@@ -194,12 +194,12 @@ impl<T, A: Iterator<Item = T>, B: Iterator<Item = T>> Iterator for Either<A, B> 
 }
 
 /// Merges two sorted lists.
-struct Merge<'a> {
+struct MergedEvents<'a> {
     before: Peekable<PairIds<'a>>,
     now: Peekable<PairIds<'a>>,
 }
 
-impl Iterator for Merge<'_> {
+impl Iterator for MergedEvents<'_> {
     type Item = Event;
     fn next(&mut self) -> Option<Event> {
         let Some(&pair) = self.now.peek() else {
@@ -217,13 +217,13 @@ impl Iterator for Merge<'_> {
 }
 
 /// Reconstructs the former pairs from the later ones and the changes, all sorted.
-struct Replay<'a> {
+struct FormerPairs<'a> {
     now: Peekable<PairIds<'a>>,
     begun: Peekable<std::slice::Iter<'a, [BodyId; 2]>>,
     ended: Peekable<std::slice::Iter<'a, [BodyId; 2]>>,
 }
 
-impl Iterator for Replay<'_> {
+impl Iterator for FormerPairs<'_> {
     type Item = Event;
     fn next(&mut self) -> Option<Event> {
         let Some(&pair) = self.now.peek() else {

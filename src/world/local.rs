@@ -6,35 +6,35 @@
 
 use std::ops::Range;
 
-use super::bounds::{Bounds, is_placed};
+use super::bounds::{BodyBounds, is_placed};
 use super::bounds_tree::BoundsTree;
-use super::region::{Placed, Region};
+use super::region::{PlacedBody, Region};
 use super::regions::{Regions, regions};
 use super::{World, WorldError, offset};
 use crate::bodies::contract::is_within_limit;
 
 /// The origins about which bodies are placed.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Local {
+pub(super) enum LocalOrigins {
     /// All translations stay as they are.
     World,
     One(Region),
     Many(Regions),
 }
 
-impl Local {
+impl LocalOrigins {
     /// The origins for these bodies, whose translations are at most 2⁶⁰ in size, or slightly more
     /// if meshes are far from their own origins.
-    fn of(bodies: impl Iterator<Item = Placed> + Clone) -> Self {
+    fn of(bodies: impl Iterator<Item = PlacedBody> + Clone) -> Self {
         if bodies.clone().all(|(_, t, _)| is_placed(t)) {
             return Self::World;
         }
-        Self::within(Bounds::of(bodies.clone()), bodies)
+        Self::within(BodyBounds::of(bodies.clone()), bodies)
     }
 
     /// The origins for bodies with these bounds. Single bodies are read only if the bounds are
     /// wide.
-    fn within(bounds: Bounds, bodies: impl Iterator<Item = Placed>) -> Self {
+    fn within(bounds: BodyBounds, bodies: impl Iterator<Item = PlacedBody>) -> Self {
         if bounds.are_placed {
             return Self::World;
         }
@@ -58,7 +58,7 @@ impl Local {
 /// The origins of the last cull, and the bounds of all bodies, from which they follow.
 #[derive(Clone, Debug)]
 pub(super) struct Origins {
-    local: Local,
+    local: LocalOrigins,
     /// `None` while each cull reads all bodies.
     bounds: Option<BoundsTree>,
 }
@@ -66,7 +66,7 @@ pub(super) struct Origins {
 impl Default for Origins {
     fn default() -> Self {
         Self {
-            local: Local::World,
+            local: LocalOrigins::World,
             bounds: None,
         }
     }
@@ -75,7 +75,7 @@ impl Default for Origins {
 impl World {
     /// Places all bodies about local origins, in the models that their margins and rounding need.
     pub(super) fn place(&mut self) -> Result<(), WorldError> {
-        let local = Local::of(self.placed_in(0..self.ids.slots()));
+        let local = LocalOrigins::of(self.placed_in(0..self.ids.slots()));
         self.origins.bounds = None;
         self.place_all(local)
     }
@@ -85,7 +85,7 @@ impl World {
     pub(super) fn place_changed(&mut self) -> Result<(), WorldError> {
         let slots = self.ids.slots();
         let bounds = self.origins.bounds.take();
-        let of_slots = |range: Range<usize>| Bounds::of(self.placed_in(range));
+        let of_slots = |range: Range<usize>| BodyBounds::of(self.placed_in(range));
         let bounds = match bounds.filter(|bounds| bounds.has_room_for(slots)) {
             Some(mut bounds) => {
                 for &slot in self.movers.changed() {
@@ -95,7 +95,7 @@ impl World {
             }
             None => BoundsTree::new(slots, of_slots),
         };
-        let local = Local::within(bounds.whole(), self.placed_in(0..slots));
+        let local = LocalOrigins::within(bounds.whole(), self.placed_in(0..slots));
         self.origins.bounds = Some(bounds);
         if local != self.origins.local {
             return self.place_all(local);
@@ -110,7 +110,7 @@ impl World {
     }
 
     /// Places all bodies about these origins, and notes those whose place or model changes.
-    fn place_all(&mut self, local: Local) -> Result<(), WorldError> {
+    fn place_all(&mut self, local: LocalOrigins) -> Result<(), WorldError> {
         for slot in 0..self.ids.slots() {
             if self.ids.present()[slot] && self.place_body(slot, &local)? {
                 self.movers.note(slot, &self.ids);
@@ -122,7 +122,7 @@ impl World {
 
     /// Places the body in a slot. Returns whether its place or its model has changed.
     #[inline]
-    fn place_body(&mut self, slot: usize, local: &Local) -> Result<bool, WorldError> {
+    fn place_body(&mut self, slot: usize, local: &LocalOrigins) -> Result<bool, WorldError> {
         let (translation, composed) = self.composed(slot);
         let (place, moved) = local.place(slot, translation);
         if !is_within_limit(&place) {
@@ -146,7 +146,7 @@ impl World {
     }
 
     /// Number, translation and reach of the bodies in some slots.
-    fn placed_in(&self, slots: Range<usize>) -> impl Iterator<Item = Placed> + Clone + '_ {
+    fn placed_in(&self, slots: Range<usize>) -> impl Iterator<Item = PlacedBody> + Clone + '_ {
         let slots = slots.start..slots.end.min(self.ids.slots());
         let present = slots.filter(move |&slot| self.ids.present()[slot]);
         present.map(move |slot| {
@@ -169,8 +169,8 @@ mod tests {
     use super::*;
 
     /// Bodies of size 1 at these places, in slots that begin at 3.
-    fn local(places: &[[f64; 3]]) -> Local {
-        Local::of(places.iter().zip(3..).map(|(&t, slot)| (slot, t, 1.0)))
+    fn local(places: &[[f64; 3]]) -> LocalOrigins {
+        LocalOrigins::of(places.iter().zip(3..).map(|(&t, slot)| (slot, t, 1.0)))
     }
 
     #[test]

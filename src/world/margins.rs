@@ -11,10 +11,10 @@ use crate::bodies::contract::{ContractError, refuse};
 use crate::rounding::{LIMIT, exp2};
 
 /// Errors of placement up to this share of a shape's size are rounded up to it.
-const FINE: f64 = exp2(-12);
+const SHARED_ERROR_RATIO: f64 = exp2(-12);
 
 /// Up to this number of classes, unused ones are kept.
-const FEW_CLASSES: usize = 64;
+const MOST_UNSWEPT_CLASSES: usize = 64;
 
 /// The models of each shape in each used class.
 #[derive(Clone, Debug, Default)]
@@ -39,7 +39,7 @@ impl Margins {
             return shape; // the shape itself is a model, of its own number
         }
         let moved = if moved > 0.0 {
-            moved.max(FINE * f64::from(reach))
+            moved.max(SHARED_ERROR_RATIO * f64::from(reach))
         } else {
             0.0
         };
@@ -57,7 +57,7 @@ impl Margins {
 
     /// Whether more models may be unused than were in use at the last sweep.
     pub fn are_many(&self) -> bool {
-        self.models.len() > FEW_CLASSES + 2 * self.in_use
+        self.models.len() > MOST_UNSWEPT_CLASSES + 2 * self.in_use
     }
 
     /// Removes the models that are not in use.

@@ -25,7 +25,7 @@ pub(super) struct Region {
 }
 
 /// A body's slot, its translation, and the reach of the mesh with its margin from there.
-pub(super) type Placed = (usize, [f64; 3], f64);
+pub(super) type PlacedBody = (usize, [f64; 3], f64);
 
 impl Region {
     /// The local translation, and the bound of its error: 0 if no step is rounded.

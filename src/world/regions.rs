@@ -12,16 +12,16 @@
 
 use std::cmp::Ordering;
 
-use super::bounds::{Bounds, Cube};
-use super::region::{Placed, Region};
+use super::bounds::{BodyBounds, Cube};
+use super::region::{PlacedBody, Region};
 use crate::rounding::LIMIT;
 
 /// A cell's number along each axis, a whole number.
-type Cell = [f64; 3];
+type CellNumber = [f64; 3];
 
 /// The neighbouring rows of cells that come after a cell's row, as steps along x and y. Each row
 /// has three cells along z.
-const ROWS: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1.0], [1.0, -1.0], [1.0, 0.0], [1.0, 1.0]];
+const ROWS_AFTER: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1.0], [1.0, -1.0], [1.0, 0.0], [1.0, 1.0]];
 
 /// All regions, and the region of each slot.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl Regions {
 }
 
 /// The regions of these bodies, if their f32 coordinates are finer than with one origin for all.
-pub(super) fn regions(mut bodies: Vec<Placed>, whole: Bounds) -> Option<Regions> {
+pub(super) fn regions(mut bodies: Vec<PlacedBody>, whole: BodyBounds) -> Option<Regions> {
     let mut found = Vec::new();
     split(&mut bodies, whole, &mut found);
     let cubes: Vec<Cube> = found.iter().map(|(_, bounds)| bounds.cube()).collect();
@@ -57,7 +57,7 @@ pub(super) fn regions(mut bodies: Vec<Placed>, whole: Bounds) -> Option<Regions>
 }
 
 /// Sorts bodies by region, and adds the number of bodies and the box of each region.
-fn split(bodies: &mut [Placed], bounds: Bounds, found: &mut Vec<(usize, Bounds)>) {
+fn split(bodies: &mut [PlacedBody], bounds: BodyBounds, found: &mut Vec<(usize, BodyBounds)>) {
     let cell = bounds.cell();
     if !bounds.is_wide() {
         return found.push((bodies.len(), bounds));
@@ -65,7 +65,7 @@ fn split(bodies: &mut [Placed], bounds: Bounds, found: &mut Vec<(usize, Bounds)>
     let mut rest = bodies;
     for number in sort_by_set(rest, cell) {
         let (region, others) = rest.split_at_mut(number);
-        let bounds = Bounds::of(region.iter().copied());
+        let bounds = BodyBounds::of(region.iter().copied());
         if bounds.cell() < cell {
             split(region, bounds, found);
         } else {
@@ -76,11 +76,12 @@ fn split(bodies: &mut [Placed], bounds: Bounds, found: &mut Vec<(usize, Bounds)>
 }
 
 /// Sorts bodies by their connected set of cells, and returns the number of bodies of each set.
-fn sort_by_set(bodies: &mut [Placed], cell: f64) -> Vec<usize> {
+fn sort_by_set(bodies: &mut [PlacedBody], cell: f64) -> Vec<usize> {
     let cell_of = |t: [f64; 3]| t.map(|x| (x / cell).floor() + 0.0); // + 0.0: one zero, not two
-    let mut by_cell: Vec<(Cell, Placed)> = bodies.iter().map(|&b| (cell_of(b.1), b)).collect();
+    let mut by_cell: Vec<(CellNumber, PlacedBody)> =
+        bodies.iter().map(|&b| (cell_of(b.1), b)).collect();
     by_cell.sort_unstable_by(|a, b| compare(&a.0, &b.0));
-    let mut cells: Vec<Cell> = by_cell.iter().map(|&(cell, _)| cell).collect();
+    let mut cells: Vec<CellNumber> = by_cell.iter().map(|&(cell, _)| cell).collect();
     cells.dedup();
     let set_of = connect(&cells);
     let mut at = 0;
@@ -88,7 +89,7 @@ fn sort_by_set(bodies: &mut [Placed], cell: f64) -> Vec<usize> {
         at += usize::from(cells[at] != cell);
         (set_of[at], body)
     });
-    let mut by_set: Vec<(u32, Placed)> = with_set.collect();
+    let mut by_set: Vec<(u32, PlacedBody)> = with_set.collect();
     by_set.sort_by_key(|&(set, _)| set);
     for (body, &(_, sorted)) in bodies.iter_mut().zip(&by_set) {
         *body = sorted;
@@ -99,7 +100,7 @@ fn sort_by_set(bodies: &mut [Placed], cell: f64) -> Vec<usize> {
 /// Whether coordinates about these regions are within the contract, and even the coarsest of them,
 /// relative to the region's bodies, are at least twice as fine as about one origin for a box of
 /// this half width.
-fn are_finer(regions: &[Region], cubes: &[Cube], found: &[(usize, Bounds)], half: f64) -> bool {
+fn are_finer(regions: &[Region], cubes: &[Cube], found: &[(usize, BodyBounds)], half: f64) -> bool {
     let (mut before, mut after) = (0.0_f64, 0.0_f64);
     for ((region, cube), (_, bounds)) in regions.iter().zip(cubes).zip(found) {
         let farthest = region.corner.iter().fold(0.0, |far: f64, x| far.max(-x)) + cube.side;
@@ -113,22 +114,23 @@ fn are_finer(regions: &[Region], cubes: &[Cube], found: &[(usize, Bounds)], half
 }
 
 /// The order of cells: by x, then y, then z.
-fn compare(a: &Cell, b: &Cell) -> Ordering {
+fn compare(a: &CellNumber, b: &CellNumber) -> Ordering {
     let by = |i: usize| a[i].total_cmp(&b[i]);
     by(0).then_with(|| by(1)).then_with(|| by(2))
 }
 
 /// The region of each cell, of sorted cells; regions are numbered in the order of their first
 /// cells.
-fn connect(cells: &[Cell]) -> Vec<u32> {
+fn connect(cells: &[CellNumber]) -> Vec<u32> {
     let mut first: Vec<u32> = (0..cells.len() as u32).collect();
-    for [x, y] in ROWS {
+    for [x, y] in ROWS_AFTER {
         // The first neighbour of a cell in that row: never before that of the previous cell.
         let mut from = 0;
         for (at, cell) in cells.iter().enumerate() {
             // The step from this cell to another: exact if it is at most one, for all numbers.
-            let step_to = |c: &Cell| -> Cell { std::array::from_fn(|i| c[i] - cell[i]) };
-            let order = |c: &Cell, z: f64| compare(&step_to(c), &[x, y, z]);
+            let step_to =
+                |c: &CellNumber| -> CellNumber { std::array::from_fn(|i| c[i] - cell[i]) };
+            let order = |c: &CellNumber, z: f64| compare(&step_to(c), &[x, y, z]);
             while from < cells.len() && order(&cells[from], -1.0) == Ordering::Less {
                 from += 1;
             }
@@ -207,7 +209,7 @@ mod tests {
     use crate::rounding::exp2;
 
     /// The region of each cell, from pairs of cells.
-    fn slowly(cells: &[Cell]) -> Vec<u32> {
+    fn slowly(cells: &[CellNumber]) -> Vec<u32> {
         let mut of: Vec<u32> = (0..cells.len() as u32).collect();
         for (i, a) in cells.iter().enumerate() {
             for (j, b) in cells.iter().enumerate() {
@@ -243,7 +245,7 @@ mod tests {
             // Some are so far away that all f64 are even, so that the numbers of neighbouring cells
             // aren't f64.
             let base = [0.0, -4.0, 2.0_f64.powi(53), -2.0_f64.powi(55)][round as usize % 4];
-            let mut cells: Vec<Cell> = (0..40)
+            let mut cells: Vec<CellNumber> = (0..40)
                 .map(|_| [(); 3].map(|()| base + f64::from(words.next_u32() % side) + 0.0))
                 .collect();
             cells.sort_unstable_by(compare);
@@ -291,7 +293,7 @@ mod tests {
     /// can be.
     #[test]
     fn small_bodies_have_cells_of_their_own() {
-        let mut bodies: Vec<Placed> = (0..40)
+        let mut bodies: Vec<PlacedBody> = (0..40)
             .map(|i| {
                 (
                     i,
@@ -301,7 +303,7 @@ mod tests {
             })
             .collect();
         bodies.push((40, [0.1, 0.0, 0.0], 1.0e6));
-        let whole = Bounds::of(bodies.iter().copied());
+        let whole = BodyBounds::of(bodies.iter().copied());
         let regions = regions(bodies.clone(), whole).unwrap();
         assert_eq!(regions.regions.len(), 21);
         for (slot, t, size) in bodies {

@@ -4,7 +4,7 @@ use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
-use sdop_bench::tradeoff::truth::Judge;
+use sdop_bench::tradeoff::truth::ExactJudge;
 use sdop_judge::ours::compare::settings;
 
 use crate::{pairs_alone, pairs_on, support};
@@ -34,7 +34,7 @@ fn bodies(of: impl IntoIterator<Item = (u32, [f32; 3])>) -> Bodies {
 /// Every strategy and finder on every number of ranks reports what one process does, once, and
 /// nothing that meets is missing.
 fn judge(what: &str, shapes: &[Shape], frames: &[Bodies]) {
-    let judge = Judge::new(shapes).unwrap();
+    let judge = ExactJudge::new(shapes).unwrap();
     let truth: Vec<_> = frames
         .iter()
         .map(|poses| judge.meetings(poses, None).unwrap())

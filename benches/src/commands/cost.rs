@@ -11,8 +11,8 @@ use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::cost::design;
 use sdop_bench::cost::level::CacheLevel;
 use sdop_bench::cost::predict::Terms;
-use sdop_bench::cost::study::{Plan, Report, possible, study};
-use sdop_bench::cost::table::{Compared, Cost, NEAR, PriceRow};
+use sdop_bench::cost::study::{CostPlan, CostReport, possible, study};
+use sdop_bench::cost::table::{Compared, Cost, MOST_RIGHT_RESIDUAL, PriceRow};
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::Estimate;
 
@@ -73,7 +73,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-fn measure(args: &Args) -> miette::Result<Report> {
+fn measure(args: &Args) -> miette::Result<CostReport> {
     let file = args.scene.read()?;
     let scene = file.build()?;
     let strategies = match args.scene.strategy() {
@@ -86,7 +86,7 @@ fn measure(args: &Args) -> miette::Result<Report> {
         Some(strategy) => vec![strategy],
         None => possible(&scene),
     };
-    let plan = Plan {
+    let plan = CostPlan {
         strategies,
         passes: args.seeds,
         frames: args
@@ -102,22 +102,22 @@ fn measure(args: &Args) -> miette::Result<Report> {
     Ok(report)
 }
 
-fn of(report: &Report, regime: Regime) -> impl Iterator<Item = &Cost> {
+fn of(report: &CostReport, regime: Regime) -> impl Iterator<Item = &Cost> {
     report
         .costs
         .iter()
         .filter(move |cost| cost.regime == regime)
 }
 
-fn text(report: &Report) -> String {
+fn text(report: &CostReport) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write_text(&mut text, report);
     text
 }
 
-fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
-    let Report {
+fn write_text(out: &mut String, report: &CostReport) -> std::fmt::Result {
+    let CostReport {
         scene,
         bodies,
         frames,
@@ -186,14 +186,14 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
 }
 
 /// The predictions that are off, each with the assumption that fails.
-fn write_failures(out: &mut String, report: &Report, regime: Regime) -> std::fmt::Result {
+fn write_failures(out: &mut String, report: &CostReport, regime: Regime) -> std::fmt::Result {
     for cost in of(report, regime) {
         if let Some(assumption) = cost.fails {
             writeln!(
                 out,
                 "{}: more than {:.0} % off. What fails: {assumption}.",
                 cost.variant,
-                100.0 * NEAR
+                100.0 * MOST_RIGHT_RESIDUAL
             )?;
         }
     }
@@ -207,7 +207,7 @@ fn title(regime: Regime) -> &'static str {
     }
 }
 
-fn strategy_rows(report: &Report, regime: Regime) -> Table {
+fn strategy_rows(report: &CostReport, regime: Regime) -> Table {
     let mut rows = table(&[
         "strategy",
         "Nu·Cu",
@@ -243,7 +243,7 @@ fn strategy_rows(report: &Report, regime: Regime) -> Table {
     rows
 }
 
-fn total_rows(report: &Report) -> Table {
+fn total_rows(report: &CostReport) -> Table {
     let mut rows = table(&[
         "strategy",
         "Co predicted",
@@ -275,7 +275,7 @@ fn percents(residual: &Estimate) -> [String; 2] {
 }
 
 /// The counts of each volume of each strategy, and the resulting terms.
-fn volume_rows(report: &Report) -> Table {
+fn volume_rows(report: &CostReport) -> Table {
     let mut rows = table(&[
         "strategy",
         "volume",

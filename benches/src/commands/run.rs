@@ -14,7 +14,7 @@ use sdop_bench::remedy::OrReport as _;
 use sdop_bench::scene::Scene;
 use sdop_bench::simulate::{Simulation, Summary};
 use sdop_bench::tradeoff::TradeoffError;
-use sdop_bench::tradeoff::truth::Judge;
+use sdop_bench::tradeoff::truth::ExactJudge;
 use sdop_judge::record::Recorder;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -123,7 +123,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         None => None,
     };
     let judge = if args.truth {
-        Some(Judge::new(&scene.shapes).map_err(TradeoffError::from)?)
+        Some(ExactJudge::new(&scene.shapes).map_err(TradeoffError::from)?)
     } else {
         None
     };

@@ -13,7 +13,7 @@ use sdop_bench::measure::machine::Machine;
 use sdop_bench::sweep::Merged;
 pub use sdop_bench::tradeoff::units::NAME;
 use sdop_bench::tradeoff::units::{Comparison, Settings};
-use sdop_bench::tradeoff::{Findings, Plan, Tradeoff};
+use sdop_bench::tradeoff::{Findings, Tradeoff, TradeoffPlan};
 use serde::{Deserialize, Serialize};
 
 use super::Outcome;
@@ -179,9 +179,9 @@ fn print(
     Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
-fn plan(args: &Args) -> Plan {
+fn plan(args: &Args) -> TradeoffPlan {
     let quick = |quick, thorough| if args.quick { quick } else { thorough };
-    Plan {
+    TradeoffPlan {
         seeds: args.seeds.unwrap_or(quick(2, 5)),
         samples: quick(6, 20) as u32,
         pairs: quick(8_000, 80_000) as u32,

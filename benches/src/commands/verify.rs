@@ -12,9 +12,9 @@ use miette::{IntoDiagnostic as _, WrapErr as _};
 use sdop::Tier;
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::sweep::Merged;
-use sdop_bench::verify::shrink::Smallest;
+use sdop_bench::verify::shrink::SmallestScene;
 pub use sdop_bench::verify::units::NAME;
-use sdop_bench::verify::units::{Origin, Settings, Verification};
+use sdop_bench::verify::units::{Settings, UnitOrigin, Verification};
 use sdop_judge::ours::hard::{FILES, Group, page};
 use sdop_judge::ours::rounds::{Failure, Ledger};
 
@@ -154,9 +154,9 @@ fn verification(args: &Args) -> miette::Result<Verification> {
 struct UnitTotals {
     /// How many.
     units: usize,
-    ledgers: BTreeMap<Origin, Ledger>,
+    ledgers: BTreeMap<UnitOrigin, Ledger>,
     /// The first unit of each that knows of a failure.
-    failed: BTreeMap<Origin, usize>,
+    failed: BTreeMap<UnitOrigin, usize>,
 }
 
 impl UnitTotals {
@@ -182,18 +182,18 @@ impl UnitTotals {
         let settings = run.settings();
         let mut report = Report::new(&settings.tiers);
         let scenes = settings.scenes.iter().enumerate();
-        let scenes = scenes.map(|(n, name)| (Origin::Scene(n), name.as_str()));
+        let scenes = scenes.map(|(n, name)| (UnitOrigin::Scene(n), name.as_str()));
         let rounds = [
-            (Origin::Hard, "hard cases"),
-            (Origin::Near, "near pairs"),
-            (Origin::Random, "random pairs"),
+            (UnitOrigin::Hard, "hard cases"),
+            (UnitOrigin::Near, "near pairs"),
+            (UnitOrigin::Random, "random pairs"),
         ];
         for (origin, name) in rounds.into_iter().chain(scenes) {
             let none = Ledger::default();
             report.add(name.to_owned(), self.ledgers.get(&origin).unwrap_or(&none));
         }
         let none = Ledger::default();
-        let boxes = self.ledgers.get(&Origin::Boxes).unwrap_or(&none);
+        let boxes = self.ledgers.get(&UnitOrigin::Boxes).unwrap_or(&none);
         let units = [run.units(), self.units];
         report.finish(units, seconds, &boxes.boxes, run.rotation());
         let why = report.why();
@@ -231,7 +231,7 @@ fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
         failure.mode.tier,
         failure.mode.threads
     );
-    let Some(smallest) = Smallest::of(failure) else {
+    let Some(smallest) = SmallestScene::of(failure) else {
         return print(&format!(
             "{what}\nthe frame alone does not show it: it depends on the frames before"
         ));

@@ -26,7 +26,7 @@ use sdop_judge::contestant::Contestant;
 
 /// The step from a calibration scene of a round to the next one. It shares no divisor with the
 /// number of scenes.
-const STRIDE: usize = 7;
+const SCENE_STEP: usize = 7;
 /// The calibration scene with the most pairs, on which hits and misses are distinguished.
 const MOST_PAIRS: usize = SCENES - 1;
 
@@ -148,7 +148,7 @@ impl Calibration {
             prepared.volumes.clear();
         }
         for number in 0..SCENES * self.effort.turns {
-            self.turn(number * STRIDE % SCENES)?;
+            self.turn(number * SCENE_STEP % SCENES)?;
         }
         let round = Round {
             lanes: expected::lanes(self.tier),

@@ -22,19 +22,19 @@ use sdop::settings::{Finder, Interest};
 /// Sizes of one level, the smallest one included.
 const SIZES: usize = 5;
 /// Bodies of the smallest calibration scene.
-const FEWEST: usize = 16;
+const FEWEST_BODIES: usize = 16;
 /// A level's largest size is at most this multiple of its fewest bodies: all pairs of more would
 /// take too long, and would be in the same caches.
-const SPAN: f64 = 4.0;
+const MOST_SIZE_RATIO: f64 = 4.0;
 /// Densities if every pair is tested: shares of pairs whose balls meet.
-const SHARES: [f64; 5] = [0.0002, 0.002, 0.01, 0.05, 0.15];
+const MEETING_SHARES: [f64; 5] = [0.0002, 0.002, 0.01, 0.05, 0.15];
 /// Densities if a finder rejects most pairs: numbers of balls that meet one ball.
 const PARTNERS: [f64; 5] = [0.25, 1.0, 2.0, 5.0, 12.0];
 /// The seed of all calibration draws; scenes count their seeds from 1.
 const SEED: u64 = 0xca11_b8a7_e000_0000;
 
 /// The number of calibration scenes.
-pub const SCENES: usize = SIZES * SHARES.len();
+pub const SCENES: usize = SIZES * MEETING_SHARES.len();
 
 /// The calibration scenes of a scene.
 pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
@@ -43,7 +43,7 @@ pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
     (0..SCENES).map(move |number| {
         let (bodies, mut share) = grid[number];
         if !tests_all {
-            share = share.min(PARTNERS[number % SHARES.len()] / bodies as f64);
+            share = share.min(PARTNERS[number % MEETING_SHARES.len()] / bodies as f64);
         }
         resample(scene, bodies, share, number as u64)
     })
@@ -52,20 +52,25 @@ pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
 /// Every size of a level at every share of pairs whose balls meet.
 pub(super) fn grid(level: CacheLevel) -> [(usize, f64); SCENES] {
     let sizes = sizes(level);
-    std::array::from_fn(|number| (sizes[number / SHARES.len()], SHARES[number % SHARES.len()]))
+    std::array::from_fn(|number| {
+        (
+            sizes[number / MEETING_SHARES.len()],
+            MEETING_SHARES[number % MEETING_SHARES.len()],
+        )
+    })
 }
 
 /// The smallest size, and those of a level, in a geometric sequence.
 fn sizes(level: CacheLevel) -> [usize; SIZES] {
     let [fewest, most] = level.bodies().map(|bodies| bodies as f64);
-    let fewest = fewest.max(FEWEST as f64);
+    let fewest = fewest.max(FEWEST_BODIES as f64);
     let most = match level {
         CacheLevel::L1 => most,
-        _ => most.min(SPAN * fewest),
+        _ => most.min(MOST_SIZE_RATIO * fewest),
     };
     std::array::from_fn(|number| {
         let Some(number) = number.checked_sub(1) else {
-            return FEWEST;
+            return FEWEST_BODIES;
         };
         let place = (number as f64 + 0.5) / (SIZES - 1) as f64;
         (fewest * (most / fewest).powf(place)).round() as usize

@@ -32,7 +32,7 @@ const SEED: u64 = 0xca11_b8a7_e001_0000;
 /// How many times such a list is timed.
 const REPEATS: usize = 5;
 /// The fewest pairs of such a list.
-const FEWEST: usize = 32;
+const FEWEST_PAIRS: usize = 32;
 
 /// One turn of one calibration scene.
 #[derive(Clone, Copy, Debug)]
@@ -106,7 +106,7 @@ fn mixture(listed: &[[u32; 2]], kept: &[[u32; 2]], quarters: usize) -> Option<Pa
     hits.truncate(quarters * quarter);
     misses.truncate((4 - quarters) * quarter);
     let mut all = [hits, misses].concat();
-    if all.len() < FEWEST {
+    if all.len() < FEWEST_PAIRS {
         return None;
     }
     let mut draws = Stream::new(SEED, quarters as u64);

@@ -11,7 +11,7 @@ use faer::linalg::solvers::SolveLstsq;
 use crate::measure::turns::median;
 
 /// Rows whose residual is this many times the median residual are left out.
-const OUTLYING: f64 = 4.0;
+const OUTLIER_RATIO: f64 = 4.0;
 
 /// One measurement: the counts of the priced operations, and their seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub fn prices<const N: usize>(rows: &[Measurement<N>]) -> [f64; N] {
     let rows: Vec<&Measurement<N>> = rows.iter().filter(|row| row.whole > 0.0).collect();
     let first = positive_fit(&rows);
     let off = |row: &&Measurement<N>| relative_residual(row, &first).abs();
-    let limit = OUTLYING * median(rows.iter().map(off).collect());
+    let limit = OUTLIER_RATIO * median(rows.iter().map(off).collect());
     let near: Vec<&Measurement<N>> = rows
         .iter()
         .copied()

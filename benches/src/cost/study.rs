@@ -19,7 +19,7 @@ use sdop::simd::Tier;
 
 /// The amount of measurement.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct CostPlan {
     /// The strategies without the control, for which the formula has no term.
     pub strategies: Vec<Strategy>,
     /// Number of passes. The first has the scene's seed, and each one the next seed.
@@ -34,7 +34,7 @@ pub struct Plan {
 
 /// The cost of every strategy in one scene.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct CostReport {
     /// The scene.
     pub scene: String,
     /// N.
@@ -85,7 +85,11 @@ pub fn possible(scene: &Scene) -> Vec<Strategy> {
 ///
 /// # Errors
 /// The scene can't be built, simulated or culled.
-pub fn study(file: &SceneFile, plan: &Plan, mut done: impl FnMut()) -> Result<Report, CostError> {
+pub fn study(
+    file: &SceneFile,
+    plan: &CostPlan,
+    mut done: impl FnMut(),
+) -> Result<CostReport, CostError> {
     let mut file = file.clone();
     let scene = file.build()?;
     let variants: Vec<Variant> = plan
@@ -129,7 +133,7 @@ pub fn study(file: &SceneFile, plan: &Plan, mut done: impl FnMut()) -> Result<Re
     let prices = Regime::ALL
         .iter()
         .flat_map(|&regime| table::prices(&passes, regime));
-    Ok(Report {
+    Ok(CostReport {
         bodies: scene.bodies.len(),
         frames: plan.frames,
         scene_frames: scene.frames,

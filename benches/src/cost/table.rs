@@ -98,13 +98,13 @@ pub struct Cost {
     pub construct: Compared,
     /// T = Co + all frames, seconds.
     pub total: Compared,
-    /// The assumption that fails, if the prediction of a frame is off by more than [`NEAR`].
+    /// The assumption that fails, if the residual of a frame is above [`MOST_RIGHT_RESIDUAL`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fails: Option<Assumption>,
 }
 
 /// The largest relative error of a prediction that counts as right.
-pub const NEAR: f64 = 0.05;
+pub const MOST_RIGHT_RESIDUAL: f64 = 0.05;
 
 impl Cost {
     /// A term summed over the variant's volumes.
@@ -182,7 +182,8 @@ pub fn cost(
         level: Some(prices.level),
         frames: last.frames,
         widths: (0..first.len()).filter_map(widths).collect(),
-        fails: (frame.residual.mean.abs() > NEAR).then(|| failing(&frame, &terms, &culled, regime)),
+        fails: (frame.residual.mean.abs() > MOST_RIGHT_RESIDUAL)
+            .then(|| failing(&frame, &terms, &culled, regime)),
         terms,
         frame,
         quartiles: Quartiles::mean(&seconds),

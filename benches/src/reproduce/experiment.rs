@@ -322,8 +322,8 @@ impl Results {
         passes.map(|(_, pass)| pass).collect()
     }
 
-    /// The passes whose rounds calibrated scenes of the same kind as this one, in the order of time:
-    /// such scenes share their prices.
+    /// The passes whose rounds calibrated scenes of the same kind as this one, in the order of
+    /// time. Such scenes share their prices.
     #[must_use]
     pub fn priced_as(&self, scene: PaperScene) -> Vec<&Pass> {
         let level = |pass: &Pass| Some(pass.prices[0].first()?.level);

@@ -22,7 +22,7 @@ use sdop::simd::Tier;
 pub const FRAMES: u32 = 200;
 /// The fewest frames: a scene with fewer is simulated further, since the first frame of a run is
 /// cold.
-const FEWEST: u32 = 24;
+const FEWEST_FRAMES: u32 = 24;
 /// Sample frames among them.
 const SAMPLES: u32 = 10;
 /// The most bodies for which all-pairs is tried: 50 million pairs.
@@ -97,7 +97,7 @@ pub fn advise(
 ) -> Result<Option<Advice>, TradeoffError> {
     let before = Conditions::before();
     let mut scene = file.build()?;
-    scene.frames = scene.frames.clamp(FEWEST, FRAMES);
+    scene.frames = scene.frames.clamp(FEWEST_FRAMES, FRAMES);
     let found = lines_of_a_run(&scene, &finders(&scene, tried.finder), tier)?;
     let Some((finder, tied_finders)) = chosen_finder(&found) else {
         return Ok(None);

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::TradeoffError;
 use super::counts::{share, shared};
 use super::interest::spread;
-use super::truth::{Judge, Sample};
+use super::truth::{ExactJudge, Sample};
 use super::variant::Variant;
 use crate::cost::pass::{Culled, Simulated, pass};
 use crate::measure::turns::{Regime, median};
@@ -73,7 +73,7 @@ pub fn by_tests(
     scene: &Scene,
     tier: Tier,
     window: Window<'_>,
-    judge: &Judge,
+    judge: &ExactJudge,
     cache: Option<&std::path::Path>,
     tests: f64,
 ) -> Result<Vec<BudgetRow>, TradeoffError> {

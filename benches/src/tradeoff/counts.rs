@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::truth::{Sample, Truth};
+use super::truth::{Sample, TruePairs};
 use super::variant::Variant;
 use crate::hash::PairsHash;
 use crate::scene::Scene;
@@ -54,7 +54,7 @@ impl Tally {
         variant: &Variant,
         tier: Tier,
         samples: &[Sample],
-        truth: &Truth,
+        truth: &TruePairs,
     ) -> Result<Self, CullError> {
         let mut culling = variant.culling(scene, tier)?;
         let (mut reported, mut found, mut hash) = (0, 0, PairsHash::default());

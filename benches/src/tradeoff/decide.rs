@@ -17,9 +17,9 @@ use sdop::choice::choices;
 /// Prices of a narrow-phase check in seconds.
 pub const CHECKS: [f64; 4] = [10e-9, 100e-9, 1e-6, 10e-6];
 /// Shapes with at least this share of sphere hits whose hulls meet are round.
-const ROUND: f64 = 0.7;
+const LEAST_ROUND_SHARE: f64 = 0.7;
 /// Shapes with less than this share are thin.
-const THIN: f64 = 0.2;
+const LEAST_COMPACT_SHARE: f64 = 0.2;
 
 choices! {
     /// How well a shape fills its bounding sphere, by the share of sphere hits whose hulls meet.
@@ -36,8 +36,8 @@ choices! {
 impl ShapeClass {
     fn of(shape: &ShapeSurvival) -> Self {
         match shape.hull.mean {
-            share if share >= ROUND => Self::Round,
-            share if share < THIN => Self::Thin,
+            share if share >= LEAST_ROUND_SHARE => Self::Round,
+            share if share < LEAST_COMPACT_SHARE => Self::Thin,
             _ => Self::Compact,
         }
     }

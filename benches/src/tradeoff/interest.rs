@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::counts::{Quality, Tally};
 use super::timing::measure;
-use super::truth::{Sample, Truth};
+use super::truth::{Sample, TruePairs};
 use super::variant::Variant;
 use super::{Estimate, TradeoffError};
 use crate::cost::pass::medians;
@@ -72,7 +72,7 @@ pub fn counts(
     scene: &Scene,
     tier: Tier,
     samples: &[Sample],
-    truth: &Truth,
+    truth: &TruePairs,
 ) -> Result<Vec<Counted>, TradeoffError> {
     let counted = |bodies: usize| {
         let variant = variant(scene, bodies, Updates::Eager);

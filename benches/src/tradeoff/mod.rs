@@ -26,7 +26,7 @@ pub mod vary;
 
 pub use crate::measure::estimate::{CONFIDENCE, Estimate};
 pub use result::{Tradeoff, VariantResult};
-pub use study::{Findings, Plan};
+pub use study::{Findings, TradeoffPlan};
 
 use std::path::PathBuf;
 

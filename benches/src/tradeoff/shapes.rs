@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
-use super::truth::Judge;
+use super::truth::ExactJudge;
 use crate::hull_test::{HullGraph, PosedHull, may_touch};
 use crate::measure::estimate::Estimate;
 use crate::random::Stream;
@@ -27,7 +27,7 @@ use sdop::volume::{Hull, OrDop, Origin, Shape, ShapeSpec};
 const SEED: u64 = 0x5a3e_7000_0000_0000;
 /// The largest distance of drawn pairs whose spheres don't overlap, in sums of radii: an 18-DOP of
 /// a ball reaches 1.23 radii.
-const FAR: f32 = 1.3;
+const MOST_DISTANCE: f32 = 1.3;
 /// Batches of pairs, each an observation of the intervals.
 const BATCHES: usize = 8;
 
@@ -182,7 +182,7 @@ pub fn survival(shape: &Shape, pairs: u32, tier: Tier) -> Result<ShapeSurvival, 
             }
         }
     }
-    let judge = Judge::new(shape)?;
+    let judge = ExactJudge::new(shape)?;
     let few: Vec<Crowd> = (0..BATCHES as u64)
         .map(|batch| Crowd::new(shape, 1.0, each.div_ceil(10), batch))
         .collect();
@@ -201,13 +201,13 @@ pub fn survival(shape: &Shape, pairs: u32, tier: Tier) -> Result<ShapeSurvival, 
     })
 }
 
-/// 18-DOP hits outside of the spheres' hits, per hit inside, of `pairs` pairs up to [`FAR`] times
-/// as far apart.
+/// 18-DOP hits outside of the spheres' hits, per hit inside, of `pairs` pairs up to
+/// [`MOST_DISTANCE`] times as far apart as radii sum to.
 #[must_use]
 pub fn outside(shape: &[Shape], pairs: u32, tier: Tier) -> f64 {
     let ordop = [shape[0].ordop_along(Axes::Principal, DirectionSet::K18)];
     let reach = 2.0 * f64::from(shape[0].ball.radius);
-    let crowd = Crowd::new(shape, FAR, pairs, BATCHES as u64);
+    let crowd = Crowd::new(shape, MOST_DISTANCE, pairs, BATCHES as u64);
     let centre = |body: u32| {
         let ball = shape[0].ball.centre;
         let body = body as usize;

@@ -25,7 +25,7 @@ use sdop::simd::Tier;
 
 /// The amount of work.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct TradeoffPlan {
     /// Number of seeds from the scene's on, with one run each.
     pub seeds: u64,
     /// Judged frames per run.

@@ -39,7 +39,7 @@ pub struct Sample {
 }
 
 /// The pairs i < j, sorted, whose meshes meet, sample by sample.
-pub type Truth = Vec<Vec<[u32; 2]>>;
+pub type TruePairs = Vec<Vec<[u32; 2]>>;
 
 /// Simulates the scene and keeps `count` frames (all, if it has fewer) at equal distances.
 ///
@@ -84,13 +84,13 @@ pub fn windows(
 
 /// A scene's meshes, prepared for exact judgement.
 #[derive(Debug)]
-pub struct Judge {
+pub struct ExactJudge {
     meshes: Vec<Mesh>,
     reaches: Vec<f64>,
     key: Sha256,
 }
 
-impl Judge {
+impl ExactJudge {
     /// Prepares the shapes' meshes.
     ///
     /// # Errors
@@ -122,7 +122,11 @@ impl Judge {
     ///
     /// # Errors
     /// The reference rejects a pose, or the cache can't be written.
-    pub fn truth(&self, samples: &[Sample], cache: Option<&Path>) -> Result<Truth, TradeoffError> {
+    pub fn truth(
+        &self,
+        samples: &[Sample],
+        cache: Option<&Path>,
+    ) -> Result<TruePairs, TradeoffError> {
         let file = cache.map(|directory| directory.join(self.file_name(samples)));
         if let Some(truth) = file.as_deref().and_then(|file| read(file, samples)) {
             return Ok(truth);
@@ -130,7 +134,7 @@ impl Judge {
         let truth = samples
             .par_iter()
             .map(|sample| self.meetings(&sample.bodies, None))
-            .collect::<Result<Truth, _>>()?;
+            .collect::<Result<TruePairs, _>>()?;
         if let Some(file) = file {
             write(&file, samples, &truth)
                 .map_err(|source| TradeoffError::Cache { file, source })?;
@@ -301,13 +305,13 @@ fn poses(bodies: &Bodies) -> Result<Vec<Pose>, InvalidInput> {
 
 /// Reads a cache file: the header, a line of numbers per sample, and the hash of all pairs. A file
 /// with other contents is ignored.
-fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
+fn read(file: &Path, samples: &[Sample]) -> Option<TruePairs> {
     let text = files::read_text(file, files::MAX_BYTES).ok()?;
     let mut lines = text.lines();
     if lines.next()? != HEADER {
         return None;
     }
-    let mut truth = Truth::new();
+    let mut truth = TruePairs::new();
     for _ in samples {
         let numbers: Vec<u32> = lines
             .next()?
@@ -320,7 +324,7 @@ fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
 }
 
 /// Writes a cache file as a whole, so that nothing reads half a file.
-fn write(file: &Path, samples: &[Sample], truth: &Truth) -> io::Result<()> {
+fn write(file: &Path, samples: &[Sample], truth: &TruePairs) -> io::Result<()> {
     let mut text = format!("{HEADER}\n");
     for pairs in truth {
         let numbers: Vec<String> = pairs.iter().flatten().map(u32::to_string).collect();
@@ -333,7 +337,7 @@ fn write(file: &Path, samples: &[Sample], truth: &Truth) -> io::Result<()> {
     files::write(file, text)
 }
 
-fn hash(samples: &[Sample], truth: &Truth) -> String {
+fn hash(samples: &[Sample], truth: &TruePairs) -> String {
     let mut hash = PairsHash::default();
     for (sample, pairs) in samples.iter().zip(truth) {
         hash.frame(sample.frame, pairs);
@@ -350,7 +354,7 @@ mod tests {
 
     #[test]
     fn the_sweep_lists_what_all_pairs_would() {
-        let judge = Judge {
+        let judge = ExactJudge {
             meshes: Vec::new(),
             reaches: vec![0.05, 0.4, 6.0],
             key: Sha256::new(),

@@ -15,11 +15,11 @@ use super::density::{self, Density};
 use super::interest;
 use super::safety::{self, SafetyRow};
 use super::shapes::{self, ShapeSurvival};
-use super::study::{Findings, Plan};
+use super::study::{Findings, TradeoffPlan};
 use super::timing::{PASSES, Windows};
-use super::truth::{Judge, NarrowPhase, Sample, samples};
+use super::truth::{ExactJudge, NarrowPhase, Sample, samples};
 use super::variant::{self, Variant};
-use super::vary::{self, Change, Variation};
+use super::vary::{self, SceneChange, Variation};
 use super::{Estimate, TradeoffError};
 use crate::cost::calibrate::{Calibration, Effort};
 use crate::cost::pass::{Pass, pass};
@@ -32,7 +32,7 @@ use sdop::volume::Shape;
 pub const NAME: &str = "tradeoff";
 
 /// Pairs on which the narrow phase is timed.
-const CHECKED: usize = 2000;
+const CHECKED_PAIRS: usize = 2000;
 /// Sample frames of a changed scene.
 const CHANGED_SAMPLES: u32 = 6;
 /// The calibration of a pass.
@@ -65,7 +65,7 @@ pub struct Settings {
 /// A comparison, ready to run.
 pub struct Comparison {
     file: SceneFile,
-    plan: Plan,
+    plan: TradeoffPlan,
     /// The scene of the first seed.
     scene: Scene,
     /// Mean sphere hits per frame.
@@ -73,14 +73,14 @@ pub struct Comparison {
     variants: Vec<Variant>,
     /// The scene's shapes, and some with known answers.
     shapes: Vec<Shape>,
-    units: Vec<Unit>,
+    units: Vec<TradeoffUnit>,
     /// `None` before the first pass in this process.
     calibration: Mutex<Option<Calibration>>,
 }
 
 /// One unit.
 #[derive(Clone, Copy, Debug)]
-enum Unit {
+enum TradeoffUnit {
     /// The variants.
     Compared,
     /// The truth of the run of a seed, and every variant's counts.
@@ -100,7 +100,7 @@ enum Unit {
     /// The scene at a multiple of its density.
     Density(f32),
     /// The scene with one change.
-    Variation(Change),
+    Variation(SceneChange),
     /// Margins, arithmetic and tiers.
     Safety,
 }
@@ -149,7 +149,7 @@ impl Comparison {
     ///
     /// # Errors
     /// The scene can't be built, run or culled.
-    pub fn new(file: &SceneFile, plan: &Plan) -> Result<Self, TradeoffError> {
+    pub fn new(file: &SceneFile, plan: &TradeoffPlan) -> Result<Self, TradeoffError> {
         let scene = Scene {
             construct_seconds: 0.0,
             ..file.build()?
@@ -176,7 +176,7 @@ impl Comparison {
     /// The settings, of this machine.
     #[must_use]
     pub fn settings(&self) -> Settings {
-        let Plan {
+        let TradeoffPlan {
             samples,
             pairs,
             window,
@@ -197,33 +197,40 @@ impl Comparison {
         }
     }
 
-    fn find(&self, unit: Unit) -> Result<Found, TradeoffError> {
+    fn find(&self, unit: TradeoffUnit) -> Result<Found, TradeoffError> {
         let (file, scene, tier) = (&self.file, &self.scene, self.plan.tier);
         Ok(match unit {
-            Unit::Compared => Found::Compared(self.compared()),
-            Unit::Seed(seed) => Found::Seed(self.counts(seed)?),
-            Unit::Budgets => Found::Budgets(self.budgets()?),
-            Unit::Shape(number) => {
+            TradeoffUnit::Compared => Found::Compared(self.compared()),
+            TradeoffUnit::Seed(seed) => Found::Seed(self.counts(seed)?),
+            TradeoffUnit::Budgets => Found::Budgets(self.budgets()?),
+            TradeoffUnit::Shape(number) => {
                 let shape = &self.shapes[number];
                 Found::Shape(shapes::survival(shape, self.plan.pairs, tier)?)
             }
-            Unit::Pass(seed) => Found::Pass(self.pass(seed)?),
-            Unit::NarrowPhase => {
-                let judge = Judge::new(&scene.shapes)?;
-                Found::NarrowPhase(judge.price_of_spheres(scene, &scene.bodies, tier, CHECKED)?)
+            TradeoffUnit::Pass(seed) => Found::Pass(self.pass(seed)?),
+            TradeoffUnit::NarrowPhase => {
+                let judge = ExactJudge::new(&scene.shapes)?;
+                Found::NarrowPhase(judge.price_of_spheres(
+                    scene,
+                    &scene.bodies,
+                    tier,
+                    CHECKED_PAIRS,
+                )?)
             }
-            Unit::Clock => {
+            TradeoffUnit::Clock => {
                 let frames = self.plan.window.min(scene.frames);
                 Found::Clock(budget::by_clock(scene, tier, frames)?)
             }
-            Unit::Interest => Found::Interest(interest::times(scene, tier, self.plan.samples)?),
-            Unit::Density(factor) => {
+            TradeoffUnit::Interest => {
+                Found::Interest(interest::times(scene, tier, self.plan.samples)?)
+            }
+            TradeoffUnit::Density(factor) => {
                 Found::Density(density::at(file, factor, tier, self.samples_of_changed())?)
             }
-            Unit::Variation(change) => {
+            TradeoffUnit::Variation(change) => {
                 Found::Variation(vary::varied(file, change, tier, self.samples_of_changed())?)
             }
-            Unit::Safety => Found::Safety(safety::compare(scene, self.plan.samples)?),
+            TradeoffUnit::Safety => Found::Safety(safety::compare(scene, self.plan.samples)?),
         })
     }
 
@@ -243,7 +250,7 @@ impl Comparison {
     fn counts(&self, seed: u64) -> Result<Counts, TradeoffError> {
         let scene = with_seed(&self.file, seed)?;
         let samples = samples(&scene, self.plan.samples)?;
-        let truth = Judge::new(&scene.shapes)?.truth(&samples, self.plan.cache.as_deref())?;
+        let truth = ExactJudge::new(&scene.shapes)?.truth(&samples, self.plan.cache.as_deref())?;
         let tally = |variant| Tally::of(&scene, variant, self.plan.tier, &samples, &truth);
         let interest = if seed == self.scene.seed {
             interest::counts(&scene, self.plan.tier, &samples, &truth)?
@@ -257,14 +264,14 @@ impl Comparison {
     }
 
     fn budgets(&self) -> Result<Vec<BudgetRow>, TradeoffError> {
-        let Plan {
+        let TradeoffPlan {
             window,
             stride,
             tier,
             ref cache,
             ..
         } = self.plan;
-        let judge = Judge::new(&self.scene.shapes)?;
+        let judge = ExactJudge::new(&self.scene.shapes)?;
         let frames = first_frames(&self.scene, window)?;
         let window = Window {
             frames: &frames,
@@ -298,24 +305,28 @@ impl Comparison {
 }
 
 /// All units: first counts, then times.
-fn units(seeds: &[u64], shapes: usize) -> Vec<Unit> {
+fn units(seeds: &[u64], shapes: usize) -> Vec<TradeoffUnit> {
     // One pass per seed, and not too few.
     let passes = seeds.iter().cycle().take(seeds.len().max(PASSES));
-    let once = [Unit::NarrowPhase, Unit::Clock, Unit::Interest];
-    let mut units = vec![Unit::Compared];
-    units.extend(seeds.iter().copied().map(Unit::Seed));
-    units.push(Unit::Budgets);
-    units.extend((0..shapes).map(Unit::Shape));
-    units.extend(passes.copied().map(Unit::Pass));
+    let once = [
+        TradeoffUnit::NarrowPhase,
+        TradeoffUnit::Clock,
+        TradeoffUnit::Interest,
+    ];
+    let mut units = vec![TradeoffUnit::Compared];
+    units.extend(seeds.iter().copied().map(TradeoffUnit::Seed));
+    units.push(TradeoffUnit::Budgets);
+    units.extend((0..shapes).map(TradeoffUnit::Shape));
+    units.extend(passes.copied().map(TradeoffUnit::Pass));
     units.extend(once);
-    units.extend(density::FACTORS.map(Unit::Density));
-    units.extend(vary::changes().into_iter().map(Unit::Variation));
-    units.push(Unit::Safety);
+    units.extend(density::FACTORS.map(TradeoffUnit::Density));
+    units.extend(vary::changes().into_iter().map(TradeoffUnit::Variation));
+    units.push(TradeoffUnit::Safety);
     units
 }
 
 /// The runs' seeds, from the scene's on.
-fn seeds(file: &SceneFile, plan: &Plan) -> Vec<u64> {
+fn seeds(file: &SceneFile, plan: &TradeoffPlan) -> Vec<u64> {
     let seed = |number| file.spec.seed.wrapping_add(number);
     (0..plan.seeds.max(1)).map(seed).collect()
 }
@@ -355,17 +366,17 @@ impl Sweep for Comparison {
 
     fn name(&self, unit: usize) -> String {
         match self.units[unit] {
-            Unit::Compared => "what is compared".to_owned(),
-            Unit::Seed(seed) => format!("truth and counts of seed {seed}"),
-            Unit::Budgets => "budgets of tests".to_owned(),
-            Unit::Shape(number) => format!("shape {}", self.shapes[number].name),
-            Unit::Pass(seed) => format!("times on seed {seed}"),
-            Unit::NarrowPhase => "times of the narrow phase".to_owned(),
-            Unit::Clock => "budgets of time".to_owned(),
-            Unit::Interest => "times of interest sets".to_owned(),
-            Unit::Density(factor) => format!("{factor} times the density"),
-            Unit::Variation(change) => change.to_string(),
-            Unit::Safety => "the price of safety".to_owned(),
+            TradeoffUnit::Compared => "what is compared".to_owned(),
+            TradeoffUnit::Seed(seed) => format!("truth and counts of seed {seed}"),
+            TradeoffUnit::Budgets => "budgets of tests".to_owned(),
+            TradeoffUnit::Shape(number) => format!("shape {}", self.shapes[number].name),
+            TradeoffUnit::Pass(seed) => format!("times on seed {seed}"),
+            TradeoffUnit::NarrowPhase => "times of the narrow phase".to_owned(),
+            TradeoffUnit::Clock => "budgets of time".to_owned(),
+            TradeoffUnit::Interest => "times of interest sets".to_owned(),
+            TradeoffUnit::Density(factor) => format!("{factor} times the density"),
+            TradeoffUnit::Variation(change) => change.to_string(),
+            TradeoffUnit::Safety => "the price of safety".to_owned(),
         }
     }
 
@@ -375,14 +386,17 @@ impl Sweep for Comparison {
 
     fn timed(&self, unit: usize) -> bool {
         match self.units[unit] {
-            Unit::Compared | Unit::Seed(_) | Unit::Budgets | Unit::Shape(_) => false,
-            Unit::Pass(_)
-            | Unit::NarrowPhase
-            | Unit::Clock
-            | Unit::Interest
-            | Unit::Density(_)
-            | Unit::Variation(_)
-            | Unit::Safety => true,
+            TradeoffUnit::Compared
+            | TradeoffUnit::Seed(_)
+            | TradeoffUnit::Budgets
+            | TradeoffUnit::Shape(_) => false,
+            TradeoffUnit::Pass(_)
+            | TradeoffUnit::NarrowPhase
+            | TradeoffUnit::Clock
+            | TradeoffUnit::Interest
+            | TradeoffUnit::Density(_)
+            | TradeoffUnit::Variation(_)
+            | TradeoffUnit::Safety => true,
         }
     }
 }

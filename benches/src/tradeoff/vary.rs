@@ -14,7 +14,7 @@ use super::TradeoffError;
 use super::decide::{CHECKS, choose_measured};
 use super::density::{self, built_if_possible, variants};
 use super::pays::Line;
-use super::truth::{Judge, NarrowPhase};
+use super::truth::{ExactJudge, NarrowPhase};
 use crate::number::{Interval, Positive};
 use crate::scene::{Scene, SceneFile};
 use crate::simulate::{SimulationError, Trajectory};
@@ -57,7 +57,7 @@ choices! {
 
 /// One change of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Change {
+pub(super) enum SceneChange {
     /// This multiple of the bodies, in this multiple of the volume.
     Bodies(f32),
     /// At most this number of triangles per mesh.
@@ -68,7 +68,7 @@ pub(super) enum Change {
     Shapes(Mix),
 }
 
-impl Change {
+impl SceneChange {
     fn aspect(self) -> Aspect {
         match self {
             Self::Bodies(_) => Aspect::Bodies,
@@ -79,7 +79,7 @@ impl Change {
     }
 }
 
-impl fmt::Display for Change {
+impl fmt::Display for SceneChange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Bodies(factor) => write!(f, "{factor} times the bodies"),
@@ -92,12 +92,15 @@ impl fmt::Display for Change {
 }
 
 impl Aspect {
-    fn changes(self) -> Vec<Change> {
+    fn changes(self) -> Vec<SceneChange> {
         match self {
-            Self::Bodies => [0.1, 1.0, 10.0, 40.0].map(Change::Bodies).to_vec(),
-            Self::Triangles => [100, 1000, usize::MAX].map(Change::Triangles).to_vec(),
-            Self::Motion => [0.1, 1.0, 10.0, 40.0].map(Change::Motion).to_vec(),
-            Self::Shapes => Mix::ALL.iter().map(|mix| Change::Shapes(*mix)).collect(),
+            Self::Bodies => [0.1, 1.0, 10.0, 40.0].map(SceneChange::Bodies).to_vec(),
+            Self::Triangles => [100, 1000, usize::MAX].map(SceneChange::Triangles).to_vec(),
+            Self::Motion => [0.1, 1.0, 10.0, 40.0].map(SceneChange::Motion).to_vec(),
+            Self::Shapes => Mix::ALL
+                .iter()
+                .map(|mix| SceneChange::Shapes(*mix))
+                .collect(),
         }
     }
 }
@@ -126,7 +129,7 @@ pub struct Variation {
 }
 
 /// Pairs on which a variation's narrow phase is timed.
-const CHECKED: usize = 500;
+const CHECKED_PAIRS: usize = 500;
 
 /// The recommendation for one price of a check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -140,7 +143,7 @@ pub struct Best {
 }
 
 /// Every change.
-pub(super) fn changes() -> Vec<Change> {
+pub(super) fn changes() -> Vec<SceneChange> {
     Aspect::ALL
         .iter()
         .flat_map(|aspect| aspect.changes())
@@ -153,7 +156,7 @@ pub(super) fn changes() -> Vec<Change> {
 /// Running the scene fails.
 pub(super) fn varied(
     file: &SceneFile,
-    change: Change,
+    change: SceneChange,
     tier: Tier,
     count: u32,
 ) -> Result<Option<Variation>, TradeoffError> {
@@ -163,15 +166,19 @@ pub(super) fn varied(
 }
 
 fn variation(
-    change: Change,
+    change: SceneChange,
     scene: &Scene,
     tier: Tier,
     count: u32,
 ) -> Result<Variation, TradeoffError> {
     let variants = variants(&scene.cull);
     let lines = match change {
-        Change::Bodies(_) | Change::Motion(_) => density::lines_of_a_run(scene, &variants, tier)?,
-        Change::Triangles(_) | Change::Shapes(_) => density::lines(scene, &variants, tier, count)?,
+        SceneChange::Bodies(_) | SceneChange::Motion(_) => {
+            density::lines_of_a_run(scene, &variants, tier)?
+        }
+        SceneChange::Triangles(_) | SceneChange::Shapes(_) => {
+            density::lines(scene, &variants, tier, count)?
+        }
     };
     let bodies = &scene.bodies;
     let triangles = bodies
@@ -189,7 +196,7 @@ fn variation(
     Ok(Variation {
         aspect: change.aspect(),
         mix: match change {
-            Change::Shapes(mix) => Some(mix),
+            SceneChange::Shapes(mix) => Some(mix),
             _ => None,
         },
         bodies: bodies.len(),
@@ -198,7 +205,12 @@ fn variation(
         partners: lines
             .first()
             .map_or(0.0, |spheres| 2.0 * spheres.pairs / bodies.len() as f64),
-        narrow_phase: Judge::new(&scene.shapes)?.price_of_spheres(scene, bodies, tier, CHECKED)?,
+        narrow_phase: ExactJudge::new(&scene.shapes)?.price_of_spheres(
+            scene,
+            bodies,
+            tier,
+            CHECKED_PAIRS,
+        )?,
         best: best.collect(),
         lines,
     })
@@ -229,17 +241,17 @@ fn motion(scene: &Scene) -> Result<f64, TradeoffError> {
 
 /// The scene with a change. `None` if it can't have it: bodies at given places, spheres larger than
 /// the box.
-fn changed(file: &SceneFile, change: Change) -> Result<Option<Scene>, TradeoffError> {
+fn changed(file: &SceneFile, change: SceneChange) -> Result<Option<Scene>, TradeoffError> {
     let mut file = file.clone();
     let mut possible = true;
     match change {
-        Change::Bodies(factor) => possible = multiply(&mut file, factor),
-        Change::Motion(factor) => {
+        SceneChange::Bodies(factor) => possible = multiply(&mut file, factor),
+        SceneChange::Motion(factor) => {
             possible = multiply(&mut file, 10.0);
             file.spec.dt = Positive(file.spec.dt.0 * factor);
         }
-        Change::Shapes(Mix::Sizes) => spread_radii(&mut file),
-        Change::Triangles(_) | Change::Shapes(_) => {}
+        SceneChange::Shapes(Mix::Sizes) => spread_radii(&mut file),
+        SceneChange::Triangles(_) | SceneChange::Shapes(_) => {}
     }
     if !possible {
         return Ok(None);
@@ -248,9 +260,9 @@ fn changed(file: &SceneFile, change: Change) -> Result<Option<Scene>, TradeoffEr
         return Ok(None);
     };
     match change {
-        Change::Triangles(most) => fewer_triangles(&mut scene, most)?,
-        Change::Shapes(mix) => other_shapes(&mut scene, mix)?,
-        Change::Bodies(_) | Change::Motion(_) => {}
+        SceneChange::Triangles(most) => fewer_triangles(&mut scene, most)?,
+        SceneChange::Shapes(mix) => other_shapes(&mut scene, mix)?,
+        SceneChange::Bodies(_) | SceneChange::Motion(_) => {}
     }
     Ok(Some(scene))
 }

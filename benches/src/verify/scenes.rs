@@ -17,18 +17,18 @@ use sdop_judge::ours::ways::{Rotation, rows};
 
 /// Frames that are judged at once, to bound memory. A culler is used for one block, and each block
 /// takes the next modes of the rotation: a hundred frames test every configuration in twenty modes.
-const BLOCK: usize = 5;
+const FRAMES_PER_BLOCK: usize = 5;
 
 /// Number of blocks of this number of frames.
 #[must_use]
 pub const fn blocks(frames: usize) -> usize {
-    frames.div_ceil(BLOCK)
+    frames.div_ceil(FRAMES_PER_BLOCK)
 }
 
 /// The frames of a block.
 #[must_use]
 pub fn frames_of(block: usize, frames: usize) -> Range<usize> {
-    block * BLOCK..frames.min((block + 1) * BLOCK)
+    block * FRAMES_PER_BLOCK..frames.min((block + 1) * FRAMES_PER_BLOCK)
 }
 
 /// The error of a scene that can't be judged.

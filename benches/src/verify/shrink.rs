@@ -20,7 +20,7 @@ use sdop_judge::report::pose_in_text;
 
 /// A scene of a few bodies that shows a missed pair.
 #[derive(Clone, Debug)]
-pub struct Smallest {
+pub struct SmallestScene {
     /// The settings, with interest renumbered.
     pub settings: CullSettings,
     /// How it was computed.
@@ -31,7 +31,7 @@ pub struct Smallest {
     pub bodies: Bodies,
 }
 
-impl Smallest {
+impl SmallestScene {
     /// Removes bodies, half of the rest at a time, as long as a pair is missed or found by one
     /// finder alone. `None` if the last frame alone shows no error, because it depends on earlier
     /// frames.

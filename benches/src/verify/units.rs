@@ -58,7 +58,7 @@ pub struct Verification {
 }
 
 /// One unit.
-enum Unit {
+enum VerifyUnit {
     /// A group of hard cases, by its index among the chosen ones.
     Hard(usize, (DirectionSet, Axes)),
     /// A seed's rounds.
@@ -69,7 +69,7 @@ enum Unit {
 
 /// The origin of judged pairs, which reports distinguish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Origin {
+pub enum UnitOrigin {
     /// Hard cases.
     Hard,
     /// Rounds of near pairs.
@@ -153,50 +153,50 @@ impl Verification {
         self.groups.len() * variants + rounds + scenes * blocks(self.settings.frames)
     }
 
-    fn unit(&self, unit: usize) -> Unit {
+    fn unit(&self, unit: usize) -> VerifyUnit {
         let variants = self.variants.len();
         let hard = self.groups.len() * variants;
         let rounds = hard + self.settings.seeds as usize * variants;
         if unit < hard {
-            return Unit::Hard(unit / variants, self.variants[unit % variants]);
+            return VerifyUnit::Hard(unit / variants, self.variants[unit % variants]);
         }
         if unit < rounds {
             let (n, variant) = ((unit - hard) / variants, (unit - hard) % variants);
             let seed = self.settings.first_seed.wrapping_add(n as u64);
-            return Unit::Rounds(seed, self.variants[variant]);
+            return VerifyUnit::Rounds(seed, self.variants[variant]);
         }
         let (n, blocks) = (unit - rounds, blocks(self.settings.frames));
-        Unit::Frames(n / blocks, n % blocks)
+        VerifyUnit::Frames(n / blocks, n % blocks)
     }
 
     /// Runs a unit and returns its ledgers by origin.
     ///
     /// # Errors
     /// Culling or the reference fails, or its scene is missing.
-    pub fn judge(&self, unit: usize) -> miette::Result<Vec<(Origin, Ledger)>> {
+    pub fn judge(&self, unit: usize) -> miette::Result<Vec<(UnitOrigin, Ledger)>> {
         let rotation = &self.rotation;
         match self.unit(unit) {
-            Unit::Hard(n, variant) => {
+            VerifyUnit::Hard(n, variant) => {
                 let (number, cases) = &self.groups[n];
                 let judged = group(*number, cases, variant, rotation).into_diagnostic()?;
                 let boxes = boxes(!(unit as u64), rotation).into_diagnostic()?;
-                Ok(vec![(Origin::Hard, judged), (Origin::Boxes, boxes)])
+                Ok(vec![(UnitOrigin::Hard, judged), (UnitOrigin::Boxes, boxes)])
             }
-            Unit::Rounds(seed, variant) => {
+            VerifyUnit::Rounds(seed, variant) => {
                 let judge = |source| round(source, seed, variant, rotation).into_diagnostic();
                 let draw = self.variants.iter().position(|&known| known == variant);
                 let draw = draw.map_or(0, |at| seed.wrapping_mul(64).wrapping_add(at as u64));
                 Ok(vec![
-                    (Origin::Near, judge(Source::Near)?),
-                    (Origin::Random, judge(Source::Random)?),
-                    (Origin::Boxes, boxes(draw, rotation).into_diagnostic()?),
+                    (UnitOrigin::Near, judge(Source::Near)?),
+                    (UnitOrigin::Random, judge(Source::Random)?),
+                    (UnitOrigin::Boxes, boxes(draw, rotation).into_diagnostic()?),
                 ])
             }
-            Unit::Frames(n, number) => {
+            VerifyUnit::Frames(n, number) => {
                 let scene = self.scenes.get(n);
                 let scene = scene.ok_or_else(|| miette!("its scene was not read"))?;
                 let judged = block(scene, self.settings.frames, number, rotation)?;
-                Ok(vec![(Origin::Scene(n), judged)])
+                Ok(vec![(UnitOrigin::Scene(n), judged)])
             }
         }
     }
@@ -205,12 +205,16 @@ impl Verification {
     ///
     /// # Errors
     /// The text is not a result of this unit.
-    pub fn take(&self, unit: usize, result: &str) -> miette::Result<Vec<(Origin, Ledger, bool)>> {
+    pub fn take(
+        &self,
+        unit: usize,
+        result: &str,
+    ) -> miette::Result<Vec<(UnitOrigin, Ledger, bool)>> {
         let texts: Vec<LedgerText> = serde_json::from_str(result).into_diagnostic()?;
         let origins = match self.unit(unit) {
-            Unit::Hard(..) => vec![Origin::Hard, Origin::Boxes],
-            Unit::Rounds(..) => vec![Origin::Near, Origin::Random, Origin::Boxes],
-            Unit::Frames(n, _) => vec![Origin::Scene(n)],
+            VerifyUnit::Hard(..) => vec![UnitOrigin::Hard, UnitOrigin::Boxes],
+            VerifyUnit::Rounds(..) => vec![UnitOrigin::Near, UnitOrigin::Random, UnitOrigin::Boxes],
+            VerifyUnit::Frames(n, _) => vec![UnitOrigin::Scene(n)],
         };
         let wrong = || miette!("the result of unit {unit} is none of `sdop verify`");
         if texts.len() != origins.len() {
@@ -306,12 +310,12 @@ impl Sweep for Verification {
     fn name(&self, unit: usize) -> String {
         let variant = |(k, axes): (DirectionSet, Axes)| format!("k = {k}, {axes} axes");
         match self.unit(unit) {
-            Unit::Hard(n, or_dop) => {
+            VerifyUnit::Hard(n, or_dop) => {
                 let name = &self.settings.groups[n];
                 format!("hard cases {name}, {}", variant(or_dop))
             }
-            Unit::Rounds(seed, or_dop) => format!("seed {seed}, {}", variant(or_dop)),
-            Unit::Frames(scene, block) => {
+            VerifyUnit::Rounds(seed, or_dop) => format!("seed {seed}, {}", variant(or_dop)),
+            VerifyUnit::Frames(scene, block) => {
                 let frames = frames_of(block, self.settings.frames);
                 let name = &self.settings.scenes[scene];
                 format!("{name}: frames {} to {}", frames.start, frames.end - 1)
@@ -328,11 +332,11 @@ impl Sweep for Verification {
     /// A block's frames are judged on all threads, since the answers of several blocks would take
     /// too much memory.
     fn alone(&self, unit: usize) -> bool {
-        matches!(self.unit(unit), Unit::Frames(..))
+        matches!(self.unit(unit), VerifyUnit::Frames(..))
     }
 
     fn starts(&self, unit: usize) -> bool {
-        let rounds = matches!(self.unit(unit), Unit::Rounds(..));
+        let rounds = matches!(self.unit(unit), VerifyUnit::Rounds(..));
         !rounds || self.deadline.is_none_or(|end| Instant::now() < end)
     }
 }

@@ -19,7 +19,7 @@ pub use show::{Culled, Focus, Show};
 use rayon::prelude::*;
 
 use crate::tradeoff::TradeoffError;
-use crate::tradeoff::truth::Judge;
+use crate::tradeoff::truth::ExactJudge;
 use sdop::bodies::Bodies;
 use sdop_judge::record::FrameLine;
 
@@ -29,7 +29,7 @@ use sdop_judge::record::FrameLine;
 /// # Errors
 /// Numbers that the exact reference refuses; none that a reader of records let through.
 pub fn decide_truth(show: &mut Show, done: impl Fn() + Sync) -> Result<(), TradeoffError> {
-    let judge = Judge::new(&show.shapes)?;
+    let judge = ExactJudge::new(&show.shapes)?;
     let bodies = &show.bodies;
     let decide = |frame: &mut FrameLine| -> Result<(), TradeoffError> {
         if frame.meets.is_none() {

@@ -17,11 +17,11 @@ const USUAL_RANK: usize = 192;
 const UNIT_SLACK: f64 = 1.0 + 1.0 / (1 << 10) as f64;
 
 /// Number of bits of a fraction.
-const MANTISSA: u32 = f64::MANTISSA_DIGITS - 1;
+const MANTISSA_BITS: u32 = f64::MANTISSA_DIGITS - 1;
 
 /// Boxes of similar size.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Level {
+pub(super) struct BoxLevel {
     /// The number of its size: see [`size_number`].
     number: i32,
     /// The largest side of its boxes is at most this.
@@ -35,7 +35,7 @@ pub(super) struct Level {
 /// The first and the last cell along each axis.
 pub(super) type CellRange = [[i64; 2]; 3];
 
-impl Level {
+impl BoxLevel {
     /// An empty level for boxes up to a size, in units of `unit`.
     fn new(number: i32, unit: f64) -> Self {
         let bound = (unit * size_of_number(number)).next_up();
@@ -112,7 +112,7 @@ pub(super) struct Levels {
     unit: f64,
     /// The number of the lowest level, which also has all smaller boxes.
     least: i32,
-    pub all: Vec<Level>,
+    pub all: Vec<BoxLevel>,
 }
 
 impl Levels {
@@ -156,7 +156,7 @@ impl Levels {
         let number = size_number((longest_side(aabb) / self.unit).next_up()).max(self.least);
         let found = self.all.iter().position(|level| level.number == number);
         let index = found.unwrap_or_else(|| {
-            self.all.push(Level::new(number, self.unit));
+            self.all.push(BoxLevel::new(number, self.unit));
             self.all.len() - 1
         });
         // Sizes in f32 have about 600 numbers.
@@ -174,15 +174,15 @@ fn longest_side(aabb: &Aabb) -> f64 {
 /// next larger one.
 fn size_number(size: f64) -> i32 {
     let bits = size.to_bits();
-    let exponent = (bits >> MANTISSA) as i32 - (f64::MAX_EXP - 1);
-    let mantissa = bits & ((1 << MANTISSA) - 1);
-    let half = 1 << (MANTISSA - 1);
+    let exponent = (bits >> MANTISSA_BITS) as i32 - (f64::MAX_EXP - 1);
+    let mantissa = bits & ((1 << MANTISSA_BITS) - 1);
+    let half = 1 << (MANTISSA_BITS - 1);
     2 * exponent + i32::from(mantissa > 0) + i32::from(mantissa > half)
 }
 
 fn size_of_number(number: i32) -> f64 {
     let exponent = (number >> 1) + (f64::MAX_EXP - 1);
-    let power = f64::from_bits((exponent as u64) << MANTISSA);
+    let power = f64::from_bits((exponent as u64) << MANTISSA_BITS);
     if number & 1 == 1 { 1.5 * power } else { power }
 }
 

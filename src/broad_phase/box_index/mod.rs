@@ -19,14 +19,14 @@ const MAX_LOAD: [usize; 2] = [3, 4];
 const CELLS_PER_BOX: u64 = 2;
 
 /// Tag of a fixed box.
-const FIXED: u32 = 1;
+const FIXED_TAG: u32 = 1;
 /// Tag of a box that doesn't collide with all groups.
-const GROUPED: u32 = 2;
+const GROUPED_TAG: u32 = 2;
 
 /// A box in its cell.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
-struct Entry {
+struct CellEntry {
     min: [f32; 3],
     slot: u32,
     max: [f32; 3],
@@ -43,7 +43,7 @@ struct Cell {
 
 /// The cell of a box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Home {
+struct HomeCell {
     /// The cell's name, or 0.
     cell: u64,
     level: u16,
@@ -67,9 +67,9 @@ pub(crate) struct BoxIndex {
     /// is rebuilt.
     cells: Vec<Cell>,
     taken: usize,
-    boxes: Runs<Entry>,
+    boxes: Runs<CellEntry>,
     /// By slot.
-    homes: Vec<Home>,
+    homes: Vec<HomeCell>,
     len: usize,
 }
 
@@ -111,12 +111,12 @@ impl BoxIndex {
             return self.remove(slot);
         }
         if self.homes.len() <= slot as usize {
-            self.homes.resize(slot as usize + 1, Home::default());
+            self.homes.resize(slot as usize + 1, HomeCell::default());
         }
         let level = self.levels.level_of(aabb);
         let cell = self.levels.all[usize::from(level)].home(aabb);
-        let home = Home { cell, level };
-        let entry = Entry {
+        let home = HomeCell { cell, level };
+        let entry = CellEntry {
             min: aabb.min,
             slot,
             max: aabb.max,
@@ -314,9 +314,9 @@ fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
 
 impl IndexedBox {
     /// Whether a pair with this box is reported if the boxes meet.
-    fn may_meet(&self, other: &Entry, groups: &[Groups]) -> bool {
-        let are_fixed = self.tags & other.tags & FIXED != 0;
-        let collide = (self.tags | other.tags) & GROUPED == 0
+    fn may_meet(&self, other: &CellEntry, groups: &[Groups]) -> bool {
+        let are_fixed = self.tags & other.tags & FIXED_TAG != 0;
+        let collide = (self.tags | other.tags) & GROUPED_TAG == 0
             || groups[self.slot as usize].collide(groups[other.slot as usize]);
         other.slot != self.slot && !are_fixed && collide
     }
@@ -324,5 +324,5 @@ impl IndexedBox {
 
 /// The tags of a body.
 pub(crate) fn tags(is_dynamic: bool, groups: Groups) -> u32 {
-    (FIXED * u32::from(!is_dynamic)) | (GROUPED * u32::from(groups != Groups::ALL))
+    (FIXED_TAG * u32::from(!is_dynamic)) | (GROUPED_TAG * u32::from(groups != Groups::ALL))
 }

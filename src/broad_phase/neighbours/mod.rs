@@ -30,7 +30,7 @@ pub(super) use self::list::NeighbourList;
 use self::list::{ListedVolume, SearchOutcome};
 use self::motion::{LargestDrift, SizeSummary, are_specks, typical_radius};
 use self::policy::{EndedList, Policy};
-use super::{Boxes, EndSlots, Grid, Reorder, Slots};
+use super::{EndSlots, GivenBoxes, Grid, Reorder, Slots};
 use crate::rounding::cube;
 use crate::rounding::skin::{Reach, Skin};
 use crate::threads::Executor;
@@ -145,7 +145,7 @@ impl Neighbours {
         moving: usize,
         balls: &[[f32; 4]],
         names: &[u32],
-        boxes: Option<Boxes<'_>>,
+        boxes: Option<GivenBoxes<'_>>,
     ) {
         self.list_tests = 0;
         let long = boxes.filter(|boxes| boxes.are_long);
@@ -215,11 +215,11 @@ impl Neighbours {
         &mut self,
         executor: Executor<'_>,
         (skin, moving): (Skin, usize),
-        long: Option<Boxes<'_>>,
+        long: Option<GivenBoxes<'_>>,
     ) -> SearchOutcome {
         let near = match long {
             None => ListedVolume::Balls(self.volume),
-            Some(Boxes { all, .. }) => {
+            Some(GivenBoxes { all, .. }) => {
                 let Slots { names, balls, .. } = self.grid.slots();
                 let (names, cubes) = (&names[..self.grid.bodies()], &balls[..moving]);
                 (self.grown).fill_grown(executor, names, all, (cubes, skin));
@@ -276,9 +276,9 @@ impl Neighbours {
 }
 
 /// The sizes of balls, or of the long boxes in them.
-fn sizes(balls: &[[f32; 4]], names: &[u32], long: Option<Boxes<'_>>) -> SizeSummary {
+fn sizes(balls: &[[f32; 4]], names: &[u32], long: Option<GivenBoxes<'_>>) -> SizeSummary {
     let of_balls = typical_radius(balls.len(), |place| [balls[place][3]; 3]);
-    let of_boxes = long.map(|Boxes { all, .. }| {
+    let of_boxes = long.map(|GivenBoxes { all, .. }| {
         typical_radius(balls.len(), |place| {
             let half_sides = all[names[place] as usize].half_sides();
             half_sides.map(|half| half / cube::SCALE)

@@ -71,7 +71,7 @@ impl TrackedBodies {
     }
 
     /// One more frame, of balls about these boxes.
-    fn step_with(&mut self, boxes: Option<Boxes<'_>>) {
+    fn step_with(&mut self, boxes: Option<GivenBoxes<'_>>) {
         let pool = Threads::default();
         let executor = pool.executor(Tier::SCALAR);
         let in_places = |names: &[u32]| -> Vec<_> {

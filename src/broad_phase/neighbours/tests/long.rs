@@ -4,7 +4,7 @@ use super::TrackedBodies;
 use crate::bodies::Aabb;
 use crate::broad_phase::ends::grown;
 use crate::broad_phase::neighbours::{ListState, Neighbours, Volume};
-use crate::broad_phase::{Boxes, EndSlots};
+use crate::broad_phase::{EndSlots, GivenBoxes};
 use crate::rounding::cube::{Cube, SCALE};
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
@@ -60,7 +60,7 @@ impl Needles {
         }
         let all = boxes.as_slice();
         let are_long = self.are_long;
-        bodies.step_with(Some(Boxes { all, are_long }));
+        bodies.step_with(Some(GivenBoxes { all, are_long }));
     }
 
     fn state(&self) -> ListState {
