@@ -109,8 +109,9 @@ mod tests {
             .collect()
     }
 
+    /// Every box has its cube in every tier.
     #[test]
-    fn every_box_has_its_cube_in_every_tier() {
+    fn cubes_are_equal_in_tiers() {
         for count in [1, 15, 16, 17, 33, PREFETCH_DISTANCE + 22] {
             let boxes = boxes(count);
             let names: Vec<u32> = (0..count as u32).rev().collect();
@@ -135,8 +136,9 @@ mod tests {
         }
     }
 
+    /// A box that is none is told wherever it stands.
     #[test]
-    fn a_box_that_is_none_is_told_wherever_it_stands() {
+    fn invalid_boxes_are_reported() {
         let names: Vec<u32> = (0..40).collect();
         for bad in 0..40 {
             let mut boxes = boxes(40);

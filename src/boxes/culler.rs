@@ -249,8 +249,9 @@ mod tests {
     use super::*;
     use crate::boxes::BoxWorld;
 
+    /// A builder keeps each choice and no other.
     #[test]
-    fn a_builder_keeps_each_choice_and_no_other() {
+    fn builder_keeps_choices() {
         let built = BoxCuller::builder();
         assert_eq!(built, BoxCullerBuilder::default());
         let built = built
@@ -272,8 +273,9 @@ mod tests {
         assert_eq!(built.threads(5), other);
     }
 
+    /// Pairs are those of the last frame.
     #[test]
-    fn pairs_are_those_of_the_last_frame() {
+    fn pairs_are_of_last_frame() {
         let at = |x: f32| Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
         let mut culler = BoxCuller::new();
         assert_eq!(culler.cull(&[at(0.0), at(5.0), at(0.5)]).unwrap().len(), 1);
@@ -284,7 +286,7 @@ mod tests {
 
     /// All-pairs tests every pair; `auto` would not.
     #[test]
-    fn cullers_and_worlds_find_as_their_builder_says() {
+    fn builder_sets_finder() {
         let row: Vec<Aabb> = (0..2000)
             .map(|i| [i as f32, i as f32 + 0.5])
             .map(|[lo, hi]| Aabb::new([lo, 0.0, 0.0], [hi, 1.0, 1.0]))

@@ -277,8 +277,9 @@ mod tests {
     use crate::pairs::PairList;
     use crate::threads::Threads;
 
+    /// Cubes decide while one in sixteen is small beside the gap.
     #[test]
-    fn cubes_decide_while_one_in_sixteen_is_small_beside_the_gap() {
+    fn cubes_decide_with_few_exceptions() {
         let threads = FrameThreads::new(Threads::default(), 0);
         let mut frames = BoxFrames::new(Finder::Auto, Tier::SCALAR, threads);
         assert!(frames.cubes_decide(1.0), "without boxes");
@@ -310,8 +311,9 @@ mod tests {
         frames
     }
 
+    /// Some boxes are news where the finder knows of the others.
     #[test]
-    fn some_boxes_are_news_where_the_finder_knows_of_the_others() {
+    fn changed_boxes_are_passed_on() {
         let mut frames = frames(Finder::Grid, 1000);
         let set = |frames: &mut BoxFrames, boxes: usize| {
             frames.replace(&vec![true; boxes], &vec![true; boxes]);
@@ -344,7 +346,7 @@ mod tests {
     /// If cells were planned from boxes without extent, giants and small boxes would share them:
     /// two million candidates.
     #[test]
-    fn the_first_frame_is_planned_by_its_own_boxes() {
+    fn first_frame_plans_itself() {
         let mut boxes = all_in_a_row(2000);
         boxes[1000] = Aabb::new([0.0, 5.0, 0.0], [2000.0, 6.0, 1.0]);
         let mut pairs = PairList::default();
@@ -355,7 +357,7 @@ mod tests {
 
     /// All lists except the first task's, which is the caller's, stay for the next frame.
     #[test]
-    fn bytes_of_lists_are_counted_until_they_are_given_back() {
+    fn list_bytes_are_counted() {
         let threads = FrameThreads::new(Threads::new(3).unwrap(), 0);
         let mut frames = BoxFrames::new(Finder::AllPairs, Tier::SCALAR, threads);
         let boxes = vec![Aabb::new([0.0; 3], [1.0; 3]); 200];

@@ -326,8 +326,9 @@ mod tests {
         }
     }
 
+    /// Other boxes and boxes at rest are news to the next cull and others are none.
     #[test]
-    fn other_boxes_and_boxes_at_rest_are_news_to_the_next_cull_and_others_are_none() {
+    fn only_changes_are_searched() {
         let mut world = BoxWorld::new();
         assert!(world.is_empty() && !world.replaced);
         let one = world.insert(at(0.0)).unwrap();
@@ -378,8 +379,9 @@ mod tests {
         assert_eq!((world.is_empty(), world.len(), world.slots()), (true, 0, 2));
     }
 
+    /// Groups count where some or none collide with all.
     #[test]
-    fn groups_count_where_some_or_none_collide_with_all() {
+    fn grouped_boxes_are_counted() {
         let only = |group| Groups {
             member: group,
             mask: group,

@@ -398,8 +398,9 @@ mod tests {
         }
     }
 
+    /// A tree finds what meets whatever its size.
     #[test]
-    fn a_tree_finds_what_meets_whatever_its_size() {
+    fn tree_finds_meeting_boxes() {
         for count in [0, 1, 15, 16, 17, 256, 257, 4097] {
             let boxes = boxes(count, 5);
             let tree = Tree::build((0..).zip(boxes.iter().copied()).collect());
@@ -409,8 +410,9 @@ mod tests {
         }
     }
 
+    /// Changes are found and wear the tree.
     #[test]
-    fn changes_are_found_and_wear_the_tree() {
+    fn changes_wear_the_tree() {
         let first = boxes(300, 5);
         let mut tree = Tree::build((0..).zip(first.iter().copied()).collect());
         let mut place = vec![0; 300];
@@ -440,8 +442,9 @@ mod tests {
         assert!(tree.is_worn(), "140 of 340");
     }
 
+    /// Boxes that have spread wear the tree.
     #[test]
-    fn boxes_that_have_spread_wear_the_tree() {
+    fn spreading_wears_the_tree() {
         let near = boxes(256, 5);
         let mut tree = Tree::build((0..).zip(near.iter().copied()).collect());
         for (at, number) in tree.numbers().to_vec().into_iter().enumerate() {

@@ -141,7 +141,7 @@ mod tests {
     /// A point beyond by less than f64 can show is not reported as beyond; one a little farther
     /// away is.
     #[test]
-    fn a_point_at_the_radius_is_not_beyond() {
+    fn point_at_radius_is_inside() {
         let (lo, hi) = ([0.0; 3], [1.0; 3]);
         // (2, 3, 6) has the length 7.
         assert!(!is_beyond([3.0, 4.0, 7.0], 7.0, lo, hi));
@@ -152,8 +152,9 @@ mod tests {
         assert!(is_beyond([1.0, 1.0, 1.0f64.next_up()], 0.0, lo, hi));
     }
 
+    /// A still line is where it is.
     #[test]
-    fn a_still_line_is_where_it_is() {
+    fn still_line_has_no_crossing_time() {
         let ends = [0.0, 2.0];
         for speed in [0.0, -0.0, exp2(-801), -exp2(-1014)] {
             let is_in = |at: f64| {
@@ -165,8 +166,9 @@ mod tests {
         }
     }
 
+    /// A line crosses at its ends and a little beyond.
     #[test]
-    fn a_line_crosses_at_its_ends_and_a_little_beyond() {
+    fn crossing_contains_exact_one() {
         for (speed, wanted) in [(0.1, [10.0, 30.0]), (-0.1, [-30.0, -10.0])] {
             let [first, last] = crossing(Course::new(-1.0, speed), [0.0, 2.0]);
             assert!(first < wanted[0] && first > wanted[0] - 1e-13, "{first}");

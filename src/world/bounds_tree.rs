@@ -65,8 +65,9 @@ mod tests {
 
     use super::*;
 
+    /// Changes lead to the bounds of all.
     #[test]
-    fn changes_lead_to_the_bounds_of_all() {
+    fn bounds_follow_changes() {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         for slots in [1, 15, 16, 17, 300] {
             let mut bodies: Vec<Option<[f64; 3]>> = vec![None; slots];

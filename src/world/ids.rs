@@ -181,8 +181,9 @@ mod tests {
         ids
     }
 
+    /// Slots at the end are given back.
     #[test]
-    fn slots_at_the_end_are_given_back() {
+    fn free_end_slots_are_removed() {
         let mut ids = filled(6);
         for slot in [1, 4, 5] {
             ids.remove(ids.id(slot)).unwrap();
@@ -196,8 +197,9 @@ mod tests {
         assert_eq!(ids.iter().count(), 5);
     }
 
+    /// A slot without generations left is retired.
     #[test]
-    fn a_slot_without_generations_left_is_retired() {
+    fn used_up_slot_is_retired() {
         let mut ids = filled(2);
         ids.generation = Arc::new(vec![u32::MAX - 1, 7]);
         for _ in 0..2 {

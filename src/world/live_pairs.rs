@@ -313,8 +313,9 @@ mod tests {
         }
     }
 
+    /// Unread events hold no more than pairs.
     #[test]
-    fn unread_events_hold_no_more_than_pairs() {
+    fn unread_events_stay_small() {
         let (ids, mut live) = (ids(200), LivePairs::default());
         let all: BTreeSet<[u32; 2]> = (0..199).map(|i| [i, i + 1]).collect();
         change(&mut live, &ids, &all);

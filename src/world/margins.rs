@@ -104,8 +104,9 @@ fn class_of(margin: f64) -> u32 {
 mod tests {
     use super::*;
 
+    /// A class is above the margin by an eighth at most.
     #[test]
-    fn a_class_is_above_the_margin_by_an_eighth_at_most() {
+    fn class_is_within_an_eighth() {
         for margin in [1.0, 1.0e-3, 0.124_999_99, 7.5, 1.0e12, 3.0e-30] {
             let class = f64::from(f32::from_bits(class_of(margin)));
             assert!(
@@ -117,8 +118,9 @@ mod tests {
         assert!(f32::from_bits(class_of(1.0e-44)) >= 1.0e-44);
     }
 
+    /// Equal classes share a model and none needs none.
     #[test]
-    fn equal_classes_share_a_model_and_none_needs_none() {
+    fn equal_classes_share_a_model() {
         let mut margins = Margins::default();
         let mut made = Vec::new();
         let mut model = |margin: f32, moved: f64| {
@@ -141,8 +143,9 @@ mod tests {
         assert_ne!(model(1.0e-2), model(3.0e-2));
     }
 
+    /// A margin is within the limit with its shape.
     #[test]
-    fn a_margin_is_within_the_limit_with_its_shape() {
+    fn margin_limit_includes_shape() {
         // 2⁶⁰ − 1.25·2⁴⁰ is an f32.
         let margin = 2f32.powi(40);
         let reach = (f64::from(LIMIT) - 1.25 * f64::from(margin)) as f32;

@@ -251,8 +251,9 @@ mod tests {
         log.put(list, ids);
     }
 
+    /// Two lists take turns while events are read.
     #[test]
-    fn two_lists_take_turns_while_events_are_read() {
+    fn two_lists_alternate() {
         let (mut log, ids) = (PairLog::default(), ids(3000));
         let mut bytes = Vec::new();
         for frame in 0..6 {
@@ -273,8 +274,9 @@ mod tests {
         assert!(bytes[2] < 4 * one, "two lists and a sort: {bytes:?}");
     }
 
+    /// Memory of a crowd is given back and its pairs stay.
     #[test]
-    fn memory_of_a_crowd_is_given_back_and_its_pairs_stay() {
+    fn crowd_memory_is_freed() {
         let (mut log, ids) = (PairLog::default(), ids(500));
         cull(
             &mut log,
@@ -291,8 +293,9 @@ mod tests {
         drop((crowd, few));
     }
 
+    /// Events tell bodies of one slot apart.
     #[test]
-    fn events_tell_bodies_of_one_slot_apart() {
+    fn events_distinguish_generations() {
         let (mut log, mut ids) = (PairLog::default(), ids(3));
         cull(&mut log, &ids, [[0, 1], [1, 2]]);
         log.events();

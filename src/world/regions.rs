@@ -292,7 +292,7 @@ mod tests {
     /// Small bodies between two giants that are as near each other as separate regions of giants
     /// can be.
     #[test]
-    fn small_bodies_have_cells_of_their_own() {
+    fn small_bodies_have_smaller_cells() {
         let mut bodies: Vec<PlacedBody> = (0..40)
             .map(|i| {
                 (

@@ -63,7 +63,7 @@ fn every_tier_computes_what_coq_confirmed() {
 
 /// Decisions go both ways often enough for a wrong one to show.
 #[test]
-fn cases_lie_on_both_sides_of_each_decision() {
+fn cases_are_on_both_sides() {
     let lines = cases(Tier::SCALAR, CASES);
     for name in ["spheres", "stays", "cubes", "ordops"] {
         let outcomes = lines.lines().filter(|line| line.starts_with(name));

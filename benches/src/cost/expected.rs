@@ -75,8 +75,9 @@ mod tests {
     use super::*;
     use crate::random::Stream;
 
+    /// Rows are those of hits drawn at random.
     #[test]
-    fn rows_are_those_of_hits_drawn_at_random() {
+    fn rows_match_random_draws() {
         let (moving, bodies) = (80, 100);
         let mut draws = Stream::new(7, 0);
         for share in [0.001, 0.01, 0.1] {
@@ -101,8 +102,9 @@ mod tests {
         assert_eq!(rows(10.0, 10.0, 45.0, 0.0), 0.0);
     }
 
+    /// Vectors go on for as long as a lane does.
     #[test]
-    fn vectors_go_on_for_as_long_as_a_lane_does() {
+    fn vectors_continue_until_last_lane() {
         let mut draws = Stream::new(8, 0);
         for (lanes, axis) in [(1, 0.3), (8, 0.1), (16, 0.05), (16, 0.3)] {
             let (vectors, mut compared) = (20_000, 0_u32);
@@ -124,8 +126,9 @@ mod tests {
         assert_eq!(further(0.0, 0.0, 16), 0.0);
     }
 
+    /// A few tests leave most of a vector idle.
     #[test]
-    fn a_few_tests_leave_most_of_a_vector_idle() {
+    fn few_tests_idle_most_lanes() {
         assert_eq!(idle(0.0, 16), 0.0);
         assert!((idle(5.0, 1)).abs() < 1e-6);
         // There is one vector if there is a test, which has the probability 1 − e^−λ.

@@ -472,8 +472,9 @@ mod tests {
         }
     }
 
+    /// A volume has one price under every strategy.
     #[test]
-    fn a_volume_has_one_price_under_every_strategy() {
+    fn price_is_equal_for_strategies() {
         let found = estimated(&[
             (Strategy::Sphere, 0.0),
             (Strategy::SDopSequential, 2e-9),

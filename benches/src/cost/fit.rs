@@ -124,8 +124,9 @@ mod tests {
         Measurement::of(counts, seconds)
     }
 
+    /// Prices are found again whatever their scale.
     #[test]
-    fn prices_are_found_again_whatever_their_scale() {
+    fn prices_are_recovered_at_any_scale() {
         let truth = [4e-9, 7e-11, 3e-8];
         let counts = [
             [50.0, 1225.0, 12.0],
@@ -139,8 +140,9 @@ mod tests {
         }
     }
 
+    /// What lies far off is left out.
     #[test]
-    fn what_lies_far_off_is_left_out() {
+    fn outliers_are_left_out() {
         let truth = [4e-9, 7e-11, 3e-8];
         let mut rows: Vec<_> = (1..=12)
             .map(|i| {

@@ -90,8 +90,9 @@ fn bytes(text: &str) -> Option<usize> {
 mod tests {
     use super::*;
 
+    /// A level ends where its cache is full.
     #[test]
-    fn a_level_ends_where_its_cache_is_full() {
+    fn level_ends_with_its_cache() {
         let caches = [132 * 10, 132 * 100, 132 * 1000];
         for (bodies, level) in [
             (0, CacheLevel::L1),
@@ -106,8 +107,9 @@ mod tests {
         }
     }
 
+    /// The levels of this machine follow one another.
     #[test]
-    fn the_levels_of_this_machine_follow_one_another() {
+    fn levels_of_this_machine_ascend() {
         let mut next = 1;
         for &level in CacheLevel::ALL {
             let [fewest, most] = level.bodies();
@@ -117,8 +119,9 @@ mod tests {
         }
     }
 
+    /// Sizes are read as linux writes them.
     #[test]
-    fn sizes_are_read_as_linux_writes_them() {
+    fn linux_sizes_are_read() {
         assert_eq!(bytes("32K"), Some(32 << 10));
         assert_eq!(bytes("8M"), Some(8 << 20));
         assert_eq!(bytes("K"), None);

@@ -296,8 +296,9 @@ mod tests {
     use super::*;
     use sdop::counters::{Counters, VolumeCounters};
 
+    /// Widths are those of intervals over passes.
     #[test]
-    fn widths_are_those_of_intervals_over_passes() {
+    fn widths_match_intervals_over_passes() {
         let pass = |update: f64| Terms {
             volume: Volume::Sphere,
             updates: 3.0,
@@ -325,8 +326,9 @@ mod tests {
         );
     }
 
+    /// S dop pays for both volumes and finds pairs once.
     #[test]
-    fn s_dop_pays_for_both_volumes_and_finds_pairs_once() {
+    fn s_dop_pays_for_both_volumes() {
         let costs = |frame, hit, handle| VolumeCosts {
             construct: 100.0,
             construct_body: 1.0,
@@ -379,7 +381,7 @@ mod tests {
 
     /// Each price is multiplied by its own count and by no other.
     #[test]
-    fn every_price_has_a_count_of_its_own() {
+    fn every_price_has_one_count() {
         let volume = |updates, tests, hits| VolumeCounters {
             updates,
             tests,

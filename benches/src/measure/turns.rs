@@ -345,7 +345,7 @@ mod tests {
 
     /// Every contestant takes every frame in order and another begins.
     #[test]
-    fn frames_find_the_stack_in_other_places() {
+    fn stack_positions_differ() {
         let mut places = Vec::new();
         for pads in 0..DISPLACEMENTS {
             displaced(pads, &mut || {

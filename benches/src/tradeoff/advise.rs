@@ -211,8 +211,9 @@ mod tests {
         }
     }
 
+    /// Auto is kept unless another is surely faster.
     #[test]
-    fn auto_is_kept_unless_another_is_surely_faster() {
+    fn auto_is_kept_if_tied() {
         let grid = line("grid", [1.0, 1.1, 0.9]);
         let near = [
             line("all-pairs", [9.0, 9.1, 9.2]),

@@ -181,8 +181,9 @@ mod tests {
         }
     }
 
+    /// The cheapest total wins and what can t be told from it is tied.
     #[test]
-    fn the_cheapest_total_wins_and_what_can_t_be_told_from_it_is_tied() {
+    fn cheapest_total_wins() {
         let lines = [
             (line("coarse", [1.0, 1.1, 0.9]), 10.0),
             (line("same", [1.1, 1.0, 1.0]), 10.0),

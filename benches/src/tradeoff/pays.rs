@@ -202,8 +202,9 @@ mod tests {
         }
     }
 
+    /// The envelope is the cheapest at every price.
     #[test]
-    fn the_envelope_is_the_cheapest_at_every_price() {
+    fn envelope_is_cheapest() {
         let lines = [
             line("coarse", 1.0, 10.0),
             line("dominated", 4.0, 9.0),

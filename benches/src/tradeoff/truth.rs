@@ -352,8 +352,9 @@ mod tests {
     use super::*;
     use crate::random::Stream;
 
+    /// The sweep lists what all pairs would.
     #[test]
-    fn the_sweep_lists_what_all_pairs_would() {
+    fn sweep_lists_all_pairs() {
         let judge = ExactJudge {
             meshes: Vec::new(),
             reaches: vec![0.05, 0.4, 6.0],

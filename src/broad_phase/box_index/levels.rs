@@ -232,7 +232,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
         /// The argument of the module's head: a box that meets is in one of the searched cells.
         #[test]
-        fn boxes_that_meet_are_in_cells_nearby(one in aabb(), other in aabb(), least in 1e-30_f32..9.0) {
+        fn meeting_boxes_are_in_near_cells(one in aabb(), other in aabb(), least in 1e-30_f32..9.0) {
             let sized = Aabb::new([0.0; 3], [least; 3]);
             let mut levels = Levels::suited_to([sized].into_iter(), 1);
             let index = levels.level_of(&other);
@@ -245,8 +245,9 @@ mod tests {
         }
     }
 
+    /// A box of the same size looks into eight cells.
     #[test]
-    fn a_box_of_the_same_size_looks_into_eight_cells() {
+    fn equal_sizes_search_eight_cells() {
         let cube = |x: f32, side: f32| Aabb::new([x; 3], [x + side; 3]);
         let boxes = [cube(0.0, 1.0), cube(5.0, 1.0), cube(9.0, 1.0)];
         let mut levels = Levels::suited_to(boxes.into_iter(), 3);
