@@ -136,7 +136,8 @@ fn equal_kinds_share_calibration() {
     }
 }
 
-/// What tells prices apart: at one size hits alone vary, and tests are no multiple of bodies.
+/// Calibration can separate prices: at one size only hits vary, and tests are not proportional to
+/// bodies.
 #[test]
 fn calibration_varies_one_count() {
     let scene = scene();

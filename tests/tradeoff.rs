@@ -376,7 +376,7 @@ fn tradeoff_repeats_and_redraws() {
     assert_eq!(run.status.code(), Some(2));
 }
 
-/// Advice is three lines and the cheapest of the numbers behind them.
+/// Advice has three lines and names the cheapest candidate.
 #[test]
 fn advice_names_the_cheapest() {
     let place = tempfile::tempdir().unwrap();
@@ -439,7 +439,7 @@ fn advice_names_the_cheapest() {
         "{text}"
     );
 
-    // A millisecond a check: whoever leaves the fewest pairs wins, and those are the hulls.
+    // A check takes a millisecond: the variant with the fewest pairs wins, which is the hulls.
     let pairs = |candidate: &serde_json::Value| candidate["pairs"].as_f64().unwrap();
     let fewest = candidates.iter().map(pairs).fold(f64::INFINITY, f64::min);
     assert_eq!(pairs(&candidates[0]), fewest);

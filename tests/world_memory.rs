@@ -125,7 +125,7 @@ fn streamed(strategy: Strategy, forms: &[Shape], steps: usize, is_fresh: bool) -
     world
 }
 
-/// A stream of shapes leaves nothing behind.
+/// A stream of shapes keeps memory constant.
 #[test]
 fn shape_stream_keeps_memory() {
     let forms: Vec<Shape> = (0..48).map(form).collect();

@@ -136,7 +136,7 @@ mod tests {
         }
     }
 
-    /// A box that is none is told wherever it stands.
+    /// An invalid box is reported at every position.
     #[test]
     fn invalid_boxes_are_reported() {
         let names: Vec<u32> = (0..40).collect();

@@ -277,7 +277,7 @@ mod tests {
     use crate::pairs::PairList;
     use crate::threads::Threads;
 
-    /// Cubes decide while one in sixteen is small beside the gap.
+    /// Cubes decide if at most one box in sixteen is small compared with the gap.
     #[test]
     fn cubes_decide_with_few_exceptions() {
         let threads = FrameThreads::new(Threads::default(), 0);
@@ -311,7 +311,7 @@ mod tests {
         frames
     }
 
-    /// Some boxes are news where the finder knows of the others.
+    /// Some boxes are passed on as changed if the finder knows the others.
     #[test]
     fn changed_boxes_are_passed_on() {
         let mut frames = frames(Finder::Grid, 1000);

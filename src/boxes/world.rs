@@ -326,7 +326,7 @@ mod tests {
         }
     }
 
-    /// Other boxes and boxes at rest are news to the next cull and others are none.
+    /// The next cull searches changed boxes and no others.
     #[test]
     fn only_changes_are_searched() {
         let mut world = BoxWorld::new();

@@ -346,10 +346,10 @@ struct Lister<'a, 'f, T> {
     hits: HitBuffer,
 }
 
-/// Room for the hits of a piece or a block, from a cache line's beginning. Each vector of tests
-/// stores one of hits behind those before, which are none as a rule: across two pages, that one
-/// store made a frame of spheres take 3.4 times as long (500 bodies, all pairs, AVX-512), and where
-/// the stack lay decided.
+/// A buffer for the hits of a piece or a block, aligned to a cache line. Each vector of tests
+/// stores a vector of hits after the earlier ones, usually at the same place because there are no
+/// hits. If that store crosses a page, a frame of spheres takes 3.4 times as long (500 bodies, all
+/// pairs, AVX-512), which would depend on the position of the stack.
 #[repr(align(64))]
 struct HitBuffer([u32; SLOTS_PER_TEST + MAX_WIDTH]);
 

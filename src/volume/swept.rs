@@ -3,8 +3,8 @@
 //!
 //! A body grown by this margin contains its whole path, whatever the path is, as long as the body
 //! is no faster than stated. Two bodies that meet at any time of the step then meet now with their
-//! margins, and are reported (theorem U of `paper/proofs/LEMMAS.md`). That tells a narrow phase
-//! which pairs to test, not when they meet.
+//! margins, and are reported (theorem U of `paper/proofs/LEMMAS.md`). The report says which pairs
+//! to test, not when they meet.
 
 use super::Shape;
 use crate::rounding::{pose::norm, up};

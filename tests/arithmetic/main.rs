@@ -27,7 +27,7 @@ const CASES: usize = 600;
 /// The hash of these cases, as `.ci/proofs` has last confirmed them.
 const CONFIRMED: &str = "6ef16122a2062591";
 
-/// Cases of each function in turn, one a line.
+/// Cases of each function in turn, one per line.
 fn cases(tier: Tier, of_each: usize) -> String {
     let mut inputs = Inputs::new(1);
     let mut lines = String::new();

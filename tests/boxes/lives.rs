@@ -121,7 +121,7 @@ fn live(world: &mut BoxWorld, kind: Kind, seed: u64, before_frame: fn(&mut BoxWo
     }
 }
 
-/// Whatever comes and goes pairs and events are those of the definition.
+/// After any insertions and removals, pairs and events match the definition.
 #[test]
 fn random_histories_match_definition() {
     for (kind, seed) in Kind::ALL.into_iter().zip(10..) {
@@ -269,7 +269,7 @@ fn moved_resting_box_is_found() {
     assert!(world.pairs().eq([[still, moving]]));
 }
 
-/// The cube about the plate holds all that moves; only its ends tell that nothing touches it.
+/// The cube around the plate contains all moving boxes; only its ends show that nothing touches it.
 #[test]
 fn resting_plate_is_no_cube() {
     for &finder in Finder::ALL {

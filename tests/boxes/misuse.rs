@@ -36,7 +36,7 @@ fn wrong() -> Vec<Aabb> {
     slabs.into_iter().flat_map(of).collect()
 }
 
-/// A box that is none is named and leaves nothing behind.
+/// An invalid box is named in the error, and the culler still works.
 #[test]
 fn invalid_box_is_named() {
     for &finder in Finder::ALL {
@@ -65,7 +65,7 @@ fn invalid_box_is_named() {
     }
 }
 
-/// A world refuses what is no box and stays as it was.
+/// A world rejects invalid boxes and stays unchanged.
 #[test]
 fn world_rejects_invalid_boxes() {
     let mut world = BoxWorld::new();

@@ -249,7 +249,7 @@ fn shards_of_other_scenes_are_rejected() {
     }
 }
 
-/// A record is made only from the shards of its own plan.
+/// A record is made only from the shards of one plan.
 #[test]
 fn record_uses_only_its_shards() {
     let sweep = SWEEPS.iter().find(|sweep| sweep.name == "record").unwrap();

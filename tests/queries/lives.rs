@@ -109,7 +109,7 @@ fn an_index_follows_bodies() {
     }
 }
 
-/// What a number of a shape stands for may change while all bodies stay.
+/// The shape of a number may be replaced while all bodies stay.
 #[test]
 fn replaced_shape_is_seen() {
     let mut world = World::new(vec![cube()]).unwrap();

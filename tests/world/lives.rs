@@ -107,7 +107,7 @@ fn ids_are_never_given_again() {
     assert!(d != b && world.body(b).is_err() && world.slots() == 3);
 }
 
-/// Ids are told by slot and generation.
+/// An id consists of a slot and a generation.
 #[test]
 fn ids_have_slot_and_generation() {
     let mut world = World::with(
@@ -372,7 +372,7 @@ fn lookup_has_current_pairs() {
         .collect();
     let mut before = Vec::new();
     let mut lookup = PairLookup::default();
-    // Which of the places 20 apart each body stands at.
+    // The number of each body's place; places are 20 apart.
     for places in [
         [0, 1, 2, 0, 1, 2, 0, 1, 2],
         [0, 1, 1, 1, 1, 3, 4, 4, 2],

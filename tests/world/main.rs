@@ -184,7 +184,7 @@ fn world_equals_new_culler() {
     }
 }
 
-/// Bodies teleport and change, and come and go in some frames; both worlds are told the same.
+/// Moves, changes, inserts and removes bodies in some frames, in both worlds alike.
 fn change(
     random: &mut Random,
     bodies: &mut HashMap<BodyId, Body>,
@@ -349,7 +349,7 @@ fn touching_spheres_meet_in_f64() {
     assert!(rounded > tried / 2, "{rounded}: f32 alone would do");
 }
 
-/// What doesn't move stands elsewhere, as seen from an origin that does.
+/// A static body has other local coordinates after the origin has moved.
 #[test]
 fn static_body_follows_origin() {
     for way in ways().into_iter().step_by(7) {

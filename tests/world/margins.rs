@@ -53,7 +53,7 @@ fn farthest(n: u64, reach: f64) -> f64 {
     steps as f64 / step
 }
 
-/// Below each stands a class of margins, to which the culler rounds up: here by one ulp.
+/// Just below each is a class of margins, to which the culler rounds up: here by one ulp.
 const CLASSES: [f32; 3] = [0.5, 0.171875, 1.75];
 
 /// Whether a direction set has a slab across the contact in `n` coordinates.

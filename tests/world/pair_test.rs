@@ -9,7 +9,7 @@ use super::{Random, shapes};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
-/// A pair is judged as in a world of its own.
+/// A pair has the same verdict as in a world of two bodies.
 #[test]
 fn pair_test_equals_world() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(11));

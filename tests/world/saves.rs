@@ -77,7 +77,7 @@ fn carry_out(world: &mut World, call: &Call) -> Answer {
     }
 }
 
-/// The calls of the next frame of a world that stands so.
+/// The calls of the next frame of a world in this state.
 fn drawn(random: &mut Random, world: &World, moves_only: bool) -> Vec<Call> {
     let mut calls = Vec::new();
     let shapes: Vec<u32> = world.shapes().collect();

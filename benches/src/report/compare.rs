@@ -144,9 +144,9 @@ fn disturbed(manifest: &Manifest) -> Option<String> {
 }
 
 impl RecordComparison {
-    /// What an interval tells from 1 first, then what it doesn't, then what has none, and last the
-    /// control, which culls nothing: its nanoseconds change the most and mean the least. The
-    /// largest first in each.
+    /// Sorts rows whose interval excludes 1 first, then those whose interval contains 1, then those
+    /// without one, and last the control, which culls nothing: its nanoseconds change the most and
+    /// mean the least. In each part the largest comes first.
     fn rank(&mut self) {
         let control = Strategy::None.name();
         let class = |change: &MeasuredChange| match change.same {

@@ -181,7 +181,7 @@ mod tests {
         }
     }
 
-    /// The cheapest total wins and what can t be told from it is tied.
+    /// The cheapest total wins, and variants within its interval are tied.
     #[test]
     fn cheapest_total_wins() {
         let lines = [

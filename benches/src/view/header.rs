@@ -33,7 +33,7 @@ pub struct Header {
     pub shapes: Vec<ShapeHeader>,
     pub runs: Vec<RunHeader>,
     pub truth: bool,
-    /// What is said to meet.
+    /// The text that says what meets.
     pub meet: &'static str,
     /// Layers that are switched on at first.
     pub layers: Vec<&'static str>,
@@ -109,7 +109,7 @@ impl Header {
         }
     }
 
-    /// What is said of a record that can't be shown.
+    /// The header for a record that can't be shown.
     pub fn broken(path: &Path, error: &RecordError) -> Self {
         let name = file_name(path);
         Self {

@@ -95,9 +95,8 @@ fn tell(
     }
 }
 
-/// The value, when every rank has one. Otherwise nothing on all of them, and the first that has an
-/// error of its own says it: with its number, unless all have one, which they have then come to
-/// alike. Collective.
+/// The value, if every rank has one. Otherwise `None` on all of them, and the first rank with its
+/// own error prints it, with the rank's number unless all ranks have the error. Collective.
 fn agreed<T>(network: &MpiNetwork, outcome: Result<T, Option<miette::Report>>) -> Option<T> {
     let own = matches!(outcome, Err(Some(_)));
     let troubles = network.gather(&[u64::from(outcome.is_err()), own.into()]);

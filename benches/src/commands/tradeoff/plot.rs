@@ -94,7 +94,7 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
     })
 }
 
-/// What lies behind a name, so that it can be read over a line.
+/// The background of a name, so that it can be read over a line.
 fn plate(name: &str, (x, y): (i32, i32)) -> [(i32, i32); 2] {
     [(x - 1, y), (x + 7 * name.chars().count() as i32, y + 13)]
 }

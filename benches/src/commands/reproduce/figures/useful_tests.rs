@@ -13,7 +13,7 @@ use crate::commands::reproduce::rows::Drawings;
 /// The percentages shown.
 const RANGE: [f64; 2] = [0.3, 100.0];
 
-/// Percent over N, logarithmic, a line a strategy.
+/// Percent over N, logarithmic, one line per strategy.
 pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let body = titled(
         area,
