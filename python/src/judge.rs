@@ -18,7 +18,7 @@ use super::errors::{CaseSkipped, SdopError, refused};
 /// translations)`, which returns the pairs i < j as an array of shape (m, 2). For the claim "aabb"
 /// it has `frame(boxes)` instead. If its set of bodies can change, it has `change(body_shapes,
 /// dynamic, was)`, where `was` holds each body's former number, or −1; cases with such a change are
-/// skipped otherwise. `CaseSkipped` skips a case, any other exception is an error of it.
+/// skipped otherwise. `CaseSkipped` skips a case, any other exception is an error of the case.
 ///
 /// Returns whether it is a pass, the verdict as text and as JSON, and the smallest case of a miss;
 /// `sdop.judge` makes a `Verdict` of it.
@@ -73,10 +73,10 @@ fn missed(py: Python<'_>, smallest: &Smallest, claim: Claim) -> PyResult<Missed>
     Ok((data.to_string(), matrix(py, boxes)?.unbind(), files))
 }
 
-/// What a culler is made for: the shapes of a case, and the bodies of its first frame.
+/// The input of a culler's constructor: the shapes of a case, and the bodies of its first frame.
 #[pyclass(frozen, get_all, module = "sdop")]
 pub struct Scene {
-    /// What it is judged by.
+    /// The claim by which it is judged.
     claim: &'static str,
     /// A dict for each shape: `name`, `vertices` (n, 3), `triangles` (m, 3), `ball` (centre and
     /// radius), and the or-DOP's `basis` (3, 3, a row for each axis), `lo` and `hi` (k / 2).
@@ -110,7 +110,7 @@ impl Scene {
     }
 }
 
-/// A class of Python, or anything else that makes cullers when it is called.
+/// A Python class, or another callable that makes cullers.
 struct InPython {
     make: Py<PyAny>,
 }
@@ -137,7 +137,7 @@ impl Subject for InPython {
 }
 
 impl InPython {
-    /// Answers all frames, or says why the case is skipped.
+    /// Answers all frames, or returns the reason why the case is skipped.
     fn run(
         &self,
         py: Python<'_>,
@@ -172,7 +172,7 @@ impl InPython {
     }
 }
 
-/// Tells a culler of another set of bodies; false if it can't have one.
+/// Passes another set of bodies to a culler. Returns false if its set can't change.
 fn change(culler: &Bound<'_, PyAny>, frame: &Frame, was: &[Option<u32>]) -> PyResult<bool> {
     let py = culler.py();
     if !culler.hasattr("change")? {
