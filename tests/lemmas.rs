@@ -172,6 +172,41 @@ fn every_script_names_its_code() {
     assert_eq!(lemmas, theorems.collect());
 }
 
+/// Definitions in Coq name their code: a file and names in it, which exist.
+#[test]
+fn coq_definitions_name_existing_code() {
+    let mut named = 0;
+    for entry in fs::read_dir("paper/proofs/coq").unwrap() {
+        let path = entry.unwrap().path();
+        let text = fs::read_to_string(&path).unwrap();
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        for (at, _) in text.match_indices("src/") {
+            let (file, names) = text[at..].split_once(": ").unwrap();
+            let source = fs::read_to_string(file).unwrap_or_else(|error| panic!("{file}: {error}"));
+            for (place, name) in names.split(", ").enumerate() {
+                let end =
+                    name.find(|letter: char| !letter.is_alphanumeric() && !"_:".contains(letter));
+                let (word, rest) = name.split_at(end.unwrap_or(name.len()));
+                // Prose may follow the names.
+                if place > 0 && rest.starts_with(' ') && !rest.starts_with(" *)") {
+                    break;
+                }
+                let word = word.trim_end_matches(':');
+                assert!(
+                    item(&source, word).is_some(),
+                    "{}: {file} has no `{word}`",
+                    path.display()
+                );
+                named += 1;
+                if !rest.is_empty() {
+                    break;
+                }
+            }
+        }
+    }
+    assert!(named > 60, "{named}");
+}
+
 /// A digest is of the code and not of its layout.
 #[test]
 fn digest_ignores_layout() {

@@ -13,7 +13,7 @@ impl Inputs {
     }
 
     pub fn below(&mut self, n: u32) -> u32 {
-        (u64::from(self.0.next_u32()) * u64::from(n) >> 32) as u32
+        ((u64::from(self.0.next_u32()) * u64::from(n)) >> 32) as u32
     }
 
     /// In [0, 1), with 53 random bits.

@@ -16,7 +16,7 @@ Variable m : mode64.
 Hypothesis Hm : valid64 m.
 Variables origin inverse : R.
 
-(* src/broad_phase/grid/cells.rs: Rule::cell *)
+(* src/broad_phase/grid/cells.rs: CellRule::cell *)
 Definition cell (x : R) : R := add64 m (mul64 m (sub64 m x origin) inverse) to_integer.
 
 (* src/broad_phase/grid/cells.rs: number. The low 32 bits of 1.5 * 2^52 + k are k, for 0 <= k < 2^31
@@ -91,7 +91,7 @@ Proof.
 Qed.
 
 (* (1) Each centre between the lowest and the farthest one has a number below the count, which is
-   that of the farthest one and one (Rule::count). *)
+   that of the farthest one and one (CellRule::count). *)
 Theorem centre_in_table (x hi : R) :
   0 <= inverse -> origin <= x <= hi -> (0 <= number (cell x) <= number (cell hi))%Z.
 Proof.

@@ -126,7 +126,7 @@ Proof.
   pose proof (proj2 half_step_value). unfold u in *. lra.
 Qed.
 
-(* src/rounding/skin.rs: Skin, Skin::of, stays *)
+(* src/rounding/skin.rs: Skin::of, stays *)
 Record skin := { share : R; least : R }.
 Definition sound_skin (s : skin) : Prop :=
   0 <= share s <= 1 /\ skin_floor <= least s <= IZR (2 ^ 100).
@@ -260,7 +260,7 @@ Proof.
   clearbody rs m factor floor. unfold u in *. lra.
 Qed.
 
-(* src/broad_phase/neighbours/list.rs: Make::run. A ball as a list takes it: grown by the skin, or
+(* src/broad_phase/neighbours/list.rs: BuildList::run. A ball as a list takes it: grown by the skin, or
    where it is static by that of no share. *)
 Definition still : skin := {| share := 0; least := skin_floor |}.
 Definition skin_for (s : skin) (moves : bool) : skin := if moves then s else still.

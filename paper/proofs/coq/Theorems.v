@@ -1,7 +1,7 @@
 (* What the theorems rest on. .ci/proofs accepts the four axioms of README.md and no other. One list
    for all of them, since each takes Coq a second. *)
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
-  Finder Lists Levels.
+  Finder Lists Levels Duality Margins Refit.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -33,7 +33,12 @@ Definition theorems := (
   Outward.grown_no_farther,
   Lists.drift_within_budget,
   Lists.lists_hold_reported_pairs,
-  Levels.levels_hand_over
+  Levels.levels_hand_over,
+  Duality.support_bounds,
+  Duality.axis_separates,
+  Margins.place_within_moved,
+  Margins.slab_with_margin,
+  Refit.refit_contains
 ).
 
 Print Assumptions theorems.

@@ -30,7 +30,7 @@ impl Rule {
         }
     }
 
-    fn to_integer(&self) -> f64 {
+    fn whole_number_offset(&self) -> f64 {
         1.5 * exp2(self.wide.precision - 1)
     }
 
@@ -53,7 +53,7 @@ impl Rule {
     pub fn number(&self, origin: f64, size: f64, x: f64) -> f64 {
         let inverse = self.wide.div(1.0, size);
         let quotient = self.wide.mul(self.wide.sub(x, origin), inverse);
-        self.wide.add(quotient, self.to_integer()) - self.to_integer()
+        self.wide.add(quotient, self.whole_number_offset()) - self.whole_number_offset()
     }
 
     /// `CellRule::count` less one, or what it was once: round(extent / size).
