@@ -17,7 +17,7 @@ use sdop_bench::reproduce::readings::{Reading, cell, table};
 use sdop_bench::reproduce::sensitivity::{self, Bounce, Interpretation, Start};
 use sdop_bench::reproduce::units::{Experiments, UnitResult};
 use sdop_bench::reproduce::{
-    Estimate, ExperimentPlan, PaperScene, Results, Run, claims, rates, run_scene, study,
+    Estimate, ExperimentPlan, PaperScene, Results, StrategyRun, claims, rates, run_scene, study,
 };
 use sdop_bench::scene::SceneFile;
 use sdop_bench::sweep::Sweep as _;
@@ -48,7 +48,7 @@ fn run(plan: &ExperimentPlan) -> Results {
 #[test]
 fn counts_and_hashes_are_golden() {
     let results = run(&plan(1, Tier::detect()));
-    let line = |run: &Run| {
+    let line = |run: &StrategyRun| {
         let [sphere, ordop] =
             [run.counters.sphere, run.counters.ordop].map(|v| [v.updates, v.tests, v.hits]);
         let hash = run.pairs_sha256.as_deref().map_or("-", |hash| &hash[..16]);
@@ -98,7 +98,7 @@ fn units_joined_have_the_golden_counts() {
         joined.take(&text).unwrap();
     }
     let counts = |results: &Results| {
-        let of = |run: &Run| (run.scene.clone(), run.seed, run.strategy, run.counters);
+        let of = |run: &StrategyRun| (run.scene.clone(), run.seed, run.strategy, run.counters);
         let counts: Vec<_> = results.runs.iter().map(of).collect();
         (
             counts,
@@ -108,7 +108,7 @@ fn units_joined_have_the_golden_counts() {
     };
     assert_eq!(counts(&joined), counts(&whole));
     let hashes = |results: &Results| -> Vec<_> {
-        let hash = |run: &Run| run.pairs_sha256.clone();
+        let hash = |run: &StrategyRun| run.pairs_sha256.clone();
         results.runs.iter().map(hash).collect()
     };
     assert_eq!(hashes(&joined), hashes(&whole));

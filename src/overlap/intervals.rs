@@ -97,12 +97,12 @@ impl SlotTest for IntervalSlots {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::broad_phase::whole_vectors::{SLOTS, check};
+    use crate::broad_phase::whole_vectors::{SLOTS_PER_CHECK, check};
 
     /// Slabs that fill their vectors cost no vector more.
     #[test]
     fn full_slab_vectors_cost_no_more() {
-        let [lo, hi] = [1.0, 2.0].map(|end| vec![vec![end; SLOTS]; 3]);
+        let [lo, hi] = [1.0, 2.0].map(|end| vec![vec![end; SLOTS_PER_CHECK]; 3]);
         check(&IntervalSlots { lo, hi });
     }
 

@@ -2,7 +2,7 @@
 
 use sdop::Aabb;
 use sdop::broad_phase::{BallBounds, BallTest, Cells, SlotBodies, SlotTest, TableLayout};
-use sdop::overlap::boxes::Cubes;
+use sdop::overlap::boxes::CubeTest;
 use sdop::overlap::ordop::slabs::LaneSlabs;
 use sdop::overlap::ordop::support::support;
 use sdop::overlap::ordop::table::members_of;
@@ -406,7 +406,7 @@ fn cubes(tier: Tier, inputs: &mut Inputs) -> Case {
     };
     let [low, high] = [0.0, 2.0].map(|at| Aabb::new([at; 3], [at + 1.0; 3]));
     let less = less_than_sure(gap);
-    let hit = |boxes: &[Aabb]| dispatch(tier, Hit(Cubes { slots, boxes, less }));
+    let hit = |boxes: &[Aabb]| dispatch(tier, Hit(CubeTest { slots, boxes, less }));
     // The boxes' own ends are asked only where the cubes don't decide.
     let (apart, surely) = (!hit(&[low, low]), hit(&[low, high]));
     let case = Case::of("cubes")

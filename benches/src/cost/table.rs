@@ -8,7 +8,7 @@ use super::level::CacheLevel;
 use super::pass::{Culled, Pass};
 use super::predict::{Prices, TermWidths, Terms};
 use crate::measure::counts::Volume;
-use crate::measure::culling::Stages;
+use crate::measure::culling::StageSeconds;
 use crate::measure::estimate::Estimate;
 use crate::measure::turns::{Quartiles, Regime};
 use crate::measure::variant::Variant;
@@ -200,12 +200,13 @@ fn failing(frame: &Compared, terms: &[Terms], culled: &[&Culled], regime: Regime
     if frame.residual.half_width.is_finite() && frame.residual.covers(0.0) {
         return Assumption::Steady;
     }
-    let stages: Vec<Stages> = culled
+    let stages: Vec<StageSeconds> = culled
         .iter()
         .map(|culled| culled.times.medians(regime))
         .collect();
-    let measured =
-        |stage: fn(&Stages) -> f64| stages.iter().map(stage).sum::<f64>() / stages.len() as f64;
+    let measured = |stage: fn(&StageSeconds) -> f64| {
+        stages.iter().map(stage).sum::<f64>() / stages.len() as f64
+    };
     let update: f64 = terms.iter().map(|terms| terms.update).sum();
     let refining: f64 = terms.iter().skip(1).map(|terms| terms.test).sum();
     let off = [

@@ -6,7 +6,7 @@
 use super::check::{ClaimCheck, PaperClaim};
 use super::experiment::{PaperScene, Results, STRATEGIES};
 use super::immediate::{Handing, Immediacy};
-use super::rates::{ELSEWHERE, ratio};
+use super::rates::{OTHER_FRAME_SECONDS, ratio};
 use super::readings::{Reading, TABLE_1_STRATEGIES};
 use super::{Estimate, paper_name};
 use sdop::settings::Strategy;
@@ -215,7 +215,7 @@ fn rate_checks_in(
 ) -> Vec<ClaimCheck> {
     let mut checks = Vec::new();
     for scene in scenes {
-        for elsewhere in ELSEWHERE {
+        for elsewhere in OTHER_FRAME_SECONDS {
             let [one, other] = of.map(paper_name);
             let quantity = format!("fps {one}/{other}, {scene}, F = {} ms", 1e3 * elsewhere);
             checks.push(ClaimCheck::between(

@@ -6,7 +6,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use sdop_bench::reproduce::paper_name;
-use sdop_bench::reproduce::rates::{ELSEWHERE, Rate};
+use sdop_bench::reproduce::rates::{OTHER_FRAME_SECONDS, Rate};
 
 use super::style::{anchored, colour, ends, label, quiet, text, titled};
 use super::{Area, DrawResult};
@@ -20,8 +20,9 @@ pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let mut scenes = distinct(of_most().map(|rate| rate.scene.as_str()));
     scenes.sort_unstable();
     let title = format!("Frame rate of {most} objects, fps = 1/(F + t); whiskers: 95 % over seeds");
-    let panels = titled(area, &title)?.split_evenly((ELSEWHERE.len(), scenes.len().max(1)));
-    for (row, elsewhere) in ELSEWHERE.into_iter().enumerate() {
+    let panels =
+        titled(area, &title)?.split_evenly((OTHER_FRAME_SECONDS.len(), scenes.len().max(1)));
+    for (row, elsewhere) in OTHER_FRAME_SECONDS.into_iter().enumerate() {
         for (column, scene) in scenes.iter().enumerate() {
             let of = |rate: &&Rate| rate.scene == *scene && rate.elsewhere == elsewhere;
             let rates: Vec<&Rate> = of_most().filter(of).collect();
