@@ -208,7 +208,8 @@ impl Culler {
         std::mem::swap(&mut self.pairs, pairs);
     }
 
-    /// When each pair of the last frame was last refined, for the order [`Order::OldestAnswer`].
+    /// When each pair of the last frame was last refined, for the order
+    /// [`Order::OldestAnswer`](crate::Order::OldestAnswer).
     #[cfg(feature = "serde")]
     pub(crate) fn answers(&self) -> RefinementRanks {
         self.scratch.answers()

@@ -36,7 +36,7 @@ struct CellEntry {
 /// A cell of the table.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
-    /// See [`Level::name`]; 0 if there is no cell.
+    /// See [`BoxLevel::name`](levels::BoxLevel::name); 0 if there is no cell.
     name: u64,
     boxes: Run,
 }
