@@ -15,6 +15,7 @@ use sdop_judge::ours::forms::{self, Form};
 use sdop_judge::ours::rounds::{Failure, Ledger, judge_and_check};
 use sdop_judge::ours::ways::{Mode, Rotation};
 use sdop_judge::ours::{Predicate, Shapes};
+use sdop_judge::{Case, Frame};
 
 fn lying_crowd() -> (Shapes, Ledger) {
     let mut rng = ChaCha8Rng::seed_from_u64(9);
@@ -46,15 +47,16 @@ fn wrong_ball_shrinks_to_two_bodies() {
         assert_eq!(count.missed > 0, uses_spheres, "{row:?}");
     }
     let smallest = SmallestScene::of(&ledger.failures[0]).unwrap();
-    assert_eq!(smallest.bodies.len(), 2);
-    assert_eq!(smallest.shapes.len(), shapes.built.len());
+    let bodies = &smallest.shrunk.case.frames[0].bodies;
+    assert_eq!((smallest.shrunk.case.frames.len(), bodies.len()), (1, 2));
+    assert!(smallest.shrunk.case.shapes.len() <= shapes.built.len());
 
     let directory = tempfile::tempdir().unwrap();
     let (path, shown) = smallest.write(directory.path()).unwrap();
     assert!(!shown, "built anew, the shape tells the truth");
     let scene = SceneFile::read(&path).unwrap().build().unwrap();
-    assert_eq!(scene.bodies.translation, smallest.bodies.translation);
-    assert_eq!(scene.bodies.rotation, smallest.bodies.rotation);
+    assert_eq!(scene.bodies.translation, bodies.translation);
+    assert_eq!(scene.bodies.rotation, bodies.rotation);
     assert_eq!(scene.cull, smallest.settings);
 }
 
@@ -66,8 +68,11 @@ fn complete_scene_is_not_shrunk() {
         settings: CullSettings::all_pairs(),
         mode: Mode::plain(Tier::SCALAR),
         missed: true,
-        shapes: shapes.built[1..].to_vec(),
-        frames: vec![Default::default()],
+        case: Case {
+            shapes: shapes.built[1..].to_vec(),
+            frames: vec![Frame::fitted(Default::default(), &[])],
+            ..ledger.failures[0].case.clone()
+        },
         pair: ledger.failures[0].pair,
     };
     assert!(SmallestScene::of(&honest).is_none());

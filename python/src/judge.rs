@@ -1,6 +1,7 @@
 //! Judging a culler that is written in Python.
 
 use numpy::{PyArray1, PyArray2};
+use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use sdop::bodies::Bodies;
@@ -18,7 +19,9 @@ use super::errors::{CaseSkipped, SdopError, refused};
 /// translations)`, which returns the pairs i < j as an array of shape (m, 2). For the claim "aabb"
 /// it has `frame(boxes)` instead. If its set of bodies can change, it has `change(body_shapes,
 /// dynamic, was)`, where `was` holds each body's former number, or −1; cases with such a change are
-/// skipped otherwise. `CaseSkipped` skips a case, any other exception is an error of the case.
+/// skipped otherwise. So are those of the claims "filter", "margin" and "restore" without
+/// `filter(groups, excluded)`, `margins(margins)`, or `save()` and `restore()`. `CaseSkipped` skips
+/// a case, any other exception is an error of the case.
 ///
 /// Returns whether it is a pass, the verdict as text and as JSON, and the smallest case of a miss;
 /// `sdop.judge` makes a `Verdict` of it.
@@ -52,7 +55,7 @@ pub fn judge(
     let missed = verdict
         .smallest
         .as_ref()
-        .map(|smallest| missed(py, smallest, claim))
+        .map(|smallest| missed(py, smallest))
         .transpose()?;
     Ok((verdict.passed(), verdict.to_string(), json, missed))
 }
@@ -60,7 +63,7 @@ pub fn judge(
 /// A missed pair as JSON, the boxes of its frame, and the counter-example's files.
 type Missed = (String, Py<PyArray2<f32>>, Vec<(String, Vec<u8>)>);
 
-fn missed(py: Python<'_>, smallest: &Smallest, claim: Claim) -> PyResult<Missed> {
+fn missed(py: Python<'_>, smallest: &Smallest) -> PyResult<Missed> {
     let boxes = &smallest.case.frames[smallest.miss.frame].boxes;
     let data = serde_json::json!({
         "case": smallest.from,
@@ -69,7 +72,7 @@ fn missed(py: Python<'_>, smallest: &Smallest, claim: Claim) -> PyResult<Missed>
         "point": smallest.witness.as_ref().map(|witness| witness.decimals),
         "depth_ulps": smallest.witness.as_ref().and_then(|witness| witness.depth_ulps),
     });
-    let files = counter_example(smallest, claim)?;
+    let files = counter_example(smallest)?;
     Ok((data.to_string(), matrix(py, boxes)?.unbind(), files))
 }
 
@@ -88,7 +91,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    fn new(py: Python<'_>, case: &Case, bodies: &Bodies, claim: Claim) -> PyResult<Self> {
+    fn new(py: Python<'_>, case: &Case, bodies: &Bodies) -> PyResult<Self> {
         let shapes = PyList::empty(py);
         for shape in &case.shapes {
             let named = PyDict::new(py);
@@ -102,7 +105,7 @@ impl Scene {
             shapes.append(named)?;
         }
         Ok(Self {
-            claim: claim.name(),
+            claim: case.claim.name(),
             shapes: shapes.unbind(),
             body_shapes: PyArray1::from_slice(py, &bodies.shape).unbind(),
             dynamic: PyArray1::from_slice(py, &bodies.dynamic).unbind(),
@@ -116,11 +119,11 @@ struct InPython {
 }
 
 impl Subject for InPython {
-    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
         let mut answered = Vec::new();
         // Threads of the judge hold the interpreter for a whole case: a case's frames come one
         // after the other.
-        Python::attach(|py| match self.run(py, case, claim, &mut answered) {
+        Python::attach(|py| match self.run(py, case, &mut answered) {
             Ok(None) => Ok(answered),
             Ok(Some(why)) => Err(Stop::Skipped { why, answered }),
             Err(error) if error.is_instance_of::<CaseSkipped>(py) => Err(Stop::Skipped {
@@ -142,7 +145,6 @@ impl InPython {
         &self,
         py: Python<'_>,
         case: &Case,
-        claim: Claim,
         answers: &mut Vec<Answer>,
     ) -> PyResult<Option<String>> {
         let Some(first) = case.frames.first() else {
@@ -151,14 +153,12 @@ impl InPython {
         let culler = self
             .make
             .bind(py)
-            .call1((Scene::new(py, case, &first.bodies, claim)?,))?;
+            .call1((Scene::new(py, case, &first.bodies)?,))?;
         for frame in &case.frames {
-            if let Some(was) = &frame.was
-                && !change(&culler, frame, was)?
-            {
-                return Ok(Some("its set of bodies can't change".to_owned()));
+            if let Some(why) = prepared(&culler, frame)? {
+                return Ok(Some(why.to_owned()));
             }
-            let pairs = if claim == Claim::Aabb {
+            let pairs = if case.claim.is_of_boxes() {
                 culler.call_method1("frame", (matrix(py, &frame.boxes)?,))?
             } else {
                 let rotations = matrix(py, &frame.bodies.rotation)?;
@@ -167,12 +167,55 @@ impl InPython {
             };
             let pairs = whole_rows::<2>(&pairs, "pairs")?;
             answers.push(Answer { pairs, ns: None });
+            if frame.save && !told(&culler, "save", ())? {
+                return Ok(Some("its state can't be saved".to_owned()));
+            }
         }
         Ok(None)
     }
 }
 
-/// Passes another set of bodies to a culler. Returns false if its set can't change.
+/// Calls a method that a culler may have. Returns false if it has none.
+fn told<'py>(
+    culler: &Bound<'py, PyAny>,
+    method: &str,
+    with: impl PyCallArgs<'py>,
+) -> PyResult<bool> {
+    let has = culler.hasattr(method)?;
+    if has {
+        culler.call_method1(method, with)?;
+    }
+    Ok(has)
+}
+
+/// Gives a culler what comes before a frame; what it can't do, if anything.
+fn prepared(culler: &Bound<'_, PyAny>, frame: &Frame) -> PyResult<Option<&'static str>> {
+    let py = culler.py();
+    if frame.restore && !told(culler, "restore", ())? {
+        return Ok(Some("it can't go back to a saved state"));
+    }
+    if let Some(was) = &frame.was
+        && !change(culler, frame, was)?
+    {
+        return Ok(Some("its set of bodies can't change"));
+    }
+    if let Some(filter) = &frame.filter {
+        let groups: Bound<'_, PyArray2<u32>> = matrix(py, &filter.groups)?;
+        let excluded: Bound<'_, PyArray2<u32>> = matrix(py, &filter.excluded)?;
+        if !told(culler, "filter", (groups, excluded))? {
+            return Ok(Some("it has no filters"));
+        }
+    }
+    if let Some(margins) = &frame.margins {
+        let margins = PyArray1::from_slice(py, margins);
+        if !told(culler, "margins", (margins,))? {
+            return Ok(Some("it has no margins"));
+        }
+    }
+    Ok(None)
+}
+
+/// Tells a culler of another set of bodies; false if it can't have one.
 fn change(culler: &Bound<'_, PyAny>, frame: &Frame, was: &[Option<u32>]) -> PyResult<bool> {
     let py = culler.py();
     if !culler.hasattr("change")? {

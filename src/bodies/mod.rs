@@ -2,12 +2,14 @@
 
 mod aabb;
 pub mod contract;
+mod excluded;
 mod groups;
 mod motion;
 mod places;
 mod read_ahead;
 
 pub use aabb::Aabb;
+pub(crate) use excluded::{ExcludedPairs, PairFilter, PairRules};
 pub use groups::Groups;
 pub use motion::Motion;
 #[doc(hidden)]

@@ -75,6 +75,7 @@ impl BoxWorld {
         shrink_column(&mut self.dynamic, slots);
         shrink_column(&mut self.resting, slots);
         shrink_column(&mut self.groups, slots);
+        self.excluded.shrink_to_fit();
         self.count_groups();
         self.movers.forget();
         self.frames.forget();

@@ -2,7 +2,7 @@
 
 use super::frame::BoxFrames;
 use crate::bodies::contract::{check_column, check_number};
-use crate::bodies::{Aabb, Groups};
+use crate::bodies::{Aabb, Groups, PairFilter};
 use crate::counters::VolumeCounters;
 use crate::culler::CullError;
 use crate::pairs::PairList;
@@ -176,7 +176,7 @@ impl BoxCuller {
     }
 
     /// Culls one frame as [`Self::cull`] does, if it has at most `limit` pairs. Memory for more is
-    /// never taken.
+    /// never allocated.
     ///
     /// # Errors
     /// There are more pairs, and the error has their number: then [`Self::pairs`] is empty, and the
@@ -205,7 +205,8 @@ impl BoxCuller {
             let all = vec![true; boxes.len()];
             self.frames.replace(&all, &all);
         }
-        self.counters += self.frames.cull(boxes, self.groups.as_deref(), output)?;
+        let filter = PairFilter::of_groups(self.groups.as_deref());
+        self.counters += self.frames.cull(boxes, filter, output)?;
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
 use super::cubes::{MakeCubes, PREFETCH_DISTANCE};
 use crate::bodies::contract::ContractError;
-use crate::bodies::{Aabb, Groups, Places, read_ahead};
+use crate::bodies::{Aabb, PairFilter, Places, read_ahead};
 use crate::broad_phase::{Balls, EndSlots, GivenBoxes, PairFinder, Population, Reorder, Volume};
 use crate::counters::VolumeCounters;
 use crate::overlap::boxes::CubeTest;
@@ -114,21 +114,21 @@ impl BoxFrames {
         (self.news, self.candidates) = (SetChange::All, 0);
     }
 
-    /// Hands the boxes that meet, not both at rest, whose groups collide, to `output`. `boxes` and
-    /// `groups` are by name.
+    /// Hands the boxes that meet, not both at rest, that pass the filter, to `output`. `boxes` and
+    /// what the filter has are by name.
     pub fn cull(
         &mut self,
         boxes: &[Aabb],
-        groups: Option<&[Groups]>,
+        filter: Option<PairFilter<'_>>,
         output: Output<'_>,
     ) -> Result<VolumeCounters, ContractError> {
-        in_default_mode(|| self.cull_frame(boxes, groups, output))
+        in_default_mode(|| self.cull_frame(boxes, filter, output))
     }
 
     fn cull_frame(
         &mut self,
         boxes: &[Aabb],
-        groups: Option<&[Groups]>,
+        filter: Option<PairFilter<'_>>,
         output: Output<'_>,
     ) -> Result<VolumeCounters, ContractError> {
         self.threads.expect(FrameWork {
@@ -166,7 +166,7 @@ impl BoxFrames {
             executor,
             finder: &self.finder,
             test,
-            groups,
+            filter,
         };
         let mut counted = list_boxes(inputs, &mut self.tasks, output);
         counted.updates = self.places.moving as u64;

@@ -12,6 +12,7 @@
 mod crowds;
 mod cubes;
 mod culler;
+mod excluded;
 mod frame;
 mod movers;
 #[cfg(feature = "serde")]

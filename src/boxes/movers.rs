@@ -1,7 +1,9 @@
 //! Frames in which few boxes change: a pair's verdict is a function of the ends, groups and motion
-//! of its two boxes.
+//! of its two boxes, and of whether the pair is excluded. A box is noted as changed when any of the
+//! first is set, and one of the two when a pair is excluded or included.
 
 use super::BoxWorld;
+use crate::bodies::PairRules;
 use crate::broad_phase::{BoxIndex, IndexedBox, tags};
 use crate::simd::in_default_mode;
 
@@ -30,7 +32,11 @@ impl BoxWorld {
             let present = self.ids.iter().map(|id| self.indexed(id.slot() as u32));
             movers.take_index(BoxIndex::of(present, self.ids.len()));
         }
-        let work = movers.find(|slot| self.indexed(slot), &self.groups, most);
+        let rules = PairRules {
+            groups: &self.groups,
+            excluded: &self.excluded,
+        };
+        let work = movers.find(|slot| self.indexed(slot), rules, most);
         if let Some(work) = work {
             let present = |&&slot: &&u32| self.ids.present()[slot as usize];
             self.counters.updates += movers.changed().iter().filter(present).count() as u64;

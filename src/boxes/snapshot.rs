@@ -6,7 +6,7 @@ use super::BoxWorld;
 use crate::bodies::{Aabb, Groups};
 use crate::world::{
     IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, check_length, resting_column,
-    resting_slots,
+    resting_slots, restored_excluded,
 };
 
 /// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
@@ -25,11 +25,14 @@ pub struct BoxWorldSnapshot {
     resting: Vec<u32>,
     groups: Vec<[u32; 2]>,
     pairs: PairsSnapshot,
+    #[serde(default)]
+    excluded: Vec<[u32; 2]>,
 }
 
 impl BoxWorld {
-    /// The present state of the world, for [`Self::restore`]: boxes with ids and groups, free
-    /// slots, the pairs of the last cull and those of the last events. Counters are not in it.
+    /// The present state of the world, for [`Self::restore`]: boxes with ids and groups, excluded
+    /// pairs, free slots, the pairs of the last cull and those of the last events. Counters are not
+    /// in it.
     #[must_use]
     pub fn snapshot(&self) -> BoxWorldSnapshot {
         let bits = |aabb: &Aabb| [aabb.min, aabb.max].map(|corner| corner.map(f32::to_bits));
@@ -41,6 +44,7 @@ impl BoxWorld {
             resting: resting_slots(&self.resting),
             groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
             pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
+            excluded: self.excluded.sorted(),
         }
     }
 
@@ -66,11 +70,13 @@ impl BoxWorld {
             aabb.check(slot)?;
         }
         let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
+        let excluded = restored_excluded(&snapshot.excluded, &ids)?;
         let resting = resting_column(&snapshot.resting, ids.slots())?;
 
         (self.ids, self.log, self.bounds) = (ids, log, bounds);
         self.dynamic.clone_from(&snapshot.dynamic);
         self.resting = resting;
+        self.excluded = excluded;
         let groups = snapshot.groups.iter();
         self.groups = groups
             .map(|&[member, mask]| Groups { member, mask })

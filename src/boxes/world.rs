@@ -3,7 +3,7 @@
 use super::BoxCullerBuilder;
 use super::frame::BoxFrames;
 use crate::bodies::contract::check_number;
-use crate::bodies::{Aabb, Groups, Motion};
+use crate::bodies::{Aabb, ExcludedPairs, Groups, Motion, PairFilter};
 use crate::counters::VolumeCounters;
 use crate::strategy::Output;
 use crate::threads::Threads;
@@ -70,6 +70,7 @@ pub struct BoxWorld {
     pub(super) dynamic: Vec<bool>,
     pub(super) resting: Vec<bool>,
     pub(super) groups: Vec<Groups>,
+    pub(super) excluded: ExcludedPairs,
     pub(super) ids: Ids,
     pub(super) frames: BoxFrames,
     pub(super) counters: VolumeCounters,
@@ -108,6 +109,7 @@ impl BoxWorld {
             dynamic: Vec::new(),
             resting: Vec::new(),
             groups: Vec::new(),
+            excluded: ExcludedPairs::default(),
             ids: Ids::default(),
             frames,
             counters: VolumeCounters::default(),
@@ -146,6 +148,7 @@ impl BoxWorld {
     /// The box has been removed before.
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
         self.ids.remove(id)?;
+        self.excluded.remove_all(id.slot() as u32);
         self.movers.note(id.slot(), &self.ids);
         self.replaced = true;
         Ok(())
@@ -242,9 +245,9 @@ impl BoxWorld {
         self.grouped = groups.filter(|groups| **groups != Groups::ALL).count();
     }
 
-    /// Finds the boxes that meet, not both fixed, whose groups collide, and returns their pairs:
-    /// the lower slot first, sorted by slots, independent of the finder, of threads and of earlier
-    /// calls.
+    /// Finds the boxes that meet, not both fixed, whose groups collide and which aren't
+    /// [excluded](Self::exclude), and returns their pairs: the lower slot first, sorted by slots,
+    /// independent of the finder, of threads and of earlier calls.
     ///
     /// # Errors
     /// Never: invalid boxes are rejected when they are inserted or set.
@@ -266,7 +269,8 @@ impl BoxWorld {
         }
         self.ids.settle();
         let groups = (self.grouped > 0).then_some(&*self.groups);
-        let counted = self.frames.cull(&self.bounds, groups, output);
+        let filter = PairFilter::new(groups, &self.excluded);
+        let counted = self.frames.cull(&self.bounds, filter, output);
         self.counters += counted?;
         Ok(())
     }

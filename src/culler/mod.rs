@@ -44,7 +44,7 @@ use crate::strategy::RefinementRanks;
 #[cfg(feature = "shapes")]
 use crate::{
     bodies::contract::{check_bodies, check_column, check_poses},
-    bodies::{Bodies, Groups, Places},
+    bodies::{Bodies, ExcludedPairs, Groups, PairFilter, Places},
     broad_phase::{Balls, PairFinder},
     counters::{Counters, Seconds},
     overlap::intervals::IntervalSlots,
@@ -88,7 +88,8 @@ pub struct Culler {
 struct BodySet {
     places: Places,
     groups: Option<Vec<Groups>>,
-    /// What doesn't change between two frames, as of the last [`Culler::refresh`].
+    excluded: ExcludedPairs,
+    /// What doesn't change between two frames, as it was at the last [`Culler::refresh`].
     fixed: Bodies,
     /// 0, 1, 2 …: the slots' names when pairs are refined after the first test.
     numbers: Vec<u32>,
@@ -156,6 +157,7 @@ impl Culler {
             set: BodySet {
                 places,
                 groups: None,
+                excluded: ExcludedPairs::default(),
                 fixed: check::fixed(bodies),
                 numbers: (0..n as u32).collect(),
                 order: Vec::new(),
@@ -196,8 +198,18 @@ impl Culler {
         Ok(())
     }
 
-    /// From now on, a budget that would be spent on pairs in the order in which they are found is
-    /// spent in the order of their body numbers.
+    /// Pairs that are not listed, to be changed.
+    pub(crate) fn excluded_mut(&mut self) -> &mut ExcludedPairs {
+        &mut self.set.excluded
+    }
+
+    /// Pairs that are not listed.
+    pub(crate) fn excluded(&self) -> &ExcludedPairs {
+        &self.set.excluded
+    }
+
+    /// From now on, a budget that is spent on pairs as they are found is spent on them in the order
+    /// of their bodies.
     pub(crate) fn set_canonical(&mut self) {
         self.setup.is_canonical = true;
     }
@@ -453,7 +465,7 @@ impl Culler {
                 finder: &self.set.finder,
                 slots: self.set.finder.slots(&self.volumes.balls),
                 names,
-                groups: self.set.groups.as_deref(),
+                filter: PairFilter::new(self.set.groups.as_deref(), &self.set.excluded),
             },
             volumes: FrameVolumes {
                 posed: UpdateInputs {

@@ -211,7 +211,7 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for LineSearch<'_, T> {
             tree: 0,
             node: Node::default(),
         };
-        let mut waiting = [nothing; TREES * MOST_WAITING];
+        let mut waiting = [nothing; MOST_WAITING + TREES];
         let mut count = 0;
         for tree in (0..TREES).rev() {
             if let Some(node) = self.index.trees[tree].top() {
@@ -261,7 +261,7 @@ impl<T: FnMut(LineHit, f64) -> f64> LineSearch<'_, T> {
         }
         let at = match self.index.solid(tree, place) {
             Solid::Box(aabb) => self.courses.enters(&aabb),
-            Solid::Shape(body) => body.crossed_by(&self.track).map(|at| at.max(enters)),
+            Solid::Shape(body) => body.crossed_by(&self.track),
         };
         if let Some(at) = at.filter(|at| at <= limit) {
             let body = self.index.id_at(tree, place);

@@ -6,6 +6,8 @@ use super::shape::{PosedBodies, QueryShape};
 use crate::bodies::Motion;
 use crate::boxes::BoxWorld;
 #[cfg(feature = "shapes")]
+use crate::rounding::query::largest;
+#[cfg(feature = "shapes")]
 use crate::world::{Body, BodyId, World};
 
 /// A set of bodies for queries: a [`World`](crate::World) or a [`BoxWorld`].
@@ -53,7 +55,7 @@ impl QuerySource for World {
     fn bring(&self, index: &mut QueryIndex) {
         let area = BodyExtent::of(self.bodies().map(|(_, body)| body.translation));
         let mut posed = match index.posed.take() {
-            Some(posed) if area.suits(index.origin) => posed,
+            Some(posed) if index.origin == area.origin() => posed,
             _ => {
                 index.begin(area.origin(), None);
                 PosedBodies::default()
@@ -141,18 +143,19 @@ impl BodyExtent {
         }
     }
 
-    /// The best origin of boxes in f32: the world's origin unless bodies are far from it.
+    /// What boxes in f32 are seen from, so that answers are a function of the bodies as they are
+    /// now: the world's origin unless bodies are far from it. Then their middle in steps of about
+    /// twice the width, so that it seldom changes while they move.
     fn origin(&self) -> [f64; 3] {
-        if self.middle.iter().all(|x| x.abs() <= self.half) {
+        /// Bodies may be so many times farther from the world's origin than they are apart.
+        const MOST_OFFSET_RATIO: f64 = 16.0;
+        const MANTISSA: u64 = (1 << 52) - 1;
+        let far = largest(self.middle);
+        if far <= MOST_OFFSET_RATIO * self.half {
             return [0.0; 3];
         }
-        self.middle
-    }
-
-    /// Whether another origin is nearly as good.
-    fn suits(&self, origin: [f64; 3]) -> bool {
-        /// Bodies may have moved by this multiple of half their widest side.
-        const MOST_OFFSET_RATIO: f64 = 16.0;
-        (0..3).all(|axis| (self.middle[axis] - origin[axis]).abs() <= MOST_OFFSET_RATIO * self.half)
+        let step = (4.0 * self.half).max(far / f64::from(1 << 24));
+        let step = f64::from_bits(step.to_bits() & !MANTISSA); // a power of two
+        self.middle.map(|x| (x / step).round() * step)
     }
 }

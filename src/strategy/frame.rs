@@ -4,7 +4,7 @@ use super::tasks::Tasks;
 #[cfg(feature = "serde")]
 use super::time_critical::RefinementRanks;
 use super::{SlotNames, Totals, batch, listing, output::Output, sequential, time_critical};
-use crate::bodies::{Groups, Places};
+use crate::bodies::{PairFilter, Places};
 use crate::broad_phase::{PairFinder, SlotBodies};
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::ordop::SlabTables;
@@ -71,8 +71,8 @@ pub(crate) struct Arrangement<'a> {
     pub finder: &'a PairFinder,
     pub slots: SlotBodies<'a>,
     pub names: SlotNames<'a>,
-    /// Each body's groups where not all collide with all.
-    pub groups: Option<&'a [Groups]>,
+    /// Which pairs pass after the first test, where not all do.
+    pub filter: Option<PairFilter<'a>>,
 }
 
 /// What is new in each frame.

@@ -7,7 +7,7 @@ use super::output::{Output, TaskOutput};
 use super::tasks::{Task, Tasks, split_work};
 #[cfg(feature = "shapes")]
 use super::{Inputs, Scratch, SlotNames};
-use crate::bodies::Groups;
+use crate::bodies::PairFilter;
 use crate::broad_phase::{Block, EndSlots, FirstTest, MOST_CANDIDATES, PairFinder, SlotTest};
 use crate::counters::VolumeCounters;
 use crate::overlap::boxes::CubeTest;
@@ -88,8 +88,8 @@ pub(super) struct Listing<'a> {
     listed: PairNames,
     #[cfg(feature = "shapes")]
     names: SlotNames<'a>,
-    /// Each body's groups where not all collide with all.
-    groups: Option<&'a [Groups]>,
+    /// Which pairs pass after the first test, where not all do.
+    filter: Option<PairFilter<'a>>,
 }
 
 impl<'a> Listing<'a> {
@@ -107,7 +107,7 @@ impl<'a> Listing<'a> {
             first,
             listed,
             names: arranged.names,
-            groups: arranged.groups,
+            filter: arranged.filter,
         }
     }
 
@@ -224,8 +224,8 @@ pub(crate) struct BoxInputs<'a> {
     pub executor: Executor<'a>,
     pub finder: &'a PairFinder,
     pub test: BoxTest<'a>,
-    /// Each box's groups, unless all collide with all.
-    pub groups: Option<&'a [Groups]>,
+    /// Which pairs pass if their boxes meet, where not all do.
+    pub filter: Option<PairFilter<'a>>,
 }
 
 /// Lists the pairs of boxes that meet, by their names, on all threads.
@@ -242,7 +242,7 @@ pub(crate) fn list_boxes(
         listed: PairNames::Bodies,
         #[cfg(feature = "shapes")]
         names: SlotNames::Bodies,
-        groups: inputs.groups,
+        filter: inputs.filter,
     };
     list_parts(listing, inputs.executor.pool, tasks, output).first
 }
@@ -440,8 +440,8 @@ impl<T> Lister<'_, '_, T> {
     fn append<L: Lanes>(&mut self, l: L, found: usize, hits: HitSlots) {
         let listed = self.out.len();
         self.name(l, found, hits);
-        if let Some(groups) = self.listing.groups {
-            self.keep_colliding(listed, groups);
+        if let Some(filter) = self.listing.filter {
+            self.keep_passing(listed, filter);
         }
         self.counters.hits += (self.out.len() - listed) as u64;
         if self.out.len() >= self.flush.enough {
@@ -466,12 +466,12 @@ impl<T> Lister<'_, '_, T> {
         self.out.advance(found);
     }
 
-    /// Drops the pairs from number `start` on whose groups don't collide. It is not inlined, so
-    /// that the common case stays small.
+    /// Drops those listed from this one on that don't pass the filter. Apart, so that the common
+    /// case stays small.
     #[inline(never)]
-    fn keep_colliding(&mut self, listed: usize, groups: &[Groups]) {
-        let groups_of = |name: u32| groups[self.listing.body_of(name) as usize];
+    fn keep_passing(&mut self, listed: usize, filter: PairFilter<'_>) {
+        let body_of = |name: u32| self.listing.body_of(name);
         self.out
-            .keep_from(listed, |[a, b]| groups_of(a).collide(groups_of(b)));
+            .keep_from(listed, |[a, b]| filter.passes(body_of(a), body_of(b)));
     }
 }

@@ -288,7 +288,7 @@ mod tests {
                 finder: &PairFinder::AllPairs(AllPairs::default()),
                 slots: slots.arranged(),
                 names: SlotNames::Places(&places.body),
-                groups: None,
+                filter: None,
             },
             volumes: FrameVolumes {
                 posed,

@@ -1,13 +1,14 @@
-//! Frames in which few bodies change: a pair's verdict is a function of its two bodies, their
-//! models and places, of their groups and motion, and of whether one of them is of interest.
+//! Frames in which few bodies change: a pair's verdict is a function of its two bodies, each in a
+//! model and at a place, of their groups and motion, of whether one of them is of interest, and of
+//! whether the pair is excluded.
 //!
-//! A body counts as changed when any of these is set, and when its local place or its model changes
-//! because an origin has moved.
+//! A body counts as changed when any of these is set (for an excluded pair, one of its bodies), and
+//! when its local place or its model changes because an origin has moved.
 
 use std::time::Instant;
 
 use super::World;
-use crate::bodies::Aabb;
+use crate::bodies::{Aabb, PairRules};
 use crate::broad_phase::{BoxIndex, IndexedBox, tags};
 use crate::culler::FoundPairs;
 use crate::simd::in_default_mode;
@@ -50,7 +51,11 @@ impl World {
             .boxes_of(&self.bodies, &movers.changed()[..count]);
         let mut boxes = boxes.into_iter();
         let box_of = |slot| self.indexed(slot, boxes.next());
-        let work = movers.find(box_of, &self.groups, most);
+        let rules = PairRules {
+            groups: &self.groups,
+            excluded: self.culler.excluded(),
+        };
+        let work = movers.find(box_of, rules, most);
         if work.is_some() {
             let (changed, others, ends) = movers.found();
             let found = FoundPairs {

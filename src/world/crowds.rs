@@ -76,6 +76,7 @@ impl World {
         shrink_column(&mut self.models, shapes);
         self.interest.shrink_to_fit();
         self.margins.shrink_to_fit();
+        self.culler.excluded_mut().shrink_to_fit();
         self.movers.forget();
         self.origins = Origins::default();
         self.culler.forget();

@@ -1,10 +1,10 @@
 //! Long-lived worlds: bodies come and go, and each frame finds the pairs that might touch.
 //!
-//! A [`World`] adds what an engine needs to a [`Culler`]: stable ids, static and dynamic bodies,
-//! groups and masks, contact margins, translations in f64, and pairs as a list or as events. The
-//! promise is the same, and includes margins: at every [`World::cull`], if two meshes, each grown
-//! by its body's margin and posed at its f64 translation, meet in exact arithmetic, and one of them
-//! is dynamic, and their groups collide, the pair is reported.
+//! What an engine needs around a [`Culler`]: stable ids, static and dynamic bodies, groups and
+//! masks, contact margins, translations in f64, and pairs as a list or as events. The promise is
+//! the same, margins included: at every [`World::cull`], if two meshes, each grown by its body's
+//! margin and posed at its f64 translation, meet in exact arithmetic, and one of them is dynamic,
+//! and their groups collide, and the pair isn't [excluded](World::exclude), it is reported.
 //!
 //! A frame costs time for what changes: bodies that were set, inserted or removed, their
 //! neighbours, and the pairs that begin or end ([`World`]). Lists and their order depend on the
@@ -40,6 +40,8 @@ mod crowds;
 mod digest;
 mod error;
 mod events;
+#[cfg(feature = "shapes")]
+mod excluded;
 mod ids;
 mod live_pairs;
 #[cfg(feature = "shapes")]
@@ -89,6 +91,7 @@ pub(crate) use self::movers::Movers;
 #[cfg(feature = "serde")]
 pub(crate) use self::saved::{
     IdsSnapshot, PairsSnapshot, Version, check_length, resting_column, resting_slots,
+    restored_excluded,
 };
 #[cfg(feature = "shapes")]
 pub(crate) use self::volumes::{ShapeVolumes, compose};
@@ -237,6 +240,7 @@ impl World {
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
         self.ids.remove(id)?;
         self.shapes[self.shape[id.slot()] as usize].bodies -= 1;
+        self.culler.excluded_mut().remove_all(id.slot);
         self.is_of_interest[id.slot()] = false;
         self.movers.note(id.slot(), &self.ids);
         self.replaced = true;

@@ -8,7 +8,7 @@
 //! in the lists of its partners.
 
 use super::{Ids, LivePairs};
-use crate::bodies::Groups;
+use crate::bodies::PairRules;
 use crate::broad_phase::{BoxIndex, IndexedBox, Search};
 
 /// Changed bodies are searched one by one if they are at most one in this number of bodies.
@@ -156,17 +156,17 @@ impl Movers {
         self.index = Some(index);
     }
 
-    /// Moves changed bodies in the index, and lists the bodies whose boxes meet each one's:
-    /// `box_of` is called for each of [`Self::changed`], `groups` has one entry per slot. Returns
-    /// the work in boxes and cells read, or `None` if that is too much or there are more pairs than
-    /// `most`.
+    /// Puts changed bodies where they are now, and lists those whose boxes meet each one's:
+    /// `box_of` is called for each of [`Self::changed`], groups have one entry a slot. Returns the
+    /// work that it took: boxes and cells that were looked at. None if that is too much, or if
+    /// there are pairs beyond `most`.
     pub fn find(
         &mut self,
         box_of: impl FnMut(u32) -> IndexedBox,
-        groups: &[Groups],
+        rules: PairRules<'_>,
         most: usize,
     ) -> Option<usize> {
-        let (mut work, most_work) = (0, WORK_PER_BODY * groups.len());
+        let (mut work, most_work) = (0, WORK_PER_BODY * rules.groups.len());
         let mut index = self.index.take()?;
         let boxes = &mut self.boxes;
         boxes.clear();
@@ -181,7 +181,7 @@ impl Movers {
         self.ends.clear();
         for seekers in boxes.chunks(SEEKERS_PER_BATCH) {
             let (search, found, ends) = (&mut self.search, &mut self.found, &mut self.ends);
-            work += index.find_partners(seekers, groups, search, found, ends);
+            work += index.find_partners(seekers, rules, search, found, ends);
             // A pair of two changed bodies is found twice.
             if work > most_work || found.len() / 2 > most {
                 self.back_off();

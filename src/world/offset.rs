@@ -42,8 +42,8 @@ mod tests {
         assert!(bound > 0.0 && bound < 1.0e-5, "{bound}");
     }
 
-    /// The error as a share of the bound. Quaternion and vectors are whole numbers, so that the
-    /// exact place is a fraction over |q|² in i128.
+    /// The error as a share of the bound. The error as a share of the bound. Quaternion and vectors
+    /// are whole numbers, so that the exact place is a fraction over |q|² in i128.
     fn share([q, o, t]: [[i64; 4]; 3]) -> f64 {
         let [x, y, z, w] = q.map(i128::from);
         let n = x * x + y * y + z * z + w * w;

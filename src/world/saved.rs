@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::Ids;
 use super::pair_log::{PairLog, Reported};
+use crate::bodies::ExcludedPairs;
 use crate::bodies::contract::{ContractError, check_number};
 use crate::pairs::PairList;
 
@@ -69,6 +70,20 @@ pub(crate) fn check_length(
     damaged(format!(
         "`{column}` has {entries} entries for {slots} slots"
     ))
+}
+
+/// Pairs of bodies that are left out, as a snapshot has them: sorted pairs of slots that have
+/// bodies, the lower first.
+pub(crate) fn restored_excluded(
+    pairs: &[[u32; 2]],
+    ids: &Ids,
+) -> Result<ExcludedPairs, SnapshotError> {
+    let has_body = |slot: u32| ids.present.get(slot as usize) == Some(&true);
+    let is_sound = |&[a, b]: &[u32; 2]| a < b && has_body(a) && has_body(b);
+    if pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(is_sound) {
+        return Ok(pairs.iter().copied().collect());
+    }
+    damaged("excluded pairs that there can't be")
 }
 
 /// The slots of bodies at rest, sorted.
@@ -213,6 +228,15 @@ impl PairsSnapshot {
             Some(WatchedSnapshot { pairs, generation }) => {
                 let named = pairs[1].iter().max().map_or(0, |&last| last as usize + 1);
                 check_length("watched generation", generation.len(), named)?;
+                let mut unnamed: Vec<u32> = generation.clone();
+                for &slot in pairs.iter().flatten() {
+                    if let Some(generation) = unnamed.get_mut(slot as usize) {
+                        *generation = 0;
+                    }
+                }
+                if let Some(slot) = unnamed.iter().position(|&generation| generation > 0) {
+                    return damaged(format!("no watched pair names slot {slot}"));
+                }
                 Arc::new(Reported {
                     slots: sorted(pairs, generation.len())?,
                     generation: Arc::new(generation.clone()),

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::local::Origins;
 use super::saved::{
     IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged, resting_column,
-    resting_slots,
+    resting_slots, restored_excluded,
 };
 use super::shapes::{ShapeSlot, check_shape};
 use super::{BodyId, Groups, LivePairs, World, check_margin, check_pose};
@@ -40,6 +40,8 @@ pub struct WorldSnapshot {
     interest: Vec<BodyId>,
     pairs: PairsSnapshot,
     answers: Vec<([u32; 2], u32)>,
+    #[serde(default)]
+    excluded: Vec<[u32; 2]>,
 }
 
 /// A shape that a snapshot's bodies may have.
@@ -51,9 +53,9 @@ struct ShapeSnapshot {
 
 impl World {
     /// The present state of the world, for [`Self::restore`]: bodies with ids, poses, margins and
-    /// groups, free slots, the bodies of interest, the pairs of the last cull and those of the last
-    /// events, and, if a budget is spent on the oldest answers first, the times when pairs were
-    /// refined. Counters and seconds are not in it.
+    /// groups, excluded pairs, free slots, the bodies of interest, the pairs of the last cull and
+    /// those of the last events, and, if a budget is spent on the oldest answers first, the times
+    /// when pairs were refined. Counters and seconds are not in it.
     ///
     /// ```
     /// # use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};
@@ -99,6 +101,7 @@ impl World {
             interest: self.interest.clone(),
             pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
             answers: self.culler.answers().0,
+            excluded: self.culler.excluded().sorted(),
         }
     }
 
@@ -152,6 +155,7 @@ impl World {
         let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
         let resting = resting_column(&snapshot.resting, slots)?;
         let answers = checked(&snapshot.answers, slots)?;
+        let excluded = restored_excluded(&snapshot.excluded, &ids)?;
 
         self.bodies = Bodies {
             shape: vec![0; slots],
@@ -171,6 +175,7 @@ impl World {
         self.interest.clone_from(&snapshot.interest);
         self.is_of_interest = vec![false; slots];
         self.culler.set_answers(&answers);
+        *self.culler.excluded_mut() = excluded;
         self.look();
         self.movers.forget();
         self.origins = Origins::default();

@@ -36,8 +36,8 @@ const CHEATS: [Cheat; 5] = [
     Cheat::BothFrames,
 ];
 
-fn exact(case: &Case, claim: Claim) -> Lists {
-    let truth = Truth::new(claim, &case.shapes).unwrap();
+fn exact(case: &Case) -> Lists {
+    let truth = Truth::new(case.claim, &case.shapes).unwrap();
     let pairs = |frame: &Frame| truth.pairs(frame).unwrap();
     case.frames.iter().map(pairs).collect()
 }
@@ -57,8 +57,8 @@ fn with_first_bodies(case: &Case) -> Case {
 }
 
 impl Subject for Cheat {
-    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
-        let right = exact(case, claim);
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+        let right = exact(case);
         let Some(last) = right.len().checked_sub(1) else {
             return Ok(Vec::new()); // so small are the scenes that shrinking tries
         };
@@ -69,7 +69,7 @@ impl Subject for Cheat {
             Self::FrameBefore => (0..=last)
                 .map(|n: usize| right[n.saturating_sub(1)].clone())
                 .collect(),
-            Self::FirstBodies => exact(&with_first_bodies(case), claim),
+            Self::FirstBodies => exact(&with_first_bodies(case)),
             Self::BothFrames => (0..=last)
                 .map(|n| {
                     let before = &right[n.saturating_sub(1)];
@@ -98,10 +98,10 @@ fn answers(case: &Case, lists: Lists) -> Vec<Answer> {
 struct OtherCase(Mutex<HashMap<String, Lists>>);
 
 impl Subject for OtherCase {
-    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
         let mut seen = self.0.lock().unwrap();
         let known = seen.entry(case.group().to_owned());
-        let mut lists = known.or_insert_with(|| exact(case, claim)).clone();
+        let mut lists = known.or_insert_with(|| exact(case)).clone();
         lists.resize(case.frames.len(), Vec::new());
         Ok(answers(case, lists))
     }

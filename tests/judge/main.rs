@@ -8,4 +8,5 @@ mod commands;
 mod cullers;
 mod programs;
 mod rust;
+mod twins;
 mod vectors;

@@ -84,7 +84,7 @@ fn an_index_follows_bodies() {
     let mut ids: Vec<BodyId> = Vec::new();
     let draw = |random: &mut Random| Body {
         shape: random.below(4) as u32,
-        dynamic: random.below(2) == 0,
+        motion: [Motion::Fixed, Motion::Dynamic][random.below(2)],
         rotation: [(); 4].map(|()| random.within(1.0)),
         translation: [(); 3].map(|()| f64::from(random.within(8.0))),
         margin: [0.0, 0.25][random.below(2)],

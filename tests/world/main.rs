@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod exchange;
+mod excluded;
 mod far;
 mod lives;
 mod many;

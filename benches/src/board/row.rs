@@ -14,7 +14,7 @@ use sdop_judge::truth::Truth;
 use sdop_judge::verdict::{CaseVerdict, GroupVerdict};
 use sdop_judge::wire::Wire;
 use sdop_judge::witness::Witness;
-use sdop_judge::{Case, Claim, JudgeError, Options, Outcome, Subject, examine};
+use sdop_judge::{Case, Claim, JudgeError, Miss, Options, Outcome, Subject, examine};
 use serde::Serialize;
 
 use super::claims::Adapter;
@@ -276,7 +276,7 @@ impl Cell {
         let (mut claimed, mut others) = (Vec::new(), Vec::new());
         for name in &self.missed_in {
             let case = named(claim, name)?;
-            let touches = || !adapter.touching && only_touch(subject, &case, claim);
+            let touches = || !adapter.touching && only_touch(subject, &case);
             let why = match adapter.disclaims(name) {
                 Some(why) => Some(why),
                 None => touches().then_some("pairs that only touch, of which it does not speak"),
@@ -296,7 +296,7 @@ impl Cell {
         // The case with the fewest pairs is the fastest to reduce.
         let shown = shown.into_iter().min_by_key(Case::pairs);
         self.smallest = shown.and_then(|case| {
-            let mut tries = (0..TRIES).map(|_| shrink(subject, &case, claim, SHRINK));
+            let mut tries = (0..TRIES).map(|_| shrink(subject, &case, SHRINK));
             tries
                 .find_map(|smallest| smallest)
                 .map(|it| Counter::of(&it, adapter))
@@ -315,37 +315,34 @@ impl Cell {
 
 /// The published case with a name.
 fn named(claim: Claim, name: &str) -> Result<Case, JudgeError> {
-    let (group, number) = select(claim, name, None)?.remove(0); // its name came from there
-    Ok(group.case(number, None)?)
+    let mut found = select(claim, name, None)?;
+    Ok(found.swap_remove(0).case()?) // its name came from there
 }
 
 /// Whether every missed pair of a case is separated by a shift of one f32 step.
-fn only_touch(subject: &dyn Subject, case: &Case, claim: Claim) -> bool {
-    let Ok(truth) = Truth::new(claim, &case.shapes) else {
+fn only_touch(subject: &dyn Subject, case: &Case) -> bool {
+    let Ok(truth) = Truth::new(case.claim, &case.shapes) else {
         return false;
     };
     let missed = |lists: &[Vec<[u32; 2]>]| {
         let mut missed = Vec::new();
-        for (frame, list) in case.frames.iter().zip(lists) {
-            let required = truth.pairs(frame).unwrap_or_default();
-            missed.extend(
-                required
-                    .into_iter()
-                    .filter(|pair| !list.contains(pair))
-                    .map(|it| (frame, it)),
-            );
+        for (number, (frame, list)) in case.frames.iter().zip(lists).enumerate() {
+            let required = truth.pairs(frame).unwrap_or_default().into_iter();
+            let lost = required.filter(|pair| list.binary_search(pair).is_err());
+            missed.extend(lost.map(|pair| Miss {
+                frame: number,
+                pair,
+            }));
         }
         missed
     };
     for _ in 0..TRIES {
-        let answers = subject.answer(case, claim).ok();
-        let judged = answers.and_then(|answers| judge_answers(case, claim, &answers).ok());
+        let answers = subject.answer(case).ok();
+        let judged = answers.and_then(|answers| judge_answers(case, &answers).ok());
         let missed = judged.map_or_else(Vec::new, |judged| missed(&judged.lists));
         if !missed.is_empty() {
-            return missed.into_iter().all(|(frame, pair)| {
-                let witness = Witness::of(claim, &case.shapes, frame, pair);
-                witness.is_some_and(|witness| witness.depth_ulps == Some(1))
-            });
+            let depth = |miss| Witness::of(case, miss).and_then(|witness| witness.depth_ulps);
+            return missed.into_iter().all(|miss| depth(miss) == Some(1));
         }
     }
     false
@@ -353,7 +350,7 @@ fn only_touch(subject: &dyn Subject, case: &Case, claim: Claim) -> bool {
 
 impl Counter {
     fn of(smallest: &Smallest, adapter: &Adapter) -> Self {
-        let files = counter_example(smallest, smallest.claim).unwrap_or_default();
+        let files = counter_example(smallest).unwrap_or_default();
         let case = files.first().map_or_else(String::new, |(_, bytes)| {
             String::from_utf8_lossy(bytes).into_owned()
         });
@@ -375,7 +372,7 @@ impl Counter {
 fn picture(smallest: &Smallest, adapter: &Adapter) -> String {
     let pairs = Some(smallest.pairs.clone());
     let source = Path::new("missed-pair.ndjson");
-    let Ok(mut show) = Show::case(&smallest.case, smallest.claim, pairs, source) else {
+    let Ok(mut show) = Show::case(&smallest.case, pairs, source) else {
         return String::new();
     };
     show.header.program = Some(adapter.name.clone());

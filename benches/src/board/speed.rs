@@ -5,7 +5,7 @@ use std::time::Instant;
 use sdop::BoxCuller;
 use sdop_judge::answer::Answer;
 use sdop_judge::score::judge_answers;
-use sdop_judge::{Case, Claim, Count, Subject};
+use sdop_judge::{Case, Claim, Subject};
 use serde::Serialize;
 
 use crate::outsiders::timing::{TimingError, ours, strategy};
@@ -36,55 +36,43 @@ impl Speed {
     ///
     /// # Errors
     /// The reference rejects a frame.
-    pub fn of(
-        name: &str,
-        subject: &dyn Subject,
-        case: &Case,
-        claim: Claim,
-    ) -> Result<Option<Self>, TimingError> {
-        match subject.answer(case, claim) {
-            Ok(answers) => Self::judged(name, SELF_REPORTED, case, claim, &answers),
+    pub fn of(name: &str, subject: &dyn Subject, case: &Case) -> Result<Option<Self>, TimingError> {
+        match subject.answer(case) {
+            Ok(answers) => Self::judged(name, SELF_REPORTED, case, &answers),
             Err(_) => Ok(None),
         }
     }
 
-    /// Our culler on one thread, with the wall clock around its call.
+    /// Our culler on one thread, by the wall clock around its call; none for a claim that takes
+    /// more than boxes or poses.
     ///
     /// # Errors
     /// The reference or our culler rejects a frame.
-    pub fn ours(case: &Case, claim: Claim) -> Result<Option<Self>, TimingError> {
-        let (name, answers) = match strategy(claim) {
-            Some(strategy) => (
-                format!("sdop {strategy}"),
-                ours(strategy, &case.shapes, case)?,
-            ),
-            None => ("sdop BoxCuller".to_owned(), boxes(case)?),
+    pub fn ours(case: &Case) -> Result<Option<Self>, TimingError> {
+        let (name, answers) = match strategy(case.claim) {
+            Some(strategy) => (format!("sdop {strategy}"), ours(strategy, case)?),
+            None if case.claim == Claim::Aabb => ("sdop BoxCuller".to_owned(), boxes(case)?),
+            None => return Ok(None),
         };
-        Self::judged(&name, "wall, around the call", case, claim, &answers)
+        Self::judged(&name, "wall, around the call", case, &answers)
     }
 
     fn judged(
         name: &str,
         clock: &'static str,
         case: &Case,
-        claim: Claim,
         answers: &[Answer],
     ) -> Result<Option<Self>, TimingError> {
-        let Count {
-            required, missed, ..
-        } = judge_answers(case, claim, answers)?.count;
-        let mut times: Vec<u64> = answers
-            .iter()
-            .skip(1)
-            .filter_map(|answer| answer.ns)
-            .collect();
+        let count = judge_answers(case, answers)?.count;
+        let warm = answers.iter().skip(1);
+        let mut times: Vec<u64> = warm.filter_map(|answer| answer.ns).collect();
         times.sort_unstable();
         Ok(times.get(times.len() / 2).map(|&median_ns| Self {
             name: name.to_owned(),
-            claim,
+            claim: case.claim,
             clock,
             median_ns,
-            recall: (required - missed) as f64 / required.max(1) as f64,
+            recall: (count.required - count.missed) as f64 / count.required.max(1) as f64,
             reported: answers.iter().map(|answer| answer.pairs.len()).sum(),
         }))
     }

@@ -54,13 +54,13 @@ pub struct Args {
 /// A scene that can't be run.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let scene = SceneFile::read(&args.scene)?.build()?;
-    let case = frames(&scene, args.frames).into_diagnostic()?;
+    let case = frames(&scene, args.frames, args.claims).into_diagnostic()?;
     let program = Program {
         command: args.exec.clone(),
         wire: args.wire,
         timeout: Duration::from_secs(args.timeout),
     };
-    let table = compare(&args.exec, &program, &case, args.claims, args.rounds).into_diagnostic()?;
+    let table = compare(&args.exec, &program, &case, args.rounds).into_diagnostic()?;
     emit(args.format, &table, |table| page(table, args))?;
     Ok(outcome(&table))
 }

@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use miette::{IntoDiagnostic as _, miette};
 use sdop_bench::board::{Adapter, Board, CellVerdict, Claims, Row, Speed, judge, page};
 use sdop_bench::outsiders::timing::frames;
-use sdop_bench::scene::SceneFile;
-use sdop_judge::Case;
+use sdop_bench::scene::{Scene, SceneFile};
 use sdop_judge::process::Program;
 use sdop_judge::wire::Wire;
 
@@ -53,7 +52,7 @@ pub struct Args {
 }
 
 /// Frames of the timed scene.
-const FRAMES: u32 = 20;
+const FRAMES: u32 = 6;
 
 /// Runs the command.
 ///
@@ -62,7 +61,7 @@ const FRAMES: u32 = 20;
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let claims = Claims::parse(&files::read(&args.claims)?)
         .map_err(|problem| miette!("{}: {problem}", args.claims.display()))?;
-    let scene = args.timed.as_deref().map(timed).transpose()?;
+    let scene = args.timed.as_deref().map(scene).transpose()?;
     let mut board = Board {
         code: env!("CARGO_PKG_VERSION").to_owned(),
         adapters: Vec::new(),
@@ -77,8 +76,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         };
         let mut row = judge(adapter, &command, &args.case, told).into_diagnostic()?;
         bar.finish_and_clear();
-        if let (Some(case), None) = (&scene, &row.how) {
-            row.speed = times(adapter, command, case)?;
+        if let (Some(scene), None) = (&scene, &row.how) {
+            row.speed = times(adapter, command, scene)?;
         }
         eprintln!("{}", line(&row).join("  "));
         board.adapters.push(row);
@@ -116,23 +115,20 @@ fn chosen<'a>(args: &Args, claims: &'a Claims) -> miette::Result<Vec<&'a Adapter
     Ok(claims.adapter.iter().filter(wanted).collect())
 }
 
-/// The scene's frames as a case.
-fn timed(scene: &Path) -> miette::Result<Case> {
-    let scene = SceneFile::read(scene)?.build()?;
-    frames(&scene, FRAMES)
-        .into_diagnostic()
-        .wrap_err("the timed scene")
+fn scene(path: &Path) -> miette::Result<Scene> {
+    Ok(SceneFile::read(path)?.build()?)
 }
 
 /// Times an adapter and our culler on the same frames. The adapter runs in a new process.
-fn times(adapter: &Adapter, command: String, case: &Case) -> miette::Result<Vec<Speed>> {
+fn times(adapter: &Adapter, command: String, scene: &Scene) -> miette::Result<Vec<Speed>> {
     let program = Program {
         command,
         wire: Wire::Ndjson,
         timeout: Duration::from_secs(120),
     };
-    let theirs = Speed::of(&adapter.name, &program, case, adapter.claim).into_diagnostic()?;
-    let ours = Speed::ours(case, adapter.claim).into_diagnostic()?;
+    let case = frames(scene, FRAMES, adapter.claim).into_diagnostic()?;
+    let theirs = Speed::of(&adapter.name, &program, &case).into_diagnostic()?;
+    let ours = Speed::ours(&case).into_diagnostic()?;
     Ok(theirs.into_iter().chain(ours).collect())
 }
 

@@ -77,10 +77,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     };
     let mut written = 0;
     let bar = progress(jobs.len() as u64, "cases");
-    for (group, number) in &jobs {
-        let case = group.case(*number, args.fresh).into_diagnostic()?;
+    for id in &jobs {
+        let case = id.case().into_diagnostic()?;
         let bytes = match broadmark::write(&case) {
-            _ if !args.aabbs => args.wire.encode(&case, args.claims).into_diagnostic()?,
+            _ if !args.aabbs => args.wire.encode(&case).into_diagnostic()?,
             Ok(bytes) => bytes,
             Err(RecordingError::Changes) => continue,
             Err(error) => return Err(error).into_diagnostic(),

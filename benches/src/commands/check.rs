@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_judge::answer::{Answer, Stop};
 use sdop_judge::run::examine_given;
-use sdop_judge::wire::{Said, Wire};
+use sdop_judge::wire::{Wire, book};
 use sdop_judge::{Case, Claim, Options, Outcome as CaseOutcome, Subject};
 
 use super::files::ReadArgs;
@@ -43,7 +43,7 @@ pub struct Args {
 struct StoredAnswers(Result<Vec<Answer>, Stop>);
 
 impl Subject for StoredAnswers {
-    fn answer(&self, _case: &Case, _claim: Claim) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, _case: &Case) -> Result<Vec<Answer>, Stop> {
         self.0.clone()
     }
 }
@@ -54,15 +54,9 @@ impl Subject for StoredAnswers {
 /// A file that can't be read.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let read = read_case(&args.record, args.files.max_bytes())?;
-    let is_record = read.case.claims == Claim::ALL;
-    let first = if is_record {
-        Claim::Mesh
-    } else {
-        read.case.claims[0]
-    };
     let options = Options {
-        claim: args.claims.unwrap_or(first),
-        // The answers are fixed, so no smaller case can be tried.
+        claim: args.claims.unwrap_or(read.case.claim),
+        // The answers stand; no smaller case has any.
         shrink_time: std::time::Duration::ZERO,
         ..Options::default()
     };
@@ -74,7 +68,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         None => Ok(recorded(args, read.pairs)?),
     };
     let mut verdict =
-        examine_given(&StoredAnswers(answers), &options, vec![read.case]).into_diagnostic()?;
+        examine_given(&StoredAnswers(answers), &options, read.case).into_diagnostic()?;
     if let Some(why) = read.lacks {
         // A miss in the existing frames counts even if others are missing.
         for case in &mut verdict.cases {
@@ -128,13 +122,8 @@ pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop>
             let line = String::from_utf8_lossy(&line[..line.len().min(80)]).into_owned();
             return Err(sdop_judge::answer::Trouble::TooMany { frames, line }.into());
         }
-        match wire.decode(answers.len(), line)? {
-            Said::Answer(answer) => answers.push(answer),
-            Said::Skipped(why) => {
-                let answered = answers;
-                return Err(Stop::Skipped { why, answered });
-            }
-        }
+        let said = wire.decode(answers.len(), line)?;
+        book(&mut answers, said, line)?;
     }
     Ok(answers)
 }

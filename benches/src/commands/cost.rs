@@ -25,7 +25,7 @@ use super::{Outcome, prices};
 /// Frames per pass, unless the scene or a flag has fewer.
 const DEFAULT_FRAMES: u32 = 200;
 const EFFORT: Effort = Effort {
-    turns: 3,
+    turns: 1,
     builds: 9,
 };
 

@@ -17,11 +17,15 @@ pub use sdop_bench::verify::units::NAME;
 use sdop_bench::verify::units::{Settings, UnitOrigin, Verification};
 use sdop_judge::ours::hard::{FILES, Group, page};
 use sdop_judge::ours::rounds::{Failure, Ledger};
+use sdop_judge::ours::subject::EveryWay;
+use sdop_judge::ours::ways::Rotation;
+use sdop_judge::{Claim, Options, examine};
 
-use super::Outcome;
 use super::files::{self, ReadArgs};
+use super::judge::emit_verdict;
 use super::output::{Format, emit_with_reason, print, progress};
 use super::sweep::{self, SweepArgs};
+use super::{Outcome, one_of};
 use report::Report;
 
 /// Judge the optimised culler by the exact reference
@@ -46,6 +50,9 @@ pub struct Args {
     /// One group of hard cases instead of all; may be repeated
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FILES.iter().map(|file| file.0)))]
     group: Vec<String>,
+    /// Judge all ways that make a claim by the cases of that claim, as `sdop judge` does a program
+    #[arg(long, value_name = "CLAIM", conflicts_with_all = ["scenes", "group", "shard"], value_parser = one_of::<Claim>(&EveryWay::CLAIMS.map(Claim::name)))]
+    claims: Option<Claim>,
     /// Seeded rounds: each judges 8,192 near and 89,400 random pairs
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(..=1_000_000))]
     seeds: u64,
@@ -80,7 +87,7 @@ pub struct Args {
 impl Args {
     /// Whether its work is cut into units, which many can share.
     pub fn is_sweep(&self) -> bool {
-        self.record_hard_cases.is_none()
+        self.record_hard_cases.is_none() && self.claims.is_none()
     }
 }
 
@@ -92,6 +99,9 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if let Some(directory) = &args.record_hard_cases {
         return record(directory);
     }
+    if let Some(claim) = args.claims {
+        return judged(args, claim);
+    }
     sweep::enter(&args.sweep)?;
     let run = verification(args)?;
     let mut taken = UnitTotals::default();
@@ -100,6 +110,27 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         return Ok(Outcome::Passed);
     };
     taken.report(&run, seconds, args.format, &args.out)
+}
+
+/// Our cullers by the cases of a claim, fresh ones of the first seed among them.
+fn judged(args: &Args, claim: Claim) -> miette::Result<Outcome> {
+    let options = Options {
+        claim,
+        seed: Some(args.first_seed),
+        time: args.time.map(Duration::from_secs),
+        ..Options::default()
+    };
+    let ours = EveryWay::new(Rotation::new(&tiers(args)));
+    let verdict = examine(&ours, &options, |_, _| {}).into_diagnostic()?;
+    emit_verdict(args.format.into(), &verdict)?;
+    Ok(Outcome::from(&verdict))
+}
+
+fn tiers(args: &Args) -> Vec<Tier> {
+    match args.simd {
+        Some(tier) => vec![tier],
+        None => [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat(),
+    }
 }
 
 /// The report of merged shards. A scene whose frames show a failure is read again, if it is where
@@ -126,10 +157,6 @@ fn verification(args: &Args) -> miette::Result<Verification> {
     let build = |path: &PathBuf| SceneFile::read_within(path, most).and_then(|file| file.build());
     let scenes = args.scenes.iter().map(build);
     let scenes = scenes.collect::<Result<Vec<Scene>, _>>()?;
-    let tiers = match args.simd {
-        Some(tier) => vec![tier],
-        None => [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat(),
-    };
     let name = |scene: &Scene| {
         let (name, bodies) = (&scene.name, scene.bodies.len());
         format!("{name}, {bodies} bodies, {} frames", args.frames)
@@ -144,7 +171,10 @@ fn verification(args: &Args) -> miette::Result<Verification> {
         seeds: args.seeds,
         scenes: scenes.iter().map(name).collect(),
         frames: args.frames,
-        tiers: tiers.iter().map(|tier| tier.name().to_owned()).collect(),
+        tiers: tiers(args)
+            .iter()
+            .map(|tier| tier.name().to_owned())
+            .collect(),
     })?;
     Ok(run.with_scenes(scenes, deadline))
 }
@@ -232,14 +262,20 @@ fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
         failure.mode.threads
     );
     let Some(smallest) = SmallestScene::of(failure) else {
-        return print(&format!(
-            "{what}\nthe frame alone does not show it: it depends on the frames before"
-        ));
+        return print(&format!("{what}\nwhich does not show again"));
     };
     let (path, shown) = smallest
         .write(out)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot write to {}", out.display()))?;
+    let case = &smallest.shrunk.case;
+    if case.frames.len() > 1 {
+        return print(&format!(
+            "{what}\nthe frame alone does not show it: it depends on the frames before, {} in all, in {}",
+            case.frames.len(),
+            path.display()
+        ));
+    }
     let how = if shown {
         "shown by"
     } else {
@@ -247,7 +283,7 @@ fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
     };
     print(&format!(
         "{what}\n{} bodies are enough, {how} {}",
-        smallest.bodies.len(),
+        case.frames[0].bodies.len(),
         path.display()
     ))
 }
@@ -263,7 +299,7 @@ fn record(directory: &Path) -> miette::Result<Outcome> {
         let mut group = Group::parse(&text).into_diagnostic()?;
         group.record().into_diagnostic()?;
         let head = text.split("\n[answers").next().unwrap_or(&text).trim_end();
-        let text = format!("{head}\n{}", group.answers_toml().into_diagnostic()?);
+        let text = format!("{head}\n{}", group.answers_toml());
         write(&format!("{name}.toml"), &text)?;
         texts.push((*name, text));
         bar.inc(1);

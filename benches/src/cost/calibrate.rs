@@ -7,7 +7,7 @@
 
 use std::time::Instant;
 
-use super::design::{self, SCENES};
+use super::design::{self, DENSITIES, SCENES};
 use super::expected;
 use super::explain::{self, Calibrated, Observed, Round, Split};
 use super::level::CacheLevel;
@@ -35,8 +35,8 @@ const MOST_PAIRS: usize = SCENES - 1;
 pub struct Effort {
     /// Turns of each calibration scene in a round.
     pub turns: usize,
-    /// How often a pass builds volumes and cullers to measure Co; calibration builds them in each
-    /// turn.
+    /// How often volumes and cullers are built in a pass, to measure Co; calibration builds cullers
+    /// in each turn.
     pub builds: usize,
 }
 
@@ -44,7 +44,7 @@ pub struct Effort {
 struct Prepared {
     variant: Variant,
     shapes: Vec<Shape>,
-    /// Seconds to build each of its volumes for all shapes, turn by turn.
+    /// Seconds that each of its volumes takes for all shapes, in some turns.
     volumes: Vec<Vec<f64>>,
     observed: [Vec<Observed>; 2],
     splits: Vec<Split>,
@@ -172,8 +172,11 @@ impl Calibration {
         let poses = next_turn(trajectory, scene.bodies.len(), &mut Vec::new())?;
         let mut cullers = Vec::new();
         for prepared in &mut self.prepared {
-            let seconds = volume_seconds(&prepared.variant, &prepared.shapes);
-            prepared.volumes.push(seconds);
+            // Shapes are the same in all scenes.
+            if subject < DENSITIES {
+                let seconds = volume_seconds(&prepared.variant, &prepared.shapes);
+                prepared.volumes.push(seconds);
+            }
             let variant = design::adapted(&prepared.variant, scene.bodies.len());
             cullers.push(variant.culling_of(&prepared.shapes, scene, self.tier)?);
         }

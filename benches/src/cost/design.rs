@@ -20,21 +20,23 @@ use sdop::bodies::Bodies;
 use sdop::settings::{Finder, Interest};
 
 /// Sizes of one level, the smallest one included.
-const SIZES: usize = 5;
+const SIZES: usize = 4;
+/// Densities of each size.
+pub(super) const DENSITIES: usize = 5;
 /// Bodies of the smallest calibration scene.
 const FEWEST_BODIES: usize = 16;
 /// A level's largest size is at most this multiple of its fewest bodies: all pairs of more would
 /// take too long, and would be in the same caches.
 const MOST_SIZE_RATIO: f64 = 4.0;
 /// Densities if every pair is tested: shares of pairs whose balls meet.
-const MEETING_SHARES: [f64; 5] = [0.0002, 0.002, 0.01, 0.05, 0.15];
+const MEETING_SHARES: [f64; DENSITIES] = [0.0002, 0.002, 0.01, 0.04, 0.12];
 /// Densities if a finder rejects most pairs: numbers of balls that meet one ball.
-const PARTNERS: [f64; 5] = [0.25, 1.0, 2.0, 5.0, 12.0];
+const PARTNERS: [f64; DENSITIES] = [0.25, 1.0, 2.0, 5.0, 12.0];
 /// The seed of all calibration draws; scenes count their seeds from 1.
 const SEED: u64 = 0xca11_b8a7_e000_0000;
 
 /// The number of calibration scenes.
-pub const SCENES: usize = SIZES * MEETING_SHARES.len();
+pub const SCENES: usize = SIZES * DENSITIES;
 
 /// The calibration scenes of a scene.
 pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
@@ -43,7 +45,7 @@ pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
     (0..SCENES).map(move |number| {
         let (bodies, mut share) = grid[number];
         if !tests_all {
-            share = share.min(PARTNERS[number % MEETING_SHARES.len()] / bodies as f64);
+            share = share.min(PARTNERS[number % DENSITIES] / bodies as f64);
         }
         resample(scene, bodies, share, number as u64)
     })
@@ -54,8 +56,8 @@ pub(super) fn grid(level: CacheLevel) -> [(usize, f64); SCENES] {
     let sizes = sizes(level);
     std::array::from_fn(|number| {
         (
-            sizes[number / MEETING_SHARES.len()],
-            MEETING_SHARES[number % MEETING_SHARES.len()],
+            sizes[number / DENSITIES],
+            MEETING_SHARES[number % DENSITIES],
         )
     })
 }

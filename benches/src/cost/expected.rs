@@ -48,22 +48,16 @@ pub(super) fn further(tests: f64, hits: f64, lanes: usize) -> f64 {
 /// of tests scatter as counts do.
 pub(super) fn idle(tests: f64, lanes: usize) -> f64 {
     let width = lanes as f64;
-    if tests > 64.0 * width {
+    if tests > 16.0 * width {
         // The last test is equally likely at each lane.
         return 0.5 * (width - 1.0);
     }
     // Each P(count = k) from the one before; a vector begins with its first test.
     let (mut probability, mut at_most, mut vectors) = ((-tests).exp(), 0.0, 0.0);
-    if probability == 0.0 {
-        return 0.5 * (width - 1.0);
-    }
-    for count in 0.. {
+    for count in 0..64 * lanes {
         at_most += probability;
         if count % lanes == 0 {
             vectors += 1.0 - at_most;
-        }
-        if count as f64 > tests && 1.0 - at_most < 1e-9 {
-            break;
         }
         probability *= tests / (count as f64 + 1.0);
     }

@@ -329,7 +329,7 @@ mod tests {
     fn known(volume: Volume) -> VolumeCosts {
         let all = match volume {
             Volume::Sphere => [2.2, 310.0, 8.0, 17.0, 0.9, 0.21, 0.0],
-            Volume::Aabb => [820.0, 640.0, 21.0, 12.0, 5.0, 0.12, 0.16],
+            Volume::Aabb => [820.0, 640.0, 21.0, 0.0, 5.0, 0.12, 0.16],
             Volume::Obb => [9.0, 900.0, 3.0, 0.0, 60.0, 10.0, 0.0],
             _ => [14.0, 150.0, 0.0, 0.0, 19.0, 13.0, 0.0],
         };
@@ -376,10 +376,10 @@ mod tests {
                 update: moving * costs.update,
                 finding: costs.frame
                     + n * costs.body
-                    + if first == Volume::Obb {
-                        0.0
-                    } else {
+                    + if first == Volume::Sphere {
                         rows * costs.row
+                    } else {
+                        0.0
                     }
                     + hits * costs.hit
                     + (tests - hits) * costs.miss

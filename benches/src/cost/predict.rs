@@ -190,11 +190,12 @@ impl FirstTest {
         let counters = counts.of(volume);
         let [moving, tests, hits] =
             [counters.updates, counters.tests, counters.hits].map(|count| count as f64 / frames);
-        // Oriented volumes have no first test: each candidate is listed.
+        // Oriented volumes have no first test: each candidate is listed. World-aligned ones list as
+        // spheres do, which is lost among their slabs: times don't tell its price.
         let (lists_hits, is_aligned) = match volume {
-            Volume::Sphere | Volume::Hull => (true, false),
-            Volume::Aabb | Volume::KDop => (true, true),
-            Volume::OrDop | Volume::Obb => (false, false),
+            Volume::Sphere => (true, false),
+            Volume::Aabb | Volume::KDop => (false, true),
+            Volume::OrDop | Volume::Obb | Volume::Hull => (false, false),
         };
         Self {
             bodies,
@@ -231,7 +232,6 @@ impl Prices {
             let (costs, counters) = (&price.costs, counts.of(price.volume));
             let first = FirstTest::of(price.volume, counts, frames, bodies);
             let [_, _, rows, misses, hits, further] = first.counts(self.lanes);
-            let rows = if place == 0 { rows } else { 0.0 };
             // All pairs that pass the test before, whether they are then tested or not.
             let before = place
                 .checked_sub(1)
@@ -382,57 +382,51 @@ mod tests {
     /// Each price is multiplied by its own count and by no other.
     #[test]
     fn every_price_has_one_count() {
-        let volume = |updates, tests, hits| VolumeCounters {
-            updates,
-            tests,
-            hits,
+        let counters = VolumeCounters {
+            updates: 300,
+            tests: 9000,
+            hits: 700,
         };
         let counts = Counts {
             culler: Counters {
-                aabb: volume(300, 9000, 700),
+                sphere: counters,
+                aabb: counters,
                 ..Counters::default()
             },
             hulls: VolumeCounters::default(),
         };
-        let seconds = |costs| {
+        let seconds = |volume, costs| {
             let prices = Prices {
                 variant: String::new(),
                 level: CacheLevel::L1,
                 lanes: 16,
-                volumes: vec![Price {
-                    volume: Volume::Aabb,
-                    costs,
-                }],
+                volumes: vec![Price { volume, costs }],
             };
             let terms = prices.predict(&counts, 10, 40);
             terms.iter().map(Terms::recurring).sum::<f64>()
         };
-        let none = VolumeCosts::default();
-        for (costs, count) in [
-            (
-                VolumeCosts {
-                    update: 1.0,
-                    ..none
-                },
-                30.0,
-            ),
-            (VolumeCosts { frame: 1.0, ..none }, 1.0),
-            (VolumeCosts { body: 1.0, ..none }, 40.0),
-            (VolumeCosts { hit: 1.0, ..none }, 70.0),
-            (VolumeCosts { miss: 1.0, ..none }, 830.0),
-            (
-                VolumeCosts { row: 1.0, ..none },
-                expected::rows(30.0, 40.0, 900.0, 70.0),
-            ),
-            (
-                VolumeCosts {
-                    further: 1.0,
-                    ..none
-                },
-                900.0 * expected::further(900.0, 70.0, 16),
-            ),
+        let price = |set: fn(&mut VolumeCosts)| {
+            let mut costs = VolumeCosts::default();
+            set(&mut costs);
+            costs
+        };
+        let rows = expected::rows(30.0, 40.0, 900.0, 70.0);
+        let further = 900.0 * expected::further(900.0, 70.0, 16);
+        for (costs, of_spheres, of_boxes) in [
+            (price(|c| c.update = 1.0), 30.0, 30.0),
+            (price(|c| c.frame = 1.0), 1.0, 1.0),
+            (price(|c| c.body = 1.0), 40.0, 40.0),
+            (price(|c| c.hit = 1.0), 70.0, 70.0),
+            (price(|c| c.miss = 1.0), 830.0, 830.0),
+            (price(|c| c.row = 1.0), rows, 0.0),
+            (price(|c| c.further = 1.0), 0.0, further),
         ] {
-            assert!((seconds(costs) / count - 1.0).abs() < 1e-12, "{costs:?}");
+            for (volume, count) in [(Volume::Sphere, of_spheres), (Volume::Aabb, of_boxes)] {
+                assert!(
+                    (seconds(volume, costs) - count).abs() < 1e-9,
+                    "{volume} {costs:?}"
+                );
+            }
         }
     }
 }

@@ -60,8 +60,8 @@ choices! {
         Steady = "the machine worked at one speed while prices and frames were measured",
         /// Updates take as long as in the calibration.
         Updates = "an update costs the same here as on the calibration's bodies",
-        /// Hits and misses are mixed as in the calibration.
-        Finding = "hits are spread over bodies and frames as in the calibration",
+        /// Neither the number of bodies nor how hits lie among misses changes a price.
+        Finding = "finding and testing cost the same at this density and number of bodies as in the calibration",
         /// Second tests follow one another as in the calibration.
         Refining = "a second test costs the same here as on the calibration's pairs",
     }

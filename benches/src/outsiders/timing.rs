@@ -13,7 +13,6 @@ use crate::scene::Scene;
 use sdop::bodies::contract::ContractError;
 use sdop::culler::{CullError, Culler};
 use sdop::settings::Strategy;
-use sdop::volume::Shape;
 use sdop_judge::answer::{Answer, Stop};
 use sdop_judge::case::{Case, Frame};
 use sdop_judge::claim::Claim;
@@ -55,11 +54,11 @@ pub struct ContestantTiming {
     pub median_ns: Option<u64>,
 }
 
-/// The frames of a scene as a case.
+/// The frames of a scene as a case of a claim.
 ///
 /// # Errors
 /// Effects that the scene can't have, a body that leaves the contract.
-pub fn frames(scene: &Scene, count: u32) -> Result<Case, TimingError> {
+pub fn frames(scene: &Scene, count: u32, claim: Claim) -> Result<Case, TimingError> {
     let mut effects = scene.start_effects()?;
     let mut bodies = scene.bodies.clone();
     let mut frames = Vec::new();
@@ -73,7 +72,8 @@ pub fn frames(scene: &Scene, count: u32) -> Result<Case, TimingError> {
         name: scene.name.clone(),
         flag: String::new(),
         source: "a scene".to_owned(),
-        claims: Claim::ALL.to_vec(),
+        claim,
+        claims: Claim::PLAIN.to_vec(),
         shapes: scene.shapes.clone(),
         frames,
     })
@@ -86,22 +86,18 @@ pub fn strategy(claim: Claim) -> Option<Strategy> {
         Claim::Sphere => Some(Strategy::Sphere),
         Claim::OrDop => Some(Strategy::OrDop),
         Claim::Hull | Claim::Mesh => Some(Strategy::SDopSequential),
-        Claim::Aabb => None,
+        _ => None,
     }
 }
 
 /// Our culler over the frames, each with its time.
-pub(crate) fn ours(
-    strategy: Strategy,
-    shapes: &[Shape],
-    case: &Case,
-) -> Result<Vec<Answer>, CullError> {
+pub(crate) fn ours(strategy: Strategy, case: &Case) -> Result<Vec<Answer>, CullError> {
     let Some(first) = case.frames.first() else {
         return Ok(Vec::new());
     };
     let mut culler = Culler::builder()
         .strategy(strategy)
-        .build(shapes, &first.bodies)?;
+        .build(&case.shapes, &first.bodies)?;
     let mut answers = Vec::new();
     for frame in &case.frames {
         let start = Instant::now();
@@ -123,24 +119,18 @@ pub fn compare(
     name: &str,
     subject: &dyn Subject,
     case: &Case,
-    claim: Claim,
     rounds: u32,
 ) -> Result<Vec<ContestantTiming>, TimingError> {
-    let strategy = strategy(claim);
+    let strategy = strategy(case.claim);
     let mut theirs = Timed::new(name.to_owned(), "self-reported");
     let mut own =
         strategy.map(|strategy| Timed::new(format!("sdop {strategy}"), "wall, around the call"));
     for round in 0..rounds {
         if let (Some(own), Some(strategy)) = (&mut own, strategy) {
-            own.add(
-                case,
-                claim,
-                Ok(ours(strategy, &case.shapes, case)?),
-                round == 0,
-            )?;
+            own.add(case, Ok(ours(strategy, case)?), round == 0)?;
         }
         if theirs.outcome == Outcome::Pass {
-            theirs.add(case, claim, subject.answer(case, claim), true)?;
+            theirs.add(case, subject.answer(case), true)?;
         }
     }
     Ok(own.into_iter().chain([theirs]).map(Timed::timing).collect())
@@ -169,7 +159,6 @@ impl Timed {
     fn add(
         &mut self,
         case: &Case,
-        claim: Claim,
         answers: Result<Vec<Answer>, Stop>,
         judged: bool,
     ) -> Result<(), InvalidInput> {
@@ -185,7 +174,7 @@ impl Timed {
             }
         };
         if judged {
-            self.outcome = judge_answers(case, claim, &answers)?.outcome;
+            self.outcome = judge_answers(case, &answers)?.outcome;
         }
         self.reported = answers.iter().map(|answer| answer.pairs.len() as u64).sum();
         // The first frame builds what later ones keep.

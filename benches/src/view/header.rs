@@ -127,7 +127,9 @@ impl Header {
 fn meet(claim: Claim) -> &'static str {
     match claim {
         Claim::Sphere => "bounding balls",
-        Claim::Aabb => "boxes",
+        Claim::Aabb | Claim::Order | Claim::Restore => "boxes",
+        Claim::Filter => "boxes that no filter parts",
+        Claim::Margin => "boxes within their margins",
         Claim::OrDop => "or-DOPs",
         Claim::Hull => "convex hulls",
         Claim::Mesh => "meshes",
@@ -138,8 +140,8 @@ fn meet(claim: Claim) -> &'static str {
 fn layers(claim: Claim) -> Vec<&'static str> {
     match claim {
         Claim::Sphere => vec!["spheres"],
-        Claim::Aabb => vec!["boxes"],
+        _ if claim.is_of_boxes() => vec!["boxes"],
         Claim::OrDop => vec!["ordops"],
-        Claim::Hull | Claim::Mesh => Vec::new(),
+        _ => Vec::new(),
     }
 }

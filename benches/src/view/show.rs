@@ -193,14 +193,13 @@ impl Show {
     /// A text: there are no frames, or the exact reference rejects a number.
     pub fn case(
         case: &Case,
-        claim: Claim,
         reported: Option<Vec<Vec<[u32; 2]>>>,
         source: &Path,
     ) -> Result<Self, String> {
         if case.frames.is_empty() {
             return Err("it has no frames".to_owned());
         }
-        let truth = Truth::new(claim, &case.shapes).map_err(|error| error.to_string())?;
+        let truth = Truth::new(case.claim, &case.shapes).map_err(|error| error.to_string())?;
         let asked = reported.is_some();
         let mut reported = reported.into_iter().flatten();
         let (mut frames, mut focus) = (Vec::new(), None);
@@ -258,8 +257,8 @@ impl Show {
             shapes: case.shapes.clone(),
             bodies,
             frames: frames.drain(shown.clone()).collect(),
-            claim,
-            boxes: (claim == Claim::Aabb).then(|| boxes().collect()),
+            claim: case.claim,
+            boxes: case.claim.is_of_boxes().then(|| boxes().collect()),
             focus: focus.map(|focus| Focus {
                 frame: focus.frame - shown.start,
                 ..focus

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use super::case::Frame;
 use super::claim::Claim;
+use super::contestant::Filter;
 use super::shrink::Smallest;
 use sdop::choice::choices;
 use sdop::volume::Shape;
@@ -62,7 +63,7 @@ pub fn unit_test(smallest: &Smallest, language: Language) -> String {
     let comment = |mark: &str| {
         let mut text = format!(
             "{mark} The smallest scene of {} in which the pair [{i}, {j}] was missed (claim {}).\n",
-            smallest.from, smallest.claim
+            smallest.from, smallest.case.claim
         );
         for line in smallest.reasons() {
             let _ = writeln!(text, "{mark} {line}");
@@ -115,7 +116,7 @@ fn arguments(smallest: &Smallest) -> Vec<Argument> {
         let frame = |frame: &Frame| (0..frame.bodies.len()).map(|i| of(frame, i)).collect();
         Data::List(frames.iter().map(|f| Data::List(frame(f))).collect())
     };
-    if smallest.claim == Claim::Aabb {
+    if smallest.case.claim.is_of_boxes() {
         arguments.push(Argument {
             name: "boxes",
             meaning: "of each frame and body: lower corner x, y, z, then the upper one",
@@ -126,7 +127,7 @@ fn arguments(smallest: &Smallest) -> Vec<Argument> {
             data: by_body(&|frame, i| Data::Row(frame.boxes[i].to_vec())),
         });
     } else {
-        arguments.extend(of_shapes(smallest.claim, &smallest.case.shapes));
+        arguments.extend(of_shapes(smallest.case.claim, &smallest.case.shapes));
         arguments.push(Argument {
             name: "shape",
             meaning: "of each frame and body: the number of its shape",
@@ -164,7 +165,69 @@ fn arguments(smallest: &Smallest) -> Vec<Argument> {
             data: by_body(&|frame, i| Data::Integer(former(frame, i))),
         });
     }
+    arguments.extend(asked_on_top(frames));
     arguments
+}
+
+/// Filters, margins and states, where a frame has them.
+fn asked_on_top(frames: &[Frame]) -> Vec<Argument> {
+    let list = |of: &dyn Fn(&Frame) -> Data| Data::List(frames.iter().map(of).collect());
+    let mut arguments = Vec::new();
+    let of_filter = |of: &dyn Fn(&Filter) -> &Vec<[u32; 2]>| {
+        let two = |&ends: &[u32; 2]| Data::List(ends.map(integer).into());
+        list(&|frame| {
+            let rows = frame.filter.iter().flat_map(of);
+            Data::List(rows.map(two).collect())
+        })
+    };
+    let rows_of_integers = [
+        "Vec<Vec<Vec<i64>>>",
+        "std::vector<std::vector<std::vector<long>>>",
+    ];
+    if frames.iter().any(|frame| frame.filter.is_some()) {
+        arguments.push(Argument {
+            name: "groups",
+            meaning: "of each frame and body: the groups that it is in and those that it meets, as bits",
+            types: rows_of_integers,
+            data: of_filter(&|filter| &filter.groups),
+        });
+        arguments.push(Argument {
+            name: "excluded",
+            meaning: "of each frame: pairs that are not asked for",
+            types: rows_of_integers,
+            data: of_filter(&|filter| &filter.excluded),
+        });
+    }
+    if frames.iter().any(|frame| frame.margins.is_some()) {
+        arguments.push(Argument {
+            name: "margins",
+            meaning: "of each frame and body: how far it reaches beyond its box",
+            types: ["Vec<Vec<f32>>", "std::vector<std::vector<float>>"],
+            data: list(&|frame| {
+                let margins = frame.margins.iter().flatten();
+                Data::List(margins.map(|&x| Data::Float(x)).collect())
+            }),
+        });
+    }
+    if frames.iter().any(|frame| frame.restore) {
+        arguments.push(Argument {
+            name: "restore",
+            meaning: "of each frame: whether the saved state is restored before it",
+            types: ["Vec<bool>", "std::vector<bool>"],
+            data: list(&|frame| Data::Truth(frame.restore)),
+        });
+        arguments.push(Argument {
+            name: "save",
+            meaning: "of each frame: whether the state is saved after it",
+            types: ["Vec<bool>", "std::vector<bool>"],
+            data: list(&|frame| Data::Truth(frame.save)),
+        });
+    }
+    arguments
+}
+
+fn integer(number: u32) -> Data {
+    Data::Integer(number.into())
 }
 
 /// What a posed claim is about.
@@ -204,8 +267,7 @@ fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
                 data: list(&|shape| floats(&shape.ordop.hi)),
             },
         ],
-        Claim::Aabb => Vec::new(),
-        Claim::Hull | Claim::Mesh => {
+        _ => {
             let corners = |shape: &Shape| {
                 let triangle = |t: &[u32; 3]| Data::List(t.map(|v| Data::Integer(v.into())).into());
                 Data::List(shape.triangles.iter().map(triangle).collect())

@@ -93,6 +93,7 @@ pub fn read(bytes: &[u8]) -> Result<Case, RecordingError> {
         name: name(0),
         flag: "anything".to_owned(),
         source: format!("Broadmark, {}", name(NAME)),
+        claim: Claim::Aabb,
         claims: vec![Claim::Aabb],
         shapes,
         frames: read,
@@ -112,7 +113,7 @@ pub fn write(case: &Case) -> Result<Vec<u8>, RecordingError> {
     if case
         .frames
         .iter()
-        .any(|frame| frame.was.is_some() || frame.boxes.len() != first.boxes.len())
+        .any(|frame| frame.was.is_some() || frame.restore || frame.boxes.len() != first.boxes.len())
     {
         return Err(RecordingError::Changes);
     }
@@ -180,6 +181,7 @@ mod tests {
             name: "two".to_owned(),
             flag: String::new(),
             source: "here".to_owned(),
+            claim: Claim::Aabb,
             claims: vec![Claim::Aabb],
             shapes: Vec::new(),
             frames,

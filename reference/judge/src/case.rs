@@ -1,14 +1,14 @@
 //! A case: shapes, and a few frames of bodies with the boxes that belong to them.
 
 use super::claim::Claim;
-use crate::contestant::WorldBox;
+use crate::contestant::{Filter, WorldBox};
 use sdop::bodies::Bodies;
 use sdop::rounding::pose::{COORDINATE_ERROR, rotation, transform};
 use sdop::rounding::{down, up};
 use sdop::volume::Shape;
 
 /// One frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
     /// The bodies.
     pub bodies: Bodies,
@@ -17,6 +17,14 @@ pub struct Frame {
     /// When the set of bodies is another than in the frame before: each one's former number, `None`
     /// for a new body.
     pub was: Option<Vec<Option<u32>>>,
+    /// Which pairs are not asked for, for the claim `filter`.
+    pub filter: Option<Filter>,
+    /// How far each body reaches beyond its box, for the claim `margin`.
+    pub margins: Option<Vec<f32>>,
+    /// Whether the culler goes back to the state that it has saved, before this frame.
+    pub restore: bool,
+    /// Whether it saves its state after this frame.
+    pub save: bool,
 }
 
 impl Frame {
@@ -27,9 +35,51 @@ impl Frame {
         Self {
             bodies,
             boxes,
-            was: None,
+            ..Self::default()
         }
     }
+
+    /// The bodies of these numbers alone, in this order.
+    #[must_use]
+    pub fn picked(&self, which: &[usize]) -> Self {
+        let number = |body: u32| which.iter().position(|&kept| kept == body as usize);
+        let renumbered = |&[i, j]: &[u32; 2]| {
+            let [i, j] = [number(i)?, number(j)?].map(|body| body as u32);
+            Some([i.min(j), i.max(j)])
+        };
+        let filter = self.filter.as_ref().map(|filter| {
+            let mut excluded: Vec<_> = filter.excluded.iter().filter_map(renumbered).collect();
+            excluded.sort_unstable();
+            Filter {
+                groups: which.iter().map(|&i| filter.groups[i]).collect(),
+                excluded,
+            }
+        });
+        let margins = self.margins.as_ref();
+        Self {
+            bodies: picked(&self.bodies, which),
+            boxes: which.iter().map(|&i| self.boxes[i]).collect(),
+            was: None,
+            filter,
+            margins: margins.map(|margins| which.iter().map(|&i| margins[i]).collect()),
+            ..*self
+        }
+    }
+}
+
+/// The bodies of these numbers, in this order.
+#[must_use]
+pub fn picked(bodies: &Bodies, which: &[usize]) -> Bodies {
+    let mut all = Bodies::default();
+    for &i in which {
+        all.push(
+            bodies.shape[i],
+            bodies.dynamic[i],
+            bodies.rotation[i],
+            bodies.translation[i],
+        );
+    }
+    all
 }
 
 /// A box around a posed mesh: it contains every vertex exactly.
@@ -61,7 +111,9 @@ pub struct Case {
     pub flag: String,
     /// Where it comes from.
     pub source: String,
-    /// The claims that it is about.
+    /// What it is judged by.
+    pub claim: Claim,
+    /// All claims that it is about.
     pub claims: Vec<Claim>,
     /// What the bodies look like.
     pub shapes: Vec<Shape>,
@@ -76,6 +128,27 @@ impl Case {
         self.name
             .rsplit_once('/')
             .map_or(&self.name, |(group, _)| group)
+    }
+
+    /// The case with these bodies of each frame alone, in this order; its set of bodies doesn't
+    /// change.
+    #[must_use]
+    pub fn picked(&self, which: &[usize]) -> Self {
+        Self {
+            frames: self
+                .frames
+                .iter()
+                .map(|frame| frame.picked(which))
+                .collect(),
+            ..self.clone()
+        }
+    }
+
+    /// Whether a frame takes up what those before have left: another set of bodies, or a state.
+    #[must_use]
+    pub fn has_history(&self) -> bool {
+        let goes_on = |frame: &Frame| frame.was.is_some() || frame.restore;
+        self.frames.iter().any(goes_on)
     }
 
     /// Pairs of bodies over all frames, not both static.

@@ -16,10 +16,32 @@ choices! {
         Hull = "hull",
         /// The meshes share a point, or a part of one lies inside of a closed part of the other.
         Mesh = "mesh",
+        /// As `aabb`, without the pairs that the frame's filter parts: none of those is reported.
+        Filter = "filter",
+        /// As `aabb`, and the same pairs in whatever order the bodies come.
+        Order = "order",
+        /// As `aabb`, and the same pairs again after going back to a saved state.
+        Restore = "restore",
+        /// The boxes given with the frame are no further apart on any axis than both margins reach.
+        Margin = "margin",
     }
 }
 
 impl Claim {
-    /// The claims about posed shapes: all but the one about given boxes.
+    /// The claims about one volume each, with nothing asked on top.
+    pub const PLAIN: &'static [Self] = &[
+        Self::Sphere,
+        Self::Aabb,
+        Self::OrDop,
+        Self::Hull,
+        Self::Mesh,
+    ];
+    /// The claims about posed shapes: all but those about given boxes.
     pub const POSED: &'static [Self] = &[Self::Sphere, Self::OrDop, Self::Hull, Self::Mesh];
+
+    /// Whether it is about given boxes.
+    #[must_use]
+    pub fn is_of_boxes(self) -> bool {
+        !Self::POSED.contains(&self)
+    }
 }

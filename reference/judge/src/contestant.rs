@@ -5,6 +5,25 @@ use sdop::bodies::Bodies;
 /// A box on the world axes: the lower corner x, y, z, then the upper one.
 pub type WorldBox = [f32; 6];
 
+/// Which pairs of a frame are not asked for, and must not be reported.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Filter {
+    /// Of each body: the groups that it is in, and those that it meets, a bit each.
+    pub groups: Vec<[u32; 2]>,
+    /// Pairs i < j, sorted.
+    pub excluded: Vec<[u32; 2]>,
+}
+
+impl Filter {
+    /// Whether two bodies i < j are parted: one of them is in no group that the other meets, or
+    /// they are excluded.
+    #[must_use]
+    pub fn parts(&self, pair: [u32; 2]) -> bool {
+        let [[in_a, of_a], [in_b, of_b]] = pair.map(|body| self.groups[body as usize]);
+        in_a & of_b == 0 || in_b & of_a == 0 || self.excluded.binary_search(&pair).is_ok()
+    }
+}
+
 /// What stands in a comparison. It is made for a scene (its shapes and first bodies), then sees
 /// frame after frame: bodies, or whatever else all that are compared take, such as boxes alone.
 pub trait Contestant<Frame: ?Sized = Bodies> {
@@ -31,6 +50,28 @@ pub trait Contestant<Frame: ?Sized = Bodies> {
         let _ = (bodies, was);
         false
     }
+
+    /// Takes over a filter for the coming frames. False when it has none.
+    fn filter(&mut self, filter: &Filter) -> bool {
+        let _ = filter;
+        false
+    }
+
+    /// Takes over each body's margin for the coming frames. False when it has none.
+    fn margins(&mut self, margins: &[f32]) -> bool {
+        let _ = margins;
+        false
+    }
+
+    /// Keeps its state after the last frame, in place of one kept before. False when it can't.
+    fn save(&mut self) -> bool {
+        false
+    }
+
+    /// Goes back to the state that was kept. False when it can't.
+    fn restore(&mut self) -> bool {
+        false
+    }
 }
 
 /// What owns or borrows a contestant is one.
@@ -55,6 +96,22 @@ macro_rules! pass_on {
 
             fn change(&mut self, bodies: &Frame, was: &[Option<u32>]) -> bool {
                 (**self).change(bodies, was)
+            }
+
+            fn filter(&mut self, filter: &Filter) -> bool {
+                (**self).filter(filter)
+            }
+
+            fn margins(&mut self, margins: &[f32]) -> bool {
+                (**self).margins(margins)
+            }
+
+            fn save(&mut self) -> bool {
+                (**self).save()
+            }
+
+            fn restore(&mut self) -> bool {
+                (**self).restore()
             }
         }
     };

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use super::claim::Claim;
 use super::score::Miss;
 use super::shrink::Smallest;
 use super::witness::DEEPEST;
@@ -14,7 +13,10 @@ impl Smallest {
     pub fn boxes(&self) -> Option<[WorldBox; 2]> {
         let Miss { frame, pair } = self.miss;
         let boxes = &self.case.frames[frame].boxes;
-        (self.claim == Claim::Aabb).then(|| pair.map(|body| boxes[body as usize]))
+        self.case
+            .claim
+            .is_of_boxes()
+            .then(|| pair.map(|body| boxes[body as usize]))
     }
 
     /// Why the missed pair meets, a line each.
@@ -39,7 +41,7 @@ impl Smallest {
                 lines.push(format!("exactly ({exact})"));
             }
         }
-        if self.claim != Claim::Aabb {
+        if !self.case.claim.is_of_boxes() {
             lines.push(match witness.depth {
                 Some(depth) => format!(
                     "depth: {} or less, which is {} of the f32 steps there",

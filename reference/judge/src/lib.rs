@@ -30,29 +30,35 @@
 
 pub mod answer;
 pub mod as_test;
+#[cfg(feature = "programs")]
 pub mod broadmark;
 pub mod case;
 pub mod catalogue;
 pub mod claim;
 pub mod contestant;
 pub mod counter_example;
+#[cfg(feature = "programs")]
 pub mod json;
 pub mod ours;
+#[cfg(feature = "programs")]
 pub mod process;
+#[cfg(feature = "programs")]
 pub mod record;
+#[cfg(feature = "programs")]
 pub mod report;
 pub mod run;
 pub mod score;
 pub mod shrink;
-pub mod stamp;
 pub mod subject;
 pub mod truth;
+#[cfg(feature = "programs")]
 pub mod vectors;
 pub mod verdict;
+#[cfg(feature = "programs")]
 pub mod wire;
 pub mod witness;
 
-pub use crate::contestant::{Contestant, WorldBox};
+pub use crate::contestant::{Contestant, Filter, WorldBox};
 pub use case::{Case, Frame};
 pub use claim::Claim;
 pub use run::{Judge, JudgeError, Options, examine, judge, judge_pair_test};

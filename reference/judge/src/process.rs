@@ -11,9 +11,8 @@ use std::time::{Duration, Instant};
 
 use super::answer::{Answer, Seconds, Stop, Trouble};
 use super::case::Case;
-use super::claim::Claim;
 use super::subject::Subject;
-use super::wire::{Said, Wire, beginning};
+use super::wire::{Wire, beginning, book};
 
 /// A program and how it is run.
 #[derive(Clone, Debug)]
@@ -35,9 +34,9 @@ const CHATTER: usize = 1 << 16;
 
 impl Program {
     /// The case as the program reads it.
-    fn input(&self, case: &Case, claim: Claim) -> Result<Vec<u8>, Trouble> {
+    fn input(&self, case: &Case) -> Result<Vec<u8>, Trouble> {
         let start = |e: serde_json::Error| Trouble::Start { why: e.to_string() };
-        self.wire.encode(case, claim).map_err(start)
+        self.wire.encode(case).map_err(start)
     }
 
     fn start(&self) -> Result<Running, Trouble> {
@@ -52,8 +51,8 @@ impl Program {
 }
 
 impl Subject for Program {
-    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
-        let input = self.input(case, claim)?;
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+        let input = self.input(case)?;
         let (mut running, time) = (self.start()?, self.time(input.len()));
         running.feed(input);
         running.end_input();
@@ -83,8 +82,8 @@ impl Service {
 }
 
 impl Subject for Service {
-    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
-        let input = self.program.input(case, claim)?;
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+        let input = self.program.input(case)?;
         let time = self.program.time(input.len());
         let idle = self.idle().pop();
         let mut running = idle.map_or_else(|| self.program.start(), Ok)?;
@@ -187,13 +186,8 @@ impl Running {
                 let line = beginning(&line);
                 return Err(Trouble::TooMany { frames, line }.into());
             }
-            match wire.decode(answers.len(), &line)? {
-                Said::Answer(answer) => answers.push(answer),
-                Said::Skipped(why) => {
-                    let answered = answers;
-                    return Err(Stop::Skipped { why, answered });
-                }
-            }
+            let said = wire.decode(answers.len(), &line)?;
+            book(&mut answers, said, &line)?;
         }
         let answered = answers.len();
         let Some(status) = self.status(deadline) else {

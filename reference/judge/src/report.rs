@@ -3,13 +3,13 @@
 
 use std::fmt::Write as _;
 
+use super::case::Case;
 use super::claim::Claim;
 use super::score::Outcome;
 pub use super::shrink::STEM;
 use super::shrink::Smallest;
 use super::verdict::Verdict;
 use super::wire::ndjson;
-use sdop::bodies::Bodies;
 use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes, write_bytes};
 use sdop::volume::{Axes, Origin, Shape, ShapeSpec};
 
@@ -22,30 +22,30 @@ pub type Named = (String, Vec<u8>);
 ///
 /// # Errors
 /// A mesh that can't be written: none that was read.
-pub fn counter_example(smallest: &Smallest, claim: Claim) -> std::io::Result<Vec<Named>> {
-    let case = ndjson::encode(&smallest.case, claim, &smallest.pairs)?;
-    let mut files = vec![(format!("{STEM}.ndjson"), case)];
-    let Some(axes) = axes_of_scene(smallest) else {
-        return Ok(files);
-    };
-    let shapes = &smallest.case.shapes;
-    files.push((
-        format!("{STEM}.toml"),
-        scene(&smallest.case.frames[0].bodies, shapes, axes).into_bytes(),
-    ));
-    for (number, shape) in shapes.iter().enumerate() {
-        let bytes = write_bytes(&mesh_of(shape), MeshFormat::Obj);
-        files.push((format!("{STEM}-{number}.obj"), bytes));
+pub fn counter_example(smallest: &Smallest) -> std::io::Result<Vec<Named>> {
+    let mut files = vec![case_file(smallest)?];
+    if let Some(axes) = axes_of_scene(&smallest.case) {
+        let k = smallest.case.shapes[0].ordop.directions;
+        let cull = format!("[cull]\nstrategy = \"s-dop-sequential\"\nk = {k}\naxes = \"{axes}\"\n");
+        files.extend(scene(&smallest.case, "file", &cull));
     }
     Ok(files)
+}
+
+/// The case with the pairs that were reported.
+///
+/// # Errors
+/// As [`counter_example`].
+pub fn case_file(smallest: &Smallest) -> std::io::Result<Named> {
+    let case = ndjson::encode(&smallest.case, &smallest.pairs)?;
+    Ok((format!("{STEM}.ndjson"), case))
 }
 
 /// The axes with which a scene has the case's volumes; `None` where no scene can state the miss:
 /// one about given boxes, one that takes a history, or one about volumes that aren't those of the
 /// meshes.
-fn axes_of_scene(smallest: &Smallest) -> Option<Axes> {
-    let case = &smallest.case;
-    if smallest.claim == Claim::Aabb || case.frames.len() != 1 {
+fn axes_of_scene(case: &Case) -> Option<Axes> {
+    if case.claim.is_of_boxes() || case.frames.len() != 1 {
         return None;
     }
     let directions = case.shapes.first()?.ordop.directions;
@@ -59,11 +59,11 @@ fn axes_of_scene(smallest: &Smallest) -> Option<Axes> {
             directions,
             axes,
         };
-        let same = |built: Shape| match smallest.claim {
+        let same = |built: Shape| match case.claim {
             Claim::Sphere => built.ball == shape.ball,
             Claim::OrDop => built.ordop == shape.ordop,
             Claim::Hull | Claim::Mesh => built.vertices == shape.vertices,
-            Claim::Aabb => false,
+            _ => false, // above
         };
         read.is_ok_and(|read| Shape::build(&read, &spec).is_ok_and(same))
     };
@@ -80,26 +80,31 @@ fn mesh_of(shape: &Shape) -> TriangleMesh {
     }
 }
 
-/// A frame as a scene file. Formatting into a String cannot fail.
-fn scene(bodies: &Bodies, shapes: &[Shape], axes: Axes) -> String {
+/// A case's first frame as a scene file and the meshes that it names: where meshes have their
+/// origins, and the table that says how to cull. Formatting into a String cannot fail.
+#[must_use]
+pub fn scene(case: &Case, origin: &str, cull: &str) -> Vec<Named> {
     let mut text = format!("name = \"{STEM}\"\nframes = 1\n");
+    let bodies = &case.frames[0].bodies;
     for i in 0..bodies.len() {
         let shape = bodies.shape[i] as usize;
-        let numbers = pose_in_text(bodies.rotation[i], bodies.translation[i]);
         let _ = write!(
             text,
-            "\n[[bodies]] # {i}: {}\nmesh = \"{STEM}-{shape}.obj\"\norigin = \"file\"\nposes = [[{}]]\nstatic = {}\n",
-            shapes[shape].name.escape_default(),
-            numbers,
+            "\n[[bodies]] # {i}: {}\nmesh = \"{STEM}-{shape}.obj\"\norigin = \"{origin}\"\nposes = [[{}]]\nstatic = {}\n",
+            case.shapes[shape].name.escape_default(),
+            pose_in_text(bodies.rotation[i], bodies.translation[i]),
             !bodies.dynamic[i]
         );
     }
-    let k = shapes[0].ordop.directions;
-    let _ = write!(
-        text,
-        "\n[cull]\nstrategy = \"s-dop-sequential\"\nk = {k}\naxes = \"{axes}\"\n"
-    );
-    text
+    text += &format!("\n{cull}");
+    let mesh = |(number, shape)| {
+        let bytes = write_bytes(&mesh_of(shape), MeshFormat::Obj);
+        (format!("{STEM}-{number}.obj"), bytes)
+    };
+    let meshes = case.shapes.iter().enumerate().map(mesh);
+    std::iter::once((format!("{STEM}.toml"), text.into_bytes()))
+        .chain(meshes)
+        .collect()
 }
 
 /// A pose's seven numbers as a scene file has them: written as f64, so that the translation is this

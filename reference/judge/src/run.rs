@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use sdop::choice::nearest;
 
 use super::case::Case;
-use super::catalogue::{CatalogueError, Group, select};
+use super::catalogue::{CaseId, CatalogueError, select};
 use super::claim::Claim;
 use super::score::{Judged, Outcome, judge_case};
 use super::shrink::shrink;
@@ -186,16 +186,9 @@ pub fn examine(
     progress: impl Fn(usize, usize) + Sync,
 ) -> Result<Verdict, JudgeError> {
     let (claim, pattern) = (options.claim, &options.pattern);
-    let mut jobs: Vec<(Group, u32, Option<u64>)> = Vec::new();
-    for seed in [None, options.seed]
-        .into_iter()
-        .take(1 + usize::from(options.seed.is_some()))
-    {
-        jobs.extend(
-            select(claim, pattern, seed)?
-                .into_iter()
-                .map(|(group, n)| (group, n, seed)),
-        );
+    let mut jobs = select(claim, pattern, None)?;
+    if options.seed.is_some() {
+        jobs.extend(select(claim, pattern, options.seed)?);
     }
     if jobs.is_empty() {
         let pattern = pattern.clone();
@@ -207,16 +200,22 @@ pub fn examine(
         .and_then(|time| Instant::now().checked_add(time));
     let stop = AtomicBool::new(false);
     let done = std::sync::atomic::AtomicUsize::new(0);
-    let run = |(group, number, seed): &(Group, u32, Option<u64>)| -> Result<Option<(Case, CaseVerdict)>, JudgeError> {
+    let run = |id: &CaseId| -> Result<Option<(Case, CaseVerdict)>, JudgeError> {
         if stop.load(Ordering::Relaxed) || deadline.is_some_and(|end| Instant::now() >= end) {
             return Ok(None);
         }
-        let case = group.case(*number, *seed)?;
+        let case = id.case()?;
         // Every group's first case runs twice: the same input has the same answer.
-        let judged = judge_case(subject, &case, claim, *number == 0)?;
+        let judged = judge_case(subject, &case, id.number == 0)?;
         let verdict = line(&case, &judged, &options.known);
-        let failed = matches!(verdict.outcome, Outcome::Fail { .. } | Outcome::Error { .. });
-        stop.fetch_or(options.fail_fast && failed && !verdict.known, Ordering::Relaxed);
+        let failed = matches!(
+            verdict.outcome,
+            Outcome::Fail { .. } | Outcome::Error { .. }
+        );
+        stop.fetch_or(
+            options.fail_fast && failed && !verdict.known,
+            Ordering::Relaxed,
+        );
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
         Ok(Some((case, verdict)))
     };
@@ -233,22 +232,21 @@ pub fn examine(
     Ok(conclude(subject, options, ran))
 }
 
-/// Runs cases that are given, such as a counter-example from a file; their names don't matter.
+/// Runs a case that is given, such as a counter-example from a file; its name and its claim don't
+/// matter.
 ///
 /// # Errors
 /// A case that the reference refuses.
 pub fn examine_given(
     subject: &dyn Subject,
     options: &Options,
-    cases: Vec<Case>,
+    case: Case,
 ) -> Result<Verdict, JudgeError> {
-    let run = |case: Case| -> Result<Option<(Case, CaseVerdict)>, JudgeError> {
-        let judged = judge_case(subject, &case, options.claim, true)?;
-        let verdict = line(&case, &judged, &options.known);
-        Ok(Some((case, verdict)))
-    };
-    let ran = cases.into_iter().map(run).collect::<Result<_, _>>()?;
-    Ok(conclude(subject, options, ran))
+    let claim = options.claim;
+    let case = Case { claim, ..case };
+    let judged = judge_case(subject, &case, true)?;
+    let verdict = line(&case, &judged, &options.known);
+    Ok(conclude(subject, options, vec![Some((case, verdict))]))
 }
 
 /// Makes the verdict, and the smallest scene of a miss.
@@ -264,8 +262,7 @@ fn conclude(
         .iter()
         .filter(|(_, verdict)| verdict.miss.is_some() && !verdict.known);
     let first = missed.min_by_key(|(case, _)| case.pairs());
-    let smallest =
-        first.and_then(|(case, _)| shrink(subject, case, options.claim, options.shrink_time));
+    let smallest = first.and_then(|(case, _)| shrink(subject, case, options.shrink_time));
     let cases: Vec<CaseVerdict> = ran.into_iter().map(|(_, verdict)| verdict).collect();
     Verdict {
         claim: options.claim,
@@ -298,11 +295,8 @@ fn check_known(claim: Claim, known: &BTreeSet<String>) -> Result<(), JudgeError>
     if known.is_empty() {
         return Ok(());
     }
-    let groups = select(claim, "*", None)?;
-    let names: BTreeSet<String> = groups
-        .iter()
-        .map(|(group, number)| group.case_name(*number, None))
-        .collect();
+    let cases = select(claim, "*", None)?;
+    let names: BTreeSet<String> = cases.iter().map(CaseId::name).collect();
     let published = |name: &str| match name.rsplit_once('@') {
         Some((case, seed)) if seed.parse::<u64>().is_ok() => case.to_owned(),
         _ => name.to_owned(),

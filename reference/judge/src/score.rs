@@ -111,22 +111,20 @@ impl Judged {
 ///
 /// # Errors
 /// A case that the reference refuses.
-pub fn judge_case(
-    subject: &dyn Subject,
-    case: &Case,
-    claim: Claim,
-    twice: bool,
-) -> Result<Judged, InvalidInput> {
-    let answers = match subject.answer(case, claim) {
-        Ok(answers) => answers,
-        Err(stop) => return stopped(case, claim, stop),
+pub fn judge_case(subject: &dyn Subject, case: &Case, twice: bool) -> Result<Judged, InvalidInput> {
+    let judge = || match subject.answer(case) {
+        Ok(answers) => judge_answers(case, &answers),
+        Err(stop) => stopped(case, stop),
     };
-    let mut judged = judge_answers(case, claim, &answers)?;
+    let mut judged = judge()?;
+    if case.claim == Claim::Order
+        && judged.outcome == Outcome::Pass
+        && let Some(other) = in_other_orders(subject, case, &judged)?
+    {
+        return Ok(other);
+    }
     if twice && judged.outcome == Outcome::Pass {
-        let again = match subject.answer(case, claim) {
-            Ok(answers) => judge_answers(case, claim, &answers)?,
-            Err(stop) => stopped(case, claim, stop)?,
-        };
+        let again = judge()?;
         if again.outcome != Outcome::Pass {
             return Ok(again);
         }
@@ -138,16 +136,79 @@ pub fn judge_case(
     Ok(judged)
 }
 
+/// The case with its bodies in other orders, backwards and by threes: what is wrong with the first
+/// of them that isn't answered alike.
+fn in_other_orders(
+    subject: &dyn Subject,
+    case: &Case,
+    judged: &Judged,
+) -> Result<Option<Judged>, InvalidInput> {
+    let bodies = case.frames.first().map_or(0, |frame| frame.bodies.len());
+    let by_threes = (0..3).flat_map(|first| (first..bodies).step_by(3));
+    for order in [(0..bodies).rev().collect::<Vec<_>>(), by_threes.collect()] {
+        let other = case.picked(&order);
+        let mut again = match subject.answer(&other) {
+            Ok(answers) => judge_answers(&other, &answers)?,
+            Err(stop) => stopped(&other, stop)?,
+        };
+        let original = |pair: &[u32; 2]| {
+            let [i, j] = pair.map(|body| order[body as usize] as u32);
+            [i.min(j), i.max(j)]
+        };
+        for list in &mut again.lists {
+            *list = list.iter().map(original).collect();
+            list.sort_unstable();
+        }
+        if again.outcome == Outcome::Pass && again.lists != judged.lists {
+            let why = "reports other pairs when its bodies come in another order".to_owned();
+            again.outcome = Outcome::Fail { why };
+        }
+        if again.outcome != Outcome::Pass {
+            // Its numbers are not the case's.
+            again.miss = None;
+            return Ok(Some(again));
+        }
+    }
+    Ok(None)
+}
+
+/// The first frame after a saved state was restored whose list isn't the one that the same frame
+/// had after the state was saved.
+fn not_restored(case: &Case, lists: &[Vec<[u32; 2]>]) -> Option<usize> {
+    let input = |frame: &Frame| Frame {
+        save: false,
+        restore: false,
+        ..frame.clone()
+    };
+    let (mut saved, mut twin) = (0, None);
+    for (number, frame) in case.frames.iter().enumerate() {
+        if frame.restore {
+            twin = Some(saved + 1);
+        }
+        twin = twin.filter(|&at: &usize| at < number && input(&case.frames[at]) == input(frame));
+        if let Some(at) = twin {
+            if lists[at] != lists[number] {
+                return Some(number);
+            }
+            twin = Some(at + 1);
+        }
+        if frame.save {
+            saved = number;
+        }
+    }
+    None
+}
+
 /// What a case without all answers is. A wrong answer counts, also if the rest of the case is
 /// skipped.
-fn stopped(case: &Case, claim: Claim, stop: Stop) -> Result<Judged, InvalidInput> {
+fn stopped(case: &Case, stop: Stop) -> Result<Judged, InvalidInput> {
     let (why, answered) = match stop {
         Stop::Skipped { why, answered } => (why, answered),
         Stop::Trouble(trouble) => return Ok(Judged::without_answers(Outcome::Error { trouble })),
     };
     let mut begun = case.clone();
     begun.frames.truncate(answered.len());
-    let judged = judge_answers(&begun, claim, &answered)?;
+    let judged = judge_answers(&begun, &answered)?;
     Ok(match judged.outcome {
         Outcome::Fail { .. } | Outcome::Error { .. } => judged,
         Outcome::Pass | Outcome::Skipped { .. } => {
@@ -160,11 +221,7 @@ fn stopped(case: &Case, claim: Claim, stop: Stop) -> Result<Judged, InvalidInput
 ///
 /// # Errors
 /// A case that the reference refuses.
-pub fn judge_answers(
-    case: &Case,
-    claim: Claim,
-    answers: &[Answer],
-) -> Result<Judged, InvalidInput> {
+pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<Judged, InvalidInput> {
     if answers.len() != case.frames.len() {
         let trouble = Trouble::Early {
             answered: answers.len(),
@@ -181,10 +238,10 @@ pub fn judge_answers(
         }
     }
     let (truth, balls) = (
-        Truth::new(claim, &case.shapes)?,
+        Truth::new(case.claim, &case.shapes)?,
         Truth::new(Claim::Sphere, &case.shapes)?,
     );
-    let (mut count, mut miss) = (Count::default(), None);
+    let (mut count, mut miss, mut parted) = (Count::default(), None, Vec::new());
     count.judged = case.pairs();
     for (number, (frame, list)) in case.frames.iter().zip(&lists).enumerate() {
         let required = truth.pairs(frame)?;
@@ -203,21 +260,34 @@ pub fn judge_answers(
             .iter()
             .filter(|pair| required.binary_search(pair).is_err())
         {
-            explain(&truth, &balls, claim, frame, *pair, &mut count)?;
+            if truth.parts(frame, *pair) {
+                parted.push((number, *pair));
+            }
+            explain([&truth, &balls], frame, *pair, &mut count)?;
         }
     }
-    let outcome = match miss {
-        None => Outcome::Pass,
-        Some(Miss {
-            frame,
-            pair: [i, j],
-        }) => Outcome::Fail {
-            why: format!(
-                "misses {} of {} pairs, first bodies {i} and {j} in frame {frame}",
-                count.missed, count.required
-            ),
-        },
+    let wrong = match (miss, parted.first(), not_restored(case, &lists)) {
+        (Some(Miss { frame, pair }), ..) => {
+            let (
+                [i, j],
+                Count {
+                    missed, required, ..
+                },
+            ) = (pair, count);
+            Some(format!(
+                "misses {missed} of {required} pairs, first bodies {i} and {j} in frame {frame}"
+            ))
+        }
+        (_, Some((frame, [i, j])), _) => Some(format!(
+            "reports {} pairs that the filter parts, first bodies {i} and {j} in frame {frame}",
+            parted.len()
+        )),
+        (.., Some(frame)) => Some(format!(
+            "reports other pairs in frame {frame} than before its state was restored"
+        )),
+        (None, None, None) => None,
     };
+    let outcome = wrong.map_or(Outcome::Pass, |why| Outcome::Fail { why });
     Ok(Judged {
         outcome,
         count,
@@ -228,9 +298,7 @@ pub fn judge_answers(
 
 /// Counts an extra pair by its cause.
 fn explain(
-    truth: &Truth,
-    balls: &Truth,
-    claim: Claim,
+    [truth, balls]: [&Truth; 2],
     frame: &Frame,
     pair: [u32; 2],
     count: &mut Count,
@@ -241,16 +309,23 @@ fn explain(
         count.both_static += 1;
     } else if truth.pair(&nearer(frame, pair), pair)? {
         count.by_rounding += 1;
-    } else if match claim {
-        Claim::Aabb => boxes_meet(
-            &grown(&frame.boxes[pair[0] as usize]),
-            &grown(&frame.boxes[pair[1] as usize]),
-        ),
-        _ => balls.pair(frame, pair)?,
-    } {
+    } else if meet_loosely([truth, balls], frame, pair)? {
         count.by_looseness += 1;
     }
     Ok(())
+}
+
+/// Whether a looser volume than the claim's meets.
+fn meet_loosely(
+    [truth, balls]: [&Truth; 2],
+    frame: &Frame,
+    pair: [u32; 2],
+) -> Result<bool, InvalidInput> {
+    if !truth.claim().is_of_boxes() {
+        return balls.pair(frame, pair);
+    }
+    let [a, b] = pair.map(|body| grown(&frame.boxes[body as usize]));
+    Ok(boxes_meet(&a, &b))
 }
 
 /// A box with half of its size around it.
@@ -301,13 +376,17 @@ mod tests {
                 bodies.push(0, number < 3, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]);
             }
             let boxes = places.map(|x| [x, 0.0, 0.0, x + 1.0, 1.0, 1.0]).to_vec();
-            let was = None;
-            Frame { bodies, boxes, was }
+            Frame {
+                bodies,
+                boxes,
+                ..Frame::default()
+            }
         };
         Case {
             name: "own/cubes/0000".to_owned(),
             flag: String::new(),
             source: String::new(),
+            claim: Claim::Aabb,
             claims: vec![Claim::Aabb],
             shapes: vec![Shape::build(&mesh, &ShapeSpec::default()).unwrap()],
             frames: frames.iter().map(frame).collect(),
@@ -336,7 +415,7 @@ mod tests {
         // Extra: 02 by its volume, 34 static, 04 for no reason; then 01 by rounding.
         let first: &[[u32; 2]] = &[[0, 1], [0, 2], [0, 4], [3, 4]];
         let given = answers(&[first, &[[0, 3]], &[[0, 1]]]);
-        let judged = judge_answers(&case, Claim::Aabb, &given).unwrap();
+        let judged = judge_answers(&case, &given).unwrap();
         let count = Count {
             judged: 3 * 9,
             required: 2 + 6,
@@ -363,7 +442,7 @@ mod tests {
         let case = cubes(&PLACES);
         let all: &[[u32; 2]] = &[[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
         let given = answers(&[&[[0, 1], [1, 2]], all, &[]]);
-        let judged = judge_answers(&case, Claim::Aabb, &given).unwrap();
+        let judged = judge_answers(&case, &given).unwrap();
         assert_eq!((judged.outcome, judged.miss), (Outcome::Pass, None));
         assert_eq!((judged.count.required, judged.count.extra), (8, 0));
     }
@@ -372,7 +451,7 @@ mod tests {
     struct Skips(Vec<Answer>);
 
     impl Subject for Skips {
-        fn answer(&self, _: &Case, _: Claim) -> Result<Vec<Answer>, Stop> {
+        fn answer(&self, _: &Case) -> Result<Vec<Answer>, Stop> {
             let (why, answered) = ("enough".to_owned(), self.0.clone());
             Err(Stop::Skipped { why, answered })
         }
@@ -381,9 +460,8 @@ mod tests {
     #[test]
     fn misses_before_a_skip_count() {
         let case = cubes(&PLACES);
-        let judge = |given: &[&[[u32; 2]]]| {
-            judge_case(&Skips(answers(given)), &case, Claim::Aabb, false).unwrap()
-        };
+        let judge =
+            |given: &[&[[u32; 2]]]| judge_case(&Skips(answers(given)), &case, false).unwrap();
         for right in [&[][..], &[&[[0, 1], [1, 2]][..]]] {
             let judged = judge(right);
             assert!(matches!(judged.outcome, Outcome::Skipped { why } if why == "enough"));

@@ -4,7 +4,6 @@
 use std::time::{Duration, Instant};
 
 use super::case::{Case, Frame};
-use super::catalogue::picked;
 use super::claim::Claim;
 use super::score::{Miss, judge_answers};
 use super::subject::Subject;
@@ -20,8 +19,6 @@ pub const STEM: &str = "missed-pair";
 pub struct Smallest {
     /// The name of the case that it was made from.
     pub from: String,
-    /// The claim that it breaks.
-    pub claim: Claim,
     /// The case, under a name of its own.
     pub case: Case,
     /// What is reported of it, frame by frame, sorted.
@@ -32,27 +29,29 @@ pub struct Smallest {
     pub witness: Option<Witness>,
 }
 
-/// Makes a failing case smaller, for so long at most. `None` when it doesn't fail again.
-pub fn shrink(
-    subject: &dyn Subject,
-    case: &Case,
-    claim: Claim,
-    time: Duration,
-) -> Option<Smallest> {
+/// Makes a case that a subject fails smaller, for so long at most. `None` when it doesn't fail
+/// again.
+pub fn shrink(subject: &dyn Subject, case: &Case, time: Duration) -> Option<Smallest> {
+    shrink_while(case, time, &|case| {
+        let answers = subject.answer(case).ok()?;
+        let judged = judge_answers(case, &answers).ok()?;
+        Some((judged.miss?, judged.lists))
+    })
+}
+
+/// What is wrong with a case, and what is reported of it, frame by frame; `None` when nothing is.
+pub type Wrong<'a> = &'a dyn Fn(&Case) -> Option<(Miss, Vec<Vec<[u32; 2]>>)>;
+
+/// Makes a case smaller while something is wrong with it, for so long at most.
+pub fn shrink_while(case: &Case, time: Duration, wrong: Wrong<'_>) -> Option<Smallest> {
+    let (miss, pairs) = wrong(case)?;
     let mut search = Search {
-        subject,
-        claim,
+        wrong,
         deadline: Instant::now() + time,
-        miss: Miss {
-            frame: 0,
-            pair: [0, 0],
-        },
+        miss,
         case: case.clone(),
-        pairs: Vec::new(),
+        pairs,
     };
-    if !search.try_case(case.clone()) {
-        return None;
-    }
     search.fewer_frames();
     search.fewer_bodies();
     search.fewer_shapes();
@@ -70,10 +69,9 @@ pub fn shrink(
     if !from.starts_with(STEM) {
         case.name = format!("{STEM}/{from}");
     }
-    let witness = Witness::of(claim, &case.shapes, &case.frames[miss.frame], miss.pair);
+    let witness = Witness::of(&case, miss);
     Some(Smallest {
         from,
-        claim,
         case,
         pairs,
         miss,
@@ -82,8 +80,7 @@ pub fn shrink(
 }
 
 struct Search<'a> {
-    subject: &'a dyn Subject,
-    claim: Claim,
+    wrong: Wrong<'a>,
     deadline: Instant,
     case: Case,
     pairs: Vec<Vec<[u32; 2]>>,
@@ -91,23 +88,15 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Takes over a case if the culler misses a pair of it.
+    /// Takes over a case if something is wrong with it.
     fn try_case(&mut self, case: Case) -> bool {
         if Instant::now() > self.deadline {
             return false;
         }
-        let Ok(answers) = self.subject.answer(&case, self.claim) else {
+        let Some((miss, pairs)) = (self.wrong)(&case) else {
             return false;
         };
-        let Ok(judged) = judge_answers(&case, self.claim, &answers) else {
-            return false;
-        };
-        let Some(miss) = judged.miss else {
-            return false;
-        };
-        self.case = case;
-        self.pairs = judged.lists;
-        self.miss = miss;
+        (self.case, self.miss, self.pairs) = (case, miss, pairs);
         true
     }
 
@@ -118,6 +107,7 @@ impl Search<'_> {
                 .iter()
                 .map(|&n| Frame {
                     was: None,
+                    restore: false,
                     ..case.frames[n].clone()
                 })
                 .collect(),
@@ -129,8 +119,8 @@ impl Search<'_> {
         }
         self.case.frames.truncate(self.miss.frame + 1);
         self.pairs.truncate(self.miss.frame + 1);
-        // A changing set of bodies has its frames in a chain.
-        if self.case.frames.iter().any(|frame| frame.was.is_some()) {
+        // Its frames are a chain.
+        if self.case.has_history() {
             return;
         }
         let mut n = 0;
@@ -148,7 +138,7 @@ impl Search<'_> {
             return;
         }
         let pair = self.miss.pair.map(|body| body as usize);
-        let alone = with_bodies(&self.case, &pair);
+        let alone = self.case.picked(&pair);
         if self.try_case(alone) {
             return;
         }
@@ -160,7 +150,7 @@ impl Search<'_> {
                 let kept: Vec<usize> = (0..bodies(self))
                     .filter(|i| !(start..start + chunk).contains(i))
                     .collect();
-                let smaller = with_bodies(&self.case, &kept);
+                let smaller = self.case.picked(&kept);
                 if kept.len() < 2 || !self.try_case(smaller) {
                     start += chunk;
                 }
@@ -200,7 +190,7 @@ impl Search<'_> {
     /// Without triangles, one at a time, for claims about meshes. Volumes are built anew around
     /// what is left.
     fn fewer_triangles(&mut self) {
-        if !matches!(self.claim, Claim::Hull | Claim::Mesh) {
+        if !matches!(self.case.claim, Claim::Hull | Claim::Mesh) {
             return;
         }
         for shape in 0..self.case.shapes.len() {
@@ -218,7 +208,7 @@ impl Search<'_> {
     fn fewer_digits(&mut self) {
         for frame in 0..self.case.frames.len() {
             for body in 0..self.case.frames[frame].bodies.len() {
-                if self.claim == Claim::Aabb {
+                if self.case.claim.is_of_boxes() {
                     for n in 0..6 {
                         self.shorten(frame, &|frame| &mut frame.boxes[body][n]);
                     }
@@ -253,7 +243,7 @@ impl Search<'_> {
             let rotations = &case.frames[frame].bodies.rotation;
             let sound = rotations.iter().all(|q| *q != [0.0; 4])
                 && case.frames[frame].boxes.iter().all(ordered);
-            if self.claim != Claim::Aabb && sound {
+            if !self.case.claim.is_of_boxes() && sound {
                 refit(&mut case, frame);
             }
             if sound && self.try_case(case.clone()) {
@@ -280,23 +270,8 @@ fn rounded(x: f32, digits: u32) -> f32 {
 
 fn refit(case: &mut Case, frame: usize) {
     let bodies = case.frames[frame].bodies.clone();
-    let was = case.frames[frame].was.take();
-    case.frames[frame] = Frame {
-        was,
-        ..Frame::fitted(bodies, &case.shapes)
-    };
-}
-
-fn with_bodies(case: &Case, kept: &[usize]) -> Case {
-    let frame = |frame: &Frame| Frame {
-        bodies: picked(&frame.bodies, kept),
-        boxes: kept.iter().map(|&i| frame.boxes[i]).collect(),
-        was: None,
-    };
-    Case {
-        frames: case.frames.iter().map(frame).collect(),
-        ..case.clone()
-    }
+    let fitted = Frame::fitted(bodies, &case.shapes);
+    case.frames[frame].boxes = fitted.boxes;
 }
 
 /// The case with one triangle of a shape less, and without the vertices that then belong to none.

@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::answer::{Answer, Stop, Trouble};
-use super::case::Case;
+use super::case::{Case, Frame};
 use super::claim::Claim;
 use crate::contestant::{Contestant, WorldBox};
 use sdop::bodies::Bodies;
@@ -28,7 +28,7 @@ pub trait Subject: Sync {
     ///
     /// # Errors
     /// A case that it skips, or its failure.
-    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop>;
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop>;
 }
 
 /// A maker of Rust cullers, one for each case.
@@ -39,9 +39,9 @@ where
     F: Fn(&Scene<'_>) -> C + Sync,
     C: Contestant,
 {
-    fn answer(&self, case: &Case, claim: Claim) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
         let mut answers = Vec::new();
-        let run = catch_unwind(AssertUnwindSafe(|| self.run(case, claim, &mut answers)));
+        let run = catch_unwind(AssertUnwindSafe(|| self.run(case, &mut answers)));
         match run {
             Ok(Ok(())) => Ok(answers),
             Ok(Err(stop)) => Err(stop),
@@ -63,33 +63,55 @@ where
     F: Fn(&Scene<'_>) -> C + Sync,
     C: Contestant,
 {
-    fn run(&self, case: &Case, claim: Claim, answers: &mut Vec<Answer>) -> Result<(), Stop> {
+    fn run(&self, case: &Case, answers: &mut Vec<Answer>) -> Result<(), Stop> {
         let Some(first) = case.frames.first() else {
             return Ok(());
         };
         let mut culler = (self.0)(&Scene {
-            claim,
+            claim: case.claim,
             shapes: &case.shapes,
             bodies: &first.bodies,
             boxes: &first.boxes,
         });
         for frame in &case.frames {
-            if let Some(was) = &frame.was
-                && !culler.change(&frame.bodies, was)
-            {
-                let why = "its set of bodies can't change".to_owned();
-                let answered = std::mem::take(answers);
+            let mut why = prepared(&mut culler, frame).err();
+            if why.is_none() {
+                culler.boxes(&frame.boxes);
+                culler.frame(&frame.bodies);
+                culler.settle();
+                answers.push(Answer {
+                    pairs: culler.pairs(),
+                    ns: None,
+                });
+                why = (frame.save && !culler.save()).then_some("its state can't be saved");
+            }
+            if let Some(why) = why {
+                let (why, answered) = (why.to_owned(), std::mem::take(answers));
                 return Err(Stop::Skipped { why, answered });
             }
-            culler.boxes(&frame.boxes);
-            culler.frame(&frame.bodies);
-            culler.settle();
-            answers.push(Answer {
-                pairs: culler.pairs(),
-                ns: None,
-            });
         }
         Ok(())
+    }
+}
+
+/// Gives a culler what comes before a frame, or says what it can't do.
+fn prepared(culler: &mut impl Contestant, frame: &Frame) -> Result<(), &'static str> {
+    let can = |can: bool, why| if can { Ok(()) } else { Err(why) };
+    if frame.restore {
+        can(culler.restore(), "it can't go back to a saved state")?;
+    }
+    if let Some(was) = &frame.was {
+        can(
+            culler.change(&frame.bodies, was),
+            "its set of bodies can't change",
+        )?;
+    }
+    if let Some(filter) = &frame.filter {
+        can(culler.filter(filter), "it has no filters")?;
+    }
+    match &frame.margins {
+        Some(margins) => can(culler.margins(margins), "it has no margins"),
+        None => Ok(()),
     }
 }
 

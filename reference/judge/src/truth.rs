@@ -30,24 +30,48 @@ impl Truth {
         })
     }
 
+    /// What it decides.
+    #[must_use]
+    pub fn claim(&self) -> Claim {
+        self.claim
+    }
+
     /// Whether the claim holds of two bodies of a frame.
     ///
     /// # Errors
     /// A pose outside the contract.
     pub fn pair(&self, frame: &Frame, [i, j]: [u32; 2]) -> Result<bool, InvalidInput> {
-        if self.claim == Claim::Aabb {
-            return Ok(boxes_meet(
-                &frame.boxes[i as usize],
-                &frame.boxes[j as usize],
-            ));
+        if let Some(meet) = self.by_boxes(frame, [i, j]) {
+            return Ok(meet);
         }
         let (a, b) = (self.body(frame, i)?, self.body(frame, j)?);
         Ok(match self.claim {
             Claim::Sphere => sphere::overlap(&a, &b).value,
             Claim::OrDop => ordop::overlap(&a, &b, reference::Overlap::Full).value,
-            Claim::Hull | Claim::Mesh => near(&a, &b) && meeting::overlap(&a, &b).meets,
-            Claim::Aabb => false, // above
+            _ => near(&a, &b) && meeting::overlap(&a, &b).meets,
         })
+    }
+
+    /// What the given boxes decide; `None` for a claim about posed shapes.
+    fn by_boxes(&self, frame: &Frame, pair: [u32; 2]) -> Option<bool> {
+        let [a, b] = pair.map(|body| &frame.boxes[body as usize]);
+        let margins = || pair.map(|body| frame.margins.as_ref().map_or(0.0, |m| m[body as usize]));
+        match self.claim {
+            Claim::Aabb | Claim::Order | Claim::Restore => Some(boxes_meet(a, b)),
+            Claim::Filter => Some(boxes_meet(a, b) && !self.parts(frame, pair)),
+            Claim::Margin => Some(boxes_near(a, b, margins())),
+            Claim::Sphere | Claim::OrDop | Claim::Hull | Claim::Mesh => None,
+        }
+    }
+
+    /// Whether the frame's filter parts a pair i < j, so that it must not be reported.
+    #[must_use]
+    pub fn parts(&self, frame: &Frame, pair: [u32; 2]) -> bool {
+        let filter = frame
+            .filter
+            .as_ref()
+            .filter(|_| self.claim == Claim::Filter);
+        filter.is_some_and(|filter| filter.parts(pair))
     }
 
     /// The pairs i < j of a frame, not both static, of which the claim holds, sorted.
@@ -67,7 +91,8 @@ impl Truth {
     /// A point that both bodies share; `None` when the claim doesn't hold of them.
     #[must_use]
     pub fn common_point(&self, frame: &Frame, [i, j]: [u32; 2]) -> Option<Point> {
-        if self.claim == Claim::Aabb {
+        if self.claim.is_of_boxes() {
+            // Boxes within their margins need not share any.
             let (a, b) = (&frame.boxes[i as usize], &frame.boxes[j as usize]);
             return boxes_meet(a, b).then(|| Point::of([0, 1, 2].map(|axis| a[axis].max(b[axis]))));
         }
@@ -75,8 +100,7 @@ impl Truth {
         match self.claim {
             Claim::Sphere => common::of_balls(&a, &b),
             Claim::OrDop => common::of_slabs(&a, &b),
-            Claim::Hull | Claim::Mesh => common::of_meshes(&a, &b),
-            Claim::Aabb => None,
+            _ => common::of_meshes(&a, &b),
         }
     }
 
@@ -94,6 +118,31 @@ impl Truth {
 #[must_use]
 pub fn boxes_meet(a: &WorldBox, b: &WorldBox) -> bool {
     (0..3).all(|axis| a[axis] <= b[axis + 3] && b[axis] <= a[axis + 3])
+}
+
+/// Closed boxes, each grown by a margin in real arithmetic, share a point.
+#[must_use]
+pub fn boxes_near(a: &WorldBox, b: &WorldBox, [by_a, by_b]: [f32; 2]) -> bool {
+    let apart = |lo: f32, hi: f32| is_positive([lo, -hi, -by_a, -by_b]);
+    (0..3).all(|axis| !apart(a[axis], b[axis + 3]) && !apart(b[axis], a[axis + 3]))
+}
+
+/// Whether a sum is above zero, decided exactly: as an expansion of f64, in which no sum of f32
+/// overflows or underflows (Shewchuk's, smallest part first).
+fn is_positive(terms: [f32; 4]) -> bool {
+    let mut parts: Vec<f64> = Vec::new();
+    for term in terms {
+        let mut sum = f64::from(term);
+        for part in &mut parts {
+            let (x, y) = (sum, *part);
+            sum = x + y;
+            let of_y = sum - x;
+            *part = (x - (sum - of_y)) + (y - of_y);
+        }
+        parts.push(sum);
+    }
+    let leading = parts.iter().rev().find(|part| **part != 0.0);
+    leading.is_some_and(|part| *part > 0.0)
 }
 
 /// Can two meshes meet at all? Not when their origins are further apart than both reaches on some
@@ -139,4 +188,45 @@ fn hull_triangles(shape: &Shape) -> Vec<[u32; 3]> {
     (0..n)
         .flat_map(|i| (i..n).map(move |j| [0, i, j]))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_decided_to_the_last_bit() {
+        let tiny = f32::from_bits(1);
+        for (terms, positive) in [
+            ([1.0, -1.0, 0.0, 0.0], false),
+            ([1.0, tiny, -1.0, 0.0], true),
+            ([1.0, -tiny, -1.0, 0.0], false),
+            ([f32::MAX, 1.0, -f32::MAX, -1.0_f32.next_down()], true),
+            ([f32::MAX, tiny, -1.0, -f32::MAX], false),
+            (
+                [0.1, 0.2, -0.3, 0.0],
+                f64::from(0.1_f32) + f64::from(0.2_f32) > f64::from(0.3_f32),
+            ),
+            ([0.0; 4], false),
+        ] {
+            assert_eq!(is_positive(terms), positive, "{terms:?}");
+            assert!(!positive || !is_positive(terms.map(|x| -x)), "{terms:?}");
+        }
+    }
+
+    /// At their margins' distance boxes are near, one ulp further they are not.
+    #[test]
+    fn margins_reach_as_far_as_they_say() {
+        let first = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let beside = |x: f32| [x, 0.0, 0.0, x + 1.0, 1.0, 1.0];
+        let margins = [0.25, 0.5];
+        assert!(boxes_near(&first, &beside(1.75), margins));
+        assert!(!boxes_near(&first, &beside(1.75_f32.next_up()), margins));
+        // 0.1 and 0.2 reach less far than their rounded sum does.
+        let exact = f64::from(0.1_f32) + f64::from(0.2_f32);
+        let rounded = 0.1_f32 + 0.2;
+        let from_zero = [-1.0, 0.0, 0.0, 0.0, 1.0, 1.0];
+        let near = boxes_near(&from_zero, &beside(rounded), [0.1, 0.2]);
+        assert_eq!(near, f64::from(rounded) <= exact);
+    }
 }

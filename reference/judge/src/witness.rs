@@ -3,10 +3,9 @@
 
 use serde::Serialize;
 
-use super::case::Frame;
-use super::claim::Claim;
+use super::case::{Case, Frame};
+use super::score::Miss;
 use super::truth::Truth;
-use sdop::volume::Shape;
 
 /// A certificate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,10 +27,11 @@ pub struct Witness {
 pub(super) const DEEPEST: u64 = 1 << 24;
 
 impl Witness {
-    /// The certificate for a pair of which the claim holds; `None` for any other.
+    /// The certificate for a pair of which the case's claim holds; `None` for any other.
     #[must_use]
-    pub fn of(claim: Claim, shapes: &[Shape], frame: &Frame, pair: [u32; 2]) -> Option<Self> {
-        let truth = Truth::new(claim, shapes).ok()?;
+    pub fn of(case: &Case, Miss { frame, pair }: Miss) -> Option<Self> {
+        let truth = Truth::new(case.claim, &case.shapes).ok()?;
+        let frame = &case.frames[frame];
         let point = truth.common_point(frame, pair)?;
         let ends = pair.map(|body| frame.boxes[body as usize]);
         let size = ends

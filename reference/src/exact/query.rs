@@ -106,7 +106,7 @@ pub fn line_meets_mesh(line: &ExactLine, shape: &Shape, pose: &Pose) -> Option<R
 /// The mesh's triangles in world coordinates.
 fn triangles<'a>(shape: &'a Shape, pose: &'a Pose) -> impl Iterator<Item = [Rational; 3]> + 'a {
     let triangles = shape.mesh().triangles.iter();
-    triangles.map(|corners| corners.map(|corner| world(pose, &lifted(corner))))
+    triangles.map(move |corners| corners.map(|corner| world(pose, &lifted(corner))))
 }
 
 /// Whether a point is on a posed mesh or within a closed component of it.

@@ -8,7 +8,7 @@
 mod levels;
 
 use self::levels::{Levels, cell_count};
-use crate::bodies::{Aabb, Groups};
+use crate::bodies::{Aabb, Groups, PairRules};
 use crate::pairs::{Run, Runs};
 use crate::simd::prefetch;
 
@@ -200,12 +200,12 @@ impl BoxIndex {
     }
 
     /// Appends, for each of some boxes, the slots of those that meet it, are not both fixed, and
-    /// whose groups collide: sorted, each once. The end of each box's part is appended to `ends`.
-    /// `groups` are by slot. Returns the number of boxes and cells read.
+    /// are allowed by the rules: sorted, each once. The end of each box's part is appended to
+    /// `ends`. Returns the number of boxes and cells read.
     pub fn find_partners(
         &self,
         seekers: &[IndexedBox],
-        groups: &[Groups],
+        rules: PairRules<'_>,
         search: &mut Search,
         found: &mut Vec<u32>,
         ends: &mut Vec<usize>,
@@ -231,11 +231,11 @@ impl BoxIndex {
             let start = found.len();
             if is_everywhere {
                 for cell in &self.cells {
-                    work += self.look_into(cell.boxes, seeker, groups, found);
+                    work += self.look_into(cell.boxes, seeker, rules, found);
                 }
             }
             for &run in &search.runs[std::mem::replace(&mut first, end)..end] {
-                work += self.look_into(run, seeker, groups, found);
+                work += self.look_into(run, seeker, rules, found);
             }
             sort_each_once(found, start);
             ends.push(found.len());
@@ -268,13 +268,13 @@ impl BoxIndex {
         &self,
         run: Run,
         seeker: &IndexedBox,
-        groups: &[Groups],
+        rules: PairRules<'_>,
         found: &mut Vec<u32>,
     ) -> usize {
         let Aabb { min, max } = seeker.aabb;
         for entry in self.boxes.get(run) {
             let on = |axis: usize| (min[axis] <= entry.max[axis]) & (entry.min[axis] <= max[axis]);
-            if on(0) & on(1) & on(2) && seeker.may_meet(entry, groups) {
+            if on(0) & on(1) & on(2) && seeker.may_meet(entry, rules) {
                 found.push(entry.slot);
             }
         }
@@ -314,11 +314,12 @@ fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
 
 impl IndexedBox {
     /// Whether a pair with this box is reported if the boxes meet.
-    fn may_meet(&self, other: &CellEntry, groups: &[Groups]) -> bool {
+    fn may_meet(&self, other: &CellEntry, rules: PairRules<'_>) -> bool {
         let are_fixed = self.tags & other.tags & FIXED_TAG != 0;
         let collide = (self.tags | other.tags) & GROUPED_TAG == 0
-            || groups[self.slot as usize].collide(groups[other.slot as usize]);
-        other.slot != self.slot && !are_fixed && collide
+            || rules.groups[self.slot as usize].collide(rules.groups[other.slot as usize]);
+        let may_meet = other.slot != self.slot && !are_fixed && collide;
+        may_meet && !rules.excluded.contains(self.slot, other.slot)
     }
 }
 

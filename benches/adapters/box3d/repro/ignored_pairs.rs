@@ -11,13 +11,21 @@ fn main() {
         // SAFETY: the calls follow the header, and no id outlives its world.
         let contacts = unsafe {
             let mut def = b3DefaultWorldDef();
-            def.gravity = b3Vec3 { x: 0.0, y: 0.0, z: 0.0 };
+            def.gravity = b3Vec3 {
+                x: 0.0,
+                y: 0.0,
+                z: 0.0,
+            };
             let world = b3CreateWorld(&def);
             for number in 0..count {
                 let mut body = b3DefaultBodyDef();
                 body.type_ = b3BodyType_b3_dynamicBody;
                 let at = |step: i32| 0.1 * (number / step % 5) as f32;
-                body.position = b3Vec3 { x: at(1), y: at(5), z: at(25) };
+                body.position = b3Vec3 {
+                    x: at(1),
+                    y: at(5),
+                    z: at(25),
+                };
                 let hull = b3MakeBoxHull(0.5, 0.5, 0.5);
                 b3CreateHullShape(b3CreateBody(world, &body), &b3DefaultShapeDef(), &hull.base);
             }
@@ -26,6 +34,9 @@ fn main() {
             b3DestroyWorld(world);
             counters.contactCount
         };
-        println!("{count} boxes, {} pairs overlap: {contacts} contacts", count * (count - 1) / 2);
+        println!(
+            "{count} boxes, {} pairs overlap: {contacts} contacts",
+            count * (count - 1) / 2
+        );
     }
 }

@@ -61,9 +61,17 @@ pub fn serve<C: FnMut(&Frame) -> Found>(package: &str, make: impl Fn() -> C) {
     for line in std::io::stdin().lock().lines() {
         let line: Line = serde_json::from_str(&line.expect("a line")).expect("a case");
         if line.format.is_some() {
-            let (shapes, bodies) = (line.shapes.unwrap_or_default(), line.bodies.unwrap_or_default());
+            let (shapes, bodies) = (
+                line.shapes.unwrap_or_default(),
+                line.bodies.unwrap_or_default(),
+            );
             next = bodies.len();
-            frame = Frame { shapes, ids: (0..next).collect(), bodies, ..Frame::default() };
+            frame = Frame {
+                shapes,
+                ids: (0..next).collect(),
+                bodies,
+                ..Frame::default()
+            };
             culler = Some(make());
             continue;
         }
@@ -71,32 +79,57 @@ pub fn serve<C: FnMut(&Frame) -> Found>(package: &str, make: impl Fn() -> C) {
         frame.gone.clear();
         if let Some(bodies) = line.bodies {
             let fresh = |next: &mut usize| (*next, *next += 1).0;
-            let ids = bodies.iter().map(|it| it.was.map_or_else(|| fresh(&mut next), |was| frame.ids[was]));
+            let ids = bodies.iter().map(|it| {
+                it.was
+                    .map_or_else(|| fresh(&mut next), |was| frame.ids[was])
+            });
             let ids: Vec<usize> = ids.collect();
-            frame.gone = frame.ids.iter().copied().filter(|id| !ids.contains(id)).collect();
+            frame.gone = frame
+                .ids
+                .iter()
+                .copied()
+                .filter(|id| !ids.contains(id))
+                .collect();
             (frame.bodies, frame.ids) = (bodies, ids);
         }
-        (frame.boxes, frame.poses) = (line.boxes.unwrap_or_default(), line.poses.unwrap_or_default());
+        (frame.boxes, frame.poses) = (
+            line.boxes.unwrap_or_default(),
+            line.poses.unwrap_or_default(),
+        );
         let start = Instant::now();
         let found = find(&frame);
-        let (number, ns) = (line.frame.unwrap_or_default(), start.elapsed().as_nanos() as u64);
+        let (number, ns) = (
+            line.frame.unwrap_or_default(),
+            start.elapsed().as_nanos() as u64,
+        );
         let answer = match found {
-            Ok(found) => serde_json::json!({ "frame": number, "pairs": asked(&frame, &found), "ns": ns }),
+            Ok(found) => {
+                serde_json::json!({ "frame": number, "pairs": asked(&frame, &found), "ns": ns })
+            }
             Err(why) => {
                 culler = None;
                 serde_json::json!({ "frame": number, "skipped": why })
             }
         };
         let mut out = std::io::stdout().lock();
-        writeln!(out, "{answer}").and_then(|()| out.flush()).expect("a reader");
+        writeln!(out, "{answer}")
+            .and_then(|()| out.flush())
+            .expect("a reader");
     }
 }
 
 /// Converts pairs of ids to the judge's form.
 fn asked(frame: &Frame, found: &[[usize; 2]]) -> Vec<[usize; 2]> {
     let mut numbers = vec![usize::MAX; frame.ids.iter().max().map_or(0, |most| most + 1)];
-    frame.ids.iter().enumerate().for_each(|(number, &id)| numbers[id] = number);
-    let mut pairs: Vec<[usize; 2]> = found.iter().map(|pair| pair.map(|id| numbers[id])).collect();
+    frame
+        .ids
+        .iter()
+        .enumerate()
+        .for_each(|(number, &id)| numbers[id] = number);
+    let mut pairs: Vec<[usize; 2]> = found
+        .iter()
+        .map(|pair| pair.map(|id| numbers[id]))
+        .collect();
     pairs.iter_mut().for_each(|pair| pair.sort_unstable());
     pairs.retain(|&[i, j]| i < j && !(frame.bodies[i].fixed && frame.bodies[j].fixed));
     pairs.sort_unstable();
@@ -107,6 +140,10 @@ fn asked(frame: &Frame, found: &[[usize; 2]]) -> Vec<[usize; 2]> {
 /// The version of a crate with which this program was built.
 fn version(package: &str) -> &'static str {
     let lock = include_str!("../Cargo.lock");
-    let named = lock.split("[[package]]").find(|it| it.contains(&format!("name = \"{package}\"\n")));
-    named.and_then(|it| it.split('"').nth(3)).unwrap_or_default()
+    let named = lock
+        .split("[[package]]")
+        .find(|it| it.contains(&format!("name = \"{package}\"\n")));
+    named
+        .and_then(|it| it.split('"').nth(3))
+        .unwrap_or_default()
 }

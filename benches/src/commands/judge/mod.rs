@@ -129,7 +129,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let verdict = match &args.replay {
         Some(path) => {
             let case = read_case(path, args.files.max_bytes())?.case;
-            examine_given(&*subject, &options, vec![case]).into_diagnostic()?
+            examine_given(&*subject, &options, case).into_diagnostic()?
         }
         None => {
             let bar = progress(0, "cases");
@@ -217,7 +217,7 @@ fn save(args: &Args, command: &str, verdict: &Verdict) -> miette::Result<()> {
     );
     let mut lines = Vec::new();
     if let Some(smallest) = &verdict.smallest {
-        let written = counter_example(smallest, args.claims).into_diagnostic()?;
+        let written = counter_example(smallest).into_diagnostic()?;
         for (name, bytes) in &written {
             files::write(&out.join(name), bytes)?;
         }

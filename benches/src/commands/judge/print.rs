@@ -22,7 +22,17 @@ pub enum ReportFormat {
     Junit,
 }
 
-/// The whole verdict, for programs.
+impl From<Format> for ReportFormat {
+    fn from(format: Format) -> Self {
+        match format {
+            Format::Table => Self::Table,
+            Format::Json => Self::Json,
+            Format::Csv => Self::Csv,
+        }
+    }
+}
+
+/// All of a verdict, for programs.
 #[derive(Serialize)]
 struct Whole<'a> {
     passed: bool,

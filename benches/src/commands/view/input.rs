@@ -41,11 +41,9 @@ pub fn read(
 ) -> miette::Result<ViewInput> {
     let (path, most) = (args.path(), args.max_bytes());
     if is_record(path)? {
-        let claim = claim(path, most);
-        if answers.is_some() || claim.is_some() {
+        if answers.is_some() || is_claimed(path, most).unwrap_or(false) {
             refuse(args, run, "its poses are given")?;
-            // A record is about the meshes.
-            let show = judged((path, most), claim.unwrap_or(Claim::Mesh), answers)?;
+            let show = judged((path, most), answers)?;
             return Ok(ViewInput::Show(Box::new(show), None));
         }
         return record(args, run);
@@ -101,9 +99,8 @@ fn is_case(path: &Path, most: u64) -> bool {
     table.is_some_and(|table| table.contains_key("recipe"))
 }
 
-/// The claim that a case of the judge is about: the first of those in its first line. Records have
-/// none.
-fn claim(path: &Path, most: u64) -> Option<Claim> {
+/// Whether it is a case of the judge: its first line has claims, unlike that of a record.
+fn is_claimed(path: &Path, most: u64) -> Option<bool> {
     #[derive(serde::Deserialize)]
     struct Mark {
         claims: Option<Vec<Claim>>,
@@ -112,16 +109,12 @@ fn claim(path: &Path, most: u64) -> Option<Claim> {
     let mut file = BufReader::new(File::open(path).ok()?);
     sdop::files::read_line(&mut file, most, &mut line).ok()?;
     let mark: Mark = serde_json::from_slice(&line).ok()?;
-    mark.claims?.first().copied()
+    Some(mark.claims.is_some_and(|claims| !claims.is_empty()))
 }
 
 /// A case with the pairs that its file has or that `answers` has; a line, and the answers, have at
 /// most `most` bytes.
-fn judged(
-    (path, most): (&Path, u64),
-    claim: Claim,
-    answers: Option<&Path>,
-) -> miette::Result<Show> {
+fn judged((path, most): (&Path, u64), answers: Option<&Path>) -> miette::Result<Show> {
     let Read { case, pairs, .. } = read_case(path, most)?;
     let given = match answers {
         None => {
@@ -145,7 +138,7 @@ fn judged(
     };
     let reported = given.map(sort).transpose()?;
     let unasked = reported.is_none();
-    let mut show = Show::case(&case, claim, reported, path)
+    let mut show = Show::case(&case, reported, path)
         .map_err(|why| miette!(help = "view another case", "{}: {why}", path.display()))?;
     if unasked {
         let words = "Nobody has answered this case: --answers FILE shows what a program reports.";

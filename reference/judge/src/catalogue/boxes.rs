@@ -98,7 +98,7 @@ pub fn of_boxes(
     let frame = Frame {
         bodies,
         boxes,
-        was: None,
+        ..Frame::default()
     };
     Ok((point, frame))
 }

@@ -6,9 +6,9 @@
 
 use rand::{Rng, RngExt};
 
-use super::crowds::{Kind, picked};
+use super::crowds::Kind;
 use super::{CatalogueError, Drawn};
-use crate::case::Frame;
+use crate::case::{Frame, picked};
 use crate::ours::forms::Form;
 use glam::Vec3;
 use sdop::bodies::Bodies;
@@ -19,14 +19,14 @@ use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 const ROWS: usize = 6;
 const FRAMES: usize = 6;
 /// From a cube to another that it meets.
-const NEAR: f32 = 1.2;
+pub(super) const NEAR: f32 = 1.2;
 /// From a cube to another that it doesn't meet.
-const AWAY: f32 = 6.0;
+pub(super) const AWAY: f32 = 6.0;
 /// From a needle's centre to its tips.
-const REACH: f32 = 4.0;
-const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+pub(super) const REACH: f32 = 4.0;
+pub(super) const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 /// Quarter turns that lay a needle along each axis.
-const ALONG: [[f32; 4]; 3] = [[0.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0], UNTURNED];
+pub(super) const ALONG: [[f32; 4]; 3] = [[0.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0], UNTURNED];
 
 /// A case whose changes are along the axis of this number, modulo 3.
 pub fn along_an_axis(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
@@ -52,7 +52,7 @@ pub fn along_an_axis(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Draw
 }
 
 /// A cube whose sides are a little shorter than 2.
-fn cube(rng: &mut impl Rng) -> Result<Shape, CatalogueError> {
+pub(super) fn cube(rng: &mut impl Rng) -> Result<Shape, CatalogueError> {
     let form = Form {
         radius: Some([0.7, 0.75]),
         ..Form::of("box", [0.0, 0.0])
@@ -61,7 +61,7 @@ fn cube(rng: &mut impl Rng) -> Result<Shape, CatalogueError> {
 }
 
 /// A thin tetrahedron along z.
-fn needle() -> Result<Shape, CatalogueError> {
+pub(super) fn needle() -> Result<Shape, CatalogueError> {
     let vertices = vec![
         Vec3::new(0.0, 0.0, -REACH),
         Vec3::new(0.0, 0.0, REACH),

@@ -4,7 +4,7 @@ use rand::{Rng, RngExt};
 
 use super::Drawn;
 use super::contacts::forms;
-use crate::case::Frame;
+use crate::case::{Frame, picked};
 use crate::ours::draw::{crowd as uniform, rotation};
 use crate::ours::forms::{self, Form, FormError};
 use crate::ours::judged::Shapes;
@@ -24,6 +24,10 @@ pub enum Kind {
     Growth,
     /// One body touches all others.
     Hub,
+    /// All pairs at once, more than 2¹⁸ of them, and again.
+    NewPairs,
+    /// One body touches thousands.
+    Partners,
     /// Frames come again.
     Repeated,
     /// The same bodies in another order.
@@ -41,17 +45,19 @@ pub enum Kind {
 }
 
 /// Draws a crowd.
-pub fn crowd(kind: Kind, rng: &mut impl Rng) -> Result<Drawn, FormError> {
+pub fn crowd(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, FormError> {
     let shapes = shapes(kind, rng)?;
     let bodies = match kind {
         Kind::Growth => dense(&shapes.built, 96, rng),
+        Kind::NewPairs => dense(&shapes.built, 768, rng),
         Kind::Hub => hub(&shapes.built, 384, rng),
+        Kind::Partners => hub(&shapes.built, 4500, rng),
         Kind::Sizes => fix_some(uniform(&shapes, 96, 4.0, rng)),
         _ => fix_some(uniform(&shapes, 40, 4.0, rng)),
     };
     let (bodies, was): (Vec<Bodies>, Vec<_>) = match kind {
         Kind::InsertRemove => changing(bodies, rng),
-        _ => frames(kind, bodies, rng)
+        _ => frames(kind, number, bodies, rng)
             .into_iter()
             .map(|frame| (frame, None))
             .unzip(),
@@ -69,8 +75,8 @@ pub fn crowd(kind: Kind, rng: &mut impl Rng) -> Result<Drawn, FormError> {
 
 fn shapes(kind: Kind, rng: &mut impl Rng) -> Result<Shapes, FormError> {
     let forms = match kind {
-        Kind::Growth => vec![Form::of("tetrahedron", [0.0, 0.0])],
-        Kind::Hub => vec![
+        Kind::Growth | Kind::NewPairs => vec![Form::of("tetrahedron", [0.0, 0.0])],
+        Kind::Hub | Kind::Partners => vec![
             Form::of("tetrahedron", [-6.0, -6.0]),
             Form::of("box", [4.0, 4.0]),
         ],
@@ -117,7 +123,7 @@ fn hub(shapes: &[Shape], count: usize, rng: &mut impl Rng) -> Bodies {
     bodies
 }
 
-fn frames(kind: Kind, first: Bodies, rng: &mut impl Rng) -> Vec<Bodies> {
+fn frames(kind: Kind, number: u32, first: Bodies, rng: &mut impl Rng) -> Vec<Bodies> {
     match kind {
         Kind::Moving => {
             let velocities: Vec<[f32; 3]> = (0..first.len())
@@ -146,6 +152,23 @@ fn frames(kind: Kind, first: Bodies, rng: &mut impl Rng) -> Vec<Bodies> {
                 frame
             };
             vec![spread(1.5), spread(0.5), first.clone(), spread(1.5), first]
+        }
+        Kind::NewPairs => {
+            // All are apart, or all but the first third.
+            let apart = |kept: usize| {
+                let mut frame = first.clone();
+                for (i, t) in frame.translation.iter_mut().enumerate().skip(kept) {
+                    *t = std::array::from_fn(|axis| {
+                        t[axis] + 4.0 * (1 + i / 10_usize.pow(axis as u32) % 10) as f32
+                    });
+                }
+                frame
+            };
+            let some = first.len() / 3;
+            match number % 2 {
+                0 => vec![apart(0), first.clone(), apart(0), first],
+                _ => vec![apart(0), apart(some), first],
+            }
         }
         Kind::Repeated => {
             let second = permuted_places(&first, rng);
@@ -192,20 +215,6 @@ fn permuted_places(bodies: &Bodies, rng: &mut impl Rng) -> Bodies {
 /// The same bodies under other numbers.
 fn renumbered(bodies: &Bodies, rng: &mut impl Rng) -> Bodies {
     picked(bodies, &permutation(bodies.len(), rng))
-}
-
-/// The bodies of these numbers, in this order.
-pub fn picked(bodies: &Bodies, which: &[usize]) -> Bodies {
-    let mut all = Bodies::default();
-    for &i in which {
-        all.push(
-            bodies.shape[i],
-            bodies.dynamic[i],
-            bodies.rotation[i],
-            bodies.translation[i],
-        );
-    }
-    all
 }
 
 /// 0 … n − 1 in any order (Fisher and Yates).

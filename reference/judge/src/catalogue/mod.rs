@@ -5,12 +5,15 @@
 //! same bodies on every machine. With a seed the same group draws other bodies,
 //! `touch/edge-edge/0017@42`: nobody can prepare for those.
 
+mod asked;
 mod boxes;
 mod changes;
 mod contacts;
 mod crowds;
 mod exact;
 mod grid;
+mod listed;
+mod stale;
 
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -25,7 +28,6 @@ use sdop::mesh::MeshError;
 use sdop::volume::{Axes, DirectionSet, Shape, VolumeError};
 
 pub use boxes::of_boxes;
-pub use crowds::picked;
 
 /// A case that can't be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -68,6 +70,12 @@ enum Draw {
     Changes(crowds::Kind, u32),
     /// Boxes without bodies.
     Boxes(boxes::Kind),
+    /// Changes of all kinds.
+    Stale(stale::Kind),
+    /// Slow approaches.
+    Listed(listed::Kind),
+    /// Boxes with what one claim asks on top.
+    Asked(asked::Kind, &'static [Claim; 1]),
     /// A file of the hard cases.
     Hard(&'static str),
 }
@@ -86,51 +94,94 @@ pub struct Group {
     draw: Draw,
 }
 
-const DRAWN: &str = "drawn for this catalogue";
-
+/// One list of groups: the catalogue's own, then the files of hard cases. It also generates a test
+/// for each of them.
 macro_rules! groups {
-    ($($name:literal, $cases:literal, $draw:expr, $flag:literal;)+) => {
-        const OWN: &[Group] = &[$(Group { name: $name, flag: $flag, source: DRAWN, cases: $cases, draw: $draw }),+];
+    (
+        hard { $($hard:ident = $file:literal;)+ }
+        $($test:ident $name:literal, $cases:literal, $draw:expr, $flag:literal $(, after $reports:literal)?;)+
+    ) => {
+        const OWN: &[Group] =
+            &[$(Group { name: $name, flag: $flag, source: groups!(@source $($reports)?), cases: $cases, draw: $draw }),+];
+        const HARD: &[&str] = &[$(concat!("hard/", $file)),+];
+        groups! { @stamp ($) $($test = $name;)+ $($hard = concat!("hard/", $file);)+ }
+    };
+    (@source) => { "drawn for this catalogue" };
+    (@source $reports:literal) => { concat!("drawn for this catalogue, after ", $reports) };
+    (@stamp ($d:tt) $($test:ident = $name:expr;)+) => {
+        /// Generates a test for each group of cases, in a separate module:
+        /// `judge_tests!(Claim::Mesh, |scene| Mine::new(scene));`. Groups without a case of the claim
+        /// get an empty test.
+        #[macro_export]
+        macro_rules! judge_tests {
+            ($d claim:expr, $d make:expr) => {
+                $(
+                    #[test]
+                    fn $test() {
+                        $crate::judge($d make)
+                            .claims($d claim)
+                            .cases(concat!($name, "/*"))
+                            .assert_if_any();
+                    }
+                )+
+            };
+        }
     };
 }
 
-groups! {
-    "touch/ball-ball", 12, Draw::Contact(Kind::Ball, TurnKind::Any), "a radius or a distance rounded down";
-    "touch/edge-edge", 12, Draw::Contact(Kind::Edges, TurnKind::Any), "an axis that is a rounded cross product";
-    "touch/face-corner", 12, Draw::Contact(Kind::FirstFace, TurnKind::Any), "a slab of the first body rounded inward";
-    "touch/corner-face", 12, Draw::Contact(Kind::SecondFace, TurnKind::Any), "a slab of the second body rounded inward";
-    "touch/oriented-box", 12, Draw::Contact(Kind::Box, TurnKind::Any), "an oriented box smaller than its mesh";
-    "touch/world-extent", 12, Draw::Contact(Kind::World, TurnKind::Any), "a world-aligned extent rounded inward";
-    "touch/vertex", 12, Draw::Contact(Kind::Mesh, TurnKind::Any), "vertices that only just meet";
-    "touch/triangle", 12, Draw::Contact(Kind::Triangle, TurnKind::Any), "a vertex that only just meets a triangle";
-    "touch/near-parallel", 8, Draw::Contact(Kind::Edges, TurnKind::NearlyParallel), "edges nearly parallel: a cross product of noise";
-    "touch/quarter-turns", 8, Draw::Contact(Kind::Mesh, TurnKind::Quarter), "coinciding faces and edges";
-    "pose/norms", 8, Draw::Contact(Kind::Mesh, TurnKind::Norm), "a quaternion taken for a unit one";
-    "pose/signs", 8, Draw::Contact(Kind::Mesh, TurnKind::Sign), "q and -q told apart, negative zeros";
-    "pose/far", 12, Draw::Far(Kind::Mesh), "differences of large world coordinates";
-    "exact/face-to-face", 8, Draw::Exact(exact::Touch::Faces), "touching taken for apart: < in place of <=";
-    "exact/edge-to-edge", 8, Draw::Exact(exact::Touch::Edges), "touching taken for apart: < in place of <=";
-    "exact/corner-to-corner", 8, Draw::Exact(exact::Touch::Corners), "touching taken for apart: < in place of <=";
-    "exact/tip-on-face", 8, Draw::Exact(exact::Touch::TipOnFace), "touching taken for apart: < in place of <=";
-    "exact/tip-to-tip", 8, Draw::Exact(exact::Touch::Tips), "touching taken for apart: < in place of <=";
-    "grid/cell-border", 12, Draw::CellBorder, "cells exactly as large as the largest body: a partner two cells away";
-    "buffer/growth", 2, Draw::Crowd(crowds::Kind::Growth), "a full buffer of pairs, and one that is never emptied";
-    "buffer/hub", 2, Draw::Crowd(crowds::Kind::Hub), "a full buffer of one body's partners";
-    "order/repeated", 4, Draw::Crowd(crowds::Kind::Repeated), "answers that depend on the frames before";
-    "order/renumbered", 4, Draw::Crowd(crowds::Kind::Renumbered), "answers that depend on the bodies' numbers";
-    "churn/swap", 7, Draw::Changes(crowds::Kind::Swap, 4), "stale places of bodies that jump";
-    "churn/teleport", 7, Draw::Changes(crowds::Kind::Teleport, 4), "stale bounds of bodies that jump far";
-    "churn/insert-remove", 7, Draw::Changes(crowds::Kind::InsertRemove, 4), "stale bodies that were removed, new ones not taken up";
-    "churn/move", 3, Draw::Changes(crowds::Kind::Move, 0), "stale bounds of bodies that move";
-    "churn/turn", 3, Draw::Changes(crowds::Kind::Turn, 0), "stale bounds of bodies that turn in place";
-    "random/crowd", 6, Draw::Crowd(crowds::Kind::Still), "anything";
-    "random/moving", 6, Draw::Crowd(crowds::Kind::Moving), "caches kept for too long";
-    "random/sizes", 6, Draw::Crowd(crowds::Kind::Sizes), "cells or trees for one size of body";
-    "box/grid", 8, Draw::Boxes(boxes::Kind::Grid), "touching taken for apart: < in place of <=";
-    "box/ulp", 8, Draw::Boxes(boxes::Kind::Ulp), "ends rounded inward, centre and half size in place of ends";
-    "box/flat", 8, Draw::Boxes(boxes::Kind::Flat), "boxes without a volume, zeros of both signs";
-    "box/range", 8, Draw::Boxes(boxes::Kind::Range), "overflow and underflow of areas and volumes";
-}
+sdop_data::with_hard_cases! { groups! {
+    touch_ball_ball "touch/ball-ball", 12, Draw::Contact(Kind::Ball, TurnKind::Any), "a radius or a distance rounded down";
+    touch_edge_edge "touch/edge-edge", 12, Draw::Contact(Kind::Edges, TurnKind::Any), "an axis that is a rounded cross product";
+    touch_face_corner "touch/face-corner", 12, Draw::Contact(Kind::FirstFace, TurnKind::Any), "a slab of the first body rounded inward";
+    touch_corner_face "touch/corner-face", 12, Draw::Contact(Kind::SecondFace, TurnKind::Any), "a slab of the second body rounded inward";
+    touch_oriented_box "touch/oriented-box", 12, Draw::Contact(Kind::Box, TurnKind::Any), "an oriented box smaller than its mesh";
+    touch_world_extent "touch/world-extent", 12, Draw::Contact(Kind::World, TurnKind::Any), "a world-aligned extent rounded inward";
+    touch_vertex "touch/vertex", 12, Draw::Contact(Kind::Mesh, TurnKind::Any), "vertices that only just meet";
+    touch_triangle "touch/triangle", 12, Draw::Contact(Kind::Triangle, TurnKind::Any), "a vertex that only just meets a triangle";
+    touch_near_parallel "touch/near-parallel", 8, Draw::Contact(Kind::Edges, TurnKind::NearlyParallel), "edges nearly parallel: a cross product of noise";
+    touch_quarter_turns "touch/quarter-turns", 8, Draw::Contact(Kind::Mesh, TurnKind::Quarter), "coinciding faces and edges";
+    pose_norms "pose/norms", 8, Draw::Contact(Kind::Mesh, TurnKind::Norm), "a quaternion taken for a unit one";
+    pose_signs "pose/signs", 8, Draw::Contact(Kind::Mesh, TurnKind::Sign), "q and -q told apart, negative zeros";
+    pose_far "pose/far", 12, Draw::Far(Kind::Mesh), "differences of large world coordinates";
+    exact_face_to_face "exact/face-to-face", 8, Draw::Exact(exact::Touch::Faces), "touching taken for apart: < in place of <=";
+    exact_edge_to_edge "exact/edge-to-edge", 8, Draw::Exact(exact::Touch::Edges), "touching taken for apart: < in place of <=";
+    exact_corner_to_corner "exact/corner-to-corner", 8, Draw::Exact(exact::Touch::Corners), "touching taken for apart: < in place of <=";
+    exact_tip_on_face "exact/tip-on-face", 8, Draw::Exact(exact::Touch::TipOnFace), "touching taken for apart: < in place of <=";
+    exact_tip_to_tip "exact/tip-to-tip", 8, Draw::Exact(exact::Touch::Tips), "touching taken for apart: < in place of <=";
+    grid_cell_border "grid/cell-border", 12, Draw::CellBorder, "cells exactly as large as the largest body: a partner two cells away";
+    buffer_growth "buffer/growth", 2, Draw::Crowd(crowds::Kind::Growth), "a full buffer of pairs, and one that is never emptied";
+    buffer_hub "buffer/hub", 2, Draw::Crowd(crowds::Kind::Hub), "a full buffer of one body's partners";
+    order_repeated "order/repeated", 4, Draw::Crowd(crowds::Kind::Repeated), "answers that depend on the frames before";
+    order_renumbered "order/renumbered", 4, Draw::Crowd(crowds::Kind::Renumbered), "answers that depend on the bodies' numbers";
+    churn_swap "churn/swap", 7, Draw::Changes(crowds::Kind::Swap, 4), "stale places of bodies that jump";
+    churn_teleport "churn/teleport", 7, Draw::Changes(crowds::Kind::Teleport, 4), "stale bounds of bodies that jump far";
+    churn_insert_remove "churn/insert-remove", 7, Draw::Changes(crowds::Kind::InsertRemove, 4), "stale bodies that were removed, new ones not taken up";
+    churn_move "churn/move", 3, Draw::Changes(crowds::Kind::Move, 0), "stale bounds of bodies that move";
+    churn_turn "churn/turn", 3, Draw::Changes(crowds::Kind::Turn, 0), "stale bounds of bodies that turn in place";
+    random_crowd "random/crowd", 6, Draw::Crowd(crowds::Kind::Still), "anything";
+    random_moving "random/moving", 6, Draw::Crowd(crowds::Kind::Moving), "caches kept for too long";
+    random_sizes "random/sizes", 6, Draw::Crowd(crowds::Kind::Sizes), "cells or trees for one size of body";
+    box_grid "box/grid", 8, Draw::Boxes(boxes::Kind::Grid), "touching taken for apart: < in place of <=";
+    box_ulp "box/ulp", 8, Draw::Boxes(boxes::Kind::Ulp), "ends rounded inward, centre and half size in place of ends";
+    box_flat "box/flat", 8, Draw::Boxes(boxes::Kind::Flat), "boxes without a volume, zeros of both signs";
+    box_range "box/range", 8, Draw::Boxes(boxes::Kind::Range), "overflow and underflow of areas and volumes";
+    crowd_new_pairs "crowd/new-pairs", 2, Draw::Crowd(crowds::Kind::NewPairs), "a fixed buffer of new pairs", after "mujoco_warp #1461, newton #3702 and Box3D's \"ignoring this pair\"";
+    crowd_partners "crowd/partners", 1, Draw::Crowd(crowds::Kind::Partners), "a fixed buffer of one body's partners, a fixed stack or pool of nodes", after "Jolt #1520 and #1235";
+    stale_reshape "stale/reshape", 6, Draw::Stale(stale::Kind::Reshape), "stale bounds of bodies that get another shape", after "avian #654";
+    stale_reorder "stale/reorder", 6, Draw::Stale(stale::Kind::Reorder), "stale bounds of bodies that get another number", after "fcl #368";
+    stale_rebase "stale/rebase", 6, Draw::Stale(stale::Kind::Rebase), "stale bounds after another origin", after "newton #4008";
+    stale_all_at_once "stale/all-at-once", 6, Draw::Stale(stale::Kind::AllAtOnce), "changes that are handled one a frame", after "Jolt #1682 and rapier's #162";
+    list_both "list/both", 3, Draw::Listed(listed::Kind::Both), "a list kept until one body has moved as far as two together may", after "lammps #1701";
+    list_one "list/one", 3, Draw::Listed(listed::Kind::One), "a list kept for a number of frames", after "lammps #4239 and sisl #1016";
+    list_return "list/return", 3, Draw::Listed(listed::Kind::Return), "a list whose age is measured from frame to frame", after "lammps #1701";
+    filter_groups "filter/groups", 6, Draw::Asked(asked::Kind::Groups, &[Claim::Filter]), "masks asked of one body alone, or of a few bits", after "newton #3713 and #990";
+    filter_excluded "filter/excluded", 6, Draw::Asked(asked::Kind::Excluded, &[Claim::Filter]), "excluded pairs that are reported", after "newton #1553";
+    filter_at_rest "filter/at-rest", 6, Draw::Asked(asked::Kind::AtRest, &[Claim::Filter]), "filters of bodies at rest that are not asked again", after "godot #54110";
+    order_insertion "order/insertion", 6, Draw::Asked(asked::Kind::Insertion, &[Claim::Order]), "answers that depend on the order of insertion", after "fcl #368";
+    restore_replay "restore/replay", 6, Draw::Asked(asked::Kind::Restored, &[Claim::Restore]), "a state that is not in the snapshot", after "parry #402 and rapier #966";
+    margin_global "margin/global", 6, Draw::Asked(asked::Kind::Margin, &[Claim::Margin]), "a margin that only the later test knows of", after "coal #625 and #685";
+    margin_by_body "margin/by-body", 6, Draw::Asked(asked::Kind::Margins, &[Claim::Margin]), "one body's margin taken for both, a rounded sum", after "avian #952 and coal #802";
+} }
 
 /// Every group: the catalogue's own, then the files of hard cases as `hard/…`.
 ///
@@ -138,11 +189,11 @@ groups! {
 /// A file of hard cases that can't be read: none that is compiled in.
 pub fn groups() -> Result<Vec<Group>, CatalogueError> {
     let mut groups = OWN.to_vec();
-    for &(name, text) in hard::FILES {
+    for (&name, &(source, text)) in HARD.iter().zip(hard::FILES) {
         groups.push(Group {
-            name: hard_name(name),
+            name,
             flag: why(text),
-            source: name,
+            source,
             cases: runs(&hard::Group::parse(text)?.recipe),
             draw: Draw::Hard(text),
         });
@@ -154,26 +205,6 @@ pub fn groups() -> Result<Vec<Group>, CatalogueError> {
 fn why(text: &'static str) -> &'static str {
     let line = text.lines().find_map(|line| line.strip_prefix("why = \""));
     line.and_then(|line| line.strip_suffix('"')).unwrap_or("")
-}
-
-macro_rules! hard_names {
-    ($($name:literal),+ $(,)?) => {
-        fn hard_name(name: &str) -> &'static str {
-            match name {
-                $($name => concat!("hard/", $name),)+
-                _ => "hard/unnamed",
-            }
-        }
-    };
-}
-
-hard_names! {
-    "ball-centres-off-origin", "coincident", "concentric-stacks", "contained", "cell-boundaries", "coplanar-and-edges",
-    "counts", "duplicates", "equal-and-quarter-turns", "far-from-origin", "flat-and-points", "giant-among-tiny", "huge",
-    "near-parallel-edges", "needles-and-plates", "on-a-line", "on-a-plane", "one-cell", "one-ulp-turns",
-    "quaternion-norms", "quaternion-signs", "shared-vertices", "subnormal", "teleports", "touch-by-quadruples",
-    "touch-within-an-ulp", "unequal-sizes", "vertex-on-face",
-    "finder-borders",
 }
 
 /// The runs that a recipe makes: a case each.
@@ -193,9 +224,14 @@ impl Group {
     pub fn claims(&self) -> &'static [Claim] {
         match self.draw {
             Draw::Boxes(_) => &[Claim::Aabb],
+            Draw::Asked(_, claims) => claims,
+            // So many bodies that meshes would take minutes.
+            Draw::Crowd(crowds::Kind::NewPairs | crowds::Kind::Partners) => {
+                &[Claim::Sphere, Claim::Aabb]
+            }
             // Their balls are set, and don't contain the meshes.
             Draw::Hard(_) if self.sets_radii() => &[Claim::Sphere],
-            _ => Claim::ALL,
+            _ => Claim::PLAIN,
         }
     }
 
@@ -215,14 +251,14 @@ impl Group {
         }
     }
 
-    /// Draws a case.
+    /// Draws a case, about the first of the group's claims.
     ///
     /// # Errors
     /// Forms that can't be had.
     pub fn case(&self, number: u32, seed: Option<u64>) -> Result<Case, CatalogueError> {
         let mut rng = ChaCha8Rng::seed_from_u64(key(self.name) ^ seed.unwrap_or(0).rotate_left(17));
         rng.set_stream(u64::from(number) + (u64::from(seed.is_some()) << 32));
-        let drawn = self.drawn(number, seed, &mut rng)?;
+        let drawn = self.drawn(number, seed, [12, 8, 48], &mut rng)?;
         Ok(self.named(self.case_name(number, seed), drawn))
     }
 
@@ -233,25 +269,13 @@ impl Group {
     pub fn pair_case(&self, number: u32) -> Result<Option<Case>, CatalogueError> {
         let mut rng = ChaCha8Rng::seed_from_u64(key(self.name));
         rng.set_stream(u64::from(number) + (2 << 32));
-        let drawn = match self.draw {
-            Draw::Contact(kind, turn) => {
-                contacts::around_a_probe(kind, turn, None, number, 1, &mut rng)?
+        Ok(match self.draw {
+            Draw::Contact(..) | Draw::Far(_) | Draw::Exact(_) | Draw::Boxes(_) => {
+                let drawn = self.drawn(number, None, [1, 1, 2], &mut rng)?;
+                Some(self.named(self.case_name(number, None), drawn))
             }
-            Draw::Far(kind) => contacts::around_a_probe(
-                kind,
-                TurnKind::Any,
-                Some([8.0, 20.0]),
-                number,
-                1,
-                &mut rng,
-            )?,
-            Draw::Exact(touch) => exact::touching(touch, number, 1, &mut rng)?,
-            Draw::Boxes(kind) => boxes::boxes(kind, 2, &mut rng)?,
-            Draw::CellBorder | Draw::Crowd(_) | Draw::Changes(..) | Draw::Hard(_) => {
-                return Ok(None);
-            }
-        };
-        Ok(Some(self.named(self.case_name(number, None), drawn)))
+            _ => None,
+        })
     }
 
     fn named(&self, name: String, drawn: Drawn) -> Case {
@@ -259,36 +283,40 @@ impl Group {
             name,
             flag: self.flag.to_owned(),
             source: self.source.to_owned(),
+            claim: self.claims()[0],
             claims: self.claims().to_vec(),
             shapes: drawn.shapes,
             frames: drawn.frames,
         }
     }
 
+    /// Draws bodies; so many partners near the first, or touching it exactly, or so many boxes.
     fn drawn(
         &self,
         number: u32,
         seed: Option<u64>,
+        [near, exact, boxes]: [usize; 3],
         rng: &mut ChaCha8Rng,
     ) -> Result<Drawn, CatalogueError> {
         match self.draw {
-            Draw::Contact(kind, turn) => {
-                Ok(contacts::around_a_probe(kind, turn, None, number, 12, rng)?)
-            }
-            Draw::Far(kind) => Ok(contacts::around_a_probe(
-                kind,
-                TurnKind::Any,
-                Some([8.0, 20.0]),
-                number,
-                12,
-                rng,
+            Draw::Contact(kind, turn) => Ok(contacts::around_a_probe(
+                kind, turn, None, number, near, rng,
             )?),
-            Draw::Exact(touch) => exact::touching(touch, number, 8, rng),
+            Draw::Far(kind) => {
+                let (turn, origin) = (TurnKind::Any, Some([8.0, 20.0]));
+                Ok(contacts::around_a_probe(
+                    kind, turn, origin, number, near, rng,
+                )?)
+            }
+            Draw::Exact(touch) => exact::touching(touch, number, exact, rng),
             Draw::CellBorder => grid::tips_across_borders(number, rng),
-            Draw::Crowd(kind) => Ok(crowds::crowd(kind, rng)?),
-            Draw::Changes(kind, crowds) if number < crowds => Ok(crowds::crowd(kind, rng)?),
+            Draw::Crowd(kind) => Ok(crowds::crowd(kind, number, rng)?),
+            Draw::Changes(kind, crowds) if number < crowds => Ok(crowds::crowd(kind, number, rng)?),
             Draw::Changes(kind, crowds) => changes::along_an_axis(kind, number - crowds, rng),
-            Draw::Boxes(kind) => boxes::boxes(kind, 48, rng),
+            Draw::Boxes(kind) => boxes::boxes(kind, boxes, rng),
+            Draw::Stale(kind) => stale::changing(kind, number, rng),
+            Draw::Listed(kind) => Ok(listed::approach(kind, number, rng)?),
+            Draw::Asked(kind, _) => asked::asked(kind, number, rng),
             Draw::Hard(text) => hard_case(text, number, seed),
         }
     }
@@ -316,8 +344,39 @@ fn key(name: &str) -> u64 {
     })
 }
 
-/// Which cases: a group and a number each, in turns over the groups so that every bug is looked for
-/// early. Groups that are about this claim alone come first.
+/// A case of the catalogue, not drawn yet.
+#[derive(Clone, Copy, Debug)]
+pub struct CaseId {
+    /// Its group.
+    pub group: Group,
+    /// Its number in the group.
+    pub number: u32,
+    /// What draws it; absent: it is published.
+    pub seed: Option<u64>,
+    /// What it is judged by.
+    pub claim: Claim,
+}
+
+impl CaseId {
+    /// The case's name.
+    #[must_use]
+    pub fn name(&self) -> String {
+        self.group.case_name(self.number, self.seed)
+    }
+
+    /// Draws it.
+    ///
+    /// # Errors
+    /// As [`Group::case`].
+    pub fn case(&self) -> Result<Case, CatalogueError> {
+        let claim = self.claim;
+        let drawn = self.group.case(self.number, self.seed)?;
+        Ok(Case { claim, ..drawn })
+    }
+}
+
+/// Which cases, in turns over the groups so that every bug is looked for early. Groups that are
+/// about this claim alone come first.
 ///
 /// # Errors
 /// As [`groups`].
@@ -325,14 +384,20 @@ pub fn select(
     claim: Claim,
     pattern: &str,
     seed: Option<u64>,
-) -> Result<Vec<(Group, u32)>, CatalogueError> {
+) -> Result<Vec<CaseId>, CatalogueError> {
     let mut groups = groups()?;
     groups.sort_by_key(|group| group.claims() != [claim]);
+    groups.retain(|group| group.claims().contains(&claim));
     let most = groups.iter().map(|group| group.cases).max().unwrap_or(0);
-    let about = |group: &&Group| group.claims().contains(&claim);
-    let all = (0..most).flat_map(|n| groups.iter().filter(about).map(move |group| (*group, n)));
-    let wanted = |(group, n): &(Group, u32)| {
-        *n < group.cases && matches(pattern, &group.case_name(*n, seed))
+    let turn = |number| {
+        let has = groups.iter().filter(move |group| number < group.cases);
+        has.map(move |&group| CaseId {
+            group,
+            number,
+            seed,
+            claim,
+        })
     };
-    Ok(all.filter(wanted).collect())
+    let all = (0..most).flat_map(turn);
+    Ok(all.filter(|id| matches(pattern, &id.name())).collect())
 }

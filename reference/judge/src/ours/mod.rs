@@ -20,6 +20,7 @@ pub mod judged;
 pub mod matrix;
 pub mod naive;
 pub mod rounds;
+pub mod subject;
 pub mod ways;
 
 pub use answers::{Answers, Predicate};

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::time::Duration;
 
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -17,12 +18,16 @@ use super::hard::{Group, GroupError};
 use super::judged::{InvalidInput, Shapes};
 use super::matrix::Matrix;
 use super::ways::{Mode, Rotation, rows};
+use crate::case::{Case, Frame};
+use crate::claim::Claim;
+use crate::score::Miss;
+use crate::shrink::{Smallest, shrink_while};
 use sdop::bodies::Bodies;
 use sdop::culler::CullError;
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
-use sdop::volume::{Axes, DirectionSet, Shape};
+use sdop::volume::{Axes, DirectionSet};
 
 /// Why a round can't be run.
 #[derive(Debug, thiserror::Error)]
@@ -72,15 +77,50 @@ pub struct Failure {
     pub settings: CullSettings,
     /// How it was computed.
     pub mode: Mode,
-    /// The shapes.
-    pub shapes: Vec<Shape>,
     /// The frames up to the one with the pair.
-    pub frames: Vec<Bodies>,
+    pub case: Case,
     /// The pair.
     pub pair: [u32; 2],
     /// Whether the exact answers ask for it; otherwise all-pairs has it and this list not, or the
     /// other way round.
     pub missed: bool,
+}
+
+impl Failure {
+    /// The smallest case that fails by these settings; `None` when it doesn't fail again.
+    #[must_use]
+    pub fn smallest(&self, time: Duration) -> Option<Smallest> {
+        shrink_while(&self.case, time, &|case| self.again(case).ok().flatten())
+    }
+
+    /// The first pair of a case that is wrong by these settings, and the lists.
+    fn again(&self, case: &Case) -> Result<Option<(Miss, Vec<Vec<[u32; 2]>>)>, RoundError> {
+        let shapes = Shapes::new(case.shapes.clone())?;
+        let frames: Vec<Bodies> = case.frames.iter().map(|f| f.bodies.clone()).collect();
+        let k = self.settings.k;
+        let judge = |frame| Answers::judge(&shapes, frame, k, &Predicate::ALL);
+        let answers: Vec<Answers> = frames.iter().map(judge).collect::<Result<_, _>>()?;
+        let run = Run {
+            shapes: &shapes,
+            frames: &frames,
+            answers: &answers,
+        };
+        let Some(first) = frames.first() else {
+            return Ok(None);
+        };
+        let way = settings(self.settings.strategy, &self.settings, first.len());
+        let mut ledger = Ledger::default();
+        let lists = run.check_way(
+            &way,
+            self.mode,
+            &mut ExpectedLists::new(&run, &way),
+            &mut ledger,
+        )?;
+        Ok(ledger.failures.first().map(|failure| {
+            let (frame, pair) = (failure.case.frames.len() - 1, failure.pair);
+            (Miss { frame, pair }, lists)
+        }))
+    }
 }
 
 impl Ledger {
@@ -198,8 +238,9 @@ impl Run<'_> {
         mode: Mode,
         expected: &mut ExpectedLists<'_>,
         ledger: &mut Ledger,
-    ) -> Result<(), RoundError> {
+    ) -> Result<Vec<Vec<[u32; 2]>>, RoundError> {
         let mut culler = culler(&self.shapes.built, &self.frames[0], way, mode)?;
+        let mut lists = Vec::new();
         ledger.matrix.count(way, mode, self.frames.len() as u64);
         for (n, (frame, answers)) in self.frames.iter().zip(self.answers).enumerate() {
             let list = culler.cull(frame)?.sorted();
@@ -219,21 +260,36 @@ impl Run<'_> {
                 ledger.failures.push(Failure {
                     settings: way.clone(),
                     mode,
-                    shapes: self.shapes.built.clone(),
-                    frames: self.frames[..=n].to_vec(),
+                    case: self.case(n),
                     pair,
                     missed: !missed.is_empty(),
                 });
             }
+            lists.push(list);
         }
-        Ok(())
+        Ok(lists)
+    }
+
+    /// The frames up to this one as a case.
+    fn case(&self, last: usize) -> Case {
+        let shapes = &self.shapes.built;
+        let frame = |bodies: &Bodies| Frame::fitted(bodies.clone(), shapes);
+        Case {
+            name: "ours".to_owned(),
+            flag: String::new(),
+            source: String::new(),
+            claim: Claim::Mesh,
+            claims: vec![Claim::Mesh],
+            shapes: shapes.clone(),
+            frames: self.frames[..=last].iter().map(frame).collect(),
+        }
     }
 }
 
 /// What the lists of one strategy and overlap test are held against, whichever finder and mode.
 struct ExpectedLists<'a> {
     run: &'a Run<'a>,
-    row: &'a CullSettings,
+    row: CullSettings,
     /// What all-pairs finds in the plainest mode, a list a frame, by tier: flush-to-zero may decide
     /// otherwise.
     all_pairs: BTreeMap<&'static str, Vec<Vec<[u32; 2]>>>,
@@ -242,7 +298,11 @@ struct ExpectedLists<'a> {
 }
 
 impl<'a> ExpectedLists<'a> {
-    fn new(run: &'a Run<'a>, row: &'a CullSettings) -> Self {
+    fn new(run: &'a Run<'a>, way: &CullSettings) -> Self {
+        let row = CullSettings {
+            pairs: Finder::AllPairs,
+            ..way.clone()
+        };
         Self {
             run,
             row,
@@ -261,10 +321,10 @@ impl<'a> ExpectedLists<'a> {
             Entry::Occupied(entry) => entry.into_mut(),
             Entry::Vacant(entry) => {
                 let (shapes, frames) = (&self.run.shapes.built, self.run.frames);
-                let mut culler = culler(shapes, &frames[0], self.row, Mode::plain(tier))?;
+                let mut culler = culler(shapes, &frames[0], &self.row, Mode::plain(tier))?;
                 let lists = frames.iter().map(|frame| {
                     culler.cull(frame)?;
-                    Ok(found(&culler, self.row))
+                    Ok(found(&culler, &self.row))
                 });
                 entry.insert(lists.collect::<Result<_, CullError>>()?)
             }
@@ -277,7 +337,7 @@ impl<'a> ExpectedLists<'a> {
             return Ok(known);
         }
         let Run { shapes, frames, .. } = *self.run;
-        let explained = explained_by_margins(shapes, &frames[frame], self.row, pair)?;
+        let explained = explained_by_margins(shapes, &frames[frame], &self.row, pair)?;
         self.explained.insert((frame, pair), explained);
         Ok(explained)
     }

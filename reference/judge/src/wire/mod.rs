@@ -7,9 +7,8 @@
 pub mod ndjson;
 pub mod text;
 
-use super::answer::{Answer, Trouble};
+use super::answer::{Answer, Stop, Trouble};
 use super::case::Case;
-use super::claim::Claim;
 use sdop::choice::choices;
 
 choices! {
@@ -27,6 +26,8 @@ choices! {
 pub enum Said {
     /// Its pairs.
     Answer(Answer),
+    /// That those of the frame before still hold.
+    Same,
     /// That it can't do this case, and why.
     Skipped(String),
 }
@@ -36,10 +37,10 @@ impl Wire {
     ///
     /// # Errors
     /// None that the case's numbers can cause.
-    pub fn encode(self, case: &Case, claim: Claim) -> serde_json::Result<Vec<u8>> {
+    pub fn encode(self, case: &Case) -> serde_json::Result<Vec<u8>> {
         match self {
-            Self::Ndjson => ndjson::encode(case, claim, &[]),
-            Self::Text => Ok(text::encode(case, claim).into_bytes()),
+            Self::Ndjson => ndjson::encode(case, &[]),
+            Self::Text => Ok(text::encode(case).into_bytes()),
         }
     }
 
@@ -53,6 +54,26 @@ impl Wire {
             Self::Text => text::decode(expected, line),
         }
     }
+}
+
+/// Books what a program says to a frame.
+///
+/// # Errors
+/// That it skips the case, or that an answer before the first still holds.
+pub fn book(answers: &mut Vec<Answer>, said: Said, line: &[u8]) -> Result<(), Stop> {
+    match said {
+        Said::Answer(answer) => answers.push(answer),
+        Said::Same => {
+            let last = answers.last().cloned();
+            let last = last.ok_or_else(|| malformed(0, line, "no frame comes before the first"))?;
+            answers.push(Answer { ns: None, ..last });
+        }
+        Said::Skipped(why) => {
+            let answered = std::mem::take(answers);
+            return Err(Stop::Skipped { why, answered });
+        }
+    }
+    Ok(())
 }
 
 /// The beginning of a line, for messages.

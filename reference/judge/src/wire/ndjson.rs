@@ -1,8 +1,9 @@
 //! Cases as lines of JSON: `sdop-record`, version 1, with what a case has on top. Unknown keys are
 //! ignored by readers.
 //!
-//! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claim `aabb`, and
-//! `bodies` when the set changes, each with its former number as `was` (null for a new body).
+//! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claims about given
+//! boxes, and `bodies` when the set changes, each with its former number as `was` (null for a new
+//! body). For one claim each it has `groups` and `excluded`, `margins`, or `save` and `restore`.
 
 use std::io::BufRead;
 
@@ -13,7 +14,7 @@ use super::{Said, malformed};
 use crate::answer::{Answer, Trouble};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
-use crate::contestant::WorldBox;
+use crate::contestant::{Filter, WorldBox};
 use crate::json;
 use crate::record::{BodyLine, FORMAT, FrameLine, Header, ShapeLine, VERSION};
 use sdop::bodies::Bodies;
@@ -61,16 +62,27 @@ struct CaseFrame {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     boxes: Option<Vec<WorldBox>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    groups: Option<Vec<[u32; 2]>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    excluded: Option<Vec<[u32; 2]>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    margins: Option<Vec<f32>>,
+    #[serde(default, skip_serializing_if = "is_false")]
+    restore: bool,
+    #[serde(default, skip_serializing_if = "is_false")]
+    save: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pairs: Option<Vec<[u32; 2]>>,
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// A whole case for one claim; with the pairs that were reported of each frame, where there are
 /// any.
-pub(crate) fn encode(
-    case: &Case,
-    claim: Claim,
-    reported: &[Vec<[u32; 2]>],
-) -> serde_json::Result<Vec<u8>> {
+pub(crate) fn encode(case: &Case, reported: &[Vec<[u32; 2]>]) -> serde_json::Result<Vec<u8>> {
+    let claim = case.claim;
     let empty = Bodies::default();
     let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
     let others = case.claims.iter().copied().filter(|other| *other != claim);
@@ -93,7 +105,12 @@ pub(crate) fn encode(
             frame: number as u32,
             bodies: frame.was.as_deref().map(|was| changed(&frame.bodies, was)),
             poses: FrameLine::poses(&frame.bodies),
-            boxes: (claim == Claim::Aabb).then(|| frame.boxes.clone()),
+            boxes: claim.is_of_boxes().then(|| frame.boxes.clone()),
+            groups: frame.filter.as_ref().map(|filter| filter.groups.clone()),
+            excluded: frame.filter.as_ref().map(|filter| filter.excluded.clone()),
+            margins: frame.margins.clone(),
+            restore: frame.restore,
+            save: frame.save,
             pairs: reported.get(number).cloned(),
         };
         json::to_writer(&mut bytes, &line)?;
@@ -194,6 +211,22 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
             frame.boxes = checked(boxes, bodies.len()).map_err(at)?;
         }
         frame.was = was;
+        (frame.restore, frame.save) = (line.restore, line.save);
+        frame.margins = line
+            .margins
+            .map(|margins| sized(margins, &bodies, "margins"))
+            .transpose()
+            .map_err(at)?;
+        let groups = line
+            .groups
+            .map(|groups| sized(groups, &bodies, "groups"))
+            .transpose()
+            .map_err(at)?;
+        frame.filter = groups.map(|groups| {
+            let mut excluded = line.excluded.unwrap_or_default();
+            excluded.sort_unstable();
+            Filter { groups, excluded }
+        });
         frames.push(frame);
         pairs.push(line.pairs);
     }
@@ -201,8 +234,9 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
         name: header.scene,
         flag,
         source,
+        claim: claims.first().copied().unwrap_or(Claim::Mesh),
         claims: if claims.is_empty() {
-            Claim::ALL.to_vec()
+            Claim::PLAIN.to_vec()
         } else {
             claims
         },
@@ -220,6 +254,14 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
 
 fn parse<T: for<'a> Deserialize<'a>>(number: usize, line: &[u8]) -> Result<T, String> {
     serde_json::from_slice(line).map_err(|e| format!("line {number}: {e}"))
+}
+
+/// What a frame has for each body.
+fn sized<T>(all: Vec<T>, bodies: &[BodyLine], what: &str) -> Result<Vec<T>, String> {
+    if all.len() == bodies.len() {
+        return Ok(all);
+    }
+    Err(format!("{} {what} for {} bodies", all.len(), bodies.len()))
 }
 
 fn checked(boxes: Vec<WorldBox>, bodies: usize) -> Result<Vec<WorldBox>, String> {
@@ -244,6 +286,13 @@ struct AnswerLine {
     pairs: Vec<[u32; 2]>,
     #[serde(default)]
     ns: Option<u64>,
+}
+
+/// An answer without pairs: those of the frame before.
+#[derive(Deserialize)]
+struct SameLine {
+    frame: u64,
+    same: bool,
 }
 
 pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
@@ -272,6 +321,13 @@ fn diagnose(expected: usize, line: &[u8], error: &serde_json::Error) -> Result<S
         }
         Err(error) => return Err(malformed(expected, line, format!("no JSON ({error})"))),
     };
+    if let Ok(SameLine { frame, same: true }) = SameLine::deserialize(&value) {
+        let found = frame;
+        if found == expected as u64 {
+            return Ok(Said::Same);
+        }
+        return Err(Trouble::OutOfTurn { expected, found });
+    }
     if let Some(why) = value.get("skipped") {
         return Ok(Said::Skipped(
             why.as_str().map_or_else(|| why.to_string(), str::to_owned),
@@ -305,7 +361,7 @@ mod tests {
     fn cases_have_exact_numbers() {
         for group in groups().unwrap() {
             let case = group.case(0, None).unwrap();
-            let text = encode(&case, case.claims[0], &[]).unwrap();
+            let text = encode(&case, &[]).unwrap();
             let mut found = Vec::new();
             for line in text.split(|byte| *byte == b'\n').filter(|l| !l.is_empty()) {
                 numbers(&serde_json::from_slice(line).unwrap(), &mut found);
@@ -324,7 +380,7 @@ mod tests {
             .into_iter()
             .find(|g| g.name == "exact/tip-to-tip");
         let case = group.unwrap().case(0, None).unwrap();
-        let new = String::from_utf8(encode(&case, Claim::Mesh, &[]).unwrap()).unwrap();
+        let new = String::from_utf8(encode(&case, &[]).unwrap()).unwrap();
         let x = f64::from(case.shapes[0].ball.radius);
         let old = new.replacen(&format!("{x:?}]"), "7.038531e-26]", 1);
         assert_ne!(old, new);

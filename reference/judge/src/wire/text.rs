@@ -7,11 +7,13 @@ use super::{Said, malformed};
 use crate::answer::{Answer, Trouble};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
+use crate::contestant::Filter;
 use sdop::bodies::Bodies;
 use sdop::volume::Shape;
 
 /// A whole case for one claim. Formatting into a String cannot fail.
-pub(super) fn encode(case: &Case, claim: Claim) -> String {
+pub(super) fn encode(case: &Case) -> String {
+    let claim = case.claim;
     let mut text = format!("sdop 1 claim {claim} case {}\n", word(&case.name));
     let _ = writeln!(text, "shapes {}", case.shapes.len());
     for shape in &case.shapes {
@@ -58,14 +60,21 @@ fn write_shape(text: &mut String, shape: &Shape) {
 
 /// Numbers after a word, to the end of the line.
 fn hex(text: &mut String, numbers: &[f32]) {
-    for x in numbers {
-        let _ = write!(text, " {:08x}", x.to_bits());
+    words(text, numbers.iter().map(|x| x.to_bits()));
+}
+
+fn words(text: &mut String, bits: impl Iterator<Item = u32>) {
+    for bits in bits {
+        let _ = write!(text, " {bits:08x}");
     }
     text.push('\n');
 }
 
 fn write_frame(text: &mut String, claim: Claim, number: usize, frame: &Frame) {
     let bodies = &frame.bodies;
+    if frame.restore {
+        text.push_str("restore\n");
+    }
     if let Some(was) = &frame.was {
         let _ = writeln!(text, "change {}", bodies.len());
         for (i, was) in was.iter().enumerate() {
@@ -81,11 +90,22 @@ fn write_frame(text: &mut String, claim: Claim, number: usize, frame: &Frame) {
     let _ = writeln!(text, "frame {number} {}", bodies.len());
     for i in 0..bodies.len() {
         text.push('p');
-        let pose = [&bodies.rotation[i][..], &bodies.translation[i]].concat();
-        match claim {
-            Claim::Aabb => hex(text, &[&pose[..], &frame.boxes[i]].concat()),
-            _ => hex(text, &pose),
+        let mut numbers = [&bodies.rotation[i][..], &bodies.translation[i]].concat();
+        if claim.is_of_boxes() {
+            numbers.extend(frame.boxes[i]);
         }
+        numbers.extend(frame.margins.iter().map(|margins| margins[i]));
+        let groups = frame.filter.iter().flat_map(|filter| filter.groups[i]);
+        words(text, numbers.iter().map(|x| x.to_bits()).chain(groups));
+    }
+    if let Some(Filter { excluded, .. }) = &frame.filter {
+        let _ = writeln!(text, "excluded {}", excluded.len());
+        for [i, j] in excluded {
+            let _ = writeln!(text, "{i} {j}");
+        }
+    }
+    if frame.save {
+        text.push_str("save\n");
     }
 }
 
@@ -106,7 +126,7 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
     let mut words = text.split_whitespace();
     match words.next() {
         Some("skip") => return Ok(Said::Skipped(words.collect::<Vec<_>>().join(" "))),
-        Some("frame") => {}
+        Some("frame" | "same") => {}
         _ => {
             return Err(wrong(format!(
                 "no answer; one is `frame {expected} COUNT I J …`"
@@ -123,6 +143,9 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
     let found = number("frame number")?;
     if found != expected as u64 {
         return Err(Trouble::OutOfTurn { expected, found });
+    }
+    if text.trim_start().starts_with("same") {
+        return Ok(Said::Same);
     }
     let count = number("count of pairs")?;
     let mut pairs = Vec::new();
@@ -158,6 +181,16 @@ mod tests {
         assert_eq!(
             pairs("frame 3 2 0 1 4 5 ns 77\n"),
             answer(&[[0, 1], [4, 5]], Some(77))
+        );
+        assert_eq!(
+            [pairs("same 3"), pairs("same 2")],
+            [
+                Ok(Said::Same),
+                Err(Trouble::OutOfTurn {
+                    expected: 3,
+                    found: 2
+                })
+            ]
         );
         assert_eq!(
             pairs("skip no such thing"),

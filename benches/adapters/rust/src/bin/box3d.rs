@@ -25,7 +25,8 @@ fn contacts(frame: &Frame) -> Result<Vec<[usize; 2]>, &'static str> {
     for ends in &frame.boxes {
         let centre = [0, 1, 2].map(|axis| ends[axis] / 2.0 + ends[axis + 3] / 2.0);
         let half = [0, 1, 2].map(|axis| half(centre[axis], ends[axis], ends[axis + 3]));
-        if half.iter().any(|&length| length < LIMITS[1]) || ends.iter().any(|x| x.abs() > LIMITS[0]) {
+        if half.iter().any(|&length| length < LIMITS[1]) || ends.iter().any(|x| x.abs() > LIMITS[0])
+        {
             return Err("a box is smaller than B3_LINEAR_SLOP or farther out than B3_HUGE");
         }
         placed.push((centre, half));
@@ -34,7 +35,11 @@ fn contacts(frame: &Frame) -> Result<Vec<[usize; 2]>, &'static str> {
     // local to this function.
     unsafe {
         let mut def = b3DefaultWorldDef();
-        def.gravity = b3Vec3 { x: 0.0, y: 0.0, z: 0.0 };
+        def.gravity = b3Vec3 {
+            x: 0.0,
+            y: 0.0,
+            z: 0.0,
+        };
         let world = b3CreateWorld(&def);
         let mut bodies = Vec::new();
         for (number, ([x, y, z], [a, b, c])) in placed.iter().copied().enumerate() {
@@ -55,7 +60,10 @@ fn contacts(frame: &Frame) -> Result<Vec<[usize; 2]>, &'static str> {
             let count = b3Body_GetContactData(body, room.as_mut_ptr(), room.capacity() as i32);
             room.set_len(count as usize);
             for contact in room {
-                found.push([contact.shapeIdA, contact.shapeIdB].map(|shape| b3Shape_GetUserData(shape) as usize));
+                found.push(
+                    [contact.shapeIdA, contact.shapeIdB]
+                        .map(|shape| b3Shape_GetUserData(shape) as usize),
+                );
             }
         }
         b3DestroyWorld(world);

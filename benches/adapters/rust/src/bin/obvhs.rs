@@ -11,7 +11,8 @@ fn main() {
     serve("obvhs", || {
         let (mut tree, mut known): (Option<Bvh2>, HashSet<usize>) = (None, HashSet::new());
         move |frame: &Frame| {
-            let corners = |&[a, b, c, d, e, f]: &[f32; 6]| Aabb::new([a, b, c].into(), [d, e, f].into());
+            let corners =
+                |&[a, b, c, d, e, f]: &[f32; 6]| Aabb::new([a, b, c].into(), [d, e, f].into());
             let boxes: Vec<Aabb> = frame.boxes.iter().map(corners).collect();
             let tree = tree.get_or_insert_with(|| {
                 known.extend(frame.ids.iter().copied());
@@ -32,8 +33,13 @@ fn main() {
             for (it, &id) in boxes.iter().zip(&frame.ids) {
                 tree.aabb_traverse(*it, |tree, node| {
                     let node = &tree.nodes[node as usize];
-                    let primitives = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-                    found.extend(tree.primitive_indices[primitives].iter().map(|&other| [id, other as usize]));
+                    let primitives =
+                        node.first_index as usize..(node.first_index + node.prim_count) as usize;
+                    found.extend(
+                        tree.primitive_indices[primitives]
+                            .iter()
+                            .map(|&other| [id, other as usize]),
+                    );
                     true
                 });
             }

@@ -36,7 +36,11 @@ fn main() {
             }
             phase.update(&params, &colliders, &bodies, &[], &[], &mut events);
             let ids = |pair: ColliderPair| {
-                let id = |handle| colliders.get(handle).map(|it: &Collider| it.user_data as usize);
+                let id = |handle| {
+                    colliders
+                        .get(handle)
+                        .map(|it: &Collider| it.user_data as usize)
+                };
                 let mut ids = [id(pair.collider1)?, id(pair.collider2)?];
                 ids.sort_unstable();
                 Some(ids)

@@ -22,7 +22,10 @@ fn main() {
             let place = |pose: &[f32; 7]| [4, 5, 6].map(|axis| f64::from(pose[axis]));
             let points = frame.ids.iter().copied().zip(frame.poses.iter().map(place));
             let cells = CellGrid::new(points, 2.0 * radius);
-            Ok(cells.particle_pairs().map(|((a, _), (b, _))| [*a, *b]).collect())
+            Ok(cells
+                .particle_pairs()
+                .map(|((a, _), (b, _))| [*a, *b])
+                .collect())
         }
     });
 }

@@ -107,6 +107,10 @@ fn stale_ends_are_caught() {
         "churn/move",
         "churn/turn",
         "churn/insert-remove",
+        "stale/reshape",
+        "stale/reorder",
+        "stale/rebase",
+        "stale/all-at-once",
     ] {
         assert!(
             passes(group, Keeps::Nothing, &[0, 1, 2, 3, 4, 5]),

@@ -1,0 +1,176 @@
+//! Boxes with the additional input of a claim: filters, margins, states that are saved and
+//! restored, orders of insertion.
+
+use rand::{Rng, RngExt};
+
+use super::boxes::{self, Kind as Boxes, of_boxes};
+use super::{CatalogueError, Drawn};
+use crate::case::Frame;
+use crate::contestant::{Filter, WorldBox};
+use crate::truth::boxes_meet;
+
+/// What is asked on top of boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Groups and masks part bodies, some of them one way only.
+    Groups,
+    /// A list of pairs is excluded.
+    Excluded,
+    /// Filters change while nothing moves.
+    AtRest,
+    /// One margin for all.
+    Margin,
+    /// A margin for each body.
+    Margins,
+    /// The state is saved, restored, and restored again.
+    Restored,
+    /// The bodies come in other orders.
+    Insertion,
+}
+
+const COUNT: usize = 48;
+
+/// A case.
+pub fn asked(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
+    match kind {
+        Kind::Margin | Kind::Margins => margins(kind, rng),
+        Kind::Restored => restored(rng),
+        Kind::Insertion => {
+            let of = [Boxes::Grid, Boxes::Ulp, Boxes::Flat][number as usize % 3];
+            boxes::boxes(of, COUNT, rng)
+        }
+        Kind::Groups | Kind::Excluded | Kind::AtRest => {
+            let Drawn { shapes, frames } = boxes::boxes(Boxes::Grid, COUNT, rng)?;
+            let (first, count) = (&frames[0], if kind == Kind::AtRest { 5 } else { 1 });
+            let frame = |n: usize| Frame {
+                filter: Some(match (kind, n) {
+                    (Kind::Groups, _) | (Kind::AtRest, 0 | 1 | 4) => groups(rng),
+                    (Kind::AtRest, 3) => admits(Vec::new()),
+                    _ => admits(excluded(first, rng)),
+                }),
+                ..first.clone()
+            };
+            let frames = (0..count).map(frame).collect();
+            Ok(Drawn { shapes, frames })
+        }
+    }
+}
+
+/// One of eight groups each, the highest bit among them, and masks of any of them.
+fn groups(rng: &mut impl Rng) -> Filter {
+    let bit = |rng: &mut _| 1_u32 << [0, 1, 2, 3, 7, 15, 30, 31][RngExt::random_range(rng, 0..8)];
+    let group = |_| {
+        let own = bit(rng);
+        let mask = match rng.random_range(0..6) {
+            0 => 0,
+            1 => u32::MAX,
+            2 => !bit(rng),
+            _ => (0..4).fold(0, |mask, _| mask | bit(rng)),
+        };
+        [own, mask]
+    };
+    Filter {
+        groups: (0..COUNT).map(group).collect(),
+        excluded: Vec::new(),
+    }
+}
+
+fn admits(excluded: Vec<[u32; 2]>) -> Filter {
+    Filter {
+        groups: vec![[1, u32::MAX]; COUNT],
+        excluded,
+    }
+}
+
+/// A third of the pairs that meet, and a few of the others, sorted.
+fn excluded(frame: &Frame, rng: &mut impl Rng) -> Vec<[u32; 2]> {
+    let mut pairs = Vec::new();
+    for (i, a) in frame.boxes.iter().enumerate() {
+        for (j, b) in frame.boxes.iter().enumerate().skip(i + 1) {
+            if rng.random_range(0..if boxes_meet(a, b) { 3 } else { 40 }) == 0 {
+                pairs.push([i as u32, j as u32]);
+            }
+        }
+    }
+    pairs
+}
+
+/// Rows of two boxes, as far apart along an axis as their margins reach, or an ulp more or less.
+fn margins(kind: Kind, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
+    const MARGINS: [f32; 6] = [0.0, 1e-3, 0.1, 0.25, 0.7, 3.0];
+    let pick = |rng: &mut _| MARGINS[RngExt::random_range(rng, 0..MARGINS.len())];
+    let all = MARGINS[rng.random_range(1..MARGINS.len())];
+    let (mut boxes, mut margins): (Vec<WorldBox>, Vec<f32>) = (Vec::new(), Vec::new());
+    for row in 0..COUNT / 2 {
+        let own = match kind {
+            Kind::Margin => [all; 2],
+            _ => [pick(rng), pick(rng)],
+        };
+        let axis = rng.random_range(0..3);
+        let mut first: WorldBox = [0.0; 6];
+        for at in 0..3 {
+            first[at] = rng.random_range(-2.0..2.0_f32);
+            first[at + 3] = first[at] + rng.random_range(0.1..1.0_f32);
+        }
+        let away = (axis + 1) % 3;
+        first[away] += 32.0 * row as f32; // few rows
+        first[away + 3] += 32.0 * row as f32;
+        let mut second = first;
+        let near = (f64::from(first[axis + 3]) + f64::from(own[0]) + f64::from(own[1])) as f32;
+        second[axis] = [near, near.next_up(), near.next_down()][rng.random_range(0..3)];
+        second[axis + 3] = second[axis] + rng.random_range(0.1..1.0_f32);
+        boxes.extend([first, second]);
+        margins.extend(own);
+    }
+    let dynamic = (0..COUNT).map(|i| i % 5 != 4).collect();
+    let (shape, frame) = of_boxes(boxes, dynamic)?;
+    let frames = vec![Frame {
+        margins: Some(margins),
+        ..frame
+    }];
+    Ok(Drawn {
+        shapes: vec![shape],
+        frames,
+    })
+}
+
+/// Steps 0 and 1, after which the state is saved; 2 to 4; back, and the same steps again; back, and
+/// the last step alone. Half of the boxes move in each step.
+fn restored(rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
+    let Drawn { shapes, frames } = boxes::boxes(Boxes::Grid, COUNT, rng)?;
+    let mut steps = frames;
+    for n in 1..5 {
+        let mut next = steps[n - 1].clone();
+        for body in 0..COUNT {
+            if next.bodies.dynamic[body] && rng.random_range(0..2) == 0 {
+                let by: [f32; 3] = std::array::from_fn(|_| rng.random_range(-4..=4) as f32);
+                for axis in 0..3 {
+                    next.boxes[body][axis] += by[axis];
+                    next.boxes[body][axis + 3] += by[axis];
+                    next.bodies.translation[body][axis] += by[axis];
+                }
+            }
+        }
+        steps.push(next);
+    }
+    let frame = |(n, save, restore): (usize, bool, bool)| Frame {
+        save,
+        restore,
+        ..steps[n].clone()
+    };
+    let run = [
+        (0, false, false),
+        (1, true, false),
+        (2, false, false),
+        (3, false, false),
+        (4, false, false),
+        (2, false, true),
+        (3, false, false),
+        (4, false, false),
+        (4, false, true),
+    ];
+    Ok(Drawn {
+        shapes,
+        frames: run.map(frame).to_vec(),
+    })
+}

@@ -1,0 +1,70 @@
+//! Slow approaches: lists of candidates that are kept while nothing has moved far are kept too long
+//! by whoever measures that wrongly.
+
+use rand::{Rng, RngExt};
+
+use super::Drawn;
+use crate::case::Frame;
+use crate::ours::forms::{self, Form, FormError};
+use sdop::bodies::Bodies;
+use sdop::volume::{Axes, DirectionSet};
+
+/// How bodies move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Two bodies come to each other, each by half of the way.
+    Both,
+    /// One comes, the other stands.
+    One,
+    /// One goes away first, and comes back.
+    Return,
+}
+
+const PAIRS: usize = 12;
+const FRAMES: usize = 33;
+
+/// Pairs of cubes, each with a speed and a gap of its own: from a 64th of the radius a frame, which
+/// no list notices from frame to frame, to a quarter.
+pub fn approach(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, FormError> {
+    let form = Form::of("box", [0.0, 0.0]);
+    let shapes = forms::build(&[form], 1, DirectionSet::K18, Axes::Model, rng)?.built;
+    let axis = number as usize % 3;
+    let half = 1.0 / 3.0_f32.sqrt();
+    let pairs: Vec<[f32; 2]> = (0..PAIRS)
+        .map(|pair| {
+            let step = 2.0_f32.powi(-2 - (pair % 5) as i32);
+            // They meet at some time in the last three quarters.
+            [step, step * rng.random_range(8.0..30.0)]
+        })
+        .collect();
+    let frame = |n: usize| {
+        let mut bodies = Bodies::default();
+        for (row, &[step, gap]) in pairs.iter().enumerate() {
+            let way = step * n as f32; // few frames
+            let turning = step * (FRAMES / 4) as f32;
+            let [first, second] = match kind {
+                Kind::Both => [way / 2.0, way / 2.0],
+                Kind::One => [0.0, way],
+                Kind::Return if way <= turning => [0.0, -way],
+                Kind::Return => [0.0, 2.0 * (way - turning) - turning],
+            };
+            // A static body doesn't come: the other goes the whole way.
+            let is_static = kind != Kind::Both && row % 3 == 0;
+            let [first, second] = if is_static {
+                [first + second, 0.0]
+            } else {
+                [first, second]
+            };
+            let side = if row % 2 == 0 { 1.0 } else { -1.0 };
+            for (dynamic, along) in [(true, first), (!is_static, 2.0 * half + gap - second)] {
+                let mut t = [0.0; 3];
+                t[axis] = side * along;
+                t[(axis + 1) % 3] = 64.0 * row as f32; // few rows
+                bodies.push(0, dynamic, [0.0, 0.0, 0.0, 1.0], t);
+            }
+        }
+        Frame::fitted(bodies, &shapes)
+    };
+    let frames = (0..FRAMES).map(frame).collect();
+    Ok(Drawn { shapes, frames })
+}

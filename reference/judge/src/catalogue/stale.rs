@@ -1,0 +1,123 @@
+//! What may change of a body between two frames, one by one and all at once: its place, its shape,
+//! its number, and the origin that all bodies are seen from.
+//!
+//! Rows of a static body and one that moves stand far from one another. In each frame a change
+//! brings some of the latter to their partners, from either side along one axis; whoever keeps what
+//! the change has made stale misses a pair.
+
+use rand::{Rng, RngExt};
+
+use super::changes::{ALONG, AWAY, NEAR, REACH, UNTURNED, cube, needle};
+use super::{CatalogueError, Drawn};
+use crate::case::Frame;
+use sdop::bodies::Bodies;
+
+/// What changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Bodies stay where they are and get another shape.
+    Reshape,
+    /// Bodies move, and all have other numbers.
+    Reorder,
+    /// Bodies move, and all of them, static ones as well, are seen from another origin.
+    Rebase,
+    /// Bodies jump, get another shape, come, go and move in one frame, in which all have other
+    /// numbers.
+    AllAtOnce,
+}
+
+const ROWS: usize = 10;
+const FRAMES: usize = 6;
+/// Where each frame's origin is along the axis of the changes.
+const ORIGINS: [f32; FRAMES] = [0.0, 4096.0, -4096.0, 65_536.0, 0.0, -8192.0];
+
+/// A body in a frame.
+struct Placed {
+    /// The same for the same body in all frames.
+    id: usize,
+    shape: u32,
+    dynamic: bool,
+    rotation: [f32; 4],
+    translation: [f32; 3],
+}
+
+/// A case whose changes are along the axis of this number, modulo 3.
+pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
+    let shapes = vec![cube(rng)?, needle()?];
+    let axis = number as usize % 3;
+    let place = |row: usize| {
+        let mut place: [f32; 3] = std::array::from_fn(|_| rng.random_range(-0.5..0.5));
+        place[(axis + 1) % 3] += 16.0 * row as f32; // few rows
+        place
+    };
+    let places: Vec<[f32; 3]> = (0..ROWS).map(place).collect();
+    let mut frames: Vec<Frame> = Vec::new();
+    let mut before: Vec<usize> = Vec::new();
+    for n in 0..FRAMES {
+        let mut all: Vec<Placed> = (0..ROWS)
+            .flat_map(|row| placed(kind, axis, &places, row, n))
+            .collect();
+        if matches!(kind, Kind::Reorder | Kind::AllAtOnce) {
+            let by = 7 * n % all.len();
+            all.rotate_left(by);
+        }
+        let number = |id: usize| before.iter().position(|&known| known == id);
+        let former = |body: &Placed| number(body.id).map(|at| at as u32);
+        let was = (n > 0).then(|| all.iter().map(former).collect());
+        let mut bodies = Bodies::default();
+        for body in &all {
+            bodies.push(body.shape, body.dynamic, body.rotation, body.translation);
+        }
+        before = all.iter().map(|body| body.id).collect();
+        frames.push(Frame {
+            was,
+            ..Frame::fitted(bodies, &shapes)
+        });
+    }
+    Ok(Drawn { shapes, frames })
+}
+
+/// A row's bodies in a frame: the static one, and the other, which meets it in every other frame.
+/// On either side there are rows that meet in the first frame and rows that don't.
+fn placed(kind: Kind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) -> Vec<Placed> {
+    let after = (n % 2 == 1) != (row / 2 % 2 == 1);
+    let side = if row.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let origin = match kind {
+        Kind::Rebase => ORIGINS[n],
+        _ => 0.0,
+    };
+    let at = |distance: f32| {
+        let mut place = places[row];
+        place[axis] += side * distance + origin;
+        place
+    };
+    let moving = |id: usize, shape: u32, distance: f32| Placed {
+        id,
+        shape,
+        dynamic: true,
+        rotation: ALONG[axis],
+        translation: at(distance),
+    };
+    let mut all = vec![Placed {
+        id: 2 * row,
+        shape: 0,
+        dynamic: false,
+        rotation: UNTURNED,
+        translation: at(0.0),
+    }];
+    let id = 2 * row + 1;
+    let change = match kind {
+        Kind::Reshape => 1,
+        Kind::AllAtOnce => row % 4,
+        Kind::Reorder | Kind::Rebase => 3,
+    };
+    match change {
+        0 => all.push(moving(id, 0, if after { NEAR } else { 1e6 })),
+        1 => all.push(moving(id, u32::from(after), REACH)),
+        // A new body each time, which is gone in the next frame.
+        2 if after => all.push(moving(id + 2 * ROWS * (n + 1), 0, NEAR)),
+        2 => {}
+        _ => all.push(moving(id, 0, if after { NEAR } else { AWAY })),
+    }
+    all
+}

@@ -1,0 +1,121 @@
+//! Our cullers as one more subject: in every way that they have, each in the mode whose turn it is.
+
+use super::boxes::BoxCell;
+use super::compare::{culler, settings};
+use super::ways::{Mode, Rotation, ways};
+use crate::answer::{Answer, Stop, Trouble};
+use crate::case::{Case, Frame};
+use crate::claim::Claim;
+use crate::contestant::WorldBox;
+use crate::subject::Subject;
+use sdop::bodies::Aabb;
+use sdop::boxes::BoxCuller;
+use sdop::culler::CullError;
+use sdop::settings::{CullSettings, Strategy};
+use sdop::volume::{Axes, DirectionSet};
+
+/// Whether a strategy makes a claim: it reports every pair of which the claim holds.
+#[must_use]
+pub fn makes(strategy: Strategy, claim: Claim) -> bool {
+    match claim {
+        Claim::Sphere => strategy == Strategy::Sphere,
+        Claim::OrDop => strategy == Strategy::OrDop,
+        Claim::Hull | Claim::Mesh => strategy.scheme().culls(),
+        Claim::Aabb | Claim::Order | Claim::Filter | Claim::Restore | Claim::Margin => false,
+    }
+}
+
+/// Every way to cull that makes a claim. What one of them doesn't report counts as not reported, so
+/// a miss in any of them is a miss.
+pub struct EveryWay {
+    rotation: Rotation,
+}
+
+impl EveryWay {
+    /// On these modes.
+    #[must_use]
+    pub fn new(rotation: Rotation) -> Self {
+        Self { rotation }
+    }
+
+    /// The claims that our cullers make.
+    pub const CLAIMS: [Claim; 6] = [
+        Claim::Sphere,
+        Claim::Aabb,
+        Claim::OrDop,
+        Claim::Hull,
+        Claim::Mesh,
+        Claim::Order,
+    ];
+
+    fn lists(&self, case: &Case) -> Result<Vec<Vec<[u32; 2]>>, CullError> {
+        if case.claim.is_of_boxes() {
+            let cells = BoxCell::all(&self.rotation);
+            return all_report(cells.map(|(cell, mode)| boxes(case, cell, mode)));
+        }
+        let ways = ways(DirectionSet::K18, Axes::Principal).into_iter();
+        let ways = ways.filter(|way| makes(way.strategy, case.claim));
+        // Another turn for each case.
+        let turn = case.name.bytes().map(u64::from).sum();
+        let modes = self.rotation.turn(turn);
+        all_report(
+            ways.zip(modes.iter().cycle())
+                .map(|(way, &mode)| posed(case, &way, mode)),
+        )
+    }
+}
+
+impl Subject for EveryWay {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+        let lists = self.lists(case).map_err(|error| Trouble::Crashed {
+            how: error.to_string(),
+            answered: 0,
+            said: String::new(),
+        })?;
+        let answer = |pairs| Answer { pairs, ns: None };
+        Ok(lists.into_iter().map(answer).collect())
+    }
+}
+
+type Lists = Vec<Vec<[u32; 2]>>;
+
+/// What is in all of some lists, frame by frame; they are sorted.
+fn all_report(
+    mut lists: impl Iterator<Item = Result<Lists, CullError>>,
+) -> Result<Lists, CullError> {
+    let mut common = lists.next().transpose()?.unwrap_or_default();
+    for other in lists {
+        for (common, other) in common.iter_mut().zip(other?) {
+            common.retain(|pair| other.binary_search(pair).is_ok());
+        }
+    }
+    Ok(common)
+}
+
+/// The frames by one way; the culler is made anew for another set of bodies.
+fn posed(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists, CullError> {
+    let made = |frame: &Frame| {
+        let way = settings(way.strategy, way, frame.bodies.len());
+        culler(&case.shapes, &frame.bodies, &way, mode)
+    };
+    let (mut ours, mut lists) = (None, Vec::new());
+    for frame in &case.frames {
+        let kept = ours.take().filter(|_| frame.was.is_none());
+        let mut culler = kept.map_or_else(|| made(frame), Ok)?;
+        lists.push(culler.cull(&frame.bodies)?.sorted());
+        ours = Some(culler);
+    }
+    Ok(lists)
+}
+
+/// The given boxes by one finder.
+fn boxes(case: &Case, cell: BoxCell, mode: Mode) -> Result<Lists, CullError> {
+    let builder = BoxCuller::builder().finder(cell.finder).tier(mode.tier);
+    let mut culler = builder.threads(mode.threads).worth_waking(0).build()?;
+    let aabb = |&[x0, y0, z0, x1, y1, z1]: &WorldBox| Aabb::new([x0, y0, z0], [x1, y1, z1]);
+    let list = |frame: &Frame| {
+        let boxes: Vec<Aabb> = frame.boxes.iter().map(aabb).collect();
+        Ok(culler.cull(&boxes)?.sorted())
+    };
+    case.frames.iter().map(list).collect()
+}
