@@ -110,8 +110,8 @@ macro_rules! groups {
     (@source $reports:literal) => { concat!("drawn for this catalogue, after ", $reports) };
     (@stamp ($d:tt) $($test:ident = $name:expr;)+) => {
         /// Generates a test for each group of cases, in a separate module:
-        /// `judge_tests!(Claim::Mesh, |scene| Mine::new(scene));`. Groups without a case of the claim
-        /// get an empty test.
+        /// `judge_tests!(Claim::Mesh, |scene| Mine::new(scene));`. Groups without a case of the
+        /// claim get an empty test.
         #[macro_export]
         macro_rules! judge_tests {
             ($d claim:expr, $d make:expr) => {
