@@ -124,7 +124,7 @@ fn line_finds_boxes_in_order() {
         let (index, ids) = index_of(&all);
         for round in 0..40 {
             let [from, to] = [point(&all, random), point(&all, random)];
-            let direction: [f64; 3] = std::array::from_fn(|axis| f64::from(random.within(1.0)));
+            let direction: [f64; 3] = std::array::from_fn(|_| f64::from(random.within(1.0)));
             let (line, exact) = if round % 2 == 0 {
                 (Line::Segment { from, to }, ExactLine::segment(from, to))
             } else {
